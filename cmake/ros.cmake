@@ -1,0 +1,1 @@
+# What the nodelets and the programs share (src/ros), and the nodelets.

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace uav_landing {
+
+/// The paper's Kalman filter for the height, eqs (6)-(8): state (height, vertical speed positive up), white
+/// random acceleration. Joseph form, innovation gate.
+class HeightFilter {
+ public:
+  /// acceleration_stddev: m/s^2, of eta in eq (7). gate: largest normalised innovation, sigmas.
+  HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate);
+
+  struct Update {
+    double innovation = 0;           ///< m
+    double innovation_variance = 0;  ///< m^2
+    bool accepted = false;
+  };
+
+  bool initialised() const { return initialised_; }
+  /// Starts at a reconstructed height (m, m^2) with speed 0.
+  void initialise(double height, double variance);
+  /// Eq (7) over T seconds, T >= 0.
+  void predict(double T);
+  /// Eq (8) with a measured height (m, m^2). A measurement beyond the gate changes nothing.
+  Update update(double height, double variance);
+  void reset() { initialised_ = false; }
+
+  const Eigen::Vector2d& state() const { return state_; }          ///< m, m/s
+  const Eigen::Matrix2d& covariance() const { return covariance_; }
+
+ private:
+  double acceleration_stddev_, initial_speed_stddev_, gate_;
+  bool initialised_ = false;
+  Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
+};
+
+}  // namespace uav_landing

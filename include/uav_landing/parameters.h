@@ -1,0 +1,224 @@
+#pragma once
+
+namespace uav_landing {
+
+// Every parameter of the project has its one home here: name, default, range, unit and meaning. The struct is
+// what the code reads; visit() is the table from which YAML loading, the ROS parameter server, the range check
+// and docs/parameters.md are made. A visitor has number(name, value, min, max, unit, meaning) for int and
+// double, flag(name, value, meaning) and choice(name, enum value, {names in enum order}, meaning).
+
+/// Pairing and rectification (nodelet rectify).
+struct RectifyParameters {
+  bool approximate_sync = false;
+  double max_skew = 0.01;
+  int queue_size = 5;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.flag("approximate_sync", approximate_sync,
+           "pair images whose stamps differ, for cameras without a hardware trigger; else exact stamps");
+    v.number("max_skew", max_skew, 0.0, 0.1, "s", "largest difference of the stamps of an approximate pair");
+    v.number("queue_size", queue_size, 1, 100, "pairs", "images kept per input while waiting for the others");
+  }
+};
+
+enum class MatchingCost { kZncc, kSsd };
+
+/// Sparse stereo and the ground plane (nodelet stereo_depth; paper 3.1, eq 3).
+struct StereoDepthParameters {
+  int corner_count = 500;
+  double harris_k = 0.04;
+  double corner_quality = 1e-4;
+  double min_corner_distance = 4.0;
+  int window_radius = 5;
+  MatchingCost matching_cost = MatchingCost::kZncc;
+  bool warp_window = true;
+  double max_disparity = 0.75;
+  double search_radius = 6.0;
+  double min_zncc = 0.7;
+  double uniqueness = 0.9;
+  double left_right_tolerance = 0.7;
+  int min_points = 20;
+  double plane_tolerance = 1.0;
+  double max_roll_deg = 30.0;
+  double max_pitch_deg = 30.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners kept in the left image");
+    v.number("harris_k", harris_k, 0.01, 0.2, "", "k of the Harris response");
+    v.number("corner_quality", corner_quality, 1e-6, 0.5, "",
+             "weakest corner kept, as a share of the strongest response");
+    v.number("min_corner_distance", min_corner_distance, 1.0, 50.0, "px", "between two corners");
+    v.number("window_radius", window_radius, 2, 15, "px", "matching window is (2 r + 1) squared");
+    v.choice("matching_cost", matching_cost, {"zncc", "ssd"},
+             "zncc: blind to gain and offset between the cameras; ssd: the paper's");
+    v.flag("warp_window", warp_window,
+           "shear the window as the ground plane does between the views and refine it to sub-pixel with gain "
+           "and offset free; without it: upright windows and a parabola, as in the paper");
+    v.number("max_disparity", max_disparity, 0.05, 1.0, "image widths", "largest disparity searched");
+    v.number("search_radius", search_radius, 1.0, 64.0, "px",
+             "searched to both sides of the disparity that the previous plane predicts");
+    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
+    v.number("uniqueness", uniqueness, 0.1, 1.0, "",
+             "a second peak at least this good, as a share of the best, makes a match ambiguous");
+    v.number("left_right_tolerance", left_right_tolerance, 0.1, 5.0, "px",
+             "largest difference between matching left to right and back");
+    v.number("min_points", min_points, 6, 1000, "points", "fewest points that make a ground plane");
+    v.number("plane_tolerance", plane_tolerance, 0.1, 10.0, "px",
+             "disparity by which a point may be off the plane in the consensus step");
+    v.number("max_roll_deg", max_roll_deg, 1.0, 60.0, "deg", "largest roll that is believed");
+    v.number("max_pitch_deg", max_pitch_deg, 1.0, 60.0, "deg", "largest pitch, up or down, that is believed");
+  }
+};
+
+enum class HoughMethod { kProbabilistic, kStandard };
+enum class NormalSource { kFused, kVanishingLine };
+enum class FoeMethod { kMotion, kSlidingWindow };
+enum class AngleFormula { kGeneral, kEq1 };
+
+/// Lines, vanishing points, focus of expansion, approach angle (nodelet approach_angle; paper 2, eq 1).
+struct ApproachAngleParameters {
+  bool use_stereo = true;
+  HoughMethod hough_method = HoughMethod::kProbabilistic;
+  double canny_low = 40, canny_high = 110;
+  int hough_threshold = 30;
+  double min_line_length = 0.08;
+  double max_line_gap = 4.0;
+  bool refine_lines = true;
+  int ransac_iterations = 500;
+  double ransac_tolerance = 1.5;
+  int min_lines = 3;
+  double max_yaw_deg = 30.0;
+  double max_elevation_deg = 30.0;
+  double runway_straightness_deg = 0.15;
+  double level_roll_stddev_deg = 10.0;
+  NormalSource normal_source = NormalSource::kFused;
+  FoeMethod foe_method = FoeMethod::kMotion;
+  bool remove_rotation = true;
+  AngleFormula angle_formula = AngleFormula::kGeneral;
+  int corner_count = 300;
+  int window_radius = 5;
+  double search_radius = 10.0;
+  double min_zncc = 0.75;
+  int min_matches = 15;
+  double angle_window = 0.5;
+  double min_motion = 5.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.flag("use_stereo", use_stereo,
+           "ground normal and depth from stereo_depth; without: from the vanishing points alone, as the paper");
+    v.choice("hough_method", hough_method, {"probabilistic", "standard"}, "which Hough transform finds lines");
+    v.number("canny_low", canny_low, 1.0, 1000.0, "grey/px", "weak edges, 3x3 Sobel scale");
+    v.number("canny_high", canny_high, 1.0, 1000.0, "grey/px", "strong edges");
+    v.number("hough_threshold", hough_threshold, 5, 1000, "votes", "fewest edge pixels on a line");
+    v.number("min_line_length", min_line_length, 0.01, 1.0, "image heights", "shortest line kept");
+    v.number("max_line_gap", max_line_gap, 0.0, 50.0, "px", "gap inside a line that is bridged");
+    v.flag("refine_lines", refine_lines, "fit each line to the gradient along it to sub-pixel");
+    v.number("ransac_iterations", ransac_iterations, 10, 10000, "", "pairs of lines tried");
+    v.number("ransac_tolerance", ransac_tolerance, 0.1, 20.0, "px",
+             "distance by which a line's far end may miss the vanishing point's line");
+    v.number("min_lines", min_lines, 2, 100, "lines", "fewest lines that make a vanishing point");
+    v.number("max_yaw_deg", max_yaw_deg, 1.0, 80.0, "deg",
+             "lines that meet farther to the side are not along the runway");
+    v.number("max_elevation_deg", max_elevation_deg, 1.0, 60.0, "deg",
+             "lines that meet farther above or below the optical axis are not along the runway");
+    v.number("runway_straightness_deg", runway_straightness_deg, 0.0, 5.0, "deg",
+             "1 sigma by which the runway's own slope and curve turn its vanishing point");
+    v.number("level_roll_stddev_deg", level_roll_stddev_deg, 0.1, 90.0, "deg",
+             "1 sigma of the paper's assumption that the rig is level");
+    v.choice("normal_source", normal_source, {"fused", "vanishing_line"},
+             "ground normal of the angle: stereo plane and vanishing points by covariance, or the latter alone");
+    v.choice("foe_method", foe_method, {"motion", "sliding_window"},
+             "motion: robust rotation and translation; sliding_window: the paper's 3x3 vote");
+    v.flag("remove_rotation", remove_rotation,
+           "take the rotation between the frames out of the image velocities first (sliding_window only)");
+    v.choice("angle_formula", angle_formula, {"general", "eq1"}, "asin(n.t) or the paper's eq (1)");
+    v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners followed between frames");
+    v.number("window_radius", window_radius, 2, 15, "px", "matching window is (2 r + 1) squared");
+    v.number("search_radius", search_radius, 1.0, 64.0, "px",
+             "searched around the place the previous motion predicts");
+    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
+    v.number("min_matches", min_matches, 6, 1000, "matches", "fewest matches that make a motion");
+    v.number("angle_window", angle_window, 0.0, 0.5, "s", "images used for the published angle; 0: one step");
+    v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
+             "translation must exceed its own uncertainty by this factor, or no angle is claimed");
+  }
+};
+
+enum class HeightSource { kPlane, kPoints };
+enum class ReconstructionAngle { kPitch, kApproach };
+
+/// Reconstruction and the height filter (nodelet kalman_height; paper 3.2, 3.3, eqs 4-8).
+struct KalmanHeightParameters {
+  HeightSource height_source = HeightSource::kPlane;
+  ReconstructionAngle reconstruction_angle = ReconstructionAngle::kPitch;
+  bool fuse_vanishing_point = true;
+  double acceleration_stddev = 1.5;
+  double initial_speed_stddev = 5.0;
+  double height_model_error = 0.001;
+  double gate = 5.0;
+  double max_age = 0.3;
+  double reset_timeout = 1.0;
+  double max_height_error = 0.05;
+  double min_height_error = 0.15;
+  double max_angle_stddev_deg = 1.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.choice("height_source", height_source, {"plane", "points"},
+             "height of the fitted plane, or the average of eq (5) over the points as in the paper");
+    v.choice("reconstruction_angle", reconstruction_angle, {"pitch", "approach"},
+             "angle in eqs (4) and (5): pitch levels the camera; approach is the paper to the letter");
+    v.flag("fuse_vanishing_point", fuse_vanishing_point,
+           "correct the stereo plane's pitch with the vanishing point");
+    v.number("acceleration_stddev", acceleration_stddev, 0.01, 50.0, "m/s^2",
+             "1 sigma of the random vertical acceleration, eq (7)");
+    v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",
+             "1 sigma of the initial vertical speed, which starts at 0");
+    v.number("height_model_error", height_model_error, 0.0, 0.1, "of height",
+             "1 sigma by which the surface below differs from the plane seen ahead; does not average out");
+    v.number("gate", gate, 1.0, 20.0, "sigma", "largest normalised innovation that is believed");
+    v.number("max_age", max_age, 0.05, 10.0, "s", "without a pair for this long the status is lost");
+    v.number("reset_timeout", reset_timeout, 0.1, 60.0, "s",
+             "without an accepted measurement for this long the filter starts anew");
+    v.number("max_height_error", max_height_error, 0.001, 1.0, "of height",
+             "3 sigma above this share of the height (and min_height_error) is not valid");
+    v.number("min_height_error", min_height_error, 0.001, 10.0, "m",
+             "3 sigma below this is valid at any height");
+    v.number("max_angle_stddev_deg", max_angle_stddev_deg, 0.01, 20.0, "deg",
+             "1 sigma of the approach angle above this is not valid");
+  }
+};
+
+/// The overlay picture (nodelet overlay).
+struct OverlayParameters {
+  int scale = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("scale", scale, 0, 4, "", "picture enlarged by this factor; 0: at least 640 pixels wide");
+  }
+};
+
+/// One parameter set for the whole chain; each member is a section of config/*.yaml.
+struct Parameters {
+  RectifyParameters rectify;
+  StereoDepthParameters stereo_depth;
+  ApproachAngleParameters approach_angle;
+  KalmanHeightParameters kalman_height;
+  OverlayParameters overlay;
+
+  /// Calls v(section name, parameter struct) for every section.
+  template <class Visitor>
+  void visitSections(Visitor&& v) {
+    v("rectify", rectify);
+    v("stereo_depth", stereo_depth);
+    v("approach_angle", approach_angle);
+    v("kalman_height", kalman_height);
+    v("overlay", overlay);
+  }
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "uav_landing/approach_angle_stage.h"
+#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/stereo_depth_stage.h"
+
+namespace uav_landing {
+
+/// The whole chain for one pair after another, as the nodelets run it.
+class Pipeline {
+ public:
+  static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
+                                   const Parameters& parameters);
+
+  struct Output {
+    cv::Mat left, right;  ///< rectified; views of buffers reused by the next call
+    StereoDepthResult stereo;
+    ApproachAngleResult approach;
+    LandingResult landing;
+    Timings timings;
+  };
+  /// left, right: raw mono8 of the size the calibrations announce; another size is a failure in every
+  /// stage's result. stamp: of the left image, s. skew: right minus left, s.
+  const Output& process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
+
+  const RigModel& rig() const { return rig_; }
+
+ private:
+  Pipeline(RigModel rig, Rectifier left, Rectifier right, const Parameters& parameters);
+
+  RigModel rig_;
+  Rectifier left_rectifier_, right_rectifier_;
+  StereoDepthStage stereo_;
+  ApproachAngleStage approach_;
+  KalmanHeightStage kalman_;
+  Output output_;
+};
+
+}  // namespace uav_landing

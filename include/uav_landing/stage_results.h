@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "uav_landing/failure.h"
+#include "uav_landing/ground_plane.h"
+
+namespace uav_landing {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
+struct StereoDepthResult {
+  /// One matched corner. Coordinates in the rectified left image, pixels.
+  struct Point {
+    double u = kUnknown, v = kUnknown;
+    double disparity = kUnknown;         ///< pixels, (u_l - u_r) - (cx_l - cx_r)
+    double disparity_stddev = kUnknown;  ///< pixels, of the match itself
+    bool on_plane = false;               ///< agrees with the ground plane
+  };
+  double stamp = 0;  ///< seconds, of the left image
+  Failure failure;   ///< set when there is no plane
+  int corners = 0;   ///< corners looked for in the right image
+  std::vector<Point> points;
+  GroundPlane plane;
+  double residual_stddev = kUnknown;  ///< of the points on the plane, pixels of disparity
+  bool from_search = false;           ///< found without a plane from the previous pair
+  double skew = 0;                    ///< stamp of right minus left image, seconds
+};
+
+/// Result of the monocular branch (paper 2) for one pair. Mirrors ApproachAngle.msg.
+struct ApproachAngleResult {
+  struct Line {
+    Eigen::Vector2d a, b;  ///< end points, pixels of the rectified image
+    bool inlier = false;   ///< passes through the vanishing point
+  };
+  struct View {
+    std::vector<Line> lines;
+    Failure failure;
+    Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);  ///< unit, towards +z
+    Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2, rank 2
+  };
+  /// Camera motion over an interval that ends at this frame.
+  struct Motion {
+    Failure failure;
+    double duration = kUnknown;  ///< s
+    int matches = 0, inliers = 0;
+    /// Rotation vector w of R = exp(w): x_now = R (x_then - c) with c the movement, see t. rad.
+    Eigen::Vector3d rotation = Eigen::Vector3d::Constant(kUnknown);
+    /// Camera motion expressed in the current frame, over the current height: t / h.
+    Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
+    Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
+    double angle = kUnknown;         ///< approach angle over the interval, rad, positive descending
+    double angle_variance = kUnknown;  ///< rad^2, includes the normal's
+  };
+  double stamp = 0;
+  Failure failure;  ///< set when there is no approach angle
+  View left, right;
+  /// Vanishing point of the runway from both views, left frame. Independent of stereo.
+  Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  /// Ground normal from the vanishing points alone (level rig, roll variance large).
+  Eigen::Vector3d n_vp = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d n_vp_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  /// Ground normal fused from stereo and the vanishing points: what the angles here refer to.
+  Eigen::Vector3d n = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d n_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  Motion step;    ///< from the previous frame
+  Motion window;  ///< over up to angle_window seconds
+  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
+  Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
+};
+
+enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
+const char* toString(Status status);
+
+/// The estimate for one pair. Mirrors LandingEstimate.msg. All of the left rectified camera.
+struct LandingResult {
+  double stamp = 0;
+  Status status = Status::kSearching;
+  Failure failure;        ///< why the status is not tracking, or why valid is false
+  bool height_valid = false;
+  bool angle_valid = false;
+  bool valid() const { return height_valid && angle_valid; }
+  double height = kUnknown, height_variance = kUnknown;          ///< filtered, m, m^2
+  double raw_height = kUnknown, raw_height_variance = kUnknown;  ///< measured on this pair alone
+  double points_height = kUnknown;  ///< eqs (4), (5) averaged over the points on the plane, m
+  double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< positive up
+  double approach_angle = kUnknown, approach_angle_variance = kUnknown;
+  double raw_approach_angle = kUnknown, raw_approach_angle_variance = kUnknown;
+  double pitch = kUnknown, pitch_variance = kUnknown;
+  double roll = kUnknown, roll_variance = kUnknown;
+  double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
+  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
+  Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
+  double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
+  bool rejected = false;           ///< the raw height failed the gate
+  int consecutive_rejections = 0;
+  int resets = 0;                  ///< filter resets since start
+};
+
+}  // namespace uav_landing
