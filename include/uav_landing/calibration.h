@@ -27,6 +27,10 @@ struct CameraCalibration {
 
   /// Size of the image this camera_info announces: ROI divided by binning.
   cv::Size imageSize() const;
+
+  /// The same camera in pixels of the image it delivers: K and P with ROI and binning taken in, as
+  /// image_geometry does it (c' = (c - offset) / binning, f' = f / binning), and no ROI or binning left.
+  CameraCalibration ofDeliveredImage() const;
 };
 
 /// The rectified pair: two pinhole cameras with common rows, axes parallel, the right one b to the right.
