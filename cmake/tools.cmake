@@ -1,1 +1,10 @@
-# tools
+# What the programs share, and the programs (src/tools).
+add_library(uav_landing_tools STATIC
+  src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/decimal_time.cpp src/tools/stereo_bag_writer.cpp)
+target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
+target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
+target_link_libraries(uav_landing_tools PUBLIC uav_landing_core ${catkin_LIBRARIES} CLI11::CLI11)
+add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
+
+add_executable(dataset_to_bag src/tools/dataset_to_bag.cpp)
+target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)

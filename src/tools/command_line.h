@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <optional>
+#include <regex>
+#include <string>
+
+namespace uav_landing {
+
+/// Exit status of all programs.
+enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2 };
+
+/// Parses the command line. Returns an exit status when there is nothing left to do (help was asked for, or
+/// the usage was wrong; CLI11 has written which).
+inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongUsage;
+  }
+  return std::nullopt;
+}
+
+/// Writes "program: message" to stderr and returns the status for unusable input.
+inline int inputUnusable(const CLI::App& app, const std::string& message) {
+  std::cerr << app.get_name() << ": " << message << '\n';
+  return kInputUnusable;
+}
+
+/// Check for a camera namespace such as "stereo" or "uav1/stereo".
+inline CLI::Validator isCameraName() {
+  return CLI::Validator(
+      [](const std::string& name) -> std::string {
+        static const std::regex pattern("[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*");
+        return std::regex_match(name, pattern) ? ""
+                                               : "\"" + name + "\" is not a name like stereo or uav1/stereo";
+      },
+      "NAME");
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <string>
+
+#include "uav_landing/failure.h"
+
+namespace uav_landing {
+
+/// Seconds as a decimal number ("100.1") to the nanosecond; digits beyond the ninth are cut off. Going
+/// through a double would be wrong by up to 120 ns for today's stamps. Refuses what is not such a number, or
+/// does not fit into ros::Time, or is zero (which means "no stamp").
+Expected<ros::Time> parseDecimalTime(const std::string& text);
+
+/// Seconds with 9 decimals.
+std::string toDecimal(const ros::Time& time);
+
+}  // namespace uav_landing

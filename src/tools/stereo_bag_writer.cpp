@@ -1,0 +1,100 @@
+#include "stereo_bag_writer.h"
+
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <boost/algorithm/string.hpp>
+#include <cmath>
+#include <filesystem>
+
+namespace uav_landing {
+namespace {
+
+/// Truth is exact: variance 0 where there is a value.
+double varianceOf(double value) { return std::isnan(value) ? kUnknown : 0.0; }
+
+/// The step's velocity: its direction is that of the focus of expansion, seen from the rectified left camera.
+Eigen::Vector3d velocityOf(const Truth& truth, const sensor_msgs::CameraInfo& left) {
+  const Eigen::Vector3d ray((truth.foe.x() - left.P[2]) / left.P[0], (truth.foe.y() - left.P[6]) / left.P[5],
+                            1.0);
+  return truth.speed * ray.normalized();
+}
+
+}  // namespace
+
+LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& left, const ros::Time& stamp,
+                             const std::string& left_frame) {
+  LandingEstimate message;
+  message.header.stamp = stamp;
+  message.header.frame_id = "runway";
+  message.child_frame_id = left_frame + "_rect";
+  message.height_valid = !std::isnan(truth.height);
+  message.angle_valid = !std::isnan(truth.approach_angle);
+  message.valid = message.height_valid && message.angle_valid;
+  message.status = message.height_valid ? LandingEstimate::TRACKING : LandingEstimate::SEARCHING;
+  message.height = message.raw_height = message.points_height = truth.height;
+  message.height_variance = message.raw_height_variance = varianceOf(truth.height);
+  message.approach_angle = message.raw_approach_angle = truth.approach_angle;
+  message.approach_angle_variance = message.raw_approach_angle_variance = varianceOf(truth.approach_angle);
+  message.vertical_speed = -truth.speed * std::sin(truth.approach_angle);
+  message.vertical_speed_variance = varianceOf(message.vertical_speed);
+  message.pitch = truth.pitch;
+  message.pitch_variance = varianceOf(truth.pitch);
+  message.roll = truth.roll;
+  message.roll_variance = varianceOf(truth.roll);
+  message.yaw = truth.yaw;
+  message.yaw_variance = varianceOf(truth.yaw);
+  message.foe = {truth.foe.x(), truth.foe.y()};
+  const Eigen::Vector3d velocity = velocityOf(truth, left);
+  message.velocity = {velocity.x(), velocity.y(), velocity.z()};
+  message.innovation = message.innovation_variance = kUnknown;
+  message.x_known = !std::isnan(truth.x);
+  message.y_known = !std::isnan(truth.y);
+  message.height_protection_level = kUnknown;
+  message.compute_ms = kUnknown;
+  return message;
+}
+
+StereoBagWriter::StereoBagWriter(const std::string& path, const std::string& camera,
+                                 const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right)
+    : path_(path), temporary_path_(path + ".active"), camera_(camera), left_(left), right_(right) {
+  const std::string prefix = boost::replace_all_copy(camera, "/", "_");
+  left_.header.frame_id = prefix + "_left_optical_frame";
+  right_.header.frame_id = prefix + "_right_optical_frame";
+  bag_.open(temporary_path_, rosbag::bagmode::Write);
+}
+
+StereoBagWriter::~StereoBagWriter() {
+  if (temporary_path_.empty()) return;
+  try {
+    bag_.close();
+  } catch (const rosbag::BagException&) {
+    // The bag is given up anyway.
+  }
+  std::error_code ignored;
+  std::filesystem::remove(temporary_path_, ignored);
+}
+
+void StereoBagWriter::write(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right,
+                            const Truth& truth) {
+  writeCamera("left", stamp, left, left_);
+  writeCamera("right", stamp, right, right_);
+  bag_.write("/truth/landing_estimate", stamp, truthMessage(truth, left_, stamp, left_.header.frame_id));
+}
+
+void StereoBagWriter::writeCamera(const std::string& side, const ros::Time& stamp, const cv::Mat& image,
+                                  sensor_msgs::CameraInfo& info) {
+  info.header.stamp = stamp;
+  const std::string topic = "/" + camera_ + "/" + side;
+  bag_.write(topic + "/camera_info", stamp, info);
+  bag_.write(topic + "/image_raw", stamp,
+             cv_bridge::CvImage(info.header, sensor_msgs::image_encodings::MONO8, image).toImageMsg());
+}
+
+void StereoBagWriter::finish() {
+  bag_.close();
+  std::filesystem::rename(temporary_path_, path_);
+  temporary_path_.clear();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <ros/time.h>
+#include <rosbag/bag.h>
+#include <sensor_msgs/CameraInfo.h>
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "uav_landing/LandingEstimate.h"
+#include "uav_landing/failure.h"
+#include "uav_landing/truth.h"
+
+namespace uav_landing {
+
+/// Truth of one frame as a message: what is known with variance 0, the rest NaN. The velocity is in the
+/// rectified left camera's optical frame; it is known when speed and focus of expansion are.
+LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& left, const ros::Time& stamp,
+                             const std::string& left_frame);
+
+/// Writes image pairs with their truth to a bag, the way a stereo camera driver would be recorded:
+/// /<camera>/{left,right}/{image_raw,camera_info} and /truth/landing_estimate. Everything goes to
+/// "<path>.active" first; finish() gives it its name, without it the file is removed.
+class StereoBagWriter {
+ public:
+  /// Opens the bag; throws rosbag::BagException when that is not possible. camera: namespace, without slashes
+  /// at the ends; its slashes become underscores in the frame names "<camera>_left_optical_frame".
+  StereoBagWriter(const std::string& path, const std::string& camera, const sensor_msgs::CameraInfo& left,
+                  const sensor_msgs::CameraInfo& right);
+  ~StereoBagWriter();
+  StereoBagWriter(const StereoBagWriter&) = delete;
+  StereoBagWriter& operator=(const StereoBagWriter&) = delete;
+
+  /// left, right: raw mono8.
+  void write(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right, const Truth& truth);
+  void finish();
+
+ private:
+  void writeCamera(const std::string& side, const ros::Time& stamp, const cv::Mat& image,
+                   sensor_msgs::CameraInfo& info);
+
+  std::string path_, temporary_path_, camera_;
+  sensor_msgs::CameraInfo left_, right_;
+  rosbag::Bag bag_;
+};
+
+}  // namespace uav_landing
