@@ -3,7 +3,7 @@
 file(GLOB core_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/core/*.cpp ${PROJECT_SOURCE_DIR}/src/core/*/*.cpp)
 add_library(uav_landing_core SHARED ${core_sources})
 target_include_directories(uav_landing_core PUBLIC ${PROJECT_SOURCE_DIR}/include)
-target_include_directories(uav_landing_core SYSTEM PUBLIC ${EIGEN3_INCLUDE_DIRS} ${OpenCV_INCLUDE_DIRS})
 target_include_directories(uav_landing_core PRIVATE ${PROJECT_SOURCE_DIR}/src/core)
-target_link_libraries(uav_landing_core PUBLIC opencv_core opencv_imgproc opencv_calib3d opencv_imgcodecs PRIVATE yaml-cpp)
+target_link_libraries(uav_landing_core
+  PUBLIC Eigen3::Eigen opencv_core opencv_imgproc opencv_calib3d opencv_imgcodecs PRIVATE yaml-cpp)
 target_link_options(uav_landing_core PRIVATE -Wl,--no-undefined)
