@@ -12,8 +12,8 @@ class HeightFilter {
   HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate);
 
   struct Update {
-    double innovation = 0;           ///< m
-    double innovation_variance = 0;  ///< m^2
+    double innovation = 0;           ///< measured minus predicted; m, of a speed m/s
+    double innovation_variance = 0;  ///< of it, both uncertainties added; m^2, of a speed m^2/s^2
     bool accepted = false;
   };
 
@@ -24,12 +24,16 @@ class HeightFilter {
   void predict(double T);
   /// Eq (8) with a measured height (m, m^2). A measurement beyond the gate changes nothing.
   Update update(double height, double variance);
+  /// The same with a measured vertical speed (positive up, m/s, m^2/s^2). Not in the paper.
+  Update updateSpeed(double speed, double variance);
   void reset() { initialised_ = false; }
 
-  const Eigen::Vector2d& state() const { return state_; }          ///< m, m/s
+  const Eigen::Vector2d& state() const { return state_; }  ///< m, m/s
   const Eigen::Matrix2d& covariance() const { return covariance_; }
 
  private:
+  Update fuse(const Eigen::RowVector2d& observation, double measured, double variance);
+
   double acceleration_stddev_, initial_speed_stddev_, gate_;
   bool initialised_ = false;
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "uav_landing/height_filter.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/stage_results.h"
@@ -11,20 +13,57 @@ namespace uav_landing {
 /// status and validity.
 class KalmanHeightStage {
  public:
+  /// A height is believed after this many measurements in a row agreed: the first plane of a search can be
+  /// wrong, and nothing before it could tell.
+  static constexpr int kConfirmations = 3;
+
   KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters);
 
-  /// Results of the same pair. A stamp that does not increase resets the filter (reason time_jump).
+  /// Results of the same pair. A stamp that does not increase, or that jumps ahead by more than
+  /// reset_timeout, resets the filter (reason time_jump).
   LandingResult process(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   /// What to say when no pair came for max_age: status lost, nothing valid. stamp: of now, s.
   LandingResult timeout(double stamp);
+  /// Forgets everything but the count of resets.
   void reset();
   const Timings& timings() const { return timings_; }
 
  private:
+  /// What one pair alone says of height and attitude.
+  struct Reconstruction {
+    Failure failure;  ///< set when there is no height
+    GroundPlane plane;
+    double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
+    double points_height = kUnknown;                ///< m
+  };
+  Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
+  GroundPlane groundPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach) const;
+  void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                             Reconstruction& reconstruction) const;
+  double modelVariance(double height) const;
+
+  Failure followTime(double stamp);
+  void filterHeight(double stamp, const Reconstruction& reconstruction,
+                    const ApproachAngleResult::Motion& step, LandingResult& result);
+  void updateHeight(double stamp, const Reconstruction& reconstruction,
+                    const ApproachAngleResult::Motion& step, LandingResult& result);
+  void updateSpeed(const Reconstruction& reconstruction, const ApproachAngleResult::Motion& step);
+  void start(double stamp, const Reconstruction& reconstruction);
+  void accept(double stamp);
+  void loseTrack();
+  void reportHeight(LandingResult& result) const;
+
   StereoRig rig_;
   KalmanHeightParameters parameters_;
   HeightFilter filter_;
   Timings timings_;
+
+  std::optional<double> last_stamp_;  ///< s
+  double last_accepted_ = 0;          ///< stamp of the last measurement that was believed, s
+  int confirmations_ = 0;
+  int consecutive_rejections_ = 0;
+  int resets_ = 0;
+  bool lost_ = false;  ///< there was an estimate and it timed out
 };
 
 }  // namespace uav_landing

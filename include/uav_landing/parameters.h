@@ -3,9 +3,9 @@
 namespace uav_landing {
 
 // Every parameter of the project has its one home here: name, default, range, unit and meaning. The struct is
-// what the code reads; visit() is the table from which YAML loading, the ROS parameter server, the range check
-// and docs/parameters.md are made. A visitor has number(name, value, min, max, unit, meaning) for int and
-// double, flag(name, value, meaning) and choice(name, enum value, {names in enum order}, meaning).
+// what the code reads; visit() is the table from which YAML loading, the ROS parameter server, the range
+// check and docs/parameters.md are made. A visitor has number(name, value, min, max, unit, meaning) for int
+// and double, flag(name, value, meaning) and choice(name, enum value, {names in enum order}, meaning).
 
 /// Pairing and rectification (nodelet rectify).
 struct RectifyParameters {
@@ -107,9 +107,11 @@ struct ApproachAngleParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.flag("use_stereo", use_stereo,
-           "ground normal and depth from stereo_depth; without: from the vanishing points alone, as the paper");
-    v.choice("hough_method", hough_method, {"probabilistic", "standard"}, "which Hough transform finds lines");
+    v.flag(
+        "use_stereo", use_stereo,
+        "ground normal and depth from stereo_depth; without: from the vanishing points alone, as the paper");
+    v.choice("hough_method", hough_method, {"probabilistic", "standard"},
+             "which Hough transform finds lines");
     v.number("canny_low", canny_low, 1.0, 1000.0, "grey/px", "weak edges, 3x3 Sobel scale");
     v.number("canny_high", canny_high, 1.0, 1000.0, "grey/px", "strong edges");
     v.number("hough_threshold", hough_threshold, 5, 1000, "votes", "fewest edge pixels on a line");
@@ -128,8 +130,9 @@ struct ApproachAngleParameters {
              "1 sigma by which the runway's own slope and curve turn its vanishing point");
     v.number("level_roll_stddev_deg", level_roll_stddev_deg, 0.1, 90.0, "deg",
              "1 sigma of the paper's assumption that the rig is level");
-    v.choice("normal_source", normal_source, {"fused", "vanishing_line"},
-             "ground normal of the angle: stereo plane and vanishing points by covariance, or the latter alone");
+    v.choice(
+        "normal_source", normal_source, {"fused", "vanishing_line"},
+        "ground normal of the angle: stereo plane and vanishing points by covariance, or the latter alone");
     v.choice("foe_method", foe_method, {"motion", "sliding_window"},
              "motion: robust rotation and translation; sliding_window: the paper's 3x3 vote");
     v.flag("remove_rotation", remove_rotation,
@@ -155,6 +158,8 @@ struct KalmanHeightParameters {
   HeightSource height_source = HeightSource::kPlane;
   ReconstructionAngle reconstruction_angle = ReconstructionAngle::kPitch;
   bool fuse_vanishing_point = true;
+  double vanishing_point_gate = 3.0;
+  bool use_motion = true;
   double acceleration_stddev = 1.5;
   double initial_speed_stddev = 5.0;
   double height_model_error = 0.001;
@@ -173,6 +178,9 @@ struct KalmanHeightParameters {
              "angle in eqs (4) and (5): pitch levels the camera; approach is the paper to the letter");
     v.flag("fuse_vanishing_point", fuse_vanishing_point,
            "correct the stereo plane's pitch with the vanishing point");
+    v.number("vanishing_point_gate", vanishing_point_gate, 1.0, 20.0, "sigma",
+             "a vanishing point that disagrees more with the stereo plane is left out");
+    v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
     v.number("acceleration_stddev", acceleration_stddev, 0.01, 50.0, "m/s^2",
              "1 sigma of the random vertical acceleration, eq (7)");
     v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",

@@ -1,0 +1,47 @@
+#include "uav_landing/height_filter.h"
+
+namespace uav_landing {
+
+HeightFilter::HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate)
+    : acceleration_stddev_(acceleration_stddev), initial_speed_stddev_(initial_speed_stddev), gate_(gate) {}
+
+void HeightFilter::initialise(double height, double variance) {
+  state_ << height, 0;
+  covariance_ << variance, 0, 0, initial_speed_stddev_ * initial_speed_stddev_;
+  initialised_ = true;
+}
+
+void HeightFilter::predict(double T) {
+  Eigen::Matrix2d transition;
+  transition << 1, T, 0, 1;
+  const Eigen::Vector2d noise_gain(0.5 * T * T, T);
+  state_ = transition * state_;
+  covariance_ = transition * covariance_ * transition.transpose() +
+                acceleration_stddev_ * acceleration_stddev_ * noise_gain * noise_gain.transpose();
+}
+
+HeightFilter::Update HeightFilter::update(double height, double variance) {
+  return fuse(Eigen::RowVector2d(1, 0), height, variance);
+}
+
+HeightFilter::Update HeightFilter::updateSpeed(double speed, double variance) {
+  return fuse(Eigen::RowVector2d(0, 1), speed, variance);
+}
+
+HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, double measured,
+                                        double variance) {
+  Update update;
+  update.innovation = measured - observation * state_;
+  update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
+  // Written so that a NaN is refused too.
+  update.accepted = update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
+  if (!update.accepted) return update;
+
+  const Eigen::Vector2d gain = covariance_ * observation.transpose() / update.innovation_variance;
+  state_ += gain * update.innovation;
+  const Eigen::Matrix2d remaining = Eigen::Matrix2d::Identity() - gain * observation;
+  covariance_ = remaining * covariance_ * remaining.transpose() + variance * gain * gain.transpose();
+  return update;
+}
+
+}  // namespace uav_landing

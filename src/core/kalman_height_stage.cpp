@@ -1,0 +1,288 @@
+#include "uav_landing/kalman_height_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "attitude.h"
+#include "text.h"
+#include "uav_landing/reconstruction.h"
+#include "vertical_speed.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+Failure missingPlane(const StereoDepthResult& stereo) {
+  if (stereo.failure) return stereo.failure;
+  if (!stereo.plane.valid() || !stereo.plane.covariance.allFinite())
+    return {Reason::kNoPlane, "the ground plane has no finite value and covariance"};
+  return {};
+}
+
+/// The angle over the window, or of the step alone where the window has none.
+const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach) {
+  const bool window_known = !approach.window.failure && std::isfinite(approach.window.angle);
+  return window_known ? approach.window : approach.step;
+}
+
+void reportAngle(const ApproachAngleResult& approach, double max_stddev, LandingResult& result) {
+  result.raw_approach_angle = approach.step.angle;
+  result.raw_approach_angle_variance = approach.step.angle_variance;
+  result.foe = approach.foe;
+  const ApproachAngleResult::Motion& motion = publishedMotion(approach);
+  result.approach_angle = motion.angle;
+  result.approach_angle_variance = motion.angle_variance;
+
+  Failure failure = approach.failure ? approach.failure : motion.failure;
+  if (!failure && !std::isfinite(motion.angle))
+    failure = {Reason::kNoMotion, "the approach angle is not finite"};
+  const double stddev = std::sqrt(motion.angle_variance);
+  if (!failure && !(stddev <= max_stddev)) {
+    failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", stddev / kDegree,
+                                        " deg, more than ", max_stddev / kDegree, " deg")};
+  }
+  result.angle_valid = !failure;
+  if (!result.failure) result.failure = failure;
+}
+
+}  // namespace
+
+KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
+    : rig_(rig),
+      parameters_(parameters),
+      filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate) {}
+
+LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
+                                         const ApproachAngleResult& approach) {
+  timings_.clear();
+  LandingResult result;
+  result.stamp = stereo.stamp;
+  const Reconstruction reconstruction = reconstruct(stereo, approach);
+  {
+    const ScopedTimer timer(timings_, "kalman_filter");
+    result.failure = followTime(stereo.stamp);
+    if (!result.failure) result.failure = reconstruction.failure;
+    filterHeight(stereo.stamp, reconstruction, approach.step, result);
+    reportHeight(result);
+  }
+  reportAngle(approach, parameters_.max_angle_stddev_deg * kDegree, result);
+  if (reconstruction.plane.valid()) {
+    reportAttitude(reconstruction.plane.normal(), reconstruction.plane.normalCovariance(),
+                   approach.vanishing_direction, approach.vanishing_covariance, result);
+  } else {
+    reportAttitude(approach.n, approach.n_covariance, approach.vanishing_direction,
+                   approach.vanishing_covariance, result);
+  }
+  if (!approach.step.failure)
+    result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
+  return result;
+}
+
+LandingResult KalmanHeightStage::timeout(double stamp) {
+  if (last_stamp_ && filter_.initialised() && stamp - *last_stamp_ > parameters_.reset_timeout) loseTrack();
+  LandingResult result;
+  result.stamp = stamp;
+  result.status = Status::kLost;
+  result.failure = {Reason::kTimeout, text("no image pair for ", parameters_.max_age, " s")};
+  result.resets = resets_;
+  return result;
+}
+
+void KalmanHeightStage::reset() {
+  if (filter_.initialised()) loseTrack();
+  last_stamp_.reset();
+  lost_ = false;
+}
+
+double KalmanHeightStage::modelVariance(double height) const {
+  return std::pow(parameters_.height_model_error * height, 2);
+}
+
+KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
+                                                                 const ApproachAngleResult& approach) {
+  const ScopedTimer timer(timings_, "reconstruction");
+  Reconstruction reconstruction;
+  reconstruction.failure = missingPlane(stereo);
+  if (reconstruction.failure) return reconstruction;
+
+  reconstruction.plane = groundPlane(stereo, approach);
+  const Eigen::Vector3d n = reconstruction.plane.normal();
+  reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;
+  if (parameters_.height_source == HeightSource::kPlane) {
+    reconstruction.height = reconstruction.plane.height();
+    reconstruction.variance = reconstruction.plane.heightVariance();
+  } else {
+    reconstructFromPoints(stereo, approach, reconstruction);
+  }
+  reconstruction.variance += modelVariance(reconstruction.height);
+  if (!reconstruction.failure && !(reconstruction.height > 0 && reconstruction.variance >= 0))
+    reconstruction.failure = {Reason::kNoPlane,
+                              text("height of ", reconstruction.height, " m is not above the ground")};
+  return reconstruction;
+}
+
+GroundPlane KalmanHeightStage::groundPlane(const StereoDepthResult& stereo,
+                                           const ApproachAngleResult& approach) const {
+  // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
+  // contains the plane already.
+  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+                    approach.vanishing_covariance.allFinite();
+  if (!fuse) return stereo.plane;
+  double nis = 0;
+  return fuseVanishingPoint(stereo.plane, approach.vanishing_direction, approach.vanishing_covariance,
+                            std::pow(parameters_.vanishing_point_gate, 2), &nis);
+}
+
+void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
+                                              const ApproachAngleResult& approach,
+                                              Reconstruction& reconstruction) const {
+  const Eigen::Vector3d n = reconstruction.plane.normal();
+  double theta = -pitchOf(n), roll = rollOf(n);
+  double theta_variance = pitchVariance(n, reconstruction.plane.normalCovariance());
+  bool only_on_plane = true;
+  if (parameters_.reconstruction_angle == ReconstructionAngle::kApproach) {
+    // The paper to the letter: no roll, and a statistical average over every depth.
+    theta = publishedMotion(approach).angle;
+    theta_variance = publishedMotion(approach).angle_variance;
+    roll = 0;
+    only_on_plane = false;
+  }
+  if (!std::isfinite(theta) || !std::isfinite(theta_variance)) {
+    reconstruction.failure = approach.failure ? approach.failure : publishedMotion(approach).failure;
+    if (!reconstruction.failure)
+      reconstruction.failure = {Reason::kNoMotion, "no approach angle to reconstruct the height with"};
+    return;
+  }
+  const AveragedHeight averaged = averageHeight(rig_, stereo.points, theta, roll, only_on_plane);
+  if (averaged.points < 2) {
+    reconstruction.failure = {Reason::kTooFewMatches,
+                              text(averaged.points, " of at least 2 points to average")};
+    return;
+  }
+  // d height / d theta of eq (5) is the rotated depth: the same sum a quarter turn further.
+  const double by_theta = averageHeight(rig_, stereo.points, theta + M_PI / 2, roll, only_on_plane).height;
+  reconstruction.height = averaged.height;
+  reconstruction.variance = averaged.variance + by_theta * by_theta * theta_variance;
+}
+
+Failure KalmanHeightStage::followTime(double stamp) {
+  if (!std::isfinite(stamp)) return {Reason::kInputInvalid, "the stamp is not a finite number"};
+  const std::optional<double> last = last_stamp_;
+  const double T = last ? stamp - *last : 0;
+  if (last && (T <= 0 || T > parameters_.reset_timeout)) {
+    reset();
+    last_stamp_ = stamp;
+    return {Reason::kTimeJump, text("the stamp went ", T < 0 ? "back" : "ahead", " by ", std::abs(T), " s")};
+  }
+  last_stamp_ = stamp;
+  if (filter_.initialised()) filter_.predict(T);
+  return {};
+}
+
+void KalmanHeightStage::start(double stamp, const Reconstruction& reconstruction) {
+  filter_.initialise(reconstruction.height, reconstruction.variance);
+  confirmations_ = 0;
+  accept(stamp);
+}
+
+void KalmanHeightStage::accept(double stamp) {
+  last_accepted_ = stamp;
+  confirmations_ = std::min(confirmations_ + 1, kConfirmations);
+  consecutive_rejections_ = 0;
+  lost_ = false;
+}
+
+void KalmanHeightStage::loseTrack() {
+  ++resets_;
+  filter_.reset();
+  confirmations_ = 0;
+  consecutive_rejections_ = 0;
+  lost_ = true;
+}
+
+void KalmanHeightStage::filterHeight(double stamp, const Reconstruction& reconstruction,
+                                     const ApproachAngleResult::Motion& step, LandingResult& result) {
+  result.points_height = reconstruction.points_height;
+  const bool measured = !reconstruction.failure && result.failure.reason != Reason::kInputInvalid;
+  if (measured) {
+    result.raw_height = reconstruction.height;
+    result.raw_height_variance = reconstruction.variance;
+    if (filter_.initialised()) {
+      updateHeight(stamp, reconstruction, step, result);
+    } else {
+      start(stamp, reconstruction);
+    }
+  }
+  const double age = stamp - last_accepted_;
+  if (filter_.initialised() && age >= parameters_.reset_timeout) {
+    loseTrack();
+    if (measured) start(stamp, reconstruction);
+  }
+
+  const bool tracking = filter_.initialised() && stamp == last_accepted_;
+  if (filter_.initialised()) {
+    result.status = tracking ? Status::kTracking : Status::kCoasting;
+  } else {
+    result.status = lost_ ? Status::kLost : Status::kSearching;
+  }
+  result.consecutive_rejections = consecutive_rejections_;
+  result.resets = resets_;
+}
+
+void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconstruction,
+                                     const ApproachAngleResult::Motion& step, LandingResult& result) {
+  const HeightFilter::Update update = filter_.update(reconstruction.height, reconstruction.variance);
+  result.innovation = update.innovation;
+  result.innovation_variance = update.innovation_variance;
+  if (update.accepted) {
+    accept(stamp);
+    if (parameters_.use_motion) updateSpeed(reconstruction, step);
+    return;
+  }
+  result.rejected = true;
+  ++consecutive_rejections_;
+  result.failure = {Reason::kRejected, text("raw height ", reconstruction.height, " m, expected ",
+                                            reconstruction.height - update.innovation, " m with 1 sigma of ",
+                                            std::sqrt(update.innovation_variance), " m")};
+  if (confirmations_ < kConfirmations) {
+    // Two measurements that contradict each other, and nothing yet that says which one is wrong.
+    loseTrack();
+    start(stamp, reconstruction);
+  }
+}
+
+void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
+                                    const ApproachAngleResult::Motion& step) {
+  const VerticalSpeed measured =
+      verticalSpeed(step, reconstruction.plane, reconstruction.height, reconstruction.variance,
+                    parameters_.height_model_error, parameters_.acceleration_stddev);
+  filter_.updateSpeed(measured.speed, measured.variance);
+}
+
+void KalmanHeightStage::reportHeight(LandingResult& result) const {
+  if (!filter_.initialised()) return;
+  const double h = filter_.state()[0];
+  result.height = h;
+  // The filter averages the model error as if it were noise, but the surface stays as it is.
+  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h);
+  result.vertical_speed = filter_.state()[1];
+  result.vertical_speed_variance = filter_.covariance()(1, 1);
+
+  const double limit = std::max(parameters_.min_height_error, parameters_.max_height_error * h);
+  const double bound = 3 * std::sqrt(result.height_variance);
+  const double age = result.stamp - last_accepted_;
+  Failure failure;
+  if (confirmations_ < kConfirmations) {
+    failure = {Reason::kNotYet, text(confirmations_, " of ", kConfirmations, " agreeing heights")};
+  } else if (!(age <= parameters_.max_age)) {
+    failure = {Reason::kTimeout, text("no believable height for ", age, " s")};
+  } else if (!(h > 0 && bound <= limit)) {
+    failure = {Reason::kUncertain,
+               text("height ", h, " m has 3 sigma of ", bound, " m, more than ", limit, " m")};
+  }
+  result.height_valid = !failure;
+  if (!result.failure) result.failure = failure;
+}
+
+}  // namespace uav_landing

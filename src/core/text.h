@@ -1,0 +1,16 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+
+namespace uav_landing {
+
+/// The arguments one after another as text, numbers with six significant digits.
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
+}
+
+}  // namespace uav_landing
