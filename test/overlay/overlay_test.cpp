@@ -1,0 +1,197 @@
+#include "uav_landing/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr int kGrey = 100;
+
+StereoRig makeRig() {
+  StereoRig rig;
+  rig.size = {320, 240};
+  rig.fx = rig.fy = 300;
+  rig.cx = 160;
+  rig.cx_right = 150;
+  rig.cy = 120;
+  rig.baseline = 0.5;
+  return rig;
+}
+
+OverlayParameters twice() {
+  OverlayParameters parameters;
+  parameters.scale = 2;
+  return parameters;
+}
+
+LandingResult tracking() {
+  LandingResult landing;
+  landing.status = Status::kTracking;
+  landing.height_valid = landing.angle_valid = true;
+  landing.height = 1.5;
+  landing.height_variance = 1e-4;
+  return landing;
+}
+
+/// How colourful a pixel is: 0 for grey. What is not drawn on stays grey, as the image was.
+int colourfulness(const cv::Mat& picture, double column, double row) {
+  const auto pixel =
+      picture.at<cv::Vec3b>(static_cast<int>(std::lround(row)), static_cast<int>(std::lround(column)));
+  return std::max({pixel[0], pixel[1], pixel[2]}) - std::min({pixel[0], pixel[1], pixel[2]});
+}
+
+/// Place of an image pixel's middle in a picture twice as large: pixel 0 covers 0..1, its middle is 0.5.
+double enlarged(double pixel) { return 2 * pixel + 0.5; }
+
+class Overlay : public ::testing::Test {
+ protected:
+  cv::Mat draw() const { return drawOverlay(rig, image, stereo, approach, landing, twice()); }
+
+  const StereoRig rig = makeRig();
+  const cv::Mat image{rig.size, CV_8U, cv::Scalar(kGrey)};
+  StereoDepthResult stereo;
+  ApproachAngleResult approach;
+  LandingResult landing = tracking();
+};
+
+TEST_F(Overlay, NothingFoundLeavesThePictureGreyAndHasAStripBelow) {
+  const cv::Mat picture = draw();
+  EXPECT_EQ(picture.type(), CV_8UC3);
+  EXPECT_EQ(picture.cols, 640);
+  EXPECT_GT(picture.rows, 480);
+  for (int row = 0; row < 480; row += 7) {
+    for (int column = 0; column < 640; column += 7) ASSERT_EQ(colourfulness(picture, column, row), 0);
+  }
+}
+
+TEST_F(Overlay, DoesNotTouchTheImage) {
+  approach.foe = {10, 10};
+  draw();
+  EXPECT_EQ(cv::countNonZero(image != kGrey), 0);
+}
+
+TEST_F(Overlay, HorizonOfThePlaneIsWhereALevelRayGoes) {
+  // Camera pitched 10 degrees down, 5 degrees rolled: the horizon is tan(10) f above the centre, turned by
+  // the roll.
+  const double pitch = 10 * kDegree, roll = 5 * kDegree;
+  stereo.plane.g =
+      Eigen::Vector3d(std::cos(pitch) * std::sin(roll), std::cos(pitch) * std::cos(roll), std::sin(pitch)) /
+      2;
+  const cv::Mat picture = draw();
+  for (const double u : {40.0, 160.0, 280.0}) {
+    const double v = 120 - (300 * std::tan(pitch) + (u - 160) * std::sin(roll)) / std::cos(roll);
+    EXPECT_GT(colourfulness(picture, enlarged(u), enlarged(v)), 80) << u;
+    EXPECT_EQ(colourfulness(picture, enlarged(u), enlarged(v + 10)), 0) << u;
+    EXPECT_EQ(colourfulness(picture, enlarged(u), enlarged(v - 10)), 0) << u;
+  }
+}
+
+TEST_F(Overlay, FusedHorizonIsDrawnWithoutAStereoPlane) {
+  approach.n = {0, 1, 0};
+  EXPECT_GT(colourfulness(draw(), enlarged(20), enlarged(120)), 80);
+}
+
+TEST_F(Overlay, FocusOfExpansionIsACross) {
+  approach.foe = {200, 150};
+  const cv::Mat picture = draw();
+  EXPECT_GT(colourfulness(picture, enlarged(200), enlarged(150)), 80);
+  EXPECT_GT(colourfulness(picture, enlarged(200) - 8, enlarged(150)), 80);
+  EXPECT_GT(colourfulness(picture, enlarged(200), enlarged(150) + 8), 80);
+  EXPECT_EQ(colourfulness(picture, enlarged(200) - 8, enlarged(150) + 8), 0);
+}
+
+TEST_F(Overlay, VanishingPointIsACircleAroundTheDirection) {
+  approach.vanishing_direction = Eigen::Vector3d(30, -60, 300).normalized();  // pixel (190, 60)
+  const cv::Mat picture = draw();
+  EXPECT_GT(colourfulness(picture, enlarged(190) - 7, enlarged(60)), 80);
+  EXPECT_EQ(colourfulness(picture, enlarged(190), enlarged(60)), 0);
+}
+
+TEST_F(Overlay, VanishingPointBehindTheCameraIsNotDrawn) {
+  const cv::Mat without = draw();
+  approach.vanishing_direction = Eigen::Vector3d(30, -60, -300).normalized();
+  EXPECT_EQ(cv::norm(draw(), without, cv::NORM_INF), 0);
+}
+
+TEST_F(Overlay, LinesThroughTheVanishingPointAreBrightOthersDim) {
+  ApproachAngleResult::Line inlier, other;
+  inlier.a = {40, 200};
+  inlier.b = {120, 200};
+  inlier.inlier = true;
+  other.a = {180, 200};
+  other.b = {260, 200};
+  approach.left.lines = {inlier, other};
+  for (const cv::Mat& picture : {draw(), drawLines(image, approach.left, twice())}) {
+    EXPECT_GT(colourfulness(picture, enlarged(80), enlarged(200)), 150);
+    EXPECT_GT(colourfulness(picture, enlarged(220), enlarged(200)), 20);
+    EXPECT_LT(colourfulness(picture, enlarged(220), enlarged(200)), 100);
+    EXPECT_EQ(colourfulness(picture, enlarged(150), enlarged(200)), 0);
+  }
+}
+
+TEST_F(Overlay, NearMatchesAreRedFarOnesBlueThoseOffThePlaneDim) {
+  stereo.points.resize(3);
+  stereo.points[0] = {50, 220, 60, 0.1, true};
+  stereo.points[1] = {150, 220, 6, 0.1, true};
+  stereo.points[2] = {250, 220, 100, 0.1, false};
+  const cv::Mat picture = draw();
+  const auto at = [&](double u) {
+    return picture.at<cv::Vec3b>(static_cast<int>(enlarged(220)), static_cast<int>(enlarged(u)));
+  };
+  EXPECT_GT(at(50)[2], at(50)[0]);
+  EXPECT_GT(at(150)[0], at(150)[2]);
+  EXPECT_LT(colourfulness(picture, enlarged(250), enlarged(220)), 60);
+}
+
+TEST_F(Overlay, FarAwayAndUnknownMarksDoNoHarm) {
+  approach.foe = {1e12, -1e12};
+  approach.vanishing_direction = Eigen::Vector3d(1, 0, 1e-9).normalized();
+  stereo.plane.g = {0, 1e-9, 0.5};  // a horizon a million pixels away
+  EXPECT_NO_THROW(draw());
+}
+
+TEST_F(Overlay, StripShowsStatusAndReasonOfAnInvalidEstimate) {
+  const auto strip = [](const cv::Mat& picture) { return picture.rowRange(480, picture.rows); };
+  const cv::Mat good = draw();
+  landing.height_valid = landing.angle_valid = false;
+  landing.failure = {Reason::kTooFewMatches, "7 of at least 20"};
+  const cv::Mat bad = draw();
+  EXPECT_GT(cv::norm(strip(good), strip(bad), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(good.rowRange(0, 480), bad.rowRange(0, 480), cv::NORM_INF), 0);
+}
+
+TEST_F(Overlay, LongReasonStaysInsideTheStrip) {
+  landing.failure = {Reason::kInputInvalid, std::string(300, 'W')};
+  const cv::Mat picture = draw();
+  const cv::Mat margin = picture(cv::Rect(picture.cols - 4, 480, 4, picture.rows - 480));
+  const cv::Mat panel(margin.size(), margin.type(),
+                      picture.at<cv::Vec3b>(picture.rows - 1, picture.cols - 1));
+  EXPECT_EQ(cv::norm(margin, panel, cv::NORM_INF), 0);
+}
+
+TEST_F(Overlay, MatchesAreMarkedInBothViews) {
+  stereo.points = {{200, 180, 50, 0.1, true}};
+  const cv::Mat picture = drawMatches(rig, image, image, stereo, twice());
+  EXPECT_EQ(picture.size(), cv::Size(1280, 480));
+  // The right image has the point 50 + (160 - 150) columns farther left.
+  EXPECT_GT(colourfulness(picture, enlarged(200) + 2.5, enlarged(180)), 80);
+  EXPECT_GT(colourfulness(picture, enlarged(320 + 140) - 2.5, enlarged(180)), 80);
+  EXPECT_EQ(colourfulness(picture, enlarged(320 + 150), enlarged(180)), 0);
+}
+
+TEST(OverlayScale, MakesSmallImagesAtLeast640Wide) {
+  OverlayParameters parameters;
+  EXPECT_EQ(overlayScale(320, parameters), 2);
+  EXPECT_EQ(overlayScale(300, parameters), 3);
+  EXPECT_EQ(overlayScale(640, parameters), 1);
+  EXPECT_EQ(overlayScale(1392, parameters), 1);
+  parameters.scale = 4;
+  EXPECT_EQ(overlayScale(1392, parameters), 4);
+}
+
+}  // namespace
+}  // namespace uav_landing
