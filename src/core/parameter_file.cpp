@@ -45,15 +45,17 @@ Failure invalid(const Parts&... parts) {
   return {Reason::kInputInvalid, text(parts...)};
 }
 
-/// Checks that a node is a map (or empty) with every key once.
-Failure checkMap(const YAML::Node& node, const std::string& name) {
+/// Checks that a node is a map (or empty) with every key once. section: "" for the whole file.
+Failure checkMap(const YAML::Node& node, const std::string& section) {
   if (node.IsNull()) return {};
-  if (!node.IsMap()) return invalid(name, ": expected a map of names and values");
+  if (!node.IsMap())
+    return invalid(section, section.empty() ? "" : ": ", "expected a map of names and values");
   std::set<std::string> seen;
   for (const auto& entry : node) {
-    if (!entry.first.IsScalar()) return invalid(name, ": a name is not a plain word");
+    if (!entry.first.IsScalar())
+      return invalid(section, section.empty() ? "" : ": ", "a name is not a plain word");
     if (!seen.insert(entry.first.Scalar()).second)
-      return invalid(name, "/", entry.first.Scalar(), ": is given twice");
+      return invalid(section, section.empty() ? "" : "/", entry.first.Scalar(), ": is given twice");
   }
   return {};
 }
@@ -159,7 +161,7 @@ class TableWriter {
 };
 
 Failure loadSections(const YAML::Node& root, Parameters& parameters) {
-  Failure failure = checkMap(root, "the file");
+  Failure failure = checkMap(root, "");
   if (failure || root.IsNull()) return failure;
   std::vector<std::string> sections;
   parameters.visitSections([&](const char* section, auto& values) {

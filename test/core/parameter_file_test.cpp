@@ -1,0 +1,149 @@
+#include "uav_landing/parameter_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace uav_landing {
+namespace {
+
+std::string errorOf(const std::string& yaml) {
+  const Expected<Parameters> parameters = parseParameters(yaml, "test.yaml");
+  return parameters ? "accepted" : parameters.error().detail;
+}
+
+std::string fileContent(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+/// Writes every number of a section as YAML.
+struct Writer {
+  std::ostringstream& out;
+  template <class Number>
+  void number(const char* name, Number& value, double, double, const char*, const char*) {
+    out << "  " << name << ": " << value << "\n";
+  }
+  void flag(const char*, bool&, const char*) {}
+  template <class Enum>
+  void choice(const char*, Enum&, std::initializer_list<const char*>, const char*) {}
+};
+
+TEST(ParameterFile, TakesGivenValuesAndKeepsTheOtherDefaults) {
+  const Expected<Parameters> parameters = parseParameters(
+      "stereo_depth: {window_radius: 7, matching_cost: ssd, warp_window: false}\n"
+      "kalman_height:\n  gate: 4.5\n  height_source: points\n",
+      "test.yaml");
+  ASSERT_TRUE(parameters) << parameters.error().message();
+  EXPECT_EQ(parameters->stereo_depth.window_radius, 7);
+  EXPECT_EQ(parameters->stereo_depth.matching_cost, MatchingCost::kSsd);
+  EXPECT_FALSE(parameters->stereo_depth.warp_window);
+  EXPECT_EQ(parameters->stereo_depth.corner_count, StereoDepthParameters().corner_count);
+  EXPECT_DOUBLE_EQ(parameters->kalman_height.gate, 4.5);
+  EXPECT_EQ(parameters->kalman_height.height_source, HeightSource::kPoints);
+}
+
+TEST(ParameterFile, EmptyFileAndEmptySectionMeanDefaults) {
+  EXPECT_EQ(errorOf(""), "accepted");
+  EXPECT_EQ(errorOf("stereo_depth:\n"), "accepted");
+}
+
+TEST(ParameterFile, NamesTheNearestParameterForAnUnknownOne) {
+  EXPECT_EQ(errorOf("stereo_depth: {window_raduis: 5}"),
+            "test.yaml: stereo_depth/window_raduis: no such parameter; did you mean window_radius?");
+  EXPECT_EQ(errorOf("stereo_depth: {qqq: 5}"), "test.yaml: stereo_depth/qqq: no such parameter");
+}
+
+TEST(ParameterFile, NamesTheNearestSectionForAnUnknownOne) {
+  EXPECT_EQ(errorOf("stereo_dept: {window_radius: 5}"),
+            "test.yaml: stereo_dept: no such section; did you mean stereo_depth?");
+}
+
+TEST(ParameterFile, RefusesValuesOutOfRangeWithTheRange) {
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 99}"),
+            "test.yaml: stereo_depth/window_radius: 99 is out of range, expected 2 to 15 px");
+  EXPECT_EQ(errorOf("stereo_depth: {min_zncc: 1.5}"),
+            "test.yaml: stereo_depth/min_zncc: 1.5 is out of range, expected 0 to 1");
+  EXPECT_EQ(errorOf("kalman_height: {gate: .nan}"),
+            "test.yaml: kalman_height/gate: nan is out of range, expected 1 to 20 sigma");
+  EXPECT_EQ(errorOf("kalman_height: {gate: .inf}"),
+            "test.yaml: kalman_height/gate: inf is out of range, expected 1 to 20 sigma");
+}
+
+TEST(ParameterFile, AcceptsBothEndsOfTheRange) {
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 2}"), "accepted");
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 15}"), "accepted");
+  EXPECT_NE(errorOf("stereo_depth: {window_radius: 1}"), "accepted");
+  EXPECT_NE(errorOf("stereo_depth: {window_radius: 16}"), "accepted");
+}
+
+TEST(ParameterFile, RefusesValuesOfAnotherType) {
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 5.5}"),
+            "test.yaml: stereo_depth/window_radius: '5.5' is not a whole number");
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: large}"),
+            "test.yaml: stereo_depth/window_radius: 'large' is not a whole number");
+  EXPECT_EQ(errorOf("kalman_height: {gate: [1, 2]}"),
+            "test.yaml: kalman_height/gate: a list or map is not a number");
+  EXPECT_EQ(errorOf("kalman_height: {gate: }"), "test.yaml: kalman_height/gate: nothing is not a number");
+  EXPECT_EQ(errorOf("stereo_depth: {warp_window: 2}"),
+            "test.yaml: stereo_depth/warp_window: '2' is not true or false");
+  EXPECT_EQ(errorOf("stereo_depth: {matching_cost: sad}"),
+            "test.yaml: stereo_depth/matching_cost: 'sad' is not a choice, expected zncc or ssd");
+}
+
+TEST(ParameterFile, RefusesAKeyThatIsGivenTwice) {
+  EXPECT_EQ(errorOf("kalman_height:\n  gate: 4\n  gate: 5\n"),
+            "test.yaml: kalman_height/gate: is given twice");
+  EXPECT_EQ(errorOf("overlay: {}\noverlay: {}\n"), "test.yaml: overlay: is given twice");
+}
+
+TEST(ParameterFile, RefusesWhatIsNotAMap) {
+  EXPECT_EQ(errorOf("- 1\n- 2\n"), "test.yaml: expected a map of names and values");
+  EXPECT_EQ(errorOf("overlay: 5\n"), "test.yaml: overlay: expected a map of names and values");
+}
+
+TEST(ParameterFile, NamesTheLineOfASyntaxError) {
+  const std::string error = errorOf("overlay: {scale: 1\nrectify: {}\n");
+  EXPECT_NE(error.find("test.yaml: "), std::string::npos);
+  EXPECT_NE(error.find("line "), std::string::npos) << error;
+}
+
+TEST(ParameterFile, SaysWhichFileCannotBeRead) {
+  const Expected<Parameters> missing = loadParameterFile("/nowhere/config.yaml");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().detail, "/nowhere/config.yaml: cannot be read");
+  const Expected<Parameters> folder = loadParameterFile(UAV_LANDING_SOURCE_DIR);
+  ASSERT_FALSE(folder);
+  EXPECT_EQ(folder.error().detail, UAV_LANDING_SOURCE_DIR ": cannot be read");
+}
+
+TEST(ParameterFile, DefaultsLieWithinTheirOwnRanges) {
+  // Every number written out at its default must load again.
+  std::ostringstream yaml;
+  Parameters().visitSections([&](const char* section, auto& values) {
+    yaml << section << ":\n";
+    values.visit(Writer{yaml});
+  });
+  EXPECT_EQ(errorOf(yaml.str()), "accepted") << yaml.str();
+}
+
+TEST(ParameterFile, ShippedPresetsLoad) {
+  for (const char* name : {"stereo", "paper"}) {
+    const auto parameters =
+        loadParameterFile(std::string(UAV_LANDING_SOURCE_DIR "/config/") + name + ".yaml");
+    EXPECT_TRUE(parameters) << parameters.error().message();
+  }
+}
+
+TEST(ParameterTable, IsTheOneInTheDocumentation) {
+  EXPECT_TRUE(fileContent(UAV_LANDING_SOURCE_DIR "/docs/parameters.md") == parameterTable())
+      << "docs/parameters.md is out of date. Regenerate it:\n"
+         "rosrun uav_landing process_bag --list-parameters > docs/parameters.md";
+}
+
+}  // namespace
+}  // namespace uav_landing

@@ -1,0 +1,5 @@
+# Height: reconstruction, filter, validity; parameter files.
+uav_landing_add_gtest(height_filter_test test/core/height_filter_test.cpp)
+uav_landing_add_gtest(reconstruction_test test/core/reconstruction_test.cpp)
+uav_landing_add_gtest(kalman_height_stage_test test/core/kalman_height_stage_test.cpp)
+uav_landing_add_gtest(parameter_file_test test/core/parameter_file_test.cpp)
