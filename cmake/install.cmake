@@ -1,5 +1,5 @@
 # Install space: `rosrun` and `roslaunch` work from it as from the development space.
-foreach(library uav_landing_core uav_landing_nodelets)
+foreach(library uav_landing_core uav_landing_ros uav_landing_nodelets)
   if(TARGET ${library})
     install(TARGETS ${library}
       ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}

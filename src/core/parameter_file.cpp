@@ -5,40 +5,14 @@
 #include <algorithm>
 #include <fstream>
 #include <initializer_list>
-#include <numeric>
 #include <set>
 #include <sstream>
-#include <type_traits>
 
 #include "text.h"
+#include "uav_landing/section_loader.h"
 
 namespace uav_landing {
 namespace {
-
-/// Levenshtein distance of two words.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-/// "; did you mean X?" for the nearest of the names, or nothing when none is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
-    return editDistance(word, a) < editDistance(word, b);
-  });
-  if (nearest == names.end() || 2 * editDistance(word, *nearest) > word.size()) return "";
-  return "; did you mean " + *nearest + "?";
-}
 
 template <class... Parts>
 Failure invalid(const Parts&... parts) {
@@ -59,78 +33,6 @@ Failure checkMap(const YAML::Node& node, const std::string& section) {
   }
   return {};
 }
-
-std::string quoted(const YAML::Node& value) {
-  return value.IsScalar() ? "'" + value.Scalar() + "'" : value.IsNull() ? "nothing" : "a list or map";
-}
-
-/// Takes the values of one section from YAML; the first failure stays.
-class Loader {
- public:
-  Loader(const YAML::Node& node, std::string section) : node_(node), section_(std::move(section)) {}
-
-  template <class Number>
-  void number(const char* name, Number& value, double min, double max, const char* unit, const char*) {
-    const char* type = std::is_integral<Number>::value ? "a whole number" : "a number";
-    Number given;
-    if (!read(name, type, given)) return;
-    if (!(given >= min && given <= max)) {  // also true for NaN
-      const std::string unit_text = *unit == '\0' ? "" : text(" ", unit);
-      failure_ = invalid(section_, "/", name, ": ", given, " is out of range, expected ", min, " to ", max,
-                         unit_text);
-      return;
-    }
-    value = given;
-  }
-
-  void flag(const char* name, bool& value, const char*) { read(name, "true or false", value); }
-
-  template <class Enum>
-  void choice(const char* name, Enum& value, std::initializer_list<const char*> choices, const char*) {
-    std::string given, all;
-    if (!read(name, "a word", given)) return;
-    int index = 0;
-    for (const char* candidate : choices) {
-      if (given == candidate) {
-        value = static_cast<Enum>(index);
-        return;
-      }
-      all += text(index++ == 0 ? "" : " or ", candidate);
-    }
-    failure_ = invalid(section_, "/", name, ": '", given, "' is not a choice, expected ", all);
-  }
-
-  /// The first thing that was wrong, keys that no parameter asked for included.
-  Failure finish() const {
-    if (failure_ || !node_.IsMap()) return failure_;
-    for (const auto& entry : node_) {
-      const std::string key = entry.first.Scalar();
-      if (std::find(names_.begin(), names_.end(), key) == names_.end())
-        return invalid(section_, "/", key, ": no such parameter", suggestion(key, names_));
-    }
-    return {};
-  }
-
- private:
-  /// True when the section gives this parameter and its type is right.
-  template <class T>
-  bool read(const char* name, const char* type, T& value) {
-    names_.emplace_back(name);
-    if (failure_ || !node_.IsMap()) return false;
-    const YAML::Node given = node_[name];
-    if (!given) return false;
-    if (!given.IsScalar() || !YAML::convert<T>::decode(given, value)) {
-      failure_ = invalid(section_, "/", name, ": ", quoted(given), " is not ", type);
-      return false;
-    }
-    return true;
-  }
-
-  const YAML::Node node_;  // const: operator[] of another node would add the missing keys
-  std::string section_;
-  std::vector<std::string> names_;
-  Failure failure_;
-};
 
 /// Writes one row of the parameter table per parameter.
 class TableWriter {
@@ -172,7 +74,7 @@ Failure loadSections(const YAML::Node& root, Parameters& parameters) {
   for (const auto& entry : root) {
     const std::string key = entry.first.Scalar();
     if (std::find(sections.begin(), sections.end(), key) == sections.end())
-      return invalid(key, ": no such section", suggestion(key, sections));
+      return invalid(key, ": no such section", suggestName(key, sections));
   }
   return {};
 }
@@ -184,7 +86,7 @@ Failure loadSection(const YAML::Node& node, const std::string& section, Paramete
   const Failure failure = checkMap(node, section);
   if (failure) return failure;
   ParameterStruct loaded = parameters;
-  Loader loader(node, section);
+  SectionLoader loader(node, section);
   loaded.visit(loader);
   const Failure wrong = loader.finish();
   if (!wrong) parameters = loaded;

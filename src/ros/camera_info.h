@@ -1,0 +1,15 @@
+#pragma once
+
+#include <sensor_msgs/CameraInfo.h>
+
+#include "uav_landing/calibration.h"
+
+namespace uav_landing {
+
+/// Field by field, nothing checked: see checkCalibration().
+CameraCalibration toCalibration(const sensor_msgs::CameraInfo& info);
+
+/// Inverse of toCalibration(); the header is the caller's.
+sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const std_msgs::Header& header);
+
+}  // namespace uav_landing

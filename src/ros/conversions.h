@@ -1,0 +1,32 @@
+#pragma once
+
+#include <std_msgs/Header.h>
+#include <uav_landing/ApproachAngle.h>
+#include <uav_landing/LandingEstimate.h>
+#include <uav_landing/StereoDepth.h>
+
+#include <string>
+
+#include "uav_landing/stage_results.h"
+
+namespace uav_landing {
+
+// Stage results and their messages, lossless both ways: messages carry float64, so that a stage computes the
+// same from a message as from the result itself. A result's stamp is header.stamp in seconds.
+
+/// Inverse of Failure::message().
+Failure parseFailure(const std::string& reason);
+
+StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& header, double compute_ms);
+StereoDepthResult toResult(const StereoDepth& message);
+
+ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Header& header, double compute_ms);
+ApproachAngleResult toResult(const ApproachAngle& message);
+
+/// header: stamp of the image, frame of the runway. skew: right minus left, s. x_known, y_known and the
+/// protection level stay at their defaults.
+LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& header,
+                          const std::string& child_frame_id, double skew, double compute_ms);
+LandingResult toResult(const LandingEstimate& message);
+
+}  // namespace uav_landing

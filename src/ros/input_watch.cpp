@@ -1,0 +1,80 @@
+#include "input_watch.h"
+
+#include <sstream>
+
+namespace uav_landing {
+
+InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size)
+    : waiting_(topics.size(), Waiting{}), queue_size_(queue_size) {
+  for (const std::string& topic : topics) inputs_.push_back(Input{topic});
+}
+
+InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
+  Waiting& waiting = waiting_[input];
+  ++inputs_[input].received;
+  const bool first = inputs_[input].received == 1 || waiting.latest.isZero();
+  if (!first && stamp == waiting.latest) {
+    ++inputs_[input].repeated;
+    ++inputs_[input].dropped;
+    return Arrival::kRepeated;
+  }
+  const Arrival arrival = !first && stamp < waiting.latest ? Arrival::kBackwards : Arrival::kNext;
+  if (arrival == Arrival::kBackwards) {
+    ++jumps_;
+    forget();
+  }
+  waiting.latest = stamp;
+  waiting.stamps.push_back(stamp);
+  if (waiting.stamps.size() > queue_size_) {
+    waiting.stamps.pop_front();
+    ++inputs_[input].dropped;
+  }
+  return arrival;
+}
+
+void InputWatch::paired(size_t input, const ros::Time& stamp) {
+  std::deque<ros::Time>& stamps = waiting_[input].stamps;
+  while (!stamps.empty() && stamps.front() < stamp) {
+    stamps.pop_front();
+    ++inputs_[input].dropped;
+  }
+  if (!stamps.empty() && stamps.front() == stamp) stamps.pop_front();
+  ++inputs_[input].paired;
+}
+
+void InputWatch::forget() {
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    inputs_[i].dropped += waiting_[i].stamps.size();
+    waiting_[i].stamps.clear();
+    waiting_[i].latest = ros::Time();
+  }
+}
+
+std::string InputWatch::complaint() {
+  bool any_paired = false;
+  std::string silent, repeating, latest;
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    const Input& input = inputs_[i];
+    Waiting& waiting = waiting_[i];
+    any_paired = any_paired || input.paired > waiting.paired_before;
+    if (input.received == waiting.received_before) {
+      silent += (silent.empty() ? "" : ", ") + input.topic;
+    } else if (input.repeated - waiting.repeated_before == input.received - waiting.received_before) {
+      repeating += (repeating.empty() ? "" : ", ") + input.topic;
+    } else {
+      std::ostringstream stamp;
+      stamp << waiting.latest;
+      latest += (latest.empty() ? "" : ", ") + input.topic + " " + stamp.str();
+    }
+    waiting.received_before = input.received;
+    waiting.paired_before = input.paired;
+    waiting.repeated_before = input.repeated;
+  }
+  if (any_paired) return "";
+  if (!silent.empty()) return "no message on " + silent;
+  if (!repeating.empty()) return "the stamp never changes on " + repeating;
+  return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger); latest: " +
+         latest;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,94 @@
+#include "node_parameters.h"
+
+#include <ros/param.h>
+
+#include "uav_landing/section_loader.h"
+
+namespace uav_landing {
+namespace {
+
+YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
+  switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value));
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return YAML::Node(static_cast<int>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return YAML::Node(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeStruct: {
+      YAML::Node map(YAML::NodeType::Map);
+      for (auto& member : value) map[member.first] = toYaml(member.second);
+      return map;
+    }
+    case XmlRpc::XmlRpcValue::TypeArray: {
+      YAML::Node list(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
+      return list;
+    }
+    default:
+      return YAML::Node();
+  }
+}
+
+/// Collects the names of a struct's parameters.
+struct NameCollector {
+  std::vector<std::string>& names;
+  template <class... Rest>
+  void number(const char* name, Rest&&...) {
+    names.emplace_back(name);
+  }
+  template <class... Rest>
+  void flag(const char* name, Rest&&...) {
+    names.emplace_back(name);
+  }
+  template <class... Rest>
+  void text(const char* name, Rest&&...) {
+    names.emplace_back(name);
+  }
+};
+
+/// Takes the keys of NodeParameters out of the map of all private parameters.
+YAML::Node takeNodeKeys(YAML::Node& all) {
+  std::vector<std::string> names;
+  NodeParameters().visit(NameCollector{names});
+  YAML::Node taken(YAML::NodeType::Map);
+  for (const std::string& name : names) {
+    if (!all[name]) continue;
+    taken[name] = all[name];
+    all.remove(name);
+  }
+  return taken;
+}
+
+}  // namespace
+
+template <class Section>
+Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
+                       NodeParameters& node_parameters) {
+  XmlRpc::XmlRpcValue given;
+  YAML::Node all(YAML::NodeType::Map);
+  if (ros::param::get(private_handle.getNamespace(), given)) all = toYaml(given);
+  if (!all.IsMap()) return {Reason::kInputInvalid, section + ": expected a map of names and values"};
+  SectionLoader loader(takeNodeKeys(all), section);
+  NodeParameters loaded = node_parameters;
+  loaded.visit(loader);
+  const Failure failure = loader.finish();
+  if (failure) return failure;
+  node_parameters = loaded;
+  return loadSection(all, section, parameters);
+}
+
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, RectifyParameters&,
+                                NodeParameters&);
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, StereoDepthParameters&,
+                                NodeParameters&);
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, ApproachAngleParameters&,
+                                NodeParameters&);
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, KalmanHeightParameters&,
+                                NodeParameters&);
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, OverlayParameters&,
+                                NodeParameters&);
+
+}  // namespace uav_landing

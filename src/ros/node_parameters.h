@@ -1,0 +1,57 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "uav_landing/parameter_file.h"
+
+namespace uav_landing {
+
+/// What concerns ROS alone and therefore is not in config/*.yaml. Every nodelet accepts all of them, so that
+/// one set serves all; each reads those that concern it. visit() as in uav_landing/parameters.h, with text()
+/// for strings.
+struct NodeParameters {
+  std::string camera = "/stereo";
+  std::string image_transport = "raw";
+  bool drop_frames = true;
+  int backlog = 1000;
+  std::string base_frame;
+  std::string runway_frame = "runway";
+  bool publish_tf = true;
+  double runway_width = 30.0;
+  double runway_length = 600.0;
+  double complaint_period = 5.0;
+  double diagnostic_period = 1.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.text("camera", camera,
+           "namespace of the cameras: left/image_raw, left/camera_info, right/... (rectify)");
+    v.text("image_transport", image_transport, "transport of the raw images: raw, compressed ... (rectify)");
+    v.flag("drop_frames", drop_frames,
+           "when behind, serve the newest pair and count the ones left out; else process all in order "
+           "(rectify)");
+    v.number("backlog", backlog, 1, 100000, "pairs", "most that wait when drop_frames is false (rectify)");
+    v.text(
+        "base_frame", base_frame,
+        "frame of the aircraft that is estimated; empty: base_link if static tf knows it, else the rectified "
+        "left camera (kalman_height)");
+    v.text("runway_frame", runway_frame, "frame of the estimate (kalman_height)");
+    v.flag("publish_tf", publish_tf, "broadcast runway_frame to the estimated frame (kalman_height)");
+    v.number("runway_width", runway_width, 0.1, 200.0, "m", "of the runway as drawn (kalman_height markers)");
+    v.number("runway_length", runway_length, 0.1, 10000.0, "m",
+             "of the runway as drawn (kalman_height markers)");
+    v.number("complaint_period", complaint_period, 0.1, 3600.0, "s",
+             "without a pair for this long the nodelet says which input is missing");
+    v.number("diagnostic_period", diagnostic_period, 0.1, 3600.0, "s", "between two diagnostics messages");
+  }
+};
+
+/// Reads a nodelet's private parameters: the keys of NodeParameters, and the section's own (see
+/// uav_landing/parameters.h). Defaults stay where nothing is given. The failure names the parameter.
+template <class Section>
+Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
+                       NodeParameters& node_parameters);
+
+}  // namespace uav_landing

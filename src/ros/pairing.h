@@ -1,0 +1,130 @@
+#pragma once
+
+#include <message_filters/sync_policies/approximate_time.h>
+#include <message_filters/sync_policies/exact_time.h>
+#include <message_filters/synchronizer.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "input_watch.h"
+#include "uav_landing/parameters.h"
+
+namespace uav_landing {
+
+/// Finds the messages that belong together by their stamps (header.stamp), with message_filters. Fed by plain
+/// calls, so it serves subscriptions and bags alike. A stamp that goes back clears everything that waits; a
+/// repeated stamp is dropped. Thread safe; the callback runs in the thread of the add() that completed the
+/// set, without the lock.
+template <class... Messages>
+class Pairing {
+ public:
+  template <size_t kInput>
+  using Pointer = boost::shared_ptr<const std::tuple_element_t<kInput, std::tuple<Messages...>>>;
+  using Callback = std::function<void(const boost::shared_ptr<const Messages>&...)>;
+
+  /// topics: one name per input, for the words of complaint(). queue_size of the parameters bounds what
+  /// waits.
+  Pairing(const RectifyParameters& parameters, const std::vector<std::string>& topics, Callback callback)
+      : parameters_(parameters),
+        callback_(std::move(callback)),
+        watch_(topics, static_cast<size_t>(parameters.queue_size)) {
+    rebuild();
+  }
+
+  template <size_t kInput>
+  void add(const Pointer<kInput>& message) {
+    std::vector<Set> complete;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const ros::Time& stamp = message->header.stamp;
+      const InputWatch::Arrival arrival = watch_.arrived(kInput, stamp);
+      if (arrival == InputWatch::Arrival::kRepeated) return;
+      if (arrival == InputWatch::Arrival::kBackwards) rebuild();
+      using Message = std::tuple_element_t<kInput, std::tuple<Messages...>>;
+      // The stamp stands in for the receipt time: the system clock need not be known (bags are read without
+      // one).
+      const ros::MessageEvent<const Message> event(message, stamp);
+      if (exact_)
+        exact_->template add<kInput>(event);
+      else
+        approximate_->template add<kInput>(event);
+      complete.swap(complete_);
+    }
+    for (const Set& set : complete) std::apply(callback_, set);
+  }
+
+  /// Forgets everything that waits.
+  void reset() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    watch_.forget();
+    rebuild();
+  }
+
+  /// Counts per input, in the order of the message types.
+  std::vector<InputWatch::Input> inputs() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return watch_.inputs();
+  }
+  uint64_t jumps() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return watch_.jumps();
+  }
+  /// Why nothing was paired since the last call, "" when something was. See InputWatch::complaint().
+  std::string complaint() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return watch_.complaint();
+  }
+
+ private:
+  using Set = std::tuple<boost::shared_ptr<const Messages>...>;
+  using ExactPolicy = message_filters::sync_policies::ExactTime<Messages...>;
+  using ApproximatePolicy = message_filters::sync_policies::ApproximateTime<Messages...>;
+
+  // A new synchronizer forgets also what its policy remembers of the stamps already served.
+  void rebuild() {
+    const auto queue_size = static_cast<uint32_t>(parameters_.queue_size);
+    exact_.reset();
+    approximate_.reset();
+    if (!parameters_.approximate_sync) {
+      exact_ = std::make_unique<message_filters::Synchronizer<ExactPolicy>>(ExactPolicy(queue_size));
+      exact_->registerCallback(&Pairing::collect, this);
+      return;
+    }
+    ApproximatePolicy policy(queue_size);
+    const ros::Duration max_skew(parameters_.max_skew);
+    policy.setMaxIntervalDuration(max_skew);
+    // Two images of one camera are farther apart than max_skew: then the best set is known as soon as it is
+    // complete, and need not wait for the next image.
+    policy.setInterMessageLowerBound(max_skew);
+    approximate_ = std::make_unique<message_filters::Synchronizer<ApproximatePolicy>>(policy);
+    approximate_->registerCallback(&Pairing::collect, this);
+  }
+
+  void collect(const boost::shared_ptr<const Messages>&... messages) {
+    size_t input = 0;
+    (watch_.paired(input++, messages->header.stamp), ...);
+    complete_.emplace_back(messages...);
+  }
+
+  const RectifyParameters parameters_;
+  const Callback callback_;
+  mutable std::mutex mutex_;
+  InputWatch watch_;
+  std::unique_ptr<message_filters::Synchronizer<ExactPolicy>> exact_;
+  std::unique_ptr<message_filters::Synchronizer<ApproximatePolicy>> approximate_;
+  std::vector<Set> complete_;
+};
+
+/// Inputs in this order: left image, left camera_info, right image, right camera_info.
+using StereoPairing =
+    Pairing<sensor_msgs::Image, sensor_msgs::CameraInfo, sensor_msgs::Image, sensor_msgs::CameraInfo>;
+
+}  // namespace uav_landing

@@ -1,0 +1,175 @@
+#include "pairing.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/make_shared.hpp>
+
+using namespace uav_landing;
+
+namespace {
+
+const std::vector<std::string> kTopics{"/left/image_raw", "/left/camera_info", "/right/image_raw",
+                                       "/right/camera_info"};
+
+template <class Message>
+boost::shared_ptr<const Message> stamped(double stamp) {
+  auto message = boost::make_shared<Message>();
+  message->header.stamp = ros::Time(stamp);
+  return message;
+}
+
+class StereoPairingTest : public testing::Test {
+ protected:
+  explicit StereoPairingTest(const RectifyParameters& parameters = RectifyParameters())
+      : pairing_(parameters, kTopics,
+                 [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info) {
+                   EXPECT_EQ(left->header.stamp, left_info->header.stamp);
+                   EXPECT_EQ(right->header.stamp, right_info->header.stamp);
+                   pairs_.emplace_back(left->header.stamp.toSec(), right->header.stamp.toSec());
+                 }) {}
+
+  void addLeft(double stamp) {
+    pairing_.add<0>(stamped<sensor_msgs::Image>(stamp));
+    pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(stamp));
+  }
+  void addRight(double stamp) {
+    pairing_.add<2>(stamped<sensor_msgs::Image>(stamp));
+    pairing_.add<3>(stamped<sensor_msgs::CameraInfo>(stamp));
+  }
+  void addPair(double stamp) {
+    addLeft(stamp);
+    addRight(stamp);
+  }
+
+  using Pairs = std::vector<std::pair<double, double>>;
+  Pairs pairs_;
+  StereoPairing pairing_;
+};
+
+class ApproximatePairingTest : public StereoPairingTest {
+ protected:
+  static RectifyParameters approximate() {
+    RectifyParameters parameters;
+    parameters.approximate_sync = true;
+    parameters.max_skew = 0.01;
+    return parameters;
+  }
+  ApproximatePairingTest() : StereoPairingTest(approximate()) {}
+};
+
+TEST_F(StereoPairingTest, MessagesOfOneStampMakeAPair) {
+  addPair(1.0);
+  addPair(1.1);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.1, 1.1}}));
+  EXPECT_EQ(pairing_.complaint(), "");
+}
+
+TEST_F(StereoPairingTest, AMissingImageCostsItsCounterpartsOnly) {
+  addPair(1.0);
+  addLeft(1.1);
+  addPair(1.2);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.2, 1.2}}));
+  const auto inputs = pairing_.inputs();
+  EXPECT_EQ(inputs[0].received, 3u);
+  EXPECT_EQ(inputs[0].paired, 2u);
+  EXPECT_EQ(inputs[0].dropped, 1u);
+  EXPECT_EQ(inputs[2].received, 2u);
+  EXPECT_EQ(inputs[2].dropped, 0u);
+}
+
+TEST_F(StereoPairingTest, WhatWaitsIsBounded) {
+  for (int i = 0; i < 20; ++i) addLeft(1.0 + 0.1 * i);
+  addRight(1.0);
+  EXPECT_TRUE(pairs_.empty()) << "the left image of 1.0 s was given up long ago";
+  EXPECT_EQ(pairing_.inputs()[0].dropped, 15u) << "five wait";
+}
+
+TEST_F(StereoPairingTest, ALoopingBagKeepsPairing) {
+  addPair(10.0);
+  addLeft(10.1);
+  addPair(1.0);
+  addPair(1.1);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {1.0, 1.0}, {1.1, 1.1}}));
+  EXPECT_EQ(pairing_.jumps(), 1u);
+}
+
+TEST_F(StereoPairingTest, RightImageLeftOverFromTheLastLoopIsNotPaired) {
+  addPair(10.0);
+  addRight(10.1);
+  addPair(1.0);
+  addLeft(10.1);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {1.0, 1.0}}));
+}
+
+TEST_F(StereoPairingTest, ARepeatedStampIsDropped) {
+  addPair(1.0);
+  addPair(1.0);
+  addPair(1.1);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.1, 1.1}}));
+  EXPECT_EQ(pairing_.inputs()[0].repeated, 1u);
+}
+
+TEST_F(StereoPairingTest, TheComplaintNamesTheSilentInputs) {
+  addLeft(1.0);
+  addLeft(1.1);
+  EXPECT_EQ(pairing_.complaint(), "no message on /right/image_raw, /right/camera_info");
+}
+
+TEST_F(StereoPairingTest, TheComplaintLooksAtWhatCameSinceTheLast) {
+  addPair(1.0);
+  EXPECT_EQ(pairing_.complaint(), "");
+  addLeft(1.1);
+  EXPECT_EQ(pairing_.complaint(), "no message on /right/image_raw, /right/camera_info");
+  addPair(1.2);
+  EXPECT_EQ(pairing_.complaint(), "");
+}
+
+TEST_F(StereoPairingTest, TheComplaintShowsStampsThatDiffer) {
+  addLeft(1.0);
+  addRight(1.003);
+  const std::string complaint = pairing_.complaint();
+  EXPECT_NE(complaint.find("stamps do not match"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("/left/image_raw 1.0"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("/right/image_raw 1.003"), std::string::npos) << complaint;
+}
+
+TEST_F(StereoPairingTest, TheComplaintNamesAStampThatNeverChanges) {
+  addPair(1.0);
+  pairing_.complaint();
+  addPair(1.0);
+  addPair(1.0);
+  EXPECT_NE(pairing_.complaint().find("the stamp never changes on /left/image_raw"), std::string::npos);
+}
+
+TEST_F(StereoPairingTest, ResetForgetsWhatWaits) {
+  addLeft(1.0);
+  pairing_.reset();
+  addRight(1.0);
+  EXPECT_TRUE(pairs_.empty());
+  addPair(1.5);
+  EXPECT_EQ(pairs_, (Pairs{{1.5, 1.5}}));
+}
+
+TEST_F(ApproximatePairingTest, PairsWithinMaxSkewWithoutWaitingForTheNext) {
+  addLeft(1.0);
+  addRight(1.004);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.004}}));
+}
+
+TEST_F(ApproximatePairingTest, DoesNotPairBeyondMaxSkew) {
+  for (int i = 0; i < 4; ++i) {
+    addLeft(1.0 + 0.1 * i);
+    addRight(1.05 + 0.1 * i);
+  }
+  EXPECT_TRUE(pairs_.empty());
+}
+
+TEST_F(ApproximatePairingTest, ALoopingBagKeepsPairing) {
+  addLeft(10.0);
+  addRight(10.001);
+  addLeft(1.0);
+  addRight(1.002);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.001}, {1.0, 1.002}}));
+}
+
+}  // namespace

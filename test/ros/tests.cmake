@@ -1,0 +1,5 @@
+# What the nodelets and the programs share, without a master.
+uav_landing_add_gtest(camera_info_test test/ros/camera_info_test.cpp LIBS uav_landing_ros)
+uav_landing_add_gtest(conversions_test test/ros/conversions_test.cpp LIBS uav_landing_ros)
+uav_landing_add_gtest(image_input_test test/ros/image_input_test.cpp LIBS uav_landing_ros)
+uav_landing_add_gtest(pairing_test test/ros/pairing_test.cpp LIBS uav_landing_ros)
