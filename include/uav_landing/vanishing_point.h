@@ -20,13 +20,17 @@ struct VanishingPoint {
 /// K' l, weighted by the lines' own uncertainty, scaled by the residuals). Only directions within max_yaw
 /// and max_elevation of the optical axis count as along the runway. K: 3x3 of the rectified view.
 /// Deterministic: the random numbers have a fixed seed. prior_normal: ground normal known from elsewhere,
-/// or null; then the direction must lie within 5 degrees of the ground.
+/// or null; then the direction must lie within 5 degrees of the ground. Fails when too few lines meet, when
+/// as many lines of random direction would, when the lines are parallel in the image within 3 degrees (all
+/// from one edge), and when the direction is uncertain by more than 5 degrees.
 Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
                                             const ApproachAngleParameters& parameters,
                                             const Eigen::Vector3d* prior_normal = nullptr);
 
 /// Both views see the same direction: their mean weighted by covariance. The runway's own slope and curve
-/// (runway_straightness_deg) is added once, as it is common to both. Either may be missing.
+/// (runway_straightness, rad) is added once, as it is common to both. Either may be missing. Views that
+/// disagree enlarge the covariance, and beyond 1 degree (and 5 sigma) nothing is claimed. The inliers of the
+/// result are empty: they belong to one view each; inlier_count is that of both.
 Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& left,
                                                 const Expected<VanishingPoint>& right,
                                                 double runway_straightness);

@@ -1,0 +1,184 @@
+#include "uav_landing/line_segments.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <tuple>
+
+#include "line_refinement.h"
+
+namespace uav_landing {
+
+namespace {
+
+constexpr int kMaxCandidates = 250;  // segments refined, longest first
+constexpr int kMaxLines = 150;       // lines returned, longest first
+constexpr int kMaxHoughLines = 400;  // infinite lines of the standard transform, most votes first
+constexpr double kHoughAngle = CV_PI / 180;
+constexpr double kUnrefinedStddev = 0.5;  // px, of a Hough line's ends
+constexpr double kSobelScale = 8;         // of a 3x3 Sobel response over the gradient in grey/px
+constexpr double kSameEdge = 1.0;         // px between segments of one edge
+
+using Segment = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
+
+/// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not,
+/// and leaving it out makes the Hough transform both faster and cleaner.
+bool isStraightHere(const cv::Mat& dx, const cv::Mat& dy, int u, int v) {
+  constexpr float kStep = 3, kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // px; within 25 degrees; 40 %
+  constexpr int kSteps = 2, kNeeded = 3;                               // to each side; in all
+  const float gx = dx.at<short>(v, u), gy = dy.at<short>(v, u), g2 = gx * gx + gy * gy;
+  const float scale = kStep / std::max(std::abs(gx), std::abs(gy));
+  int agreeing = 0;
+  for (const int side : {-1, 1}) {
+    for (int i = 1; i <= kSteps; ++i) {
+      const int x = u - cvRound(gy * scale * side * i), y = v + cvRound(gx * scale * side * i);
+      if (x < 0 || y < 0 || x >= dx.cols || y >= dx.rows) break;
+      const float hx = dx.at<short>(y, x), hy = dy.at<short>(y, x), h2 = hx * hx + hy * hy;
+      const float product = gx * hx + gy * hy;
+      if (product <= 0 || product * product < kMinCos2 * g2 * h2 || h2 < kMinStrength2 * g2) break;
+      ++agreeing;
+    }
+    if (agreeing + kSteps < kNeeded) return false;
+  }
+  return agreeing >= kNeeded;
+}
+
+cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,
+                      const ApproachAngleParameters& parameters) {
+  cv::Mat dx, dy, edges;
+  cv::Sobel(image, dx, CV_16S, 1, 0);
+  cv::Sobel(image, dy, CV_16S, 0, 1);
+  cv::Canny(dx, dy, edges, parameters.canny_low, std::max(parameters.canny_low, parameters.canny_high));
+  for (int v = 0; v < edges.rows; ++v) {
+    uchar* edge = edges.ptr<uchar>(v);
+    const uchar* inside = ground.ptr<uchar>(v);
+    for (int u = 0; u < edges.cols; ++u)
+      if (edge[u] != 0 && (inside[u] == 0 || !isStraightHere(dx, dy, u, v))) edge[u] = 0;
+  }
+  return edges;
+}
+
+/// Stretches of an infinite line (rho, theta) along which there are edge pixels within 1 px, with gaps up
+/// to max_gap px.
+void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, double max_gap,
+             std::vector<Segment>& segments) {
+  const Eigen::Vector2d normal(std::cos(theta), std::sin(theta)), along(-normal.y(), normal.x());
+  const Eigen::Vector2d foot = rho * normal;
+  const bool steep = std::abs(along.y()) > std::abs(along.x());
+  const int steps = steep ? edges.rows : edges.cols;
+  const auto point = [&](int i) -> Eigen::Vector2d {
+    const int axis = steep ? 1 : 0;
+    return foot + along * ((i - foot[axis]) / along[axis]);
+  };
+  const auto supported = [&](const Eigen::Vector2d& p) {
+    for (const int side : {0, -1, 1}) {
+      const int x = cvRound(p.x()) + (steep ? side : 0), y = cvRound(p.y()) + (steep ? 0 : side);
+      if (x >= 0 && y >= 0 && x < edges.cols && y < edges.rows && edges.at<uchar>(y, x) != 0) return true;
+    }
+    return false;
+  };
+  std::optional<Segment> open;
+  const auto close = [&] {
+    if (open && (open->second - open->first).norm() >= min_length) segments.push_back(*open);
+    open.reset();
+  };
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::Vector2d p = point(i);
+    if (!supported(p)) continue;
+    if (open && (p - open->second).norm() > max_gap + 1) close();
+    if (!open) open = Segment(p, p);
+    open->second = p;
+  }
+  close();
+}
+
+std::vector<Segment> houghSegments(const cv::Mat& edges, double min_length,
+                                   const ApproachAngleParameters& parameters) {
+  std::vector<Segment> segments;
+  if (parameters.hough_method == HoughMethod::kStandard) {
+    std::vector<cv::Vec2f> lines;
+    cv::HoughLines(edges, lines, 1, kHoughAngle, parameters.hough_threshold);
+    if (lines.size() > kMaxHoughLines) lines.resize(kMaxHoughLines);
+    for (const cv::Vec2f& line : lines)
+      cutLine(edges, line[0], line[1], min_length, parameters.max_line_gap, segments);
+  } else {
+    std::vector<cv::Vec4i> lines;
+    cv::HoughLinesP(edges, lines, 1, kHoughAngle, parameters.hough_threshold, min_length,
+                    parameters.max_line_gap);
+    for (const cv::Vec4i& l : lines)
+      segments.emplace_back(Eigen::Vector2d(l[0], l[1]), Eigen::Vector2d(l[2], l[3]));
+  }
+  return segments;
+}
+
+/// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same
+/// on every machine.
+template <class T, class Ends>
+void keepLongest(std::vector<T>& items, size_t count, const Ends& ends) {
+  const auto key = [&](const T& item) {
+    const auto [a, b] = ends(item);
+    return std::make_tuple(-(b - a).squaredNorm(), a.x(), a.y(), b.x(), b.y());
+  };
+  std::sort(items.begin(), items.end(), [&](const T& l, const T& r) { return key(l) < key(r); });
+  if (items.size() > count) items.resize(count);
+}
+
+/// Whether both ends of a segment lie on this line, within its ends.
+bool covers(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = (line.b - line.a).normalized();
+  for (const Eigen::Vector2d* p : {&a, &b}) {
+    if (std::abs(line.line.dot(p->homogeneous())) > kSameEdge) return false;
+    const double position = along.dot(*p - line.a);
+    if (position < -2 || position > line.length() + 2) return false;
+  }
+  return true;
+}
+
+void shift(LineSegment& line, const Eigen::Vector2d& by) {
+  line.a += by;
+  line.b += by;
+  line.line.z() -= line.line.head<2>().dot(by);
+}
+
+}  // namespace
+
+std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
+                                   const ApproachAngleParameters& parameters) {
+  const cv::Rect part = cv::boundingRect(ground);
+  if (part.width < 8 || part.height < 8) return {};
+  const double min_length = parameters.min_line_length * image.rows;
+  const cv::Mat edges = straightEdges(image(part), ground(part), parameters);
+  std::vector<Segment> candidates = houghSegments(edges, min_length, parameters);
+  keepLongest(candidates, kMaxCandidates, [](const Segment& s) { return s; });
+
+  std::vector<LineSegment> lines;
+  const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
+  for (const auto& [a, b] : candidates) {
+    const auto known = [&, &a = a, &b = b](const LineSegment& line) { return covers(line, a, b); };
+    std::optional<LineSegment> line;
+    if (parameters.refine_lines) {
+      line = refineLine(image(part), ground(part), a, b, min_gradient);
+      if (!line || line->length() < min_length) continue;
+      // The other edge of a thin stripe is another line: its brighter side is the opposite one.
+      const auto same = std::find_if(lines.begin(), lines.end(), [&](const LineSegment& other) {
+        return other.line.head<2>().dot(line->line.head<2>()) > 0 &&
+               (covers(other, line->a, line->b) || covers(*line, other.a, other.b));
+      });
+      if (same != lines.end()) {
+        if (line->length() > same->length()) *same = *line;
+        continue;
+      }
+    } else {
+      if (std::any_of(lines.begin(), lines.end(), known)) continue;
+      line = makeLineSegment(a, b, kUnrefinedStddev, kUnrefinedStddev * std::sqrt(12.0) / (b - a).norm());
+    }
+    lines.push_back(*line);
+  }
+  for (LineSegment& line : lines) shift(line, {part.x, part.y});
+  keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Segment(l.a, l.b); });
+  return lines;
+}
+
+}  // namespace uav_landing

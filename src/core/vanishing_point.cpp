@@ -1,0 +1,369 @@
+#include "uav_landing/vanishing_point.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <random>
+
+namespace uav_landing {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kPriorTolerance = 5 * kDegree;  // of the direction from the ground known from elsewhere
+constexpr double kMinSpread = 3 * kDegree;       // between the inlier lines in the image
+constexpr double kMaxStddev = 5 * kDegree;       // of a direction that is worth reporting
+constexpr double kGate = 4;                      // robust sigma, of the lines that count in the end
+constexpr double kChance = 0.1;                  // accepted number of such coincidences among random lines
+constexpr double kViewsDiffer = 1 * kDegree;     // with kViewsGate: left and right saw different things
+constexpr double kViewsGate = 25;                // squared, 2 degrees of freedom
+
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
+
+Failure noVanishingPoint(const char* format, double a, double b = 0) {
+  char text[200];
+  std::snprintf(text, sizeof(text), format, a, b);
+  return {Reason::kNoVanishingPoint, text};
+}
+
+/// Two unit vectors that span the plane across a unit direction.
+Matrix32 tangents(const Eigen::Vector3d& direction) {
+  Matrix32 B;
+  B.col(0) = direction.unitOrthogonal();
+  B.col(1) = direction.cross(B.col(0));
+  return B;
+}
+
+/// A line as the consensus and the fit need it, pixels.
+struct Candidate {
+  Eigen::Vector3d line;           // as in LineSegment
+  Eigen::Vector2d middle, along;  // along: unit
+  double half;                    // length
+  double offset_variance, angle_variance;
+
+  explicit Candidate(const LineSegment& s)
+      : line(s.line),
+        middle(s.middle()),
+        along((s.b - s.a).normalized()),
+        half(0.5 * s.length()),
+        offset_variance(s.offset_stddev * s.offset_stddev),
+        angle_variance(s.angle_stddev * s.angle_stddev) {}
+
+  /// From the middle towards the homogeneous point V, scaled by V.z: finite however far V is.
+  Eigen::Vector2d towards(const Eigen::Vector3d& V) const { return V.head<2>() - V.z() * middle; }
+
+  /// Square of the distance by which the segment's ends miss the line from its middle to V. px^2
+  double endMiss2(const Eigen::Vector3d& V) const {
+    const Eigen::Vector2d e = towards(V);
+    const double across = line.x() * e.x() + line.y() * e.y();
+    const double squared = e.squaredNorm();
+    return squared > 0 ? half * half * across * across / squared : 0;
+  }
+  /// Variance of line.V when the line's offset and angle vary as they do.
+  double residualVariance(const Eigen::Vector3d& V) const {
+    return offset_variance * V.z() * V.z() + angle_variance * std::pow(along.dot(towards(V)), 2);
+  }
+  double endVariance() const { return offset_variance + half * half * angle_variance; }
+};
+
+class Search {
+ public:
+  Search(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+         const ApproachAngleParameters& parameters, const Eigen::Vector3d* prior_normal)
+      : lines_(lines.begin(), lines.end()),
+        K_(K),
+        Kinv_(K.inverse()),
+        parameters_(parameters),
+        prior_normal_(prior_normal) {}
+
+  Expected<VanishingPoint> run() {
+    if (count() < std::max(parameters_.min_lines, 2))
+      return tl::unexpected(Failure{Reason::kTooFewFeatures, std::to_string(count()) + " lines of at least " +
+                                                                 std::to_string(parameters_.min_lines)});
+    Eigen::Vector3d direction;
+    if (!consensus(direction))
+      return tl::unexpected(noVanishingPoint("none of the %.0f lines meet along the runway", count()));
+    return fit(direction);
+  }
+
+ private:
+  int count() const { return static_cast<int>(lines_.size()); }
+
+  bool alongRunway(const Eigen::Vector3d& v) const {
+    return std::abs(std::atan2(v.x(), v.z())) <= parameters_.max_yaw_deg * kDegree &&
+           std::abs(std::asin(v.y())) <= parameters_.max_elevation_deg * kDegree &&
+           (prior_normal_ == nullptr || std::abs(prior_normal_->dot(v)) <= std::sin(kPriorTolerance));
+  }
+
+  /// Where two lines meet, as a direction towards +z; false when that is not along the runway.
+  bool meeting(int i, int j, Eigen::Vector3d& direction) const {
+    direction = Kinv_ * lines_[i].line.cross(lines_[j].line);
+    const double norm = direction.norm();
+    if (!(norm > 0)) return false;
+    direction *= (direction.z() < 0 ? -1 : 1) / norm;
+    return alongRunway(direction);
+  }
+
+  /// Length of the lines that pass through, each weighted by how well.
+  double score(const Eigen::Vector3d& direction) const {
+    const Eigen::Vector3d V = K_ * direction;
+    const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
+    double sum = 0;
+    for (const Candidate& line : lines_) sum += line.half * std::max(0.0, 1 - line.endMiss2(V) / tolerance2);
+    return sum;
+  }
+
+  /// RANSAC: the meeting point of the pair of lines on which most length of lines agrees. All pairs when
+  /// they are few, otherwise random ones in proportion to length.
+  bool consensus(Eigen::Vector3d& best) const {
+    double best_score = 0;
+    const auto attempt = [&](int i, int j) {
+      Eigen::Vector3d direction;
+      if (i == j || !meeting(i, j, direction)) return;
+      const double s = score(direction);
+      if (s <= best_score) return;
+      best_score = s;
+      best = direction;
+    };
+    if (count() * (count() - 1) / 2 <= parameters_.ransac_iterations) {
+      for (int i = 0; i < count(); ++i)
+        for (int j = i + 1; j < count(); ++j) attempt(i, j);
+      return best_score > 0;
+    }
+    std::vector<double> cumulative(lines_.size());
+    std::transform(lines_.begin(), lines_.end(), cumulative.begin(),
+                   [](const Candidate& c) { return c.half; });
+    std::partial_sum(cumulative.begin(), cumulative.end(), cumulative.begin());
+    // The generator is the same everywhere; the standard library's distributions are not.
+    std::mt19937 random(1);
+    const auto draw = [&] {
+      const double place = (random() + 0.5) / 4294967296.0 * cumulative.back();
+      return static_cast<int>(std::lower_bound(cumulative.begin(), cumulative.end(), place) -
+                              cumulative.begin());
+    };
+    for (int k = 0; k < parameters_.ransac_iterations; ++k) {
+      const int i = draw(), j = draw();
+      attempt(i, j);
+    }
+    return best_score > 0;
+  }
+
+  /// Indices of the lines that pass through by the consensus tolerance.
+  std::vector<int> passing(const Eigen::Vector3d& direction) const {
+    const Eigen::Vector3d V = K_ * direction;
+    const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
+    std::vector<int> indices;
+    for (int i = 0; i < count(); ++i)
+      if (lines_[i].endMiss2(V) <= tolerance2) indices.push_back(i);
+    return indices;
+  }
+
+  /// Residuals over their standard deviations.
+  std::vector<double> normalised(const Eigen::Vector3d& direction, const std::vector<int>& used) const {
+    const Eigen::Vector3d V = K_ * direction;
+    std::vector<double> residuals;
+    for (const int i : used)
+      residuals.push_back(lines_[i].line.dot(V) / std::sqrt(lines_[i].residualVariance(V)));
+    return residuals;
+  }
+
+  /// Robust scale of normalised residuals, not below 1: lines are not better than they say.
+  static double robustScale(std::vector<double> residuals) {
+    for (double& r : residuals) r = std::abs(r);
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
+    return std::max(1.0, 1.4826 * *middle);
+  }
+
+  /// One Gauss-Newton step on the sphere. information: of the direction along the tangents B.
+  void step(Eigen::Vector3d& direction, const std::vector<int>& used, double cauchy_scale,
+            Eigen::Matrix2d& information, Matrix32& B) const {
+    const Eigen::Vector3d V = K_ * direction;
+    B = tangents(direction);
+    information.setZero();
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+    for (const int i : used) {
+      const double residual = lines_[i].line.dot(V), variance = lines_[i].residualVariance(V);
+      const double u2 = residual * residual / variance / (cauchy_scale * cauchy_scale);
+      const Eigen::Vector2d J = B.transpose() * (K_.transpose() * lines_[i].line);
+      const double weight = 1 / (variance * (1 + u2));
+      information += weight * J * J.transpose();
+      gradient += weight * J * residual;
+    }
+    direction = (direction - B * information.ldlt().solve(gradient)).normalized();
+  }
+
+  Expected<VanishingPoint> fit(Eigen::Vector3d direction) const {
+    Eigen::Matrix2d information;
+    Matrix32 B;
+    std::vector<int> used = passing(direction);
+    double scale = 1;
+    for (int iteration = 0; iteration < 8; ++iteration) {
+      scale = robustScale(normalised(direction, used));
+      step(direction, used, 2.385 * scale, information, B);
+      if (!direction.allFinite()) return tl::unexpected(noVanishingPoint("%.0f lines are parallel", count()));
+      used = passing(direction);
+      if (static_cast<int>(used.size()) < 2) break;
+    }
+    used = withinGate(direction, used, kGate * scale);
+    const int n = static_cast<int>(used.size());
+    if (n < std::max(parameters_.min_lines, 2))
+      return tl::unexpected(
+          noVanishingPoint("%.0f lines of at least %.0f meet in one point", n, parameters_.min_lines));
+    constexpr double kNoRobustness = 1e6;
+    for (int iteration = 0; iteration < 3; ++iteration) step(direction, used, kNoRobustness, information, B);
+    if (const Failure failure = check(direction, used, scale)) return tl::unexpected(failure);
+    return describe(direction, used, information, B);
+  }
+
+  std::vector<int> withinGate(const Eigen::Vector3d& direction, const std::vector<int>& used,
+                              double gate) const {
+    const std::vector<double> residuals = normalised(direction, used);
+    std::vector<int> kept;
+    for (size_t k = 0; k < used.size(); ++k)
+      if (std::abs(residuals[k]) <= gate) kept.push_back(used[k]);
+    return kept;
+  }
+
+  Failure check(const Eigen::Vector3d& direction, const std::vector<int>& used, double scale) const {
+    if (!direction.allFinite() || direction.z() <= 0 || !alongRunway(direction))
+      return noVanishingPoint("%.0f lines meet, but not along the runway", static_cast<double>(used.size()));
+    const double spread = directionSpread(used);
+    if (spread < kMinSpread)
+      return noVanishingPoint("lines are parallel within %.1f deg, less than %.1f", spread / kDegree,
+                              kMinSpread / kDegree);
+    const double coincidences = expectedCoincidences(used, scale);
+    if (coincidences > kChance)
+      return noVanishingPoint("as many lines meet by chance: %.0f of %.0f", static_cast<double>(used.size()),
+                              count());
+    return {};
+  }
+
+  /// Largest angle between the lines in the image: pi minus the widest gap between their directions.
+  double directionSpread(const std::vector<int>& used) const {
+    std::vector<double> angles;
+    for (const int i : used) {
+      const double angle = std::atan2(lines_[i].along.y(), lines_[i].along.x());
+      angles.push_back(angle < 0 ? angle + M_PI : angle);
+    }
+    std::sort(angles.begin(), angles.end());
+    double gap = angles.front() + M_PI - angles.back();
+    for (size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+    return M_PI - gap;
+  }
+
+  /// How many meeting points as well supported as this one are expected of lines of random direction: pairs
+  /// of lines times (Chernoff's bound of) the probability that the other lines pass through. A line passes by
+  /// chance with p = 2 asin(tolerance / half length) / pi and counts with -log p, so long lines count more.
+  double expectedCoincidences(const std::vector<int>& used, double scale) const {
+    std::vector<double> p(lines_.size()), evidence;
+    for (int i = 0; i < count(); ++i) {
+      const double tolerance =
+          std::min(parameters_.ransac_tolerance, kGate * scale * std::sqrt(lines_[i].endVariance()));
+      p[i] = 2 / M_PI * std::asin(std::min(1.0, tolerance / lines_[i].half));
+    }
+    for (const int i : used) evidence.push_back(-std::log(p[i]));
+    std::sort(evidence.begin(), evidence.end());
+    // Two lines always meet.
+    const double total = std::accumulate(evidence.begin(), evidence.end() - 2, 0.0);
+    double log_probability = 0;
+    for (double lambda = 0.1; lambda < 1.05; lambda += 0.1) {
+      double bound = -lambda * total;
+      for (const double pi : p) bound += std::log1p(pi * (std::pow(pi, -lambda) - 1));
+      log_probability = std::min(log_probability, bound);
+    }
+    return 0.5 * count() * (count() - 1) * std::exp(log_probability);
+  }
+
+  Expected<VanishingPoint> describe(const Eigen::Vector3d& direction, const std::vector<int>& used,
+                                    const Eigen::Matrix2d& information, const Matrix32& B) const {
+    double chi2 = 0;
+    for (const double r : normalised(direction, used)) chi2 += r * r;
+    const double inflation = std::max(1.0, chi2 / std::max<double>(static_cast<double>(used.size()) - 2, 1));
+    const Eigen::Matrix2d covariance = inflation * information.inverse();
+    const double stddev =
+        std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1]);
+    if (!(stddev <= kMaxStddev))
+      return tl::unexpected(
+          noVanishingPoint("uncertain by %.1f deg, more than %.1f", stddev / kDegree, kMaxStddev / kDegree));
+    VanishingPoint point;
+    point.direction = direction;
+    point.covariance = B * covariance * B.transpose();
+    point.inliers.assign(lines_.size(), 0);
+    for (const int i : used) point.inliers[i] = 1;
+    point.inlier_count = static_cast<int>(used.size());
+    return point;
+  }
+
+  std::vector<Candidate> lines_;
+  Eigen::Matrix3d K_, Kinv_;
+  const ApproachAngleParameters& parameters_;
+  const Eigen::Vector3d* prior_normal_;
+};
+
+Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
+  const Matrix32 B = tangents(left.direction);
+  const Eigen::Vector2d difference = B.transpose() * (right.direction - left.direction);
+  const Eigen::Matrix2d Cl = B.transpose() * left.covariance * B, Cr = B.transpose() * right.covariance * B;
+  const Eigen::Matrix2d Sinv = (Cl + Cr).inverse();
+  const double nis = difference.dot(Sinv * difference);
+  if (nis > kViewsGate && difference.norm() > kViewsDiffer)
+    return tl::unexpected(noVanishingPoint("left and right differ by %.1f deg", difference.norm() / kDegree));
+  const Eigen::Matrix2d gain = Cl * Sinv;
+  VanishingPoint mean;
+  mean.direction = (left.direction + B * (gain * difference)).normalized();
+  // Views that differ by more than they claim have claimed too much.
+  const Matrix32 T = tangents(mean.direction);
+  const Eigen::Matrix2d covariance = std::max(1.0, nis / 2) * gain * Cr;
+  const Eigen::Matrix2d turn = T.transpose() * B;
+  mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
+  mean.inlier_count = left.inlier_count + right.inlier_count;
+  return mean;
+}
+
+}  // namespace
+
+Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                            const ApproachAngleParameters& parameters,
+                                            const Eigen::Vector3d* prior_normal) {
+  return Search(lines, K, parameters, prior_normal).run();
+}
+
+Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& left,
+                                                const Expected<VanishingPoint>& right,
+                                                double runway_straightness) {
+  if (!left && !right)
+    return tl::unexpected(
+        Failure{left.error().reason, "left: " + left.error().detail + "; right: " + right.error().detail});
+  Expected<VanishingPoint> mean = left && right ? fuseViews(*left, *right) : left ? left : right;
+  if (!mean) return mean;
+  mean->inliers.clear();
+  const Eigen::Vector3d& p = mean->direction;
+  mean->covariance +=
+      runway_straightness * runway_straightness * (Eigen::Matrix3d::Identity() - p * p.transpose());
+  return mean;
+}
+
+GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev) {
+  // The horizon's direction w = (cos, -sin, 0) lies in the ground as p does, so n = p x w, and rollOf(n) is
+  // the roll exactly.
+  const Eigen::Vector3d& p = point.direction;
+  const Eigen::Vector3d w(std::cos(roll), -std::sin(roll), 0), dw(-std::sin(roll), -std::cos(roll), 0);
+  const Eigen::Vector3d m = p.cross(w);
+  GroundNormal normal;
+  normal.n = m.normalized();
+  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - normal.n * normal.n.transpose()) / m.norm();
+  Eigen::Matrix3d minus_w_cross;
+  minus_w_cross << 0, w.z(), -w.y(), -w.z(), 0, w.x(), w.y(), -w.x(), 0;
+  const Eigen::Matrix3d from_point = across * minus_w_cross;
+  const Eigen::Vector3d from_roll = across * p.cross(dw);
+  normal.covariance = from_point * point.covariance * from_point.transpose() +
+                      roll_stddev * roll_stddev * from_roll * from_roll.transpose();
+  return normal;
+}
+
+}  // namespace uav_landing
