@@ -48,7 +48,7 @@ function(uav_landing_add_python_test file)
   string(REPLACE "/" "_" name ${file})
   set(result nosetests-${name}.xml)
   set(environment "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=\"${PROJECT_SOURCE_DIR}/test/support:$PYTHONPATH\" \
-UAV_LANDING_BUILD_DIR=\"${PROJECT_BINARY_DIR}\"")
+UAV_LANDING_BUILD_DIR=\"${PROJECT_BINARY_DIR}\" UAV_LANDING_DEVEL_DIR=\"${CATKIN_DEVEL_PREFIX}\"")
   set(nose "${PYTHON_EXECUTABLE} ${NOSETESTS} -P --process-timeout=600 --exe ${PROJECT_SOURCE_DIR}/${file} \
 --with-xunit --xunit-testsuite-name=${name} --xunit-file=${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME}/${result}")
   catkin_run_tests_target("nosetests" ${name} ${result} COMMAND "${environment} ${nose}"

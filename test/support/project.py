@@ -6,6 +6,7 @@ from pathlib import Path
 
 SOURCE_DIR = Path(__file__).resolve().parents[2]
 BUILD_DIR = Path(os.environ.get("UAV_LANDING_BUILD_DIR") or SOURCE_DIR / "build")
+DEVEL_DIR = Path(os.environ.get("UAV_LANDING_DEVEL_DIR") or BUILD_DIR / "devel")
 
 
 def run(command, **options):
