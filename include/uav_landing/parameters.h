@@ -28,7 +28,7 @@ enum class MatchingCost { kZncc, kSsd };
 struct StereoDepthParameters {
   int corner_count = 500;
   double harris_k = 0.04;
-  double corner_quality = 1e-4;
+  double corner_quality = 1e-7;
   double min_corner_distance = 4.0;
   int window_radius = 5;
   MatchingCost matching_cost = MatchingCost::kZncc;
@@ -39,7 +39,8 @@ struct StereoDepthParameters {
   double uniqueness = 0.9;
   double left_right_tolerance = 0.7;
   int min_points = 20;
-  double plane_tolerance = 1.0;
+  double plane_tolerance = 0.6;
+  double disparity_bias_stddev = 0.02;
   double max_roll_deg = 30.0;
   double max_pitch_deg = 30.0;
 
@@ -47,7 +48,7 @@ struct StereoDepthParameters {
   void visit(Visitor&& v) {
     v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners kept in the left image");
     v.number("harris_k", harris_k, 0.01, 0.2, "", "k of the Harris response");
-    v.number("corner_quality", corner_quality, 1e-6, 0.5, "",
+    v.number("corner_quality", corner_quality, 1e-9, 0.5, "",
              "weakest corner kept, as a share of the strongest response");
     v.number("min_corner_distance", min_corner_distance, 1.0, 50.0, "px", "between two corners");
     v.number("window_radius", window_radius, 2, 15, "px", "matching window is (2 r + 1) squared");
@@ -67,6 +68,8 @@ struct StereoDepthParameters {
     v.number("min_points", min_points, 6, 1000, "points", "fewest points that make a ground plane");
     v.number("plane_tolerance", plane_tolerance, 0.1, 10.0, "px",
              "disparity by which a point may be off the plane in the consensus step");
+    v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
+             "1 sigma of an error common to all disparities (yaw between the cameras); widens the pitch");
     v.number("max_roll_deg", max_roll_deg, 1.0, 60.0, "deg", "largest roll that is believed");
     v.number("max_pitch_deg", max_pitch_deg, 1.0, 60.0, "deg", "largest pitch, up or down, that is believed");
   }

@@ -1,0 +1,195 @@
+#include "uav_landing/stereo_depth_stage.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "uav_landing/corners.h"
+#include "uav_landing/match_image.h"
+#include "uav_landing/plane_fit.h"
+#include "uav_landing/stereo_matching.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+// Contrast (standard deviation in grey levels) below which an image is called uniform.
+constexpr double kMinImageContrast = 1.5;
+// Failing frames for which the last plane stays the first guess.
+constexpr int kKeepPlaneFor = 5;
+// In how many failing frames one is also tried with left and right swapped.
+constexpr int kSwapCheckInterval = 10;
+
+Failure checkImages(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_mask,
+                    const cv::Mat& right_mask) {
+  for (const cv::Mat* image : {&left, &right}) {
+    const char* name = image == &left ? "left" : "right";
+    if (image->type() != CV_8UC1 || image->size() != rig.size) {
+      return {Reason::kInputInvalid, std::string(name) + " rectified image is " +
+                                         std::to_string(image->cols) + " x " + std::to_string(image->rows) +
+                                         ", expected mono8 of " + std::to_string(rig.size.width) + " x " +
+                                         std::to_string(rig.size.height)};
+    }
+    cv::Scalar mean, stddev;
+    cv::meanStdDev(*image, mean, stddev, image == &left ? left_mask : right_mask);
+    if (stddev[0] < kMinImageContrast) {
+      return {Reason::kUniformImage, std::string(name) + " image has no contrast, mean grey level " +
+                                         std::to_string(static_cast<int>(mean[0]))};
+    }
+  }
+  return {};
+}
+
+cv::Mat eroded(const cv::Mat& mask, int margin) {
+  cv::Mat result;
+  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * margin + 1, 2 * margin + 1));
+  cv::erode(mask, result, kernel, cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  return result;
+}
+
+}  // namespace
+
+struct StereoDepthStage::Implementation {
+  RigModel model;
+  StereoDepthParameters parameters;
+  PlaneLimits limits;
+  StereoLevel fine, coarse;
+  MatchImage left, right;
+  Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
+  bool has_last = false;
+  double last_stamp = 0;
+  bool started = false;
+  int failures = 0;
+  Timings timings;
+
+  Implementation(const RigModel& rig, const StereoDepthParameters& p) : model(rig), parameters(p) {
+    limits.max_roll = p.max_roll_deg * kDegree;
+    limits.max_pitch = p.max_pitch_deg * kDegree;
+    limits.min_points = p.min_points;
+    limits.tolerance = p.plane_tolerance;
+    fine.rig = rig.rig;
+    fine.left_mask = eroded(rig.left_mask, p.window_radius + 2);
+    fine.right_mask = eroded(rig.right_mask, p.window_radius + 2);
+    coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
+  }
+
+  StereoDepthResult process(double stamp, const cv::Mat& left_image, const cv::Mat& right_image) {
+    timings.clear();
+    StereoDepthResult result;
+    result.stamp = stamp;
+    if (started && !(stamp > last_stamp)) has_last = false;
+    started = true;
+    last_stamp = stamp;
+    result.failure = checkImages(model.rig, left_image, right_image, model.left_mask, model.right_mask);
+    if (!result.failure) estimate(left_image, right_image, result);
+    failures = result.failure ? failures + 1 : 0;
+    if (!result.failure) last_g = result.plane.g;
+    // One bad pair does not make the last plane a bad guess; many do.
+    has_last = !result.failure || (has_last && failures < kKeepPlaneFor);
+    return result;
+  }
+
+  void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
+    {
+      ScopedTimer timer(timings, "match_images");
+      left.assign(left_image);
+      right.assign(right_image);
+    }
+    fine.left = left.fine;
+    fine.right = right.fine;
+    coarse.left = left.coarse;
+    coarse.right = right.coarse;
+    const Expected<Eigen::Vector3d> start = firstPlane(result);
+    if (!start) {
+      result.failure = start.error();
+      return;
+    }
+    refine(*start, result);
+  }
+
+  // A plane good to about a pixel of disparity: followed from the previous pair, or searched.
+  Expected<Eigen::Vector3d> firstPlane(StereoDepthResult& result) {
+    if (has_last) {
+      ScopedTimer timer(timings, "feature_matching_coarse");
+      const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
+      if (tracked.found) return tracked.g;
+    }
+    ScopedTimer timer(timings, "plane_search");
+    result.from_search = true;
+    const Consensus found = searchPlane(coarse, parameters, limits);
+    if (found.found) return found.g;
+    return tl::make_unexpected(whyNotFound());
+  }
+
+  Failure whyNotFound() {
+    if (failures % kSwapCheckInterval == 0 && searchPlane(swapped(coarse), parameters, limits).found) {
+      return {
+          Reason::kNegativeDisparity,
+          "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
+    }
+    return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+  }
+
+  void refine(const Eigen::Vector3d& start, StereoDepthResult& result) {
+    std::vector<cv::Point> corners;
+    {
+      ScopedTimer timer(timings, "harris_corners");
+      corners = findGroundCorners(fine, start, parameters.corner_count, parameters);
+    }
+    result.corners = static_cast<int>(corners.size());
+    std::vector<DisparitySample> samples;
+    {
+      ScopedTimer timer(timings, "feature_matching");
+      samples = matchCorners(fine, corners, start, parameters);
+    }
+    ScopedTimer timer(timings, "plane_fit");
+    if (static_cast<int>(samples.size()) < parameters.min_points) {
+      const bool few_corners = result.corners < parameters.min_points;
+      result.failure = {few_corners ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
+                        std::to_string(samples.size()) + " matches of " + std::to_string(corners.size()) +
+                            " corners, at least " + std::to_string(parameters.min_points) + " needed"};
+    }
+    fit(samples, result);
+  }
+
+  void fit(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+    for (const DisparitySample& sample : samples) {
+      result.points.push_back({sample.u, sample.v, sample.disparities.front(), sample.stddev, false});
+    }
+    if (result.failure) return;
+    const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr);
+    if (!consensus.found) {
+      result.failure = {Reason::kNoPlane,
+                        "no plausible ground plane in " + std::to_string(samples.size()) + " matches"};
+      return;
+    }
+    const Expected<PlaneFit> plane =
+        refinePlane(model.rig, samples, consensus.g, limits, parameters.disparity_bias_stddev);
+    if (!plane) {
+      result.failure = plane.error();
+      return;
+    }
+    result.plane = plane->plane;
+    result.residual_stddev = plane->residual_stddev;
+    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
+  }
+};
+
+StereoDepthStage::StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters)
+    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+StereoDepthStage::~StereoDepthStage() = default;
+StereoDepthStage::StereoDepthStage(StereoDepthStage&&) noexcept = default;
+
+StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
+                                            double skew) {
+  StereoDepthResult result = implementation_->process(stamp, left, right);
+  result.skew = skew;
+  return result;
+}
+
+void StereoDepthStage::reset() {
+  implementation_->has_last = false;
+  implementation_->started = false;
+}
+
+const Timings& StereoDepthStage::timings() const { return implementation_->timings; }
+
+}  // namespace uav_landing
