@@ -85,8 +85,8 @@ struct ApproachAngleParameters {
   bool use_stereo = true;
   HoughMethod hough_method = HoughMethod::kProbabilistic;
   double canny_low = 40, canny_high = 110;
-  int hough_threshold = 30;
-  double min_line_length = 0.08;
+  int hough_threshold = 15;
+  double min_line_length = 0.04;
   double max_line_gap = 4.0;
   bool refine_lines = true;
   int ransac_iterations = 500;
@@ -124,7 +124,8 @@ struct ApproachAngleParameters {
     v.number("ransac_iterations", ransac_iterations, 10, 10000, "", "pairs of lines tried");
     v.number("ransac_tolerance", ransac_tolerance, 0.1, 20.0, "px",
              "distance by which a line's far end may miss the vanishing point's line");
-    v.number("min_lines", min_lines, 2, 100, "lines", "fewest lines that make a vanishing point");
+    v.number("min_lines", min_lines, 2, 100, "lines",
+             "fewest lines that make a vanishing point; with 2 any two lines are believed");
     v.number("max_yaw_deg", max_yaw_deg, 1.0, 80.0, "deg",
              "lines that meet farther to the side are not along the runway");
     v.number("max_elevation_deg", max_elevation_deg, 1.0, 60.0, "deg",

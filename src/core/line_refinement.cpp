@@ -12,6 +12,7 @@ constexpr int kMaxRadius = 3;        // px to both sides, first pass
 constexpr double kStationStep = 2;   // px between stations; closer ones share pixels
 constexpr double kMaxStations = 80;  // of a long line, which then is at the floor anyway
 constexpr int kMinStations = 6;
+constexpr double kFewStations = 12;
 constexpr double kMinSupport = 0.6;    // share of stations that must show the edge
 constexpr double kMaxScatter = 0.6;    // px, 1 sigma of the peaks; more is no straight edge
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
@@ -87,10 +88,15 @@ struct Collected {
   int stations = 0;
 };
 
+/// Closer stations on a short line: they share pixels, but it takes several to see that it is straight.
+double stationStep(double length) {
+  return std::max(std::clamp(length / kFewStations, 1.0, kStationStep), length / kMaxStations);
+}
+
 Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, int sign,
                   int radius) {
   Collected found;
-  const double step = std::max(kStationStep, (to - from) / kMaxStations);
+  const double step = stationStep(to - from);
   found.peaks.reserve(static_cast<size_t>((to - from) / step) + 2);
   for (double along = from; along <= to; along += step) {
     ++found.stations;

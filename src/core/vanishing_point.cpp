@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -18,7 +20,10 @@ constexpr double kPriorTolerance = 5 * kDegree;  // of the direction from the gr
 constexpr double kMinSpread = 3 * kDegree;       // between the inlier lines in the image
 constexpr double kMaxStddev = 5 * kDegree;       // of a direction that is worth reporting
 constexpr double kGate = 4;                      // robust sigma, of the lines that count in the end
-constexpr double kChance = 0.1;                  // accepted number of such coincidences among random lines
+constexpr double kChance = 1;                    // accepted number of such coincidences among random lines
+constexpr double kClearance = 4;                 // px between a line's end and the point where it vanishes
+constexpr double kMaxHorizonSlope = 0.577;       // 30 degrees of roll
+constexpr int kSectors = 60;                     // 3 degrees
 constexpr double kViewsDiffer = 1 * kDegree;     // with kViewsGate: left and right saw different things
 constexpr double kViewsGate = 25;                // squared, 2 degrees of freedom
 
@@ -42,26 +47,40 @@ Matrix32 tangents(const Eigen::Vector3d& direction) {
 struct Candidate {
   Eigen::Vector3d line;           // as in LineSegment
   Eigen::Vector2d middle, along;  // along: unit
+  Eigen::Vector2d top;            // the end that is higher in the image
   double half;                    // length
+  int sector;                     // of directions in the image
   double offset_variance, angle_variance;
 
   explicit Candidate(const LineSegment& s)
       : line(s.line),
         middle(s.middle()),
         along((s.b - s.a).normalized()),
+        top(s.a.y() < s.b.y() ? s.a : s.b),
         half(0.5 * s.length()),
+        sector(std::clamp(static_cast<int>((std::atan2(along.y(), along.x()) + M_PI) / M_PI * kSectors), 0,
+                          2 * kSectors - 1) %
+               kSectors),
         offset_variance(s.offset_stddev * s.offset_stddev),
         angle_variance(s.angle_stddev * s.angle_stddev) {}
 
   /// From the middle towards the homogeneous point V, scaled by V.z: finite however far V is.
   Eigen::Vector2d towards(const Eigen::Vector3d& V) const { return V.head<2>() - V.z() * middle; }
 
-  /// Square of the distance by which the segment's ends miss the line from its middle to V. px^2
+  /// Square of the distance by which the segment's ends miss the line from its middle to V, px^2; infinite
+  /// when V cannot be where this line vanishes: a line on the ground ends below the horizon and does not
+  /// reach V.
   double endMiss2(const Eigen::Vector3d& V) const {
     const Eigen::Vector2d e = towards(V);
+    const double ahead = std::abs(along.x() * e.x() + along.y() * e.y());
+    if (ahead < (half + kClearance) * V.z()) return std::numeric_limits<double>::infinity();
     const double across = line.x() * e.x() + line.y() * e.y();
-    const double squared = e.squaredNorm();
-    return squared > 0 ? half * half * across * across / squared : 0;
+    return half * half * across * across / (across * across + ahead * ahead);
+  }
+  /// Whether part of the line lies above any horizon through V that is not steeper than kMaxHorizonSlope.
+  bool isAboveHorizon(const Eigen::Vector3d& V) const {
+    const Eigen::Vector2d e = V.head<2>() - V.z() * top;
+    return e.y() > kMaxHorizonSlope * std::abs(e.x());
   }
   /// Variance of line.V when the line's offset and angle vary as they do.
   double residualVariance(const Eigen::Vector3d& V) const {
@@ -108,31 +127,44 @@ class Search {
     return alongRunway(direction);
   }
 
-  /// Length of the lines that pass through, each weighted by how well.
+  /// Length of the lines that pass through, each weighted by how well, less the length of those that could
+  /// not be on the ground if this were its horizon. Of the lines in one sector of directions only the best
+  /// counts: the pieces of one transverse edge pass through each of its points, and say no more than one.
   double score(const Eigen::Vector3d& direction) const {
     const Eigen::Vector3d V = K_ * direction;
     const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
-    double sum = 0;
-    for (const Candidate& line : lines_) sum += line.half * std::max(0.0, 1 - line.endMiss2(V) / tolerance2);
-    return sum;
+    double impossible = 0;
+    std::array<double, kSectors> agreeing{};
+    for (const Candidate& line : lines_) {
+      if (line.isAboveHorizon(V)) impossible += line.half;
+      double& best = agreeing[line.sector];
+      best = std::max(best, line.half * (1 - line.endMiss2(V) / tolerance2));
+    }
+    return std::accumulate(agreeing.begin(), agreeing.end(), -impossible);
   }
 
   /// RANSAC: the meeting point of the pair of lines on which most length of lines agrees. All pairs when
   /// they are few, otherwise random ones in proportion to length.
-  bool consensus(Eigen::Vector3d& best) const {
-    double best_score = 0;
+  bool consensus(Eigen::Vector3d& best) {
+    double best_score = std::numeric_limits<double>::lowest();
+    int tried = 0, meetings = 0;
     const auto attempt = [&](int i, int j) {
+      if (i == j) return;
+      ++tried;
       Eigen::Vector3d direction;
-      if (i == j || !meeting(i, j, direction)) return;
+      if (!meeting(i, j, direction)) return;
+      ++meetings;
       const double s = score(direction);
       if (s <= best_score) return;
       best_score = s;
       best = direction;
     };
-    if (count() * (count() - 1) / 2 <= parameters_.ransac_iterations) {
+    const int pairs = count() * (count() - 1) / 2;
+    if (pairs <= parameters_.ransac_iterations) {
       for (int i = 0; i < count(); ++i)
         for (int j = i + 1; j < count(); ++j) attempt(i, j);
-      return best_score > 0;
+      meetings_ = meetings;
+      return meetings > 0;
     }
     std::vector<double> cumulative(lines_.size());
     std::transform(lines_.begin(), lines_.end(), cumulative.begin(),
@@ -149,7 +181,8 @@ class Search {
       const int i = draw(), j = draw();
       attempt(i, j);
     }
-    return best_score > 0;
+    meetings_ = static_cast<double>(meetings) / std::max(tried, 1) * pairs;
+    return meetings > 0;
   }
 
   /// Indices of the lines that pass through by the consensus tolerance.
@@ -158,7 +191,7 @@ class Search {
     const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
     std::vector<int> indices;
     for (int i = 0; i < count(); ++i)
-      if (lines_[i].endMiss2(V) <= tolerance2) indices.push_back(i);
+      if (lines_[i].endMiss2(V) <= tolerance2 && !lines_[i].isAboveHorizon(V)) indices.push_back(i);
     return indices;
   }
 
@@ -237,7 +270,7 @@ class Search {
       return noVanishingPoint("lines are parallel within %.1f deg, less than %.1f", spread / kDegree,
                               kMinSpread / kDegree);
     const double coincidences = expectedCoincidences(used, scale);
-    if (coincidences > kChance)
+    if (parameters_.min_lines > 2 && coincidences > kChance)
       return noVanishingPoint("as many lines meet by chance: %.0f of %.0f", static_cast<double>(used.size()),
                               count());
     return {};
@@ -257,8 +290,9 @@ class Search {
   }
 
   /// How many meeting points as well supported as this one are expected of lines of random direction: pairs
-  /// of lines times (Chernoff's bound of) the probability that the other lines pass through. A line passes by
-  /// chance with p = 2 asin(tolerance / half length) / pi and counts with -log p, so long lines count more.
+  /// of lines that meet along the runway times (Chernoff's bound of) the probability that the other lines
+  /// pass through. A line passes by chance with p = 2 asin(tolerance / half length) / pi and counts with -log
+  /// p, so long lines count more.
   double expectedCoincidences(const std::vector<int>& used, double scale) const {
     std::vector<double> p(lines_.size()), evidence;
     for (int i = 0; i < count(); ++i) {
@@ -276,7 +310,7 @@ class Search {
       for (const double pi : p) bound += std::log1p(pi * (std::pow(pi, -lambda) - 1));
       log_probability = std::min(log_probability, bound);
     }
-    return 0.5 * count() * (count() - 1) * std::exp(log_probability);
+    return meetings_ * std::exp(log_probability);
   }
 
   Expected<VanishingPoint> describe(const Eigen::Vector3d& direction, const std::vector<int>& used,
@@ -303,6 +337,7 @@ class Search {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
+  double meetings_ = 0;  // pairs of lines that meet along the runway
 };
 
 Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
