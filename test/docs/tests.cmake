@@ -1,2 +1,1 @@
-uav_landing_add_gtest(parameters_doc_test test/docs/parameters_doc_test.cpp)
 uav_landing_add_python_test(test/docs/links_test.py)
