@@ -27,20 +27,19 @@ std::string formatted(const char* format, double value) {
 }
 
 /// "12.01 +-0.05 deg"; OpenCV's font has neither the sign nor the degree.
-std::string withDeviation(const char* value_format, const char* stddev_format, double value, double variance,
-                          const char* unit) {
+std::string withDeviation(const char* format, double value, double variance, const char* unit) {
   if (!std::isfinite(value)) return "-";
-  return formatted(value_format, value) + " +-" + formatted(stddev_format, std::sqrt(variance)) + " " + unit;
+  return formatted(format, value) + " +-" + formatted("%.2g", std::sqrt(variance)) + " " + unit;
 }
 
 std::array<Instrument, 4> instruments(const LandingResult& landing) {
   const auto usable = [](bool valid) { return valid ? colour::kText : colour::kDim; };
   return {{
-      {"HEIGHT", withDeviation("%.3f", "%.3f", landing.height, landing.height_variance, "m"),
+      {"HEIGHT", withDeviation("%.3f", landing.height, landing.height_variance, "m"),
        usable(landing.height_valid)},
       {"SINK RATE", formatted("%.2f m/s", -landing.vertical_speed), usable(landing.height_valid)},
       {"APPROACH ANGLE",
-       withDeviation("%.2f", "%.2f", landing.approach_angle * kDegrees,
+       withDeviation("%.2f", landing.approach_angle * kDegrees,
                      landing.approach_angle_variance * kDegrees * kDegrees, "deg"),
        usable(landing.angle_valid)},
       {"PITCH  ROLL  YAW",
@@ -63,7 +62,7 @@ cv::Mat drawInstrumentStrip(const LandingResult& landing, int width) {
   const auto pixels = [unit](double value) { return static_cast<int>(std::lround(value * unit)); };
   cv::Mat strip(pixels(62), width, CV_8UC3, colour::kPanel);
 
-  const std::array<double, 4> columns = {10, 188, 302, 480};
+  const std::array<double, 4> columns = {10, 204, 308, 482};
   const std::array<Instrument, 4> all = instruments(landing);
   for (size_t i = 0; i < all.size(); ++i) {
     drawText(strip, {pixels(columns[i]), pixels(14)}, all[i].name, 0.34 * unit, colour::kLabel);

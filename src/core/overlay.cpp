@@ -13,6 +13,7 @@ namespace uav_landing {
 namespace {
 
 constexpr double kBrightness = 0.75;
+constexpr size_t kMostJoined = 60;  // matches joined by a line; more would hide the picture
 
 /// Colour per point: disparity from 0 (blue, far) to the largest on the plane (red, near).
 std::vector<cv::Scalar> disparityColours(const std::vector<StereoDepthResult::Point>& points) {
@@ -107,11 +108,12 @@ cv::Mat drawMatches(const StereoRig& rig, const cv::Mat& left, const cv::Mat& ri
   cv::hconcat(left, right, side_by_side);
   Canvas canvas(side_by_side, overlayScale(left.cols, parameters), kBrightness);
   const std::vector<cv::Scalar> colours = disparityColours(stereo.points);
+  const size_t step = 1 + stereo.points.size() / kMostJoined;
   for (size_t i = 0; i < stereo.points.size(); ++i) {
     const StereoDepthResult::Point& point = stereo.points[i];
     const Eigen::Vector2d in_left(point.u, point.v);
     const Eigen::Vector2d in_right(left.cols + point.u - point.disparity - rig.principalOffset(), point.v);
-    canvas.line(in_left, in_right, colours[i] * 0.5);
+    if (i % step == 0) canvas.line(in_left, in_right, colours[i] * 0.5);
     canvas.circle(in_left, 2.5, colours[i]);
     canvas.circle(in_right, 2.5, colours[i]);
   }

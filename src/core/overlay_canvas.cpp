@@ -80,7 +80,7 @@ int textWidth(const std::string& text, double font_scale) {
 
 void drawText(cv::Mat& picture, const cv::Point& at, const std::string& text, double font_scale,
               const cv::Scalar& colour) {
-  cv::putText(picture, text, at, kFont, font_scale, colour, 1, cv::LINE_AA);
+  cv::putText(picture, text, at, kFont, font_scale, colour, font_scale > 0.8 ? 2 : 1, cv::LINE_AA);
 }
 
 }  // namespace uav_landing

@@ -8,7 +8,7 @@ namespace uav_landing {
 
 namespace colour {
 const cv::Scalar kLine(60, 230, 255);        // yellow
-const cv::Scalar kDim(150, 130, 110);        // grey blue
+const cv::Scalar kDim(205, 175, 135);        // light grey blue
 const cv::Scalar kVanishing(255, 120, 255);  // pink
 const cv::Scalar kPlane(255, 220, 60);       // cyan
 const cv::Scalar kNormal(80, 255, 120);      // green
