@@ -1,0 +1,38 @@
+import tempfile
+import unittest
+from pathlib import Path
+
+import cv2
+
+from project import SOURCE_DIR, run
+
+TRUTH = "stamp_s,left,right,height_m,approach_angle_deg\n" + "".join(
+    f"{100 + 0.1 * i:.3f},{i}.png,{i}.png,{2 - 0.02 * i},{'' if i == 0 else 5}\n" for i in range(50))
+
+
+def estimates(valid, height_error):
+    columns = "stamp_s,height_m,height_stddev_m,height_valid,approach_angle_deg,approach_angle_stddev_deg,angle_valid\n"
+    return columns + "".join(f"{100 + 0.1 * i:.3f},{2 - 0.02 * i + height_error},0.01,{valid},5.1,0.05,{valid}\n"
+                             for i in range(50)) + "105.0,,,0,,,0\n"
+
+
+class PlotEstimatesTest(unittest.TestCase):
+    def plot(self, name, text):
+        (self.folder / f"{name}.csv").write_text(text)
+        result = run([SOURCE_DIR / "scripts/plot_estimates", "--truth", self.folder / "frames.csv",
+                      "--estimates", self.folder / f"{name}.csv", "--output", self.folder / f"{name}.png"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return cv2.imread(str(self.folder / f"{name}.png"))
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "frames.csv").write_text(TRUTH)
+
+    def test_picture_shows_what_the_estimates_are(self):
+        good = self.plot("good", estimates(valid=1, height_error=0))
+        self.assertGreater(good.shape[1], 800)
+        for name, text in (("wrong", estimates(valid=1, height_error=0.5)), ("invalid", estimates(valid=0, height_error=0))):
+            with self.subTest(name):
+                self.assertTrue((self.plot(name, text) != good).any())

@@ -1,0 +1,2 @@
+uav_landing_add_python_test(test/scripts/plot_estimates_test.py)
+uav_landing_add_rostest(test/scripts/record_estimates.test SOURCES test/scripts/record_estimates_test.py)
