@@ -3,3 +3,8 @@ uav_landing_add_gtest(height_filter_test test/core/height_filter_test.cpp)
 uav_landing_add_gtest(reconstruction_test test/core/reconstruction_test.cpp)
 uav_landing_add_gtest(kalman_height_stage_test test/core/kalman_height_stage_test.cpp)
 uav_landing_add_gtest(parameter_file_test test/core/parameter_file_test.cpp)
+# Calibration, rectification, ground plane, lines, vanishing point, approach angle.
+uav_landing_add_gtest(calibration_test test/core/calibration_test.cpp)
+uav_landing_add_gtest(rectification_test test/core/rectification_test.cpp)
+uav_landing_add_gtest(ground_plane_test test/core/ground_plane_test.cpp)
+uav_landing_add_gtest(approach_angle_test test/core/approach_angle_test.cpp)

@@ -1,0 +1,246 @@
+#include "uav_landing/rectification.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kPeriod = 40;  // px, of the pattern in the raw image
+
+CameraCalibration ideal() {
+  CameraCalibration c;
+  c.width = 320;
+  c.height = 240;
+  c.distortion_model = "plumb_bob";
+  c.K << 300, 0, 158, 0, 305, 122, 0, 0, 1;
+  c.R = Eigen::Matrix3d::Identity();
+  c.P << 290, 0, 163, 0, 0, 290, 118, 0, 0, 0, 1, 0;
+  return c;
+}
+
+CameraCalibration turned(CameraCalibration c) {
+  c.R =
+      (Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitX()) *
+       Eigen::AngleAxisd(-0.04, Eigen::Vector3d::UnitY()) * Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+  return c;
+}
+
+CameraCalibration plumbBob() {
+  CameraCalibration c = turned(ideal());
+  c.D = {-0.25, 0.08, 0.004, -0.003, 0.01};
+  return c;
+}
+
+CameraCalibration rationalPolynomial() {
+  CameraCalibration c = turned(ideal());
+  c.distortion_model = "rational_polynomial";
+  c.D = {0.4, -0.2, 0.002, 0.003, 0.05, 0.7, -0.1, 0.02};
+  return c;
+}
+
+/// Brown's lens with tangential part, times the rational denominator; written from the published equations.
+/// D: k1 k2 p1 p2 k3 k4 k5 k6.
+Eigen::Vector2d throughLens(const Eigen::Vector3d& ray, std::vector<double> D) {
+  D.resize(8, 0.0);
+  const double x = ray.x() / ray.z(), y = ray.y() / ray.z(), r2 = x * x + y * y;
+  const double radial = (1 + D[0] * r2 + D[1] * std::pow(r2, 2) + D[4] * std::pow(r2, 3)) /
+                        (1 + D[5] * r2 + D[6] * std::pow(r2, 2) + D[7] * std::pow(r2, 3));
+  return {x * radial + 2 * D[2] * x * y + D[3] * (r2 + 2 * x * x),
+          y * radial + D[2] * (r2 + 2 * y * y) + 2 * D[3] * x * y};
+}
+
+/// Pixel of the delivered raw image at which the lens shows what the delivered rectified pixel looks at.
+Eigen::Vector2d rawPixel(const CameraCalibration& c, double u, double v) {
+  const double bx = std::max(c.binning_x, 1), by = std::max(c.binning_y, 1);
+  const double full_u = u * bx + c.roi.x, full_v = v * by + c.roi.y;
+  const Eigen::Vector3d rectified((full_u - c.P(0, 2)) / c.P(0, 0), (full_v - c.P(1, 2)) / c.P(1, 1), 1);
+  const Eigen::Vector2d m = throughLens(c.R.transpose() * rectified, c.D);
+  return {(c.K(0, 0) * m.x() + c.K(0, 2) - c.roi.x) / bx, (c.K(1, 1) * m.y() + c.K(1, 2) - c.roi.y) / by};
+}
+
+double pattern(double position) { return 128 + 110 * std::cos(2 * M_PI * position / kPeriod); }
+
+/// Rectifies a wave along one axis of the raw image and compares each pixel with the wave where the lens
+/// model says it comes from. One grey level is 0.06 px where the wave is steepest.
+void expectRectified(const CameraCalibration& c) {
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier) << rectifier.error().message();
+  const cv::Size size = c.imageSize();
+  for (int axis = 0; axis < 2; ++axis) {
+    cv::Mat raw(size, CV_8UC1), rectified;
+    for (int v = 0; v < size.height; ++v)
+      for (int u = 0; u < size.width; ++u)
+        raw.at<uchar>(v, u) = cv::saturate_cast<uchar>(pattern(axis == 0 ? u : v));
+    ASSERT_FALSE(rectifier->rectify(raw, rectified));
+    ASSERT_EQ(rectified.size(), size);
+    int compared = 0;
+    double worst = 0;
+    for (int v = 0; v < size.height; ++v)
+      for (int u = 0; u < size.width; ++u) {
+        if (rectifier->mask().at<uchar>(v, u) == 0) continue;
+        ++compared;
+        worst = std::max(worst, std::abs(rectified.at<uchar>(v, u) - pattern(rawPixel(c, u, v)[axis])));
+      }
+    EXPECT_GT(compared, size.area() / 2);
+    EXPECT_LT(worst, 2.0) << "axis " << axis;
+  }
+}
+
+/// The mask is 255 exactly where the lens model says the source is inside, but for the maps' 1/32 px.
+void expectTrueMask(const CameraCalibration& c) {
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier) << rectifier.error().message();
+  const cv::Size size = c.imageSize();
+  constexpr double kGrid = 1.0 / 16;
+  int inside_count = 0, outside_count = 0;
+  for (int v = 0; v < size.height; ++v)
+    for (int u = 0; u < size.width; ++u) {
+      const Eigen::Vector2d p = rawPixel(c, u, v);
+      const double margin = std::min({p.x(), p.y(), size.width - 1 - p.x(), size.height - 1 - p.y()});
+      const int mask = rectifier->mask().at<uchar>(v, u);
+      ASSERT_TRUE(mask == 0 || mask == 255);
+      if (margin > kGrid) {
+        ++inside_count;
+        EXPECT_EQ(mask, 255) << u << ", " << v;
+      } else if (margin < -kGrid) {
+        ++outside_count;
+        EXPECT_EQ(mask, 0) << u << ", " << v;
+      }
+    }
+  EXPECT_GT(inside_count, 0);
+  EXPECT_GT(outside_count, 0);
+}
+
+TEST(Rectifier, UndoesPlumbBobDistortionAndRotation) { expectRectified(plumbBob()); }
+TEST(Rectifier, UndoesRationalPolynomialDistortionAndRotation) { expectRectified(rationalPolynomial()); }
+TEST(Rectifier, HonoursRotationAndProjectionWithoutDistortion) {
+  CameraCalibration c = turned(ideal());
+  expectRectified(c);
+  c.D.assign(5, 0.0);
+  expectRectified(c);
+}
+TEST(Rectifier, HonoursBinning) {
+  CameraCalibration c = plumbBob();
+  c.binning_x = 2;
+  c.binning_y = 3;
+  expectRectified(c);
+}
+TEST(Rectifier, HonoursRegionOfInterest) {
+  CameraCalibration c = plumbBob();
+  c.roi = {70, 30, 180, 150};
+  expectRectified(c);
+  c.binning_x = c.binning_y = 2;
+  expectRectified(c);
+}
+
+TEST(RectifierMask, IsTrueForEachLensModel) {
+  expectTrueMask(plumbBob());
+  expectTrueMask(rationalPolynomial());
+  expectTrueMask(turned(ideal()));
+  CameraCalibration c = plumbBob();
+  c.roi = {70, 30, 180, 150};
+  c.binning_x = 2;
+  expectTrueMask(c);
+}
+
+TEST(RectifierMask, IsFullForAnImageThatIsAlreadyRectified) {
+  CameraCalibration c = ideal();
+  c.P.leftCols<3>() = c.K;
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier);
+  EXPECT_EQ(cv::countNonZero(rectifier->mask()), 320 * 240);
+}
+
+TEST(RectifierMask, ExcludesWhereTheDistortionFoldsBackIntoThePicture) {
+  // r (1 + k1 r^2) grows up to r = 1 / sqrt(-3 k1) = 1.054, and comes back to 0 at 1.826.
+  CameraCalibration c = ideal();
+  c.D = {-0.3, 0, 0, 0};
+  c.P << 80, 0, 160, 0, 0, 80, 120, 0, 0, 0, 1, 0;
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier);
+  int folded_into_picture = 0;
+  for (int v = 0; v < c.height; ++v)
+    for (int u = 0; u < c.width; ++u) {
+      const double r = std::hypot(u - 160, v - 120) / 80;
+      if (r < 1.06) continue;
+      EXPECT_EQ(rectifier->mask().at<uchar>(v, u), 0) << u << ", " << v;
+      const Eigen::Vector2d p = rawPixel(c, u, v);
+      folded_into_picture += p.x() >= 0 && p.y() >= 0 && p.x() < c.width && p.y() < c.height;
+    }
+  EXPECT_GT(folded_into_picture, 1000);
+  EXPECT_EQ(rectifier->mask().at<uchar>(120, 160), 255);
+}
+
+TEST(RectifierMask, ExcludesCoordinatesBeyondTheFixedPointRange) {
+  // Sources 65536 px and more away must not wrap around into the picture.
+  CameraCalibration c = ideal();
+  c.D = {1000, 1000, 0, 0, 1000};
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier);
+  for (int v = 0; v < c.height; ++v)
+    for (int u = 0; u < c.width; ++u) {
+      const Eigen::Vector2d p = rawPixel(c, u, v);
+      if (p.x() < -1 || p.y() < -1 || p.x() > c.width || p.y() > c.height) {
+        ASSERT_EQ(rectifier->mask().at<uchar>(v, u), 0) << u << ", " << v;
+      }
+    }
+}
+
+TEST(RectifierMask, ExcludesWhatLiesBehindTheCamera) {
+  CameraCalibration c = ideal();
+  c.R = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier);
+  EXPECT_EQ(cv::countNonZero(rectifier->mask()), 0);
+}
+
+TEST(Rectifier, IsBlackWhereTheRawImageHasNothingToGive) {
+  const Expected<Rectifier> rectifier = Rectifier::create(plumbBob());
+  ASSERT_TRUE(rectifier);
+  cv::Mat rectified, near_picture, lost;
+  ASSERT_FALSE(rectifier->rectify(cv::Mat(240, 320, CV_8UC1, cv::Scalar(255)), rectified));
+  cv::dilate(rectifier->mask(), near_picture, cv::Mat::ones(5, 5, CV_8U));
+  cv::bitwise_and(rectified, ~near_picture, lost);
+  EXPECT_EQ(cv::countNonZero(lost), 0);
+  cv::bitwise_and(~rectified, rectifier->mask(), lost);
+  EXPECT_EQ(cv::countNonZero(lost), 0);
+}
+
+TEST(Rectifier, RefusesImagesItWasNotMadeFor) {
+  const Expected<Rectifier> rectifier = Rectifier::create(ideal());
+  ASSERT_TRUE(rectifier);
+  cv::Mat out;
+  EXPECT_EQ(rectifier->rectify(cv::Mat::zeros(480, 640, CV_8UC1), out).message(),
+            "input_invalid: image is 640x480, its camera_info says 320x240");
+  EXPECT_EQ(rectifier->rectify(cv::Mat::zeros(240, 320, CV_8UC3), out).message(),
+            "input_invalid: image is not 8 bit grey");
+  EXPECT_TRUE(rectifier->rectify(cv::Mat(), out));
+}
+
+TEST(Rectifier, RefusesABadCalibrationWithTheFieldsName) {
+  CameraCalibration c = ideal();
+  c.P(0, 0) = 0;
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_FALSE(rectifier);
+  EXPECT_EQ(rectifier.error().detail, "P[0]: 0, expected a positive focal length in pixels");
+}
+
+TEST(RigModel, HasTheRigAndBothMasks) {
+  CameraCalibration left = plumbBob(), right = rationalPolynomial();
+  right.P(0, 3) = -145;
+  const Expected<RigModel> model = makeRigModel(left, right);
+  ASSERT_TRUE(model) << model.error().message();
+  EXPECT_DOUBLE_EQ(model->rig.baseline, 0.5);
+  EXPECT_EQ(cv::norm(model->left_mask, Rectifier::create(left)->mask(), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(model->right_mask, Rectifier::create(right)->mask(), cv::NORM_INF), 0);
+  right.P(0, 3) = 145;
+  EXPECT_FALSE(makeRigModel(left, right));
+}
+
+}  // namespace
+}  // namespace uav_landing
