@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "uav_landing/simulator/camera_rig.h"
+#include "uav_landing/simulator/renderer.h"
+#include "uav_landing/simulator/trajectory.h"
+#include "uav_landing/truth.h"
+
+namespace uav_landing {
+
+/// A simulated approach, frame by frame. The same parameters give the same frames, in any order.
+class ApproachSimulator {
+ public:
+  /// Or what is wrong with the parameters; the detail names section and parameter.
+  static Expected<ApproachSimulator> create(const SimulatorParameters& parameters);
+
+  struct Frame {
+    double time = 0;      ///< since the start, s
+    cv::Mat left, right;  ///< raw, mono8
+    Truth truth;
+  };
+  int frames() const { return frames_; }
+  Frame frame(int index) const;
+
+  double timeOf(int index) const { return index / parameters_.path.rate; }
+  CameraPose pose(double time) const { return trajectory_.pose(time); }
+  const CameraRig& rig() const { return rig_; }
+
+ private:
+  ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig);
+  Failure checkHeights() const;
+  cv::Mat picture(const SimulatedCamera& camera, const SimulatedCameraParameters& sensor, int index,
+                  int camera_number) const;
+
+  SimulatorParameters parameters_;
+  CameraRig rig_;
+  Trajectory trajectory_;
+  Renderer renderer_;
+  int frames_;
+};
+
+}  // namespace uav_landing

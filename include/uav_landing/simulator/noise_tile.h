@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace uav_landing {
+
+/// A square of random texture that repeats without a seam, with mean 0 and variance 1, from which the mean
+/// over any axis-aligned rectangle can be had at once: copies averaged over 2^i x 2^j texels are kept for all
+/// i and j (a rip-map), so that ground seen at a grazing angle neither aliases nor blurs to the sides.
+class NoiseTile {
+ public:
+  static constexpr int kSize = 512;  ///< texels along a side
+
+  /// seed: picks the texture. slope: amplitude falls with spatial frequency f as f^-slope; 1 gives every
+  /// octave the same variance, more is softer.
+  NoiseTile(uint64_t seed, double slope);
+
+  /// Mean over a rectangle of width x height texels around (x, y), tiled. Texel i covers [i, i + 1).
+  float mean(float x, float y, float width, float height) const;
+
+ private:
+  const float* level(int i, int j) const { return levels_[i * kLevels + j].ptr<float>(); }
+  float bilinear(int i, int j, float x, float y) const;
+
+  static constexpr int kLevels = 10;  ///< 2^9 texels are the whole side
+  std::vector<cv::Mat> levels_;       ///< [i * kLevels + j]: averaged over 2^i columns and 2^j rows
+};
+
+}  // namespace uav_landing

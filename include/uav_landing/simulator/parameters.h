@@ -1,0 +1,264 @@
+#pragma once
+
+namespace uav_landing {
+
+// Every parameter of the simulator: name, default, range, unit and meaning, by the same visitor as
+// uav_landing/parameters.h. config/simulator/full_scale.yaml explains how they play together. The defaults
+// are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before gain and
+// offset.
+
+/// What both cameras have in common (section image).
+struct SimulatedImageParameters {
+  int width = 640;
+  int height = 480;
+  int supersampling = 2;
+  double blur = 0.5;
+  double noise = 2.0;
+  double exposure_time = 0.0;
+  int exposure_samples = 4;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("width", width, 16, 8192, "px", "image width");
+    v.number("height", height, 16, 8192, "px", "image height");
+    v.number("supersampling", supersampling, 1, 8, "", "samples along each side of a pixel");
+    v.number("blur", blur, 0.0, 10.0, "px", "1 sigma of the lens's blur");
+    v.number("noise", noise, 0.0, 50.0, "grey levels", "1 sigma of the sensor's noise");
+    v.number("exposure_time", exposure_time, 0.0, 0.1, "s",
+             "motion blur over this time around the stamp; 0: none");
+    v.number("exposure_samples", exposure_samples, 1, 64, "", "pictures averaged over the exposure time");
+  }
+};
+
+/// One camera's lens (plumb_bob) and sensor (sections left_camera, right_camera).
+struct SimulatedCameraParameters {
+  double fx = 554.26, fy = 554.26;
+  double cx = 319.5, cy = 239.5;
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  double gain = 1.0;
+  double offset = 0.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("fx", fx, 10.0, 1e5, "px", "focal length along the rows");
+    v.number("fy", fy, 10.0, 1e5, "px", "focal length along the columns");
+    v.number("cx", cx, 0.0, 8192.0, "px", "column of the principal point; the first pixel's centre is 0");
+    v.number("cy", cy, 0.0, 8192.0, "px", "row of the principal point");
+    v.number("k1", k1, -1.0, 1.0, "", "radial distortion");
+    v.number("k2", k2, -2.0, 2.0, "", "radial distortion");
+    v.number("p1", p1, -0.1, 0.1, "", "tangential distortion");
+    v.number("p2", p2, -0.1, 0.1, "", "tangential distortion");
+    v.number("k3", k3, -2.0, 2.0, "", "radial distortion");
+    v.number("gain", gain, 0.1, 10.0, "", "grey level = gain x scene + offset");
+    v.number("offset", offset, -200.0, 200.0, "grey levels", "see gain");
+  }
+};
+
+/// Where the right camera is, in the left camera's axes (x right, y down, z forward) (section rig).
+struct SimulatedRigParameters {
+  double x = 1.0, y = 0, z = 0;
+  double rx_deg = 0, ry_deg = 0, rz_deg = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("x", x, 0.001, 100.0, "m", "the right camera's centre to the right of the left one");
+    v.number("y", y, -10.0, 10.0, "m", "below it");
+    v.number("z", z, -10.0, 10.0, "m", "in front of it");
+    v.number("rx_deg", rx_deg, -20.0, 20.0, "deg",
+             "rotation vector that turns the left camera's axes into the right one's, component along x");
+    v.number("ry_deg", ry_deg, -20.0, 20.0, "deg", "component along y");
+    v.number("rz_deg", rz_deg, -20.0, 20.0, "deg", "component along z");
+  }
+};
+
+/// The runway and what is painted on it; marks are the same at both ends (section runway). A length, count or
+/// width of 0 leaves a mark out.
+struct SimulatedRunwayParameters {
+  double length = 1500, width = 45;
+  double edge_line_width = 0.9, edge_line_inset = 0.5;
+  double centre_line_width = 0.9, centre_dash_length = 30, centre_gap_length = 20, centre_line_start = 60;
+  double threshold_line_width = 1.2;
+  int threshold_bars = 12;
+  double threshold_bar_length = 30, threshold_bar_width = 1.75, threshold_bar_gap = 1.75;
+  double threshold_centre_gap = 3.5, threshold_bars_start = 6;
+  double aiming_point_distance = 300, aiming_point_length = 45, aiming_point_width = 6, aiming_point_gap = 18;
+  double tyre_marks = 0.35;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("length", length, 0.1, 1e5, "m", "from threshold to threshold");
+    v.number("width", width, 0.01, 1000.0, "m", "of the surface");
+    v.number("edge_line_width", edge_line_width, 0.0, 10.0, "m", "of the line along each side");
+    v.number("edge_line_inset", edge_line_inset, 0.0, 100.0, "m", "from the surface's edge to the line");
+    v.number("centre_line_width", centre_line_width, 0.0, 10.0, "m", "of the dashed centre line");
+    v.number("centre_dash_length", centre_dash_length, 0.001, 1000.0, "m", "of one dash");
+    v.number("centre_gap_length", centre_gap_length, 0.0, 1000.0, "m", "between two dashes");
+    v.number("centre_line_start", centre_line_start, 0.0, 1e4, "m", "from the threshold to the first dash");
+    v.number("threshold_line_width", threshold_line_width, 0.0, 10.0, "m",
+             "of the line across the threshold");
+    v.number("threshold_bars", threshold_bars, 0, 100, "bars", "zebra at the threshold; an even number");
+    v.number("threshold_bar_length", threshold_bar_length, 0.0, 200.0, "m", "of each bar");
+    v.number("threshold_bar_width", threshold_bar_width, 0.0, 20.0, "m", "of each bar");
+    v.number("threshold_bar_gap", threshold_bar_gap, 0.0, 20.0, "m", "between two bars");
+    v.number("threshold_centre_gap", threshold_centre_gap, 0.0, 50.0, "m",
+             "between the two bars in the middle");
+    v.number("threshold_bars_start", threshold_bars_start, 0.0, 1000.0, "m",
+             "from the threshold to the bars");
+    v.number("aiming_point_distance", aiming_point_distance, 0.0, 1e4, "m",
+             "from the threshold to the two broad stripes; tyre marks lie around them");
+    v.number("aiming_point_length", aiming_point_length, 0.0, 200.0, "m", "of each stripe");
+    v.number("aiming_point_width", aiming_point_width, 0.0, 50.0, "m", "of each stripe");
+    v.number("aiming_point_gap", aiming_point_gap, 0.0, 100.0, "m", "between the two stripes");
+    v.number("tyre_marks", tyre_marks, 0.0, 1.0, "", "share of light that the darkest tyre marks take away");
+  }
+};
+
+/// How bright and how textured everything is (section surface).
+struct SimulatedSurfaceParameters {
+  double runway_brightness = 70, runway_contrast = 0.1, runway_grain = 0.02;
+  double grass_brightness = 105, grass_contrast = 0.14, grass_grain = 0.03;
+  double marking_brightness = 205;
+  double visibility = 8000;
+  double sky_horizon = 165, sky_zenith = 120, cloud_contrast = 25;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("runway_brightness", runway_brightness, 0.0, 255.0, "grey levels",
+             "mean of the runway's surface");
+    v.number("runway_contrast", runway_contrast, 0.0, 1.0, "of brightness",
+             "1 sigma of each scale of its texture");
+    v.number("runway_grain", runway_grain, 1e-4, 10.0, "m", "smallest detail of its texture");
+    v.number("grass_brightness", grass_brightness, 0.0, 255.0, "grey levels", "mean of the ground beside it");
+    v.number("grass_contrast", grass_contrast, 0.0, 1.0, "of brightness",
+             "1 sigma of each scale of its texture");
+    v.number("grass_grain", grass_grain, 1e-4, 10.0, "m", "smallest detail of its texture");
+    v.number("marking_brightness", marking_brightness, 0.0, 255.0, "grey levels", "mean of what is painted");
+    v.number("visibility", visibility, 1.0, 1e6, "m",
+             "distance at which haze has taken 63 % of the contrast");
+    v.number("sky_horizon", sky_horizon, 0.0, 255.0, "grey levels", "sky just above the horizon, and haze");
+    v.number("sky_zenith", sky_zenith, 0.0, 255.0, "grey levels", "sky overhead");
+    v.number("cloud_contrast", cloud_contrast, 0.0, 100.0, "grey levels", "1 sigma of the clouds");
+  }
+};
+
+/// Boxes and poles that stand above the ground beside the runway (section objects).
+struct SimulatedObjectsParameters {
+  int boxes = 0;
+  double box_size = 8;
+  int poles = 0;
+  double pole_height = 3, pole_width = 0.15;
+  double clearance = 10, band = 60;
+  double first = 0, last = 600;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("boxes", boxes, 0, 1000, "", "buildings and vehicles at random places on both sides");
+    v.number("box_size", box_size, 0.01, 200.0, "m", "largest length, width and height of a box");
+    v.number("poles", poles, 0, 1000, "", "masts at random places on both sides");
+    v.number("pole_height", pole_height, 0.01, 200.0, "m", "largest height of a pole");
+    v.number("pole_width", pole_width, 0.001, 10.0, "m", "its thickness");
+    v.number("clearance", clearance, 0.0, 1000.0, "m", "from the runway's edge to where they may begin");
+    v.number("band", band, 0.0, 1e4, "m", "and how far beyond that they may stand");
+    v.number("first", first, -1e4, 1e5, "m", "nearest to the aircraft, along the runway from the threshold");
+    v.number("last", last, -1e4, 1e5, "m", "farthest, along the runway from the threshold");
+  }
+};
+
+/// The path of the left camera and its mean attitude (section path).
+struct SimulatedPathParameters {
+  double duration = 34;
+  double rate = 20;
+  double start_height = 40, start_x = -330, start_y = 0;
+  double speed = 20;
+  double glide_angle_deg = 3.5;
+  double track_deg = 0;
+  double flare_height = 5, flare_duration = 3, flare_angle_deg = 0.8, flare_pitch_deg = 2;
+  double pitch_deg = -4, roll_deg = 0, yaw_deg = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("duration", duration, 0.0, 3600.0, "s", "of the sequence");
+    v.number("rate", rate, 0.1, 1000.0, "Hz", "pairs per second");
+    v.number("start_height", start_height, 0.01, 1e4, "m", "above the runway at the start");
+    v.number("start_x", start_x, -1e5, 1e5, "m", "along the runway from the threshold; negative: before it");
+    v.number("start_y", start_y, -1000.0, 1000.0, "m", "left of the centre line");
+    v.number("speed", speed, 0.0, 200.0, "m/s", "along the path");
+    v.number("glide_angle_deg", glide_angle_deg, -30.0, 45.0, "deg", "of the path below the horizontal");
+    v.number("track_deg", track_deg, -45.0, 45.0, "deg",
+             "direction of the path left of the landing direction");
+    v.number("flare_height", flare_height, 0.0, 1000.0, "m", "at which the flare begins; 0: no flare");
+    v.number("flare_duration", flare_duration, 0.1, 60.0, "s",
+             "over which the angle changes at a steady rate");
+    v.number("flare_angle_deg", flare_angle_deg, -30.0, 45.0, "deg", "angle of the path after the flare");
+    v.number("flare_pitch_deg", flare_pitch_deg, -30.0, 30.0, "deg",
+             "by which the nose comes up in the flare");
+    v.number("pitch_deg", pitch_deg, -60.0, 60.0, "deg",
+             "optical axis above the horizontal; negative: looks down");
+    v.number("roll_deg", roll_deg, -60.0, 60.0, "deg", "right side down");
+    v.number("yaw_deg", yaw_deg, -60.0, 60.0, "deg", "optical axis left of the landing direction (crab)");
+  }
+};
+
+/// What disturbs the path and the attitude: each a sum of two sines with random phases, the one of period and
+/// the other 2.7 times as fast and 0.4 times as large (section wobble).
+struct SimulatedWobbleParameters {
+  double roll_deg = 3, roll_period = 4;
+  double pitch_deg = 0.7, pitch_period = 3;
+  double yaw_deg = 1, yaw_period = 5;
+  double sway = 0.3, sway_period = 9;
+  double heave = 0.05, heave_period = 3.5;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("roll_deg", roll_deg, 0.0, 30.0, "deg", "amplitude of the roll");
+    v.number("roll_period", roll_period, 0.1, 1000.0, "s", "its period");
+    v.number("pitch_deg", pitch_deg, 0.0, 30.0, "deg", "amplitude of the pitch");
+    v.number("pitch_period", pitch_period, 0.1, 1000.0, "s", "its period");
+    v.number("yaw_deg", yaw_deg, 0.0, 30.0, "deg", "amplitude of the yaw");
+    v.number("yaw_period", yaw_period, 0.1, 1000.0, "s", "its period");
+    v.number("sway", sway, 0.0, 100.0, "m", "amplitude of the path to the sides");
+    v.number("sway_period", sway_period, 0.1, 1000.0, "s", "its period");
+    v.number("heave", heave, 0.0, 100.0, "m", "amplitude of the path up and down (gusts)");
+    v.number("heave_period", heave_period, 0.1, 1000.0, "s", "its period");
+  }
+};
+
+/// What makes one run different from the next (section random).
+struct SimulatedRandomParameters {
+  int seed = 1;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("seed", seed, 0, 1000000000, "", "of textures, objects, phases and noise");
+  }
+};
+
+/// One parameter set for a simulated approach; each member is a section of config/simulator/*.yaml.
+struct SimulatorParameters {
+  SimulatedImageParameters image;
+  SimulatedCameraParameters left_camera, right_camera;
+  SimulatedRigParameters rig;
+  SimulatedRunwayParameters runway;
+  SimulatedSurfaceParameters surface;
+  SimulatedObjectsParameters objects;
+  SimulatedPathParameters path;
+  SimulatedWobbleParameters wobble;
+  SimulatedRandomParameters random;
+
+  /// Calls v(section name, parameter struct) for every section.
+  template <class Visitor>
+  void visitSections(Visitor&& v) {
+    v("image", image);
+    v("left_camera", left_camera);
+    v("right_camera", right_camera);
+    v("rig", rig);
+    v("runway", runway);
+    v("surface", surface);
+    v("objects", objects);
+    v("path", path);
+    v("wobble", wobble);
+    v("random", random);
+  }
+};
+
+}  // namespace uav_landing

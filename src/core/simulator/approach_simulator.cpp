@@ -1,0 +1,74 @@
+#include "uav_landing/simulator/approach_simulator.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "uav_landing/simulator/sensor.h"
+
+namespace uav_landing {
+
+Expected<ApproachSimulator> ApproachSimulator::create(const SimulatorParameters& parameters) {
+  Expected<CameraRig> rig = makeCameraRig(parameters);
+  if (!rig) return tl::make_unexpected(rig.error());
+  ApproachSimulator simulator(parameters, std::move(*rig));
+  if (Failure failure = simulator.checkHeights()) return tl::make_unexpected(failure);
+  return simulator;
+}
+
+ApproachSimulator::ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig)
+    : parameters_(parameters),
+      rig_(std::move(rig)),
+      trajectory_(parameters.path, parameters.wobble, parameters.random.seed),
+      renderer_(Scene(parameters.runway, parameters.surface, parameters.random.seed),
+                placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed),
+                parameters.image.supersampling),
+      frames_(1 + static_cast<int>(std::floor(parameters.path.duration * parameters.path.rate + 1e-6))) {}
+
+Failure ApproachSimulator::checkHeights() const {
+  constexpr double kLowest = 0.01;
+  for (int i = 0; i < frames_; ++i) {
+    const double left = trajectory_.pose(timeOf(i)).position.z();
+    const double right =
+        left + rig_.right.offset_x * runwayFromOptical(trajectory_.pose(timeOf(i)).attitude)(2, 0);
+    if (std::min(left, right) >= kLowest) continue;
+    std::ostringstream detail;
+    detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
+    return {Reason::kInputInvalid, detail.str()};
+  }
+  return {};
+}
+
+cv::Mat ApproachSimulator::picture(const SimulatedCamera& camera, const SimulatedCameraParameters& sensor,
+                                   int index, int camera_number) const {
+  const SimulatedImageParameters& image = parameters_.image;
+  const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
+  cv::Mat grey, sum;
+  for (int i = 0; i < samples; ++i) {
+    const double shift = image.exposure_time * ((i + 0.5) / samples - 0.5);
+    renderer_.render(camera, trajectory_.pose(timeOf(index) + shift), grey);
+    if (i == 0)
+      grey.copyTo(sum);
+    else
+      sum += grey;
+  }
+  if (samples > 1) sum /= samples;
+  const uint64_t picture_number = 2 * static_cast<uint64_t>(index) + camera_number;
+  const uint64_t seed = (static_cast<uint64_t>(parameters_.random.seed) << 32) + picture_number + 1;
+  cv::Mat mono8;
+  expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, sum, mono8);
+  return mono8;
+}
+
+ApproachSimulator::Frame ApproachSimulator::frame(int index) const {
+  Frame frame;
+  frame.time = timeOf(index);
+  frame.left = picture(rig_.left, parameters_.left_camera, index, 0);
+  frame.right = picture(rig_.right, parameters_.right_camera, index, 1);
+  const CameraPose now = trajectory_.pose(timeOf(index));
+  const CameraPose before = trajectory_.pose(timeOf(index - 1));
+  frame.truth = truthOf(now, index > 0 ? &before : nullptr, 1.0 / parameters_.path.rate,
+                        rig_.left.calibration.P.leftCols<3>());
+  return frame;
+}
+
+}  // namespace uav_landing

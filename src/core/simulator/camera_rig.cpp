@@ -1,0 +1,128 @@
+#include "uav_landing/simulator/camera_rig.h"
+
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <string>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
+
+CameraCalibration lensOf(const SimulatedCameraParameters& camera, const SimulatedImageParameters& image) {
+  CameraCalibration calibration;
+  calibration.width = image.width;
+  calibration.height = image.height;
+  calibration.distortion_model = "plumb_bob";
+  calibration.D = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  calibration.K << camera.fx, 0, camera.cx,  //
+      0, camera.fy, camera.cy,               //
+      0, 0, 1;
+  return calibration;
+}
+
+/// Fills R and P of both; returns the baseline. m.
+double rectify(const SimulatedRigParameters& rig, CameraCalibration& left, CameraCalibration& right) {
+  cv::Mat left_k, right_k, axes;
+  cv::eigen2cv(left.K, left_k);
+  cv::eigen2cv(right.K, right_k);
+  cv::Rodrigues(cv::Vec3d(rig.rx_deg, rig.ry_deg, rig.rz_deg) * kRadiansPerDegree, axes);
+  // stereoRectify wants x_right = R x_left + T.
+  const cv::Mat rotation = axes.t();
+  const cv::Mat translation = -rotation * cv::Mat(cv::Vec3d(rig.x, rig.y, rig.z));
+  cv::Mat left_r, right_r, left_p, right_p, q;
+  cv::stereoRectify(left_k, left.D, right_k, right.D, cv::Size(left.width, left.height), rotation,
+                    translation, left_r, right_r, left_p, right_p, q, cv::CALIB_ZERO_DISPARITY, 0.0);
+  cv::cv2eigen(left_r, left.R);
+  cv::cv2eigen(right_r, right.R);
+  cv::cv2eigen(left_p, left.P);
+  cv::cv2eigen(right_p, right.P);
+  return -right.P(0, 3) / right.P(0, 0);
+}
+
+/// Corners of the pixels, pixel (0, 0) reaching from -0.5 to 0.5, row by row.
+std::vector<cv::Point2d> pixelCorners(const CameraCalibration& calibration) {
+  std::vector<cv::Point2d> corners;
+  corners.reserve((calibration.width + 1) * (calibration.height + 1));
+  for (int v = 0; v <= calibration.height; ++v)
+    for (int u = 0; u <= calibration.width; ++u) corners.emplace_back(u - 0.5, v - 0.5);
+  return corners;
+}
+
+/// Raw pixels to directions (x, y, 1) in rectified axes: the inverse of the lens by iteration, then R.
+std::vector<cv::Point2d> directionsOf(const std::vector<cv::Point2d>& pixels,
+                                      const CameraCalibration& calibration) {
+  cv::Mat k, r;
+  cv::eigen2cv(calibration.K, k);
+  cv::eigen2cv(calibration.R, r);
+  std::vector<cv::Point2d> directions;
+  const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12);
+  cv::undistortPoints(pixels, directions, k, calibration.D, r, cv::noArray(), criteria);
+  return directions;
+}
+
+/// Largest distance between pixels and the images of their directions through the lens; px.
+double worstReprojection(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& directions,
+                         const CameraCalibration& calibration) {
+  cv::Mat k, inverse_r, rotation;
+  cv::eigen2cv(calibration.K, k);
+  cv::eigen2cv(Eigen::Matrix3d(calibration.R.transpose()), inverse_r);
+  cv::Rodrigues(inverse_r, rotation);
+  std::vector<cv::Point3d> points;
+  points.reserve(directions.size());
+  for (const cv::Point2d& direction : directions) points.emplace_back(direction.x, direction.y, 1.0);
+  std::vector<cv::Point2d> images;
+  cv::projectPoints(points, rotation, cv::Vec3d(0, 0, 0), k, calibration.D, images);
+  double worst = 0;
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const double distance = cv::norm(images[i] - pixels[i]);
+    if (!(distance <= worst)) worst = distance;  // also takes over NaN
+  }
+  return worst;
+}
+
+std::vector<PixelRay> raysFromCorners(const std::vector<cv::Point2d>& corners, cv::Size size) {
+  std::vector<PixelRay> rays;
+  rays.reserve(size.area());
+  const int stride = size.width + 1;
+  for (int v = 0; v < size.height; ++v) {
+    for (int u = 0; u < size.width; ++u) {
+      const cv::Point2d* c = &corners[v * stride + u];
+      const cv::Point2d centre = 0.25 * (c[0] + c[1] + c[stride] + c[stride + 1]);
+      const cv::Point2d along_row = 0.5 * (c[1] - c[0] + c[stride + 1] - c[stride]);
+      const cv::Point2d along_column = 0.5 * (c[stride] - c[0] + c[stride + 1] - c[1]);
+      rays.push_back({static_cast<float>(centre.x), static_cast<float>(centre.y),
+                      static_cast<float>(along_row.x), static_cast<float>(along_row.y),
+                      static_cast<float>(along_column.x), static_cast<float>(along_column.y)});
+    }
+  }
+  return rays;
+}
+
+Failure traceRays(const char* section, SimulatedCamera& camera) {
+  const std::vector<cv::Point2d> pixels = pixelCorners(camera.calibration);
+  const std::vector<cv::Point2d> directions = directionsOf(pixels, camera.calibration);
+  if (!(worstReprojection(pixels, directions, camera.calibration) < 0.01))
+    return {Reason::kInputInvalid,
+            std::string(section) + "/k1: the lens's distortion folds back within the image"};
+  camera.rays = raysFromCorners(directions, {camera.calibration.width, camera.calibration.height});
+  return {};
+}
+
+}  // namespace
+
+Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
+  CameraRig rig;
+  rig.left.calibration = lensOf(parameters.left_camera, parameters.image);
+  rig.right.calibration = lensOf(parameters.right_camera, parameters.image);
+  rig.right.offset_x = rectify(parameters.rig, rig.left.calibration, rig.right.calibration);
+  if (Failure failure = traceRays("left_camera", rig.left)) return tl::make_unexpected(failure);
+  if (Failure failure = traceRays("right_camera", rig.right)) return tl::make_unexpected(failure);
+  if (rig.right.offset_x <= 0)
+    return tl::make_unexpected(Failure{Reason::kInputInvalid, "rig/x: the right camera is not to the right"});
+  return rig;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,102 @@
+#include "uav_landing/simulator/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+
+/// A camera in the world, ready to trace rays: directions are in the runway frame.
+struct Renderer::View {
+  Eigen::Matrix3f rotation;  ///< runway frame from rectified camera axes
+  Eigen::Vector3f centre;
+};
+
+/// The rays of a square piece of a pixel.
+struct Renderer::Sample {
+  Eigen::Vector3f direction;         ///< of its middle, not normalised
+  Eigen::Vector3f along_u, along_v;  ///< change of the direction over its sides
+  float extent;  ///< height of its directions, the measure for its distance from the horizon
+
+  /// The piece of this side around (du, dv) from the pixel's centre, in pixels.
+  Sample(const View& view, const PixelRay& ray, float side, float du, float dv) {
+    along_u = view.rotation.col(0) * ray.xu + view.rotation.col(1) * ray.yu;
+    along_v = view.rotation.col(0) * ray.xv + view.rotation.col(1) * ray.yv;
+    direction = view.rotation.col(0) * ray.x + view.rotation.col(1) * ray.y + view.rotation.col(2) +
+                du * along_u + dv * along_v;
+    along_u *= side;
+    along_v *= side;
+    extent = std::sqrt(along_u.z() * along_u.z() + along_v.z() * along_v.z());
+  }
+
+  /// The ground it covers: a box of the same variance as the parallelogram that its corners make.
+  RunwaySurface::Patch patch(const Eigen::Vector3f& centre, float range, float fall) const {
+    const Eigen::Vector2f slope = direction.head<2>() / fall;
+    const Eigen::Vector2f u = range * (along_u.head<2>() + slope * along_u.z());
+    const Eigen::Vector2f v = range * (along_v.head<2>() + slope * along_v.z());
+    return {centre.x() + range * direction.x(), centre.y() + range * direction.y(),
+            std::sqrt(u.x() * u.x() + v.x() * v.x()), std::sqrt(u.y() * u.y() + v.y() * v.y())};
+  }
+};
+
+Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, int supersampling)
+    : scene_(std::move(scene)), objects_(std::move(objects)), supersampling_(supersampling) {}
+
+float Renderer::ground(const View& view, const Sample& sample) const {
+  // On the horizon itself: the ground as far as can be told apart from it.
+  const float fall = std::max(-sample.direction.z(), 0.25f * sample.extent);
+  const float range = view.centre.z() / fall;  // along the direction, which is not normalised
+  const RunwaySurface::Patch patch = sample.patch(view.centre, range, fall);
+  return scene_.ground(patch, scene_.cover(patch), range * sample.direction.norm());
+}
+
+float Renderer::sky(const Sample& sample) const {
+  return scene_.sky(sample.direction.normalized(), sample.along_u.norm());
+}
+
+float Renderer::mixed(const View& view, const PixelRay& ray) const {
+  const float side = 1.0f / static_cast<float>(supersampling_);
+  float sum = 0;
+  for (int j = 0; j < supersampling_; ++j) {
+    for (int i = 0; i < supersampling_; ++i) {
+      const Sample sample(view, ray, side, (static_cast<float>(i) + 0.5f) * side - 0.5f,
+                          (static_cast<float>(j) + 0.5f) * side - 0.5f);
+      // The horizon passes through samples: both sides count by their area.
+      const float below = std::clamp(0.5f - sample.direction.z() / sample.extent, 0.0f, 1.0f);
+      if (below > 0) sum += below * ground(view, sample);
+      if (below < 1) sum += (1 - below) * sky(sample);
+    }
+  }
+  return sum * side * side;
+}
+
+float Renderer::pixel(const View& view, const PixelRay& ray) const {
+  // One sample is exact enough for sky, and for one material that lies well below the horizon: there the
+  // perspective within a pixel moves its mean by less than 1 / (12 kFar) of the pixel.
+  constexpr float kFar = 16.0f;
+  const Sample whole(view, ray, 1.0f, 0.0f, 0.0f);
+  if (whole.direction.z() > whole.extent) return sky(whole);
+  const float fall = -whole.direction.z();
+  if (fall < kFar * whole.extent) return mixed(view, ray);
+  const float range = view.centre.z() / fall;
+  const RunwaySurface::Patch patch = whole.patch(view.centre, range, fall);
+  const RunwaySurface::Cover cover = scene_.cover(patch);
+  if (!cover.pure()) return mixed(view, ray);
+  return scene_.ground(patch, cover, range * whole.direction.norm());
+}
+
+void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const {
+  const Eigen::Matrix3d rotation = runwayFromOptical(pose.attitude);
+  const Eigen::Vector3d centre = pose.position + camera.offset_x * rotation.col(0);
+  const View view{rotation.cast<float>(), centre.cast<float>()};
+  image.create(camera.calibration.height, camera.calibration.width, CV_32F);
+  cv::parallel_for_(cv::Range(0, image.rows), [&](const cv::Range& rows) {
+    for (int row = rows.start; row < rows.end; ++row) {
+      const PixelRay* rays = &camera.rays[static_cast<size_t>(row) * image.cols];
+      std::transform(rays, rays + image.cols, image.ptr<float>(row),
+                     [&](const PixelRay& ray) { return pixel(view, ray); });
+    }
+  });
+  drawObjects(objects_, camera, rotation, centre, image);
+}
+
+}  // namespace uav_landing
