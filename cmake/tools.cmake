@@ -1,10 +1,14 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
-  src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/decimal_time.cpp src/tools/stereo_bag_writer.cpp)
+  src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
+  src/tools/stereo_bag_writer.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
-target_link_libraries(uav_landing_tools PUBLIC uav_landing_core ${catkin_LIBRARIES} CLI11::CLI11)
+target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11)
 add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
 
 add_executable(dataset_to_bag src/tools/dataset_to_bag.cpp)
 target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)
+
+add_executable(simulate_approach src/tools/simulate_approach.cpp)
+target_link_libraries(simulate_approach PRIVATE uav_landing_tools)

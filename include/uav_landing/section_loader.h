@@ -15,6 +15,9 @@ namespace uav_landing {
 /// "; did you mean X?" for the nearest of the names, or "" when none is near.
 std::string suggestName(const std::string& word, const std::vector<std::string>& names);
 
+/// Checks that a node is a map (or empty) with every key once. section: "" for the whole file.
+Failure checkMap(const YAML::Node& node, const std::string& section);
+
 /// The visitor (see parameters.h) that takes a parameter struct's values from one YAML map. Values that the
 /// map does not give stay; the first failure stays. text() is for plain strings.
 class SectionLoader {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+
+#include "text.h"
 
 namespace uav_landing {
 namespace {
@@ -22,6 +25,11 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+template <class... Parts>
+Failure invalid(const Parts&... parts) {
+  return {Reason::kInputInvalid, text(parts...)};
+}
+
 }  // namespace
 
 std::string suggestName(const std::string& word, const std::vector<std::string>& names) {
@@ -30,6 +38,20 @@ std::string suggestName(const std::string& word, const std::vector<std::string>&
   });
   if (nearest == names.end() || 2 * editDistance(word, *nearest) > word.size()) return "";
   return "; did you mean " + *nearest + "?";
+}
+
+Failure checkMap(const YAML::Node& node, const std::string& section) {
+  if (node.IsNull()) return {};
+  if (!node.IsMap())
+    return invalid(section, section.empty() ? "" : ": ", "expected a map of names and values");
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    if (!entry.first.IsScalar())
+      return invalid(section, section.empty() ? "" : ": ", "a name is not a plain word");
+    if (!seen.insert(entry.first.Scalar()).second)
+      return invalid(section, section.empty() ? "" : "/", entry.first.Scalar(), ": is given twice");
+  }
+  return {};
 }
 
 Failure SectionLoader::finish() const {

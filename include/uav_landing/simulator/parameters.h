@@ -19,8 +19,8 @@ struct SimulatedImageParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.number("width", width, 16, 8192, "px", "image width");
-    v.number("height", height, 16, 8192, "px", "image height");
+    v.number("width", width, 16, 4096, "px", "image width");
+    v.number("height", height, 16, 4096, "px", "image height");
     v.number("supersampling", supersampling, 1, 8, "", "samples along each side of a pixel");
     v.number("blur", blur, 0.0, 10.0, "px", "1 sigma of the lens's blur");
     v.number("noise", noise, 0.0, 50.0, "grey levels", "1 sigma of the sensor's noise");
@@ -42,8 +42,8 @@ struct SimulatedCameraParameters {
   void visit(Visitor&& v) {
     v.number("fx", fx, 10.0, 1e5, "px", "focal length along the rows");
     v.number("fy", fy, 10.0, 1e5, "px", "focal length along the columns");
-    v.number("cx", cx, 0.0, 8192.0, "px", "column of the principal point; the first pixel's centre is 0");
-    v.number("cy", cy, 0.0, 8192.0, "px", "row of the principal point");
+    v.number("cx", cx, 0.0, 4096.0, "px", "column of the principal point; the first pixel's centre is 0");
+    v.number("cy", cy, 0.0, 4096.0, "px", "row of the principal point");
     v.number("k1", k1, -1.0, 1.0, "", "radial distortion");
     v.number("k2", k2, -2.0, 2.0, "", "radial distortion");
     v.number("p1", p1, -0.1, 0.1, "", "tangential distortion");
@@ -65,7 +65,7 @@ struct SimulatedRigParameters {
     v.number("y", y, -10.0, 10.0, "m", "below it");
     v.number("z", z, -10.0, 10.0, "m", "in front of it");
     v.number("rx_deg", rx_deg, -20.0, 20.0, "deg",
-             "rotation vector that turns the left camera's axes into the right one's, component along x");
+             "rotation vector of the right camera's axes against the left one's, component along x");
     v.number("ry_deg", ry_deg, -20.0, 20.0, "deg", "component along y");
     v.number("rz_deg", rz_deg, -20.0, 20.0, "deg", "component along z");
   }
@@ -78,7 +78,7 @@ struct SimulatedRunwayParameters {
   double edge_line_width = 0.9, edge_line_inset = 0.5;
   double centre_line_width = 0.9, centre_dash_length = 30, centre_gap_length = 20, centre_line_start = 60;
   double threshold_line_width = 1.2;
-  int threshold_bars = 12;
+  int threshold_bars = 6;
   double threshold_bar_length = 30, threshold_bar_width = 1.75, threshold_bar_gap = 1.75;
   double threshold_centre_gap = 3.5, threshold_bars_start = 6;
   double aiming_point_distance = 300, aiming_point_length = 45, aiming_point_width = 6, aiming_point_gap = 18;
@@ -96,7 +96,8 @@ struct SimulatedRunwayParameters {
     v.number("centre_line_start", centre_line_start, 0.0, 1e4, "m", "from the threshold to the first dash");
     v.number("threshold_line_width", threshold_line_width, 0.0, 10.0, "m",
              "of the line across the threshold");
-    v.number("threshold_bars", threshold_bars, 0, 100, "bars", "zebra at the threshold; an even number");
+    v.number("threshold_bars", threshold_bars, 0, 50, "bars",
+             "zebra at the threshold, on each side of the middle");
     v.number("threshold_bar_length", threshold_bar_length, 0.0, 200.0, "m", "of each bar");
     v.number("threshold_bar_width", threshold_bar_width, 0.0, 20.0, "m", "of each bar");
     v.number("threshold_bar_gap", threshold_bar_gap, 0.0, 20.0, "m", "between two bars");

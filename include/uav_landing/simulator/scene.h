@@ -28,7 +28,7 @@ class Scene {
 
   RunwaySurface runway_;
   SimulatedSurfaceParameters surface_;
-  float tyre_marks_, touchdown_, tyre_half_width_;
+  float tyre_marks_, touchdown_, touchdown_length_, tyre_half_width_;
   NoiseTile runway_tile_, grass_tile_, cloud_tile_;
 };
 

@@ -118,10 +118,11 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   rig.left.calibration = lensOf(parameters.left_camera, parameters.image);
   rig.right.calibration = lensOf(parameters.right_camera, parameters.image);
   rig.right.offset_x = rectify(parameters.rig, rig.left.calibration, rig.right.calibration);
+  if (!(rig.right.offset_x > 0 && rig.left.calibration.P.allFinite() && rig.right.calibration.P.allFinite()))
+    return tl::make_unexpected(Failure{
+        Reason::kInputInvalid, "rig: the cameras stand too far out of line to be rectified as a pair"});
   if (Failure failure = traceRays("left_camera", rig.left)) return tl::make_unexpected(failure);
   if (Failure failure = traceRays("right_camera", rig.right)) return tl::make_unexpected(failure);
-  if (rig.right.offset_x <= 0)
-    return tl::make_unexpected(Failure{Reason::kInputInvalid, "rig/x: the right camera is not to the right"});
   return rig;
 }
 

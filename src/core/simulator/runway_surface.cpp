@@ -6,8 +6,8 @@
 namespace uav_landing {
 namespace {
 
-/// Share of the interval of this width around the centre that lies within [from, to]; exactly 0 or 1 when none
-/// or all of it does.
+/// Share of the interval of this width around the centre that lies within [from, to]; exactly 0 or 1 when
+/// none or all of it does.
 float overlap(float centre, float width, float from, float to) {
   const float low = centre - 0.5f * width, high = centre + 0.5f * width;
   if (low >= from && high <= to) return 1.0f;
@@ -46,7 +46,7 @@ RunwaySurface::RunwaySurface(const SimulatedRunwayParameters& p)
                       {interval(-line + p.edge_line_width, line - p.edge_line_width)}});
   if (p.threshold_bars > 0 && p.threshold_bar_length > 0) {
     marks_.push_back({interval(p.threshold_bars_start, p.threshold_bars_start + p.threshold_bar_length), {}});
-    for (int bar = 0; bar < p.threshold_bars / 2; ++bar) {
+    for (int bar = 0; bar < p.threshold_bars; ++bar) {
       const double inner = 0.5 * p.threshold_centre_gap + bar * (p.threshold_bar_width + p.threshold_bar_gap);
       bothSides(marks_.back(), inner, inner + p.threshold_bar_width);
     }

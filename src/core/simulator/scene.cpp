@@ -21,6 +21,7 @@ Scene::Scene(const SimulatedRunwayParameters& runway, const SimulatedSurfacePara
       surface_(surface),
       tyre_marks_(runway.tyre_marks),
       touchdown_(runway.aiming_point_distance + 0.5 * runway.aiming_point_length),
+      touchdown_length_(std::max(0.6 * touchdown_, runway.width)),
       tyre_half_width_(0.2 * runway.width),
       runway_tile_(seed * 4 + 0, kGroundSlope),
       grass_tile_(seed * 4 + 1, kGroundSlope),
@@ -41,7 +42,7 @@ float Scene::texture(const NoiseTile& tile, const RunwaySurface::Patch& patch, f
 
 float Scene::tyreMarks(const RunwaySurface::Patch& patch) const {
   const float x = std::min(patch.x, runway_.length() - patch.x) - touchdown_;
-  const float along = x / (0.6f * touchdown_), across = patch.y / tyre_half_width_;
+  const float along = x / touchdown_length_, across = patch.y / tyre_half_width_;
   const float density = tyre_marks_ * std::exp(-along * along - across * across);
   if (density < 0.004f) return 0;
   constexpr float kStreakLength = 8.0f, kStreakWidth = 0.12f;  // metres per texel
