@@ -23,4 +23,14 @@ inline float linearAt(const float* row, float x) {
   return row[i] + t * (row[i + 1] - row[i]);
 }
 
+/// Catmull-Rom interpolation of a float image. Needs 1 <= x < cols - 2 and 1 <= y < rows - 2.
+inline float cubicAt(const cv::Mat& image, double x, double y) {
+  const int i = static_cast<int>(y);
+  float column[4], derivative;
+  for (int k = 0; k < 4; ++k) {
+    column[k] = cubicAt(image.ptr<float>(i - 1 + k), static_cast<float>(x), &derivative);
+  }
+  return cubicAt(column, 1.f + static_cast<float>(y - i), &derivative);
+}
+
 }  // namespace uav_landing

@@ -1,8 +1,8 @@
 #include "uav_landing/stereo_depth_stage.h"
 
-#include <opencv2/imgproc.hpp>
+#include <string>
 
-#include "uav_landing/corners.h"
+#include "uav_landing/image_check.h"
 #include "uav_landing/match_image.h"
 #include "uav_landing/plane_fit.h"
 #include "uav_landing/stereo_matching.h"
@@ -11,39 +11,10 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// Contrast (standard deviation in grey levels) below which an image is called uniform.
-constexpr double kMinImageContrast = 1.5;
 // Failing frames for which the last plane stays the first guess.
 constexpr int kKeepPlaneFor = 5;
 // In how many failing frames one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
-
-Failure checkImages(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right, const cv::Mat& left_mask,
-                    const cv::Mat& right_mask) {
-  for (const cv::Mat* image : {&left, &right}) {
-    const char* name = image == &left ? "left" : "right";
-    if (image->type() != CV_8UC1 || image->size() != rig.size) {
-      return {Reason::kInputInvalid, std::string(name) + " rectified image is " +
-                                         std::to_string(image->cols) + " x " + std::to_string(image->rows) +
-                                         ", expected mono8 of " + std::to_string(rig.size.width) + " x " +
-                                         std::to_string(rig.size.height)};
-    }
-    cv::Scalar mean, stddev;
-    cv::meanStdDev(*image, mean, stddev, image == &left ? left_mask : right_mask);
-    if (stddev[0] < kMinImageContrast) {
-      return {Reason::kUniformImage, std::string(name) + " image has no contrast, mean grey level " +
-                                         std::to_string(static_cast<int>(mean[0]))};
-    }
-  }
-  return {};
-}
-
-cv::Mat eroded(const cv::Mat& mask, int margin) {
-  cv::Mat result;
-  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * margin + 1, 2 * margin + 1));
-  cv::erode(mask, result, kernel, cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-  return result;
-}
 
 }  // namespace
 
@@ -66,8 +37,8 @@ struct StereoDepthStage::Implementation {
     limits.min_points = p.min_points;
     limits.tolerance = p.plane_tolerance;
     fine.rig = rig.rig;
-    fine.left_mask = eroded(rig.left_mask, p.window_radius + 2);
-    fine.right_mask = eroded(rig.right_mask, p.window_radius + 2);
+    fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
+    fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
     coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
   }
 
@@ -78,7 +49,7 @@ struct StereoDepthStage::Implementation {
     if (started && !(stamp > last_stamp)) has_last = false;
     started = true;
     last_stamp = stamp;
-    result.failure = checkImages(model.rig, left_image, right_image, model.left_mask, model.right_mask);
+    result.failure = checkPair(model, left_image, right_image);
     if (!result.failure) estimate(left_image, right_image, result);
     failures = result.failure ? failures + 1 : 0;
     if (!result.failure) last_g = result.plane.g;

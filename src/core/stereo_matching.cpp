@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "uav_landing/corners.h"
+#include "uav_landing/image_check.h"
 #include "uav_landing/row_matching.h"
 
 namespace uav_landing {
@@ -146,13 +147,11 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   level.rig.cx = (model.rig.cx + 0.5) / factor - 0.5;
   level.rig.cy = (model.rig.cy + 0.5) / factor - 0.5;
   level.rig.cx_right = (model.rig.cx_right + 0.5) / factor - 0.5;
-  const cv::Mat kernel = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * margin + 1, 2 * margin + 1));
   const auto reduce = [&](const cv::Mat& mask) {
     cv::Mat reduced;
     cv::resize(mask, reduced, level.rig.size, 0, 0, cv::INTER_AREA);
     cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
-    cv::erode(reduced, reduced, kernel, cv::Point(-1, -1), 1, cv::BORDER_CONSTANT, cv::Scalar(0));
-    return reduced;
+    return erodeMask(reduced, margin);
   };
   level.left_mask = reduce(model.left_mask);
   level.right_mask = reduce(model.right_mask);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "uav_landing/failure.h"
+#include "uav_landing/rectification.h"
+
+namespace uav_landing {
+
+/// What makes a rectified pair useless: not mono8 of the rig's size (input_invalid), or one of them black,
+/// saturated or uniform inside its mask (uniform_image).
+Failure checkPair(const RigModel& model, const cv::Mat& left, const cv::Mat& right);
+
+/// The mask without what a window of this margin (pixels) around a pixel would take from outside it.
+cv::Mat erodeMask(const cv::Mat& mask, int margin);
+
+}  // namespace uav_landing

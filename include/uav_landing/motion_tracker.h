@@ -1,0 +1,68 @@
+#pragma once
+
+#include <deque>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "uav_landing/ego_motion.h"
+#include "uav_landing/match_image.h"
+#include "uav_landing/parameters.h"
+#include "uav_landing/rectification.h"
+#include "uav_landing/temporal_matching.h"
+#include "uav_landing/timings.h"
+
+namespace uav_landing {
+
+/// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
+/// Keeps the images of that time, the motion since each of them, and the last step as the next prediction.
+class MotionTracker {
+ public:
+  MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters);
+
+  struct Result {
+    ApproachAngleResult::Motion step, window;
+    std::optional<MotionEstimate> step_estimate;
+    std::vector<TemporalMatch> step_matches;
+  };
+
+  /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
+  /// units of the height. Without a ground normal call skip().
+  Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
+                 const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
+                 Timings& timings);
+  /// Keeps the image for the next step although nothing can be said about the motion to it.
+  void skip(double stamp, const cv::Mat& left);
+  void reset();
+
+ private:
+  struct Frame {
+    double stamp = 0;
+    MatchImage image;
+    std::optional<CameraMotion> since;  ///< motion from then to now, when known
+  };
+
+  using Corners = std::vector<TrackedCorner>;
+  Frame takeFrame(double stamp, const cv::Mat& left);
+  void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                    const Corners& corners, Result& result);
+  Expected<MotionEstimate> followFrom(const Frame& now, const CameraMotion& predicted,
+                                      const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                                      const Corners& corners, Result& result);
+  CameraMotion searchFirst(const Frame& now, const Eigen::Vector3d& normal, const Corners& corners) const;
+  void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                      const Corners& corners, Result& result);
+  void advance(Frame&& now, const Result& result);
+  ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
+                                       size_t matches) const;
+
+  StereoRig rig_;
+  cv::Mat mask_;  // left, eroded by the window
+  ApproachAngleParameters parameters_;
+  std::deque<Frame> past_;  // oldest first
+  std::vector<MatchImage> spare_;
+  std::optional<CameraMotion> last_step_;
+  double last_duration_ = 0;
+};
+
+}  // namespace uav_landing

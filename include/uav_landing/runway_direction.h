@@ -1,0 +1,27 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/parameters.h"
+#include "uav_landing/rectification.h"
+#include "uav_landing/stage_results.h"
+#include "uav_landing/timings.h"
+#include "uav_landing/vanishing_point.h"
+
+namespace uav_landing {
+
+/// Lines and vanishing point of the runway in both rectified views, and both views' direction combined.
+struct RunwayDirection {
+  ApproachAngleResult::View left, right;
+  Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+};
+
+/// Stages 3 and 4. normal: ground normal from stereo, or null; with it lines are looked for below the horizon
+/// only and the direction must lie near the ground. Masks: of the rectified views, eroded.
+RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
+                                    const cv::Mat& left_mask, const cv::Mat& right_mask,
+                                    const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
+                                    Timings& timings);
+
+}  // namespace uav_landing

@@ -1,0 +1,198 @@
+#include "uav_landing/approach_angle_stage.h"
+
+#include <Eigen/LU>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "uav_landing/approach_angle.h"
+#include "uav_landing/corners.h"
+#include "uav_landing/focus_of_expansion.h"
+#include "uav_landing/image_check.h"
+#include "uav_landing/motion_tracker.h"
+#include "uav_landing/runway_direction.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+// Chi-square limit (1 degree of freedom, 1e-4) beyond which a vanishing point contradicts the stereo plane.
+constexpr double kMaxVanishingNis = 15.1;
+
+}  // namespace
+
+struct ApproachAngleStage::Implementation {
+  RigModel model;
+  ApproachAngleParameters parameters;
+  cv::Mat left_mask, right_mask;  // eroded, for lines and corners
+  MotionTracker tracker;
+  Timings timings;
+
+  Implementation(const RigModel& rig, const ApproachAngleParameters& p)
+      : model(rig), parameters(p), tracker(rig, p) {
+    left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
+    right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
+  }
+
+  ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
+                              const StereoDepthResult& stereo) {
+    timings.clear();
+    ApproachAngleResult result;
+    result.stamp = stamp;
+    result.failure = checkPair(model, left, right);
+    if (result.failure) {
+      result.step.failure = result.window.failure = result.failure;
+      if (result.failure.reason == Reason::kInputInvalid) return result;
+      tracker.skip(stamp, left);
+      return result;
+    }
+    const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
+    findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
+    if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
+      result.failure = {Reason::kNoGroundNormal, "neither a stereo plane nor a vanishing point"};
+      result.step.failure = result.window.failure = result.failure;
+      tracker.skip(stamp, left);
+      return result;
+    }
+    followMotion(stamp, left, has_plane ? &stereo : nullptr, result);
+    return result;
+  }
+
+  void findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
+                     ApproachAngleResult& result) {
+    const Eigen::Vector3d stereo_normal = plane ? plane->normal() : Eigen::Vector3d::UnitY();
+    RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask,
+                                                    plane ? &stereo_normal : nullptr, parameters, timings);
+    result.left = std::move(direction.left);
+    result.right = std::move(direction.right);
+    if (!direction.combined) return;
+    result.vanishing_direction = direction.combined->direction;
+    result.vanishing_covariance = direction.combined->covariance;
+    const GroundNormal level =
+        normalFromVanishingPoint(*direction.combined, 0.0, parameters.level_roll_stddev_deg * kDegree);
+    result.n_vp = level.n;
+    result.n_vp_covariance = level.covariance;
+  }
+
+  // The normal that the angles refer to; false when there is none.
+  bool findNormal(const GroundPlane* plane, ApproachAngleResult& result) const {
+    const bool has_direction = result.vanishing_direction.allFinite();
+    if (parameters.normal_source == NormalSource::kVanishingLine || !plane) {
+      if (!has_direction) return false;
+      // The paper's level rig, or the roll that the stereo plane knows.
+      GroundNormal normal{result.n_vp, result.n_vp_covariance};
+      if (plane) {
+        normal = normalFromVanishingPoint(
+            {result.vanishing_direction, result.vanishing_covariance, {}, 0}, rollOf(plane->normal()),
+            std::sqrt(rollVariance(plane->normal(), plane->normalCovariance())));
+      }
+      result.n = normal.n;
+      result.n_covariance = normal.covariance;
+      return true;
+    }
+    GroundPlane fused = *plane;
+    if (has_direction) {
+      double nis = 0;
+      fused = fuseVanishingPoint(*plane, result.vanishing_direction, result.vanishing_covariance,
+                                 kMaxVanishingNis, &nis);
+    }
+    result.n = fused.normal();
+    result.n_covariance = fused.normalCovariance();
+    return true;
+  }
+
+  void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo,
+                    ApproachAngleResult& result) {
+    const std::vector<TrackedCorner> corners =
+        stereo ? stereoCorners(*stereo) : groundCorners(left, result.n);
+    MotionTracker::Result motion =
+        tracker.process(stamp, left, result.n, result.n_covariance, corners, timings);
+    ScopedTimer timer(timings, "foe_and_angle");
+    result.step = motion.step;
+    result.window = motion.window;
+    findFoe(motion, result);
+    const Failure& angle = result.window.failure ? result.step.failure : result.window.failure;
+    if (angle) result.failure = angle;
+  }
+
+  // Corners with depth from the pair: the plane for those on it, their own disparity for the others.
+  std::vector<TrackedCorner> stereoCorners(const StereoDepthResult& stereo) const {
+    constexpr double kSmallestDisparity = 1.0;
+    const double height = stereo.plane.height();
+    std::vector<TrackedCorner> corners;
+    for (const StereoDepthResult::Point& point : stereo.points) {
+      if (!point.on_plane && point.disparity < kSmallestDisparity) continue;
+      corners.push_back({cvRound(point.u), cvRound(point.v), point.on_plane,
+                         height * point.disparity / model.rig.fb(),
+                         height * point.disparity_stddev / model.rig.fb()});
+    }
+    return corners;
+  }
+
+  std::vector<TrackedCorner> groundCorners(const cv::Mat& left, const Eigen::Vector3d& normal) {
+    // Nearer the horizon than this (as a tangent) the ground hardly moves.
+    constexpr double kLeastSlope = 0.01;
+    ScopedTimer timer(timings, "harris_corners_motion");
+    cv::Mat mask = left_mask.clone();
+    for (int v = 0; v < mask.rows; ++v) {
+      for (int u = 0; u < mask.cols; ++u) {
+        if (normal.dot(model.rig.ray(u, v)) < kLeastSlope) mask.at<uchar>(v, u) = 0;
+      }
+    }
+    std::vector<TrackedCorner> corners;
+    for (const cv::Point& point : findCorners(left, mask, parameters.corner_count, 1e-7, 4.0, 0.04)) {
+      corners.push_back({point.x, point.y, true, 0, 0});
+    }
+    return corners;
+  }
+
+  void findFoe(const MotionTracker::Result& motion, ApproachAngleResult& result) const {
+    if (motion.step.failure || !motion.step_estimate) return;
+    const MotionEstimate& estimate = *motion.step_estimate;
+    const bool vote = parameters.foe_method == FoeMethod::kSlidingWindow;
+    const Expected<FocusOfExpansion> foe =
+        vote ? foeSlidingWindow(model.rig, motion.step_matches,
+                                parameters.remove_rotation ? estimate.motion.R : Eigen::Matrix3d::Identity())
+             : foeFromMotion(model.rig, estimate.motion.t, estimate.covariance.block<3, 3>(3, 3));
+    if (!foe) {
+      if (vote) result.step.failure = result.window.failure = foe.error();
+      return;
+    }
+    result.foe = foe->pixel;
+    result.foe_covariance = foe->covariance;
+    if (vote || parameters.angle_formula == AngleFormula::kEq1) angleFromFoe(result);
+  }
+
+  // Approach angle of the step from the FOE as a pixel, as the paper does.
+  void angleFromFoe(ApproachAngleResult& result) const {
+    const StereoRig& rig = model.rig;
+    const Eigen::Vector3d direction = rig.ray(result.foe.x(), result.foe.y());
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    const Eigen::DiagonalMatrix<double, 2> per_pixel(1 / rig.fx, 1 / rig.fy);
+    covariance.topLeftCorner<2, 2>() = per_pixel * result.foe_covariance * per_pixel;
+    result.step.angle =
+        parameters.angle_formula == AngleFormula::kEq1
+            ? approachAngleEq1(rig.fy * result.n.z() / result.n.y(), rig.cy - result.foe.y(), rig.fy)
+            : approachAngle(result.n, direction);
+    result.step.angle_variance = approachAngleVariance(result.n, result.n_covariance, direction, covariance);
+    if (parameters.angle_window <= 0) {
+      result.window.angle = result.step.angle;
+      result.window.angle_variance = result.step.angle_variance;
+    }
+  }
+};
+
+ApproachAngleStage::ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters)
+    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+ApproachAngleStage::~ApproachAngleStage() = default;
+ApproachAngleStage::ApproachAngleStage(ApproachAngleStage&&) noexcept = default;
+
+ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
+                                                const StereoDepthResult& stereo) {
+  return implementation_->process(stamp, left, right, stereo);
+}
+
+void ApproachAngleStage::reset() { implementation_->tracker.reset(); }
+
+const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }
+
+}  // namespace uav_landing

@@ -1,0 +1,233 @@
+#include "uav_landing/motion_tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "uav_landing/approach_angle.h"
+#include "uav_landing/image_check.h"
+
+namespace uav_landing {
+namespace {
+
+// Share of the followed corners that must agree with a motion that grew from the last one.
+constexpr double kLeastShare = 0.35;
+
+Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+// The angle's variance from the joint covariance of t and n (both enter asin(n.t/|t|)).
+double jointAngleVariance(const MotionEstimate& estimate) {
+  const Eigen::Vector3d& t = estimate.motion.t;
+  const Eigen::Vector3d n = estimate.normal.normalized();
+  const Eigen::Vector3d m = t.normalized();
+  const double sine = n.dot(m);
+  Eigen::Matrix<double, 6, 1> gradient;
+  gradient << (n - sine * m) / t.norm(), m - sine * n;
+  return gradient.dot(estimate.covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
+}
+
+double largestEigenvalue(const Eigen::Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+}  // namespace
+
+MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
+    : rig_(model.rig),
+      mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
+      parameters_(parameters) {}
+
+void MotionTracker::reset() {
+  for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
+  past_.clear();
+  last_step_.reset();
+}
+
+MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
+  if (!past_.empty() && !(stamp > past_.back().stamp)) reset();
+  Frame frame;
+  frame.stamp = stamp;
+  if (!spare_.empty()) {
+    frame.image = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  frame.image.assign(left);
+  return frame;
+}
+
+void MotionTracker::skip(double stamp, const cv::Mat& left) { advance(takeFrame(stamp, left), Result()); }
+
+MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
+                                             const Eigen::Matrix3d& normal_covariance, const Corners& corners,
+                                             Timings& timings) {
+  Result result;
+  Frame now;
+  {
+    ScopedTimer timer(timings, "match_images_motion");
+    now = takeFrame(stamp, left);
+  }
+  if (past_.empty()) {
+    result.step.failure = {Reason::kNotYet, "no earlier frame"};
+  } else {
+    ScopedTimer timer(timings, "feature_matching_motion");
+    estimateStep(now, normal, normal_covariance, corners, result);
+  }
+  ScopedTimer timer(timings, "window_motion");
+  estimateWindow(now, normal, normal_covariance, corners, result);
+  advance(std::move(now), result);
+  return result;
+}
+
+void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
+                                 const Eigen::Matrix3d& covariance, const Corners& corners, Result& result) {
+  const double duration = now.stamp - past_.back().stamp;
+  Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+  if (last_step_) {
+    CameraMotion predicted = *last_step_;
+    predicted.t *= duration / last_duration_;
+    predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
+                                    Eigen::AngleAxisd(predicted.R).axis())
+                      .toRotationMatrix();
+    estimate = followFrom(now, predicted, normal, covariance, corners, result);
+  }
+  if (!estimate || estimate->inlier_count < kLeastShare * result.step_matches.size()) {
+    const CameraMotion first = searchFirst(now, normal, corners);
+    estimate = followFrom(now, first, normal, covariance, corners, result);
+  }
+  result.step = describe(estimate, duration, result.step_matches.size());
+  if (!estimate) return;
+  result.step_estimate = *estimate;
+  last_duration_ = duration;
+}
+
+Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const CameraMotion& predicted,
+                                                   const Eigen::Vector3d& normal,
+                                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+                                                   Result& result) {
+  TemporalMatchOptions options;
+  options.window_radius = parameters_.window_radius;
+  options.min_zncc = parameters_.min_zncc;
+  options.coarse_steps = static_cast<int>(std::ceil(parameters_.search_radius));
+  result.step_matches =
+      matchOverTime(rig_, now.image, past_.back().image, mask_, corners, normal, predicted, options);
+  return estimateMotion(rig_, result.step_matches, normal, covariance, predicted, parameters_.min_matches);
+}
+
+CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d& normal,
+                                        const Corners& corners) const {
+  constexpr size_t kCorners = 90;
+  TemporalMatchOptions options;
+  options.window_radius = parameters_.window_radius;
+  options.min_zncc = parameters_.min_zncc;
+  options.coarse_steps = static_cast<int>(std::ceil(parameters_.search_radius));
+  Corners some;
+  const size_t stride = std::max<size_t>(1, corners.size() / kCorners);
+  for (size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
+  // Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
+  // is left to the search radius.
+  const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
+  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
+  CameraMotion best;
+  double most = 0;
+  for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1}) {
+    CameraMotion guess;
+    guess.t = share * ahead;
+    const std::vector<TemporalMatch> matches =
+        matchOverTime(rig_, now.image, past_.back().image, mask_, some, normal, guess, options);
+    const Expected<MotionEstimate> estimate = estimateMotion(rig_, matches, normal, loose, guess, 6);
+    if (estimate && estimate->inlier_count > most) {
+      most = estimate->inlier_count;
+      best = estimate->motion;
+    }
+  }
+  return best;
+}
+
+void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
+                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+                                   Result& result) {
+  constexpr double kStampRounding = 1e-3;
+  if (!result.step_estimate) {
+    result.window.failure = result.step.failure;
+    return;
+  }
+  if (parameters_.angle_window <= 0) {
+    result.window = result.step;
+    return;
+  }
+  for (const Frame& then : past_) {
+    const double duration = now.stamp - then.stamp;
+    if (duration > parameters_.angle_window + kStampRounding) continue;
+    if (&then == &past_.back()) break;
+    if (!then.since) continue;
+    const CameraMotion& step = result.step_estimate->motion;
+    // Lengths change from units of the previous height to those of the height now.
+    const double unit = 1 + normal.dot(step.t);
+    const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
+    TemporalMatchOptions options;
+    options.window_radius = parameters_.window_radius;
+    options.min_zncc = parameters_.min_zncc;
+    options.coarse_steps = 0;
+    const std::vector<TemporalMatch> matches =
+        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options);
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, matches, normal, covariance, predicted, parameters_.min_matches);
+    if (!estimate) continue;
+    result.window = describe(estimate, duration, matches.size());
+    return;
+  }
+  result.window = result.step;
+}
+
+ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimate>& estimate, double duration,
+                                                    size_t matches) const {
+  ApproachAngleResult::Motion motion;
+  motion.duration = duration;
+  motion.matches = static_cast<int>(matches);
+  if (!estimate) {
+    motion.failure = estimate.error();
+    return motion;
+  }
+  motion.inliers = estimate->inlier_count;
+  motion.rotation = rotationVector(estimate->motion.R);
+  motion.translation_over_height = estimate->motion.t;
+  motion.covariance = estimate->covariance.topLeftCorner<6, 6>();
+  const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
+  if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
+    motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};
+    return motion;
+  }
+  motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
+  motion.angle_variance = jointAngleVariance(*estimate);
+  return motion;
+}
+
+void MotionTracker::advance(Frame&& now, const Result& result) {
+  for (Frame& frame : past_) {
+    const bool previous = &frame == &past_.back();
+    if (!result.step_estimate || !(previous || frame.since)) {
+      frame.since.reset();
+      continue;
+    }
+    const CameraMotion& step = result.step_estimate->motion;
+    if (previous) {
+      frame.since = step;
+    } else {
+      const double unit = 1 + result.step_estimate->normal.dot(step.t);
+      frame.since = CameraMotion{step.R * frame.since->R, step.R * frame.since->t * unit + step.t};
+    }
+  }
+  last_step_.reset();
+  if (result.step_estimate) last_step_ = result.step_estimate->motion;
+  past_.push_back(std::move(now));
+  const double oldest = past_.back().stamp - parameters_.angle_window - 0.05;
+  while (past_.size() > 2 && past_.front().stamp < oldest) {
+    spare_.push_back(std::move(past_.front().image));
+    past_.pop_front();
+  }
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,182 @@
+#include "uav_landing/patch_matching.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "interpolation.h"
+
+namespace uav_landing {
+namespace {
+
+// Grey levels of contrast (RMS) below which a window holds nothing to match.
+constexpr double kMinContrast = 1.0;
+
+bool windowInside(const cv::Mat& image, int u, int v, int radius) {
+  return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
+}
+
+}  // namespace
+
+PatchSearch::PatchSearch(const cv::Mat& reference, const cv::Mat& other, int radius)
+    : reference_(reference), other_(other), radius_(radius) {
+  const size_t size = 2 * static_cast<size_t>(radius) + 1;
+  template_.resize(size * size);
+}
+
+bool PatchSearch::loadTemplate(int u, int v) {
+  if (!windowInside(reference_, u, v, radius_)) return false;
+  const int size = 2 * radius_ + 1;
+  double sum = 0, squares = 0;
+  for (int dy = 0; dy < size; ++dy) {
+    const float* row = reference_.ptr<float>(v - radius_ + dy) + u - radius_;
+    for (int dx = 0; dx < size; ++dx) {
+      template_[static_cast<size_t>(dy) * size + dx] = row[dx];
+      sum += row[dx];
+      squares += double(row[dx]) * row[dx];
+    }
+  }
+  const double count = static_cast<double>(template_.size()), mean = sum / count;
+  template_energy_ = squares - sum * mean;
+  for (float& value : template_) value -= static_cast<float>(mean);
+  return template_energy_ > kMinContrast * kMinContrast * count;
+}
+
+bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps) {
+  const int reach = radius_ + steps, width = 2 * reach + 1;
+  const double rx = std::abs(warp(0, 0)) * reach + std::abs(warp(0, 1)) * reach;
+  const double ry = std::abs(warp(1, 0)) * reach + std::abs(warp(1, 1)) * reach;
+  if (!(centre.x() - rx >= 0 && centre.y() - ry >= 0 && centre.x() + rx < other_.cols - 1 &&
+        centre.y() + ry < other_.rows - 1)) {
+    return false;
+  }
+  area_.resize(static_cast<size_t>(width) * width);
+  for (int j = 0; j < width; ++j) {
+    for (int i = 0; i < width; ++i) {
+      const Eigen::Vector2d at = centre + warp * Eigen::Vector2d(i - reach, j - reach);
+      const int y = static_cast<int>(at.y());
+      const float t = static_cast<float>(at.y() - y), x = static_cast<float>(at.x());
+      area_[static_cast<size_t>(j) * width + i] =
+          (1 - t) * linearAt(other_.ptr<float>(y), x) + t * linearAt(other_.ptr<float>(y + 1), x);
+    }
+  }
+  return true;
+}
+
+void PatchSearch::score(int steps) {
+  const int size = 2 * radius_ + 1, count = 2 * steps + 1, width = size + 2 * steps;
+  scores_.assign(static_cast<size_t>(count) * count, -1.f);
+  for (int j = 0; j < count; ++j) {
+    cross_.assign(count, 0.f);
+    sums_.assign(width, 0.0);
+    squares_.assign(width, 0.0);
+    for (int dy = 0; dy < size; ++dy) {
+      const float* row = area_.data() + static_cast<size_t>(j + dy) * width;
+      for (int i = 0; i < width; ++i) {
+        sums_[i] += row[i];
+        squares_[i] += double(row[i]) * row[i];
+      }
+      const float* wanted = template_.data() + static_cast<size_t>(dy) * size;
+      for (int dx = 0; dx < size; ++dx) {
+        const float weight = wanted[dx];
+        const float* values = row + dx;
+        float* cross = cross_.data();
+        for (int i = 0; i < count; ++i) cross[i] += weight * values[i];
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      double sum = 0, squares = 0;
+      for (int dx = 0; dx < size; ++dx) {
+        sum += sums_[i + dx];
+        squares += squares_[i + dx];
+      }
+      const double energy = squares - sum * sum / (double(size) * size);
+      if (energy < 1e-3 * template_energy_) continue;
+      scores_[static_cast<size_t>(j) * count + i] =
+          static_cast<float>(cross_[i] / std::sqrt(energy * template_energy_));
+    }
+  }
+}
+
+PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp,
+                                   int steps) {
+  Best best;
+  if (!loadTemplate(u, v) || !sample(centre, warp, steps)) return best;
+  score(steps);
+  const int count = 2 * steps + 1;
+  const int index = static_cast<int>(std::max_element(scores_.begin(), scores_.end()) - scores_.begin());
+  const int bi = index % count, bj = index / count;
+  best.score = scores_[index];
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < count; ++i) {
+      if (std::abs(i - bi) <= 2 && std::abs(j - bj) <= 2) continue;
+      best.second = std::max<double>(best.second, scores_[static_cast<size_t>(j) * count + i]);
+    }
+  }
+  best.position = centre + warp * Eigen::Vector2d(bi - steps, bj - steps);
+  best.found = bi > 0 && bj > 0 && bi + 1 < count && bj + 1 < count && best.score > 0;
+  return best;
+}
+
+PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
+                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
+  constexpr int kIterations = 8;
+  constexpr double kConverged = 0.005, kMaxDrift = 2.0;
+  // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
+  constexpr double kIndependent = 0.25;
+  PatchRefinement result;
+  if (!windowInside(reference, u, v, radius + 1)) return result;
+  const double count = (2.0 * radius + 1) * (2.0 * radius + 1);
+  const double rx = (std::abs(warp(0, 0)) + std::abs(warp(0, 1))) * radius;
+  const double ry = (std::abs(warp(1, 0)) + std::abs(warp(1, 1))) * radius;
+  Eigen::Vector2d at = position;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    if (!(at.x() - rx >= 1 && at.y() - ry >= 1 && at.x() + rx < other.cols - 3 &&
+          at.y() + ry < other.rows - 3)) {
+      return result;
+    }
+    // reference + gradient.shift = gain other + offset, solved for (shift, gain, offset).
+    Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    double sa = 0, saa = 0;
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const float* above = reference.ptr<float>(v + dy - 1) + u;
+      const float* row = reference.ptr<float>(v + dy) + u;
+      const float* below = reference.ptr<float>(v + dy + 1) + u;
+      for (int dx = -radius; dx <= radius; ++dx) {
+        const Eigen::Vector2d x = at + warp * Eigen::Vector2d(dx, dy);
+        const double b = cubicAt(other, x.x(), x.y());
+        const double a = row[dx];
+        const Eigen::Vector4d jacobian(-0.5 * (row[dx + 1] - row[dx - 1]), -0.5 * (below[dx] - above[dx]), b,
+                                       1);
+        information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian);
+        right += jacobian * a;
+        sa += a;
+        saa += a * a;
+      }
+    }
+    information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
+    const Eigen::FullPivLU<Eigen::Matrix4d> lu(information);
+    if (!lu.isInvertible()) return result;
+    const Eigen::Vector4d solution = lu.solve(right);
+    if (!(solution[2] > 0.1)) return result;
+    Eigen::Vector2d shift = solution.head<2>();
+    const double length = shift.norm();
+    if (length > 1) shift /= length;
+    at -= warp * shift;
+    if ((at - position).norm() > kMaxDrift * std::sqrt(std::abs(warp.determinant()))) return result;
+    if (length < kConverged) {
+      const double residual = std::max(0.0, saa - right.dot(solution));
+      const double noise = residual / (count - 4) / kIndependent;
+      const Eigen::Matrix4d inverse = lu.inverse();
+      result.covariance = noise * warp * inverse.topLeftCorner<2, 2>() * warp.transpose();
+      result.score = std::sqrt(std::max(0.0, 1 - residual / std::max(1e-9, saa - sa * sa / count)));
+      result.position = at;
+      result.converged = true;
+      return result;
+    }
+  }
+  return result;
+}
+
+}  // namespace uav_landing
