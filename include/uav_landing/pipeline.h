@@ -19,7 +19,8 @@ class Pipeline {
     StereoDepthResult stereo;
     ApproachAngleResult approach;
     LandingResult landing;
-    Timings timings;
+    Timings parts;   ///< of the parts of all stages
+    Timings stages;  ///< of the stages: rectify, stereo_depth, approach_angle, kalman_height
   };
   /// left, right: raw mono8 of the size the calibrations announce; another size is a failure in every
   /// stage's result. stamp: of the left image, s. skew: right minus left, s.
@@ -29,6 +30,8 @@ class Pipeline {
 
  private:
   Pipeline(RigModel rig, Rectifier left, Rectifier right, const Parameters& parameters);
+  Failure rectify(const cv::Mat& left, const cv::Mat& right);
+  void addTimings(const char* stage, const Timings& parts);
 
   RigModel rig_;
   Rectifier left_rectifier_, right_rectifier_;
