@@ -1,0 +1,165 @@
+"""The paper's Figures 4 to 7 and Table 1 for one run, on one page."""
+
+import html
+import os
+import re
+
+import numpy as np
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
+
+from evaluation.scores import COLUMNS, summary  # noqa: E402
+from evaluation.tables import InputError, Table  # noqa: E402
+
+# The paper's Table 1, ms per frame of 320x240 on its computer.
+PAPER_TIMES = (("Pre-process", 3.4), ("Hough transforms", 4.7), ("RANSAC", 6.2), ("Feature matching", 11.9),
+               ("Kalman filter", 1.2), ("Image show", 2.8), ("Total", 31.2))
+
+STYLE = "body{font-family:sans-serif;max-width:60em;margin:2em auto}img{max-width:100%}" \
+        "td,th{padding:0.1em 0.8em;text-align:right}td:first-child,th:first-child{text-align:left}"
+
+
+class Missing(Exception):
+    """Why a part of the report cannot be made."""
+
+
+def pictures(report_data, name):
+    """Pictures name_N.png of the report data: frame number -> path."""
+    if report_data is None:
+        raise Missing("no --report-data given (process_bag --report-data makes it)")
+    if not os.path.isdir(report_data):
+        raise Missing(f"{report_data}: no such folder")
+    found = {}
+    for file in os.listdir(report_data):
+        match = re.fullmatch(name + r"_(\d+)\.png", file)
+        if match:
+            found[int(match.group(1))] = os.path.join(report_data, file)
+    if not found:
+        raise Missing(f"{report_data}: no picture {name}_*.png")
+    return found
+
+
+def show_pictures(path, images, titles):
+    figure, axes = plt.subplots(1, len(images), figsize=(6 * len(images), 5), squeeze=False)
+    for axis, image, title in zip(axes[0], images, titles):
+        axis.imshow(plt.imread(image))
+        axis.set_title(title)
+        axis.axis("off")
+    figure.tight_layout()
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
+def figure_4(path, _truth, _joined, report_data):
+    left, right = pictures(report_data, "lines_left"), pictures(report_data, "lines_right")
+    frames = sorted(set(left) & set(right))
+    if not frames:
+        raise Missing(f"{report_data}: no frame has both lines_left_*.png and lines_right_*.png")
+    frame = frames[len(frames) // 2]
+    show_pictures(path, [left[frame], right[frame]], [f"left, frame {frame}", f"right, frame {frame}"])
+
+
+def figure_5(path, _truth, _joined, report_data):
+    matches = pictures(report_data, "matches")
+    frame = sorted(matches)[len(matches) // 2]
+    show_pictures(path, [matches[frame]], [f"left and right, frame {frame}"])
+
+
+def plot_against_truth(path, truth, joined, column, label, curves):
+    """curves: (column of the estimates, format, name). Drawn over the whole run, invalid frames marked below."""
+    if not any(joined.estimates.has(name) for name, _, _ in curves):
+        raise Missing(f"{joined.estimates.path}: no {' or '.join(name for name, _, _ in curves)}")
+    time = joined.stamp - joined.stamp[0]
+    figure, axis = plt.subplots(figsize=(9, 5))
+    for name, style, title in curves:
+        axis.plot(time, joined.estimate(name), style, label=title, linewidth=1.2)
+    if truth.has(column):
+        axis.plot(time, truth.number(column), "k--", label="truth", linewidth=1)
+    invalid = joined.estimate("valid") != 1
+    if np.any(invalid):
+        axis.plot(time[invalid], np.zeros(np.sum(invalid)), "r|", label="not valid", clip_on=False,
+                  transform=axis.get_xaxis_transform())
+    axis.set_xlabel("time, s")
+    axis.set_ylabel(label)
+    axis.grid(alpha=0.3)
+    axis.legend()
+    figure.tight_layout()
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
+def figure_6(path, truth, joined, _report_data):
+    plot_against_truth(path, truth, joined, "approach_angle_deg", "approach angle, deg",
+                       (("raw_approach_angle_deg", "b:", "last step alone"), ("approach_angle_deg", "b-", "estimate")))
+
+
+def figure_7(path, truth, joined, _report_data):
+    plot_against_truth(path, truth, joined, "height_m", "height, m",
+                       (("raw_height_m", "b:", "matching of feature points"), ("height_m", "b-", "Kalman filter")))
+
+
+FIGURES = (("figure4.png", "Figure 4: edges by the Hough transform", figure_4),
+           ("figure5.png", "Figure 5: Harris corners and their matches", figure_5),
+           ("figure6.png", "Figure 6: approach angle", figure_6),
+           ("figure7.png", "Figure 7: height", figure_7))
+
+
+def cells(tag, values):
+    return "<tr>" + "".join(f"<{tag}>{html.escape(str(value))}</{tag}>" for value in values) + "</tr>"
+
+
+def timing_table(report_data):
+    if report_data is None:
+        raise Missing("no --report-data given (process_bag --report-data makes it)")
+    try:
+        timing = Table(os.path.join(report_data, "timing.csv"))
+    except InputError as error:
+        raise Missing(str(error))
+    parts = [name for name in timing.header if name.endswith("_ms") and timing.has(name)]
+    if not parts:
+        raise Missing(f"{timing.path}: no column that ends in _ms")
+    rows = [cells("th", ("part", "mean", "median", "99 %", "worst"))]
+    times = np.column_stack([timing.number(name) for name in parts])
+    for name, column in zip([name[:-3].replace("_", " ") for name in parts] + ["total"],
+                            list(times.T) + [np.nansum(times, axis=1)]):
+        column = column[np.isfinite(column)]
+        values = (np.mean(column), np.median(column), np.percentile(column, 99), np.max(column))
+        rows.append(cells("td", [name] + [f"{value:.2f}" for value in values]))
+    paper = ", ".join(f"{name} {ms}" for name, ms in PAPER_TIMES)
+    return "<table>" + "".join(rows) + f"</table><p>The paper: {paper}.</p>"
+
+
+def score_table(scores):
+    rows = [cells("th", ("error", "unit") + tuple(title for title, _ in COLUMNS))]
+    for name, values in scores["quantities"].items():
+        rows.append(cells("td", [name.replace("_", " "), values["unit"]] + [f"{values[key]:.4f}" for _, key in COLUMNS]))
+    return "<table>" + "".join(rows) + "</table>"
+
+
+def write_report(folder, truth, joined, scores, report_data):
+    """Writes the figures and index.html; returns the path of the latter."""
+    os.makedirs(folder, exist_ok=True)
+    missing = [f"{name.replace('_', ' ')}: {why}" for name, why in scores["missing"].items()]
+    parts = []
+    for file, title, draw in FIGURES:
+        try:
+            draw(os.path.join(folder, file), truth, joined, report_data)
+            parts.append(f"<h2>{title}</h2><img src='{file}' alt='{title}'>")
+        except Missing as why:
+            missing.append(f"{title}: {why}")
+    title = "Table 1: time per image pair, ms"
+    try:
+        parts.append(f"<h2>{title}</h2>" + timing_table(report_data))
+    except Missing as why:
+        missing.append(f"{title}: {why}")
+    absent = "<h2>Missing</h2><ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in missing) + "</ul>" \
+        if missing else ""
+    path = os.path.join(folder, "index.html")
+    with open(path, "w") as page:
+        page.write(f"<!DOCTYPE html><html lang='en'><meta charset='utf-8'><title>Landing estimate</title>"
+                   f"<style>{STYLE}</style><h1>Landing estimate against truth</h1>"
+                   f"<p>{html.escape(summary(scores).splitlines()[0])}</p>"
+                   f"{score_table(scores)}{''.join(parts)}{absent}</html>\n")
+    return path
