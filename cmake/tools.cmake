@@ -3,6 +3,7 @@ add_library(uav_landing_tools STATIC
   src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
   src/tools/stereo_bag_writer.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
+target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11)
 add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
@@ -12,3 +13,8 @@ target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)
 
 add_executable(simulate_approach src/tools/simulate_approach.cpp)
 target_link_libraries(simulate_approach PRIVATE uav_landing_tools)
+
+add_executable(process_bag
+  src/tools/process_bag.cpp src/tools/estimate_bag.cpp src/tools/estimate_csv.cpp src/tools/offline_chain.cpp
+  src/tools/report_data.cpp src/tools/stereo_bag_reader.cpp src/tools/timing_table.cpp)
+target_link_libraries(process_bag PRIVATE uav_landing_tools)

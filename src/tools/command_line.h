@@ -11,9 +11,16 @@ namespace uav_landing {
 /// Exit status of all programs.
 enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2 };
 
-/// Parses the command line. Returns an exit status when there is nothing left to do (help was asked for, or
-/// the usage was wrong; CLI11 has written which).
+/// Parses the command line, --version included. Returns an exit status when there is nothing left to do (help
+/// was asked for, or the usage was wrong; CLI11 has written which).
 inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
+  app.add_flag_callback(
+      "--version",
+      [&app] {
+        std::cout << app.get_name() << " " UAV_LANDING_VERSION "\n";
+        throw CLI::Success();
+      },
+      "print the version and leave");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

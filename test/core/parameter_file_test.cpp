@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -12,13 +11,6 @@ namespace {
 std::string errorOf(const std::string& yaml) {
   const Expected<Parameters> parameters = parseParameters(yaml, "test.yaml");
   return parameters ? "accepted" : parameters.error().detail;
-}
-
-std::string fileContent(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream content;
-  content << file.rdbuf();
-  return content.str();
 }
 
 /// Writes every number of a section as YAML.
@@ -137,12 +129,6 @@ TEST(ParameterFile, ShippedPresetsLoad) {
         loadParameterFile(std::string(UAV_LANDING_SOURCE_DIR "/config/") + name + ".yaml");
     EXPECT_TRUE(parameters) << parameters.error().message();
   }
-}
-
-TEST(ParameterTable, IsTheOneInTheDocumentation) {
-  EXPECT_TRUE(fileContent(UAV_LANDING_SOURCE_DIR "/docs/parameters.md") == parameterTable())
-      << "docs/parameters.md is out of date. Regenerate it:\n"
-         "rosrun uav_landing process_bag --list-parameters > docs/parameters.md";
 }
 
 }  // namespace

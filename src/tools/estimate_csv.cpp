@@ -1,0 +1,72 @@
+#include "estimate_csv.h"
+
+#include <cmath>
+#include <iomanip>
+#include <stdexcept>
+
+#include "decimal_time.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+
+const char* const kHeader =
+    "stamp_s,valid,height_m,height_stddev_m,raw_height_m,vertical_speed_m_s,approach_angle_deg,"
+    "approach_angle_stddev_deg,pitch_deg,roll_deg,yaw_deg,x_m,y_m,foe_u_px,foe_v_px,status,compute_ms,"
+    "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason";
+
+/// Writes the fields of one row.
+class Row {
+ public:
+  explicit Row(std::ostream& out) : out_(out) { out_ << std::setprecision(12); }
+  Row& text(const std::string& value) {
+    out_ << (first_ ? "" : ",") << value;
+    first_ = false;
+    return *this;
+  }
+  Row& number(double value) {
+    text("");
+    if (std::isfinite(value)) out_ << value;
+    return *this;
+  }
+  Row& flag(bool value) { return text(value ? "1" : "0"); }
+  Row& blank() { return text(""); }
+
+ private:
+  std::ostream& out_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+EstimateCsv::EstimateCsv(const std::string& path) : pending_(path), file_(pending_.temporary()) {
+  if (!file_) throw std::runtime_error(path + ": cannot be written");
+  file_ << kHeader << '\n';
+}
+
+void EstimateCsv::take(const ProcessedPair& pair) {
+  const LandingResult& landing = pair.output.landing;
+  Row row(file_);
+  row.text(toDecimal(pair.stamp)).flag(landing.valid());
+  row.number(landing.height).number(std::sqrt(landing.height_variance)).number(landing.raw_height);
+  row.number(landing.vertical_speed);
+  row.number(landing.approach_angle * kDegrees).number(std::sqrt(landing.approach_angle_variance) * kDegrees);
+  row.number(landing.pitch * kDegrees).number(landing.roll * kDegrees).number(landing.yaw * kDegrees);
+  row.blank().blank();  // x, y: the threshold is not looked for
+  row.number(landing.foe.x()).number(landing.foe.y());
+  row.text(toString(landing.status)).number(pair.output.stages.total());
+  row.flag(landing.height_valid).flag(landing.angle_valid);
+  row.number(landing.raw_approach_angle * kDegrees);
+  row.blank();  // no protection level is computed
+  row.text(toString(landing.failure.reason));
+  file_ << '\n';
+}
+
+void EstimateCsv::finish() {
+  file_.close();
+  if (!file_) throw std::runtime_error(pending_.path() + ": could not be written completely");
+  pending_.commit();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,134 @@
+// The whole chain offline: reads the image pairs of a bag, writes estimates, messages, timing and pictures.
+
+#include <exception>
+#include <filesystem>
+
+#include "command_line.h"
+#include "estimate_bag.h"
+#include "estimate_csv.h"
+#include "offline_chain.h"
+#include "progress_bar.h"
+#include "report_data.h"
+#include "stereo_bag_reader.h"
+#include "timing_table.h"
+#include "uav_landing/parameter_file.h"
+
+namespace {
+
+using namespace uav_landing;
+
+struct Options {
+  std::string input, camera = "stereo", config, csv, output, report_data;
+};
+
+/// What goes wrong on the way, to stderr; a stream of ever new problems is cut short.
+class Complaints {
+ public:
+  explicit Complaints(const CLI::App& app) : program_(app.get_name()) {}
+  void operator()(const std::string& text) {
+    constexpr int kMost = 20;
+    if (++count_ > kMost) return;
+    std::cerr << program_ << ": " << text << '\n';
+    if (count_ == kMost) std::cerr << program_ << ": more of this is not shown\n";
+  }
+
+ private:
+  std::string program_;
+  int count_ = 0;
+};
+
+std::vector<std::unique_ptr<PairSink>> makeSinks(const Options& options, const Parameters& parameters,
+                                                 const StereoBagReader& reader) {
+  std::vector<std::unique_ptr<PairSink>> sinks;
+  if (!options.csv.empty()) sinks.push_back(std::make_unique<EstimateCsv>(options.csv));
+  if (!options.output.empty()) sinks.push_back(std::make_unique<EstimateBag>(options.output));
+  if (!options.report_data.empty())
+    sinks.push_back(
+        std::make_unique<ReportData>(options.report_data, reader.leftImages(), parameters.overlay));
+  sinks.push_back(std::make_unique<TimingTable>(std::cout));
+  return sinks;
+}
+
+/// Images that found no partner, and clocks that were set back.
+void reportPairing(const StereoPairing& pairing, Complaints& complain) {
+  for (const InputWatch::Input& input : pairing.inputs()) {
+    const auto unpaired = input.received - input.paired;
+    if (unpaired == 0) continue;
+    const std::string repeated =
+        input.repeated > 0 ? ", of them " + std::to_string(input.repeated) + " with a repeated stamp" : "";
+    complain(std::to_string(unpaired) + " of " + std::to_string(input.received) + " messages on " +
+             input.topic + " belong to no pair" + repeated);
+  }
+  if (pairing.jumps() > 0) complain("stamps went back " + std::to_string(pairing.jumps()) + " times");
+}
+
+Failure processBag(const Options& options, const Parameters& parameters, Complaints& complain) {
+  const StereoBagReader reader(options.input, options.camera);
+  if (const Failure failure = reader.checkTopics())
+    return {failure.reason, options.input + ": " + failure.detail};
+
+  std::vector<std::unique_ptr<PairSink>> sinks = makeSinks(options, parameters, reader);
+  OfflineChain chain(parameters, options.camera, sinks, std::ref(complain));
+  StereoPairing pairing(parameters.rectify, {reader.topics().begin(), reader.topics().end()},
+                        [&](const auto&... messages) { chain.process(messages...); });
+  ProgressBar progress(reader.messages());
+  reader.read(pairing, [&] { progress.step(); });
+
+  if (chain.pairs() == 0)
+    return {Reason::kInputInvalid, options.input + ": no image pair: " + pairing.complaint()};
+  if (chain.unusable() == chain.pairs())
+    return {Reason::kInputInvalid, options.input + ": no usable image pair: " + chain.firstProblem().detail};
+  reportPairing(pairing, complain);
+  if (chain.unusable() > 0)
+    complain(std::to_string(chain.unusable()) + " of " + std::to_string(chain.pairs()) +
+             " pairs could not be used");
+  for (const auto& sink : sinks) sink->finish();
+  return {};
+}
+
+int run(const CLI::App& app, const Options& options) {
+  Parameters parameters;
+  if (!options.config.empty()) {
+    const Expected<Parameters> loaded = loadParameterFile(options.config);
+    if (!loaded) return inputUnusable(app, loaded.error().detail);
+    parameters = *loaded;
+  }
+  std::error_code none;
+  if (!options.output.empty() && std::filesystem::equivalent(options.input, options.output, none))
+    return inputUnusable(app, options.output + ": is the input");
+  Complaints complain(app);
+  const Failure failure = processBag(options, parameters, complain);
+  return failure ? inputUnusable(app, failure.detail) : kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs the whole chain on the image pairs of a bag, as fast as it goes.", "process_bag");
+  Options options;
+  app.add_option("--input", options.input, "bag with /<camera>/{left,right}/{image_raw,camera_info}")
+      ->required();
+  app.add_option("--camera", options.camera, "namespace of the camera topics")
+      ->capture_default_str()
+      ->check(isCameraName());
+  app.add_option("--config", options.config, "parameter file; without it the defaults");
+  app.add_option("--csv", options.csv, "estimates to write, one row per pair");
+  app.add_option("--output", options.output, "bag to write, with the messages of the nodelets");
+  app.add_option("--report-data", options.report_data,
+                 "folder for what `evaluate --report` needs: timing.csv and pictures");
+  app.add_flag_callback(
+      "--list-parameters",
+      [] {
+        std::cout << parameterTable();
+        throw CLI::Success();
+      },
+      "print all parameters of the config file and leave");
+  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  try {
+    return run(app, options);
+  } catch (const rosbag::BagException& error) {
+    return inputUnusable(app, options.input + ": " + error.what());
+  } catch (const std::exception& error) {
+    return inputUnusable(app, error.what());
+  }
+}

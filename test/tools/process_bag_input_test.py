@@ -1,0 +1,352 @@
+"""What process_bag says of input that it cannot use, or not fully."""
+
+import csv
+import math
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rosbag
+
+from project import BUILD_DIR, run
+from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
+from test_data import dataset
+
+PROGRAMS = BUILD_DIR / "devel/lib/uav_landing"
+
+
+class ProcessBagTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="uav_landing_process_bag_"))
+        self.addCleanup(shutil.rmtree, str(self.folder))
+        self.bag, self.csv = self.folder / "input.bag", self.folder / "estimates.csv"
+
+    def process(self, *options):
+        return run([PROGRAMS / "process_bag", "--input", self.bag, "--csv", self.csv, *options])
+
+    def process_frames(self, frames, *options):
+        write_bag(self.bag, frames)
+        return self.process(*options)
+
+    def rows(self):
+        with self.csv.open() as file:
+            return list(csv.DictReader(file))
+
+    def assert_refused(self, result, *texts):
+        """Exit status 1, a message with these texts, and no file left behind."""
+        self.assertEqual(result.returncode, 1, result.stderr)
+        for text in texts:
+            self.assertIn(text, result.stderr)
+        left = [path.name for path in self.folder.iterdir() if path != self.bag and path.suffix != ".yaml"]
+        self.assertEqual(left, [])
+
+    def assert_nothing_valid(self, rows):
+        for row in rows:
+            self.assertEqual(row["valid"], "0", row)
+            self.assertEqual(row["height_valid"], "0", row)
+
+
+class FilesTest(ProcessBagTest):
+    def test_missing_bag(self):
+        self.assert_refused(self.process(), str(self.bag), "no such file")
+
+    def test_a_file_that_is_not_a_bag(self):
+        self.bag.write_text("height,angle\n1,2\n")
+        self.assert_refused(self.process(), str(self.bag), "cannot be read as a bag")
+
+    def test_a_bag_that_was_cut_off(self):
+        write_bag(self.bag, noise_frames())
+        content = self.bag.read_bytes()
+        self.bag.write_bytes(content[:len(content) // 2])
+        self.assert_refused(self.process(), str(self.bag), "cannot be read as a bag", "rosbag reindex")
+
+    def test_a_csv_that_cannot_be_written(self):
+        write_bag(self.bag, noise_frames())
+        self.csv = self.folder / "nowhere" / "estimates.csv"
+        self.assert_refused(self.process(), str(self.csv), "cannot be written")
+
+    def test_a_bag_that_cannot_be_written(self):
+        write_bag(self.bag, noise_frames())
+        output = self.folder / "nowhere" / "output.bag"
+        self.assert_refused(self.process("--output", output), str(output), "cannot be written")
+
+    def test_report_data_where_no_folder_can_be_made(self):
+        write_bag(self.bag, noise_frames())
+        folder = self.bag / "report"
+        self.assert_refused(self.process("--report-data", folder), str(folder), "cannot be made")
+
+    def test_an_output_that_is_the_input(self):
+        write_bag(self.bag, noise_frames())
+        before = self.bag.read_bytes()
+        self.assert_refused(self.process("--output", self.bag), "is the input")
+        self.assertEqual(self.bag.read_bytes(), before)
+
+
+class UsageTest(ProcessBagTest):
+    def test_wrong_usage_has_exit_status_2(self):
+        for options in ([], ["--input"], ["--input", "a.bag", "--nonsense"],
+                        ["--input", "a.bag", "--camera", "no camera"]):
+            with self.subTest(options=options):
+                self.assertEqual(run([PROGRAMS / "process_bag", *options]).returncode, 2)
+
+    def test_help_names_every_option(self):
+        result = run([PROGRAMS / "process_bag", "--help"])
+        self.assertEqual(result.returncode, 0)
+        for option in ("--input", "--camera", "--config", "--csv", "--output", "--report-data", "--list-parameters",
+                       "--version"):
+            self.assertIn(option, result.stdout)
+
+    def test_version_and_parameters_need_no_bag(self):
+        version = run([PROGRAMS / "process_bag", "--version"])
+        self.assertEqual(version.returncode, 0)
+        self.assertRegex(version.stdout, r"^process_bag \d+\.\d+\.\d+\n$")
+        parameters = run([PROGRAMS / "process_bag", "--list-parameters"])
+        self.assertEqual(parameters.returncode, 0)
+        self.assertIn("| `window_radius` |", parameters.stdout)
+
+
+class ConfigTest(ProcessBagTest):
+    def process_with(self, yaml):
+        write_bag(self.bag, noise_frames())
+        config = self.folder / "config.yaml"
+        config.write_text(yaml)
+        return self.process("--config", config)
+
+    def test_unknown_key(self):
+        self.assert_refused(self.process_with("stereo_depth: {window_raduis: 5}"), "config.yaml",
+                            "stereo_depth/window_raduis", "did you mean window_radius?")
+
+    def test_value_out_of_range(self):
+        self.assert_refused(self.process_with("stereo_depth: {window_radius: 99}"),
+                            "config.yaml: stereo_depth/window_radius: 99 is out of range, expected 2 to 15 px")
+
+    def test_missing_file(self):
+        write_bag(self.bag, noise_frames())
+        self.assert_refused(self.process("--config", "/nowhere.yaml"), "/nowhere.yaml", "cannot be read")
+
+
+class TopicsTest(ProcessBagTest):
+    def without(self, topic):
+        frames = noise_frames()
+        for frame in frames:
+            frame.messages[topic] = None
+        return self.process_frames(frames)
+
+    def test_each_missing_topic_is_named_and_the_others_listed(self):
+        topics = ("left/image_raw", "left/camera_info", "right/image_raw", "right/camera_info")
+        for missing in topics:
+            with self.subTest(missing=missing):
+                result = self.without(missing)
+                self.assert_refused(result, f"no topic /stereo/{missing}")
+                for there in topics:
+                    if there != missing:
+                        self.assertNotIn(f"no topic /stereo/{there}", result.stderr)
+                        self.assertIn(f"\n  /stereo/{there} (sensor_msgs/", result.stderr)
+
+    def test_another_camera_name(self):
+        write_bag(self.bag, noise_frames(), camera="/nose")
+        self.assert_refused(self.process(), "no topic /stereo/left/image_raw",
+                            "/nose/left/image_raw (sensor_msgs/Image)")
+        self.assertEqual(self.process("--camera", "nose").returncode, 0)
+
+    def test_a_topic_of_another_type(self):
+        frames = noise_frames()
+        for frame in frames:
+            frame.messages["left/image_raw"] = frame.messages["left/camera_info"]
+        self.assert_refused(self.process_frames(frames), "/stereo/left/image_raw is sensor_msgs/CameraInfo",
+                            "expected sensor_msgs/Image")
+
+    def test_right_camera_that_falls_silent(self):
+        frames = noise_frames(5)
+        for frame in frames[2:]:
+            frame.messages["right/image_raw"] = None
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(self.rows()), 2)
+        self.assertIn("3 of 5 messages on /stereo/left/image_raw belong to no pair", result.stderr)
+
+    def test_right_camera_with_other_stamps(self):
+        frames = noise_frames(3)
+        moved = noise_frames(3, start=50)
+        for frame, other in zip(frames, moved):
+            frame.messages["right/image_raw"] = other.messages["right/image_raw"] = frame.messages["right/image_raw"]
+            frame.messages["right/image_raw"] = None
+            other.messages = {"right/image_raw": other.messages["right/image_raw"]}
+        self.assert_refused(self.process_frames(frames + moved), "no image pair", "/stereo/")
+
+
+class CameraInfoTest(ProcessBagTest):
+    def process_with(self, change):
+        frames = noise_frames()
+        for frame in frames:
+            change(frame)
+        return self.process_frames(frames)
+
+    def test_uncalibrated_camera(self):
+        def change(frame):
+            frame.left_info.K = [0.0] * 9
+        self.assert_refused(self.process_with(change), "camera_info", "left", "K[0]")
+
+    def test_not_a_number(self):
+        def change(frame):
+            frame.right_info.P = frame.right_info.P[:3] + [math.nan] + frame.right_info.P[4:]
+        self.assert_refused(self.process_with(change), "camera_info", "right", "P[3]")
+
+    def test_no_baseline(self):
+        def change(frame):
+            frame.right_info.P = frame.left_info.P
+        self.assert_refused(self.process_with(change), "camera_info", "right", "P[3]")
+
+    def test_change_in_mid_stream_is_reported_and_followed(self):
+        frames = noise_frames(4)
+        for frame in frames[2:]:
+            frame.left_info.K = [140.0] + frame.left_info.K[1:]
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("camera_info of the left camera changed at stamp 10.2", result.stderr)
+        self.assertEqual(result.stderr.count("changed"), 1)
+        self.assertEqual(len(self.rows()), 4)
+
+
+class ImagesTest(ProcessBagTest):
+    def process_with(self, bad, expected):
+        """The middle one of three pairs is bad: a message, a row without a value, and on it goes. All three are bad: refused."""
+        frames = noise_frames()
+        frames[1].messages["left/image_raw"] = bad
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("/stereo/left/image_raw: " + expected, result.stderr)
+        self.assertIn("1 of 3 pairs could not be used", result.stderr)
+        rows = self.rows()
+        self.assertEqual(len(rows), 3)
+        self.assertEqual((rows[1]["status"], rows[1]["reason"], rows[1]["height_m"]), ("lost", "input_invalid", ""))
+        self.assert_nothing_valid(rows)
+        self.csv.unlink()
+
+        for frame in frames:
+            frame.messages["left/image_raw"] = bad
+        self.assert_refused(self.process_frames(frames), "no usable image pair", expected)
+
+    def test_another_size_than_camera_info_announces(self):
+        self.process_with(image(noise(1)[:100]), f"width, height: {WIDTH}x100, but camera_info announces {WIDTH}x{HEIGHT}")
+
+    def test_unsupported_encoding(self):
+        self.process_with(image(noise(1).astype(np.float32), "32FC1"), 'encoding: "32FC1"')
+
+    def test_truncated_data(self):
+        bad = image(noise(1))
+        bad.data = bad.data[:-1]
+        self.process_with(bad, f"data: {WIDTH * HEIGHT - 1} bytes, but step x height is {WIDTH * HEIGHT}")
+
+    def test_no_data(self):
+        bad = image(noise(1))
+        bad.data = b""
+        self.process_with(bad, "data: 0 bytes")
+
+    def test_step_shorter_than_a_row(self):
+        bad = image(noise(1))
+        bad.step = WIDTH - 1
+        self.process_with(bad, f"step: {WIDTH - 1} bytes")
+
+    def test_supported_encodings(self):
+        grey = noise(1)
+        colour = np.dstack([grey, grey, grey])
+        for encoding, pixels in (("mono16", grey.astype(np.uint16) * 257), ("bgr8", colour), ("rgb8", colour),
+                                 ("bayer_rggb8", grey), ("bayer_bggr8", grey)):
+            with self.subTest(encoding=encoding):
+                frames = noise_frames(2)
+                frames[0].messages["left/image_raw"] = image(pixels, encoding)
+                result = self.process_frames(frames)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_black_saturated_and_uniform_images(self):
+        for grey in (0, 255, 90):
+            with self.subTest(grey=grey):
+                frames = noise_frames()
+                for frame in frames:
+                    flat = np.full((HEIGHT, WIDTH), grey, np.uint8)
+                    frame.messages["left/image_raw"] = image(flat)
+                    frame.messages["right/image_raw"] = image(flat)
+                self.assertEqual(self.process_frames(frames).returncode, 0)
+                rows = self.rows()
+                self.assertEqual(len(rows), 3)
+                self.assert_nothing_valid(rows)
+                self.assertEqual({row["reason"] for row in rows}, {"uniform_image"})
+
+    def test_noise_is_never_valid(self):
+        self.assertEqual(self.process_frames(noise_frames(4)).returncode, 0)
+        self.assert_nothing_valid(self.rows())
+
+
+class StampsTest(ProcessBagTest):
+    def test_repeated_stamp_makes_no_second_row(self):
+        frames = noise_frames(4)
+        frames[2].stamp = frames[1].stamp
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([row["stamp_s"] for row in self.rows()], ["10.000000000", "10.100000000", "10.300000000"])
+        self.assertIn("with a repeated stamp", result.stderr)
+
+    def test_stamps_that_go_back_are_reported_and_followed(self):
+        result = self.process_frames(noise_frames(3, start=20) + noise_frames(3, start=10))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(self.rows()), 6)
+        self.assertIn("stamps went back", result.stderr)
+
+
+class DatasetTest(ProcessBagTest):
+    """Recorded approaches, with the cameras as they are and swapped."""
+
+    def make_bag(self, folder):
+        run([PROGRAMS / "dataset_to_bag", "--dataset", folder, "--output", self.bag], check=True)
+
+    def test_swapped_cameras_are_named_and_never_valid(self):
+        source, swapped = dataset("fg_noon"), self.folder / "swapped"
+        swapped.mkdir()
+        for side, other in (("left", "right"), ("right", "left")):
+            (swapped / side).symlink_to(source / other)
+            shutil.copy(str(source / f"{side}.yaml"), str(swapped))
+        frames = (source / "frames.csv").read_text().splitlines()[:11]
+        (swapped / "frames.csv").write_text("\n".join(frames) + "\n")
+        self.make_bag(swapped)
+        self.assertEqual(self.process().returncode, 0)
+        rows = self.rows()
+        self.assertEqual(len(rows), 10)
+        self.assert_nothing_valid(rows)
+        self.assertIn("negative_disparity", {row["reason"] for row in rows})
+
+    def test_writes_everything_that_was_asked_for(self):
+        self.make_bag(dataset("lab"))
+        output, report = self.folder / "output.bag", self.folder / "report"
+        result = self.process("--output", output, "--report-data", report)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        rows = self.rows()
+        self.assertEqual(len(rows), 120)
+        self.assertGreater(sum(row["valid"] == "1" for row in rows), 110)
+
+        self.assertIn("all stages", result.stdout)
+        timing = (report / "timing.csv").read_text().splitlines()
+        self.assertEqual(len(timing), 121)
+        self.assertIn("overlay_ms", timing[0].split(","))
+        self.assertEqual({line.count(",") for line in timing}, {timing[0].count(",")})
+        for name in ("lines_left", "lines_right", "matches", "overlay"):
+            self.assertEqual(len(list(report.glob(f"{name}_*.png"))), 5)
+
+        with rosbag.Bag(str(output)) as bag:
+            for topic in ("stereo_depth", "approach_angle", "landing_estimate"):
+                self.assertEqual(bag.get_message_count(f"/uav_landing/{topic}"), 120)
+            for row, (_, message, stamp) in zip(rows, bag.read_messages("/uav_landing/landing_estimate")):
+                self.assertEqual(str(message.header.stamp.to_nsec()), row["stamp_s"].replace(".", ""))
+                self.assertEqual(stamp, message.header.stamp)
+                self.assertEqual(message.valid, row["valid"] == "1")
+                if row["height_m"]:
+                    self.assertAlmostEqual(message.height, float(row["height_m"]), delta=1e-9)
+                if row["approach_angle_deg"]:
+                    self.assertAlmostEqual(math.degrees(message.approach_angle), float(row["approach_angle_deg"]),
+                                           delta=1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main()
