@@ -18,3 +18,12 @@ add_executable(process_bag
   src/tools/process_bag.cpp src/tools/estimate_bag.cpp src/tools/estimate_csv.cpp src/tools/offline_chain.cpp
   src/tools/report_data.cpp src/tools/stereo_bag_reader.cpp src/tools/timing_table.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
+
+# rosrun looks everywhere in the source folder but in its folder build/, which is where a plain cmake build puts the
+# programs: links in bin/ lead it there. In a catkin workspace there is nothing to do.
+if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
+  file(MAKE_DIRECTORY ${PROJECT_SOURCE_DIR}/bin)
+  foreach(program dataset_to_bag process_bag simulate_approach)
+    file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
+  endforeach()
+endif()
