@@ -8,7 +8,7 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kMaxRadius = 3;        // px to both sides, first pass
+constexpr int kRadius = 3;           // px to both sides, first pass
 constexpr double kStationStep = 2;   // px between stations; closer ones share pixels
 constexpr double kMaxStations = 80;  // of a long line, which then is at the floor anyway
 constexpr int kMinStations = 6;
@@ -34,31 +34,27 @@ struct Axis {
   }
 };
 
+/// Gradient across the line at -kRadius to kRadius px from it, grey/px, positive when brighter `across`.
+using Gradients = std::array<double, 2 * kRadius + 1>;
+
 class EdgeSampler {
  public:
-  EdgeSampler(const cv::Mat& image, const cv::Mat& ground, double min_gradient)
-      : image_(image), ground_(ground), min_gradient_(min_gradient) {}
+  EdgeSampler(const cv::Mat& image, const cv::Mat& ground) : image_(image), ground_(ground) {}
 
-  /// The edge of this sign (+1: brighter towards `across`) nearest to the line's strongest gradient.
-  std::optional<Peak> peak(const Axis& axis, double along, int sign, int radius) const {
-    std::array<float, 2 * kMaxRadius + 3> profile{};
+  /// At one station, the mean of two places 1 px apart; nothing outside image and ground.
+  std::optional<Gradients> at(const Axis& axis, double along) const {
+    std::array<float, 2 * kRadius + 3> profile{};
     for (const double shift : {-0.5, 0.5})
-      if (!addProfile(axis, along + shift, radius + 1, profile.data())) return std::nullopt;
-    // Two positions were added: the central difference of the sum is twice the sum of both, 4 x gradient.
-    const auto gradient = [&](int i) { return sign * (profile[i + 1] - profile[i - 1]) * 0.25F; };
-    int best = 1;
-    for (int i = 2; i <= 2 * radius + 1; ++i)
-      if (gradient(i) > gradient(best)) best = i;
-    const double g = gradient(best);
-    if (g < min_gradient_ || best == 1 || best == 2 * radius + 1) return std::nullopt;
-    const double before = gradient(best - 1), after = gradient(best + 1);
-    const double curvature = before - 2 * g + after;
-    if (curvature >= 0) return std::nullopt;
-    return Peak{along, best - (radius + 1) + 0.5 * (before - after) / curvature, g, 1};
+      if (!addProfile(axis, along + shift, profile)) return std::nullopt;
+    Gradients gradients;
+    // The central difference spans 2 px, and the profile is the sum of two.
+    for (size_t i = 0; i < gradients.size(); ++i) gradients[i] = 0.25 * (profile[i + 2] - profile[i]);
+    return gradients;
   }
 
  private:
-  bool addProfile(const Axis& axis, double along, int reach, float* profile) const {
+  bool addProfile(const Axis& axis, double along, std::array<float, 2 * kRadius + 3>& profile) const {
+    constexpr int reach = kRadius + 1;
     const Eigen::Vector2d centre = axis.origin + along * axis.along;
     const Eigen::Vector2d low = centre - reach * axis.across, high = centre + reach * axis.across;
     if (!inside(low) || !inside(high)) return false;
@@ -80,8 +76,44 @@ class EdgeSampler {
   }
 
   const cv::Mat &image_, &ground_;
-  double min_gradient_;
 };
+
+/// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
+struct EdgeKind {
+  int sign;
+  double min_gradient;
+};
+
+/// The strongest gradient near the line, interpolated by a parabola: anywhere, but biased by up to 0.1 px.
+std::optional<Peak> searchPeak(const Gradients& gradients, double along, const EdgeKind& kind) {
+  const auto g = [&](int k) { return kind.sign * gradients[kRadius + k]; };
+  int best = -kRadius;
+  for (int k = -kRadius + 1; k <= kRadius; ++k)
+    if (g(k) > g(best)) best = k;
+  if (std::abs(best) == kRadius || g(best) < kind.min_gradient) return std::nullopt;
+  const double curvature = g(best - 1) - 2 * g(best) + g(best + 1);
+  return Peak{along, best + 0.5 * (g(best - 1) - g(best + 1)) / curvature, g(best), 1};
+}
+
+/// The centroid of the gradient within 2.5 px of a line that is nearly right: without bias, whatever the
+/// blur. What a wide edge loses outside the window is made up for: moving the edge by d moves the centroid
+/// by d (1 - W (f(-W) + f(W))), f the gradient's density and W the window's half width.
+std::optional<Peak> centrePeak(const Gradients& gradients, double along, const EdgeKind& kind) {
+  constexpr int kTaps = kRadius - 1;
+  const auto g = [&](int k) { return std::max(kind.sign * gradients[kRadius + k], 0.0); };
+  double sum = 0, moment = 0, strongest = 0;
+  int best = 0;
+  for (int k = -kTaps; k <= kTaps; ++k) {
+    sum += g(k);
+    moment += k * g(k);
+    if (g(k) <= strongest) continue;
+    strongest = g(k);
+    best = k;
+  }
+  if (std::abs(best) > 1 || strongest < kind.min_gradient) return std::nullopt;
+  const double border = 0.5 * (g(-kTaps - 1) + g(-kTaps) + g(kTaps) + g(kTaps + 1));
+  return Peak{along, moment / sum / std::max(1 - (kTaps + 0.5) * border / sum, 0.4), strongest, 1};
+}
 
 struct Collected {
   std::vector<Peak> peaks;
@@ -93,24 +125,29 @@ double stationStep(double length) {
   return std::max(std::clamp(length / kFewStations, 1.0, kStationStep), length / kMaxStations);
 }
 
-Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, int sign,
-                  int radius) {
+using PeakFinder = std::optional<Peak> (*)(const Gradients&, double, const EdgeKind&);
+
+Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, const EdgeKind& kind,
+                  PeakFinder find) {
   Collected found;
   const double step = stationStep(to - from);
   found.peaks.reserve(static_cast<size_t>((to - from) / step) + 2);
   for (double along = from; along <= to; along += step) {
     ++found.stations;
-    if (const auto peak = sampler.peak(axis, along, sign, radius)) found.peaks.push_back(*peak);
+    const auto gradients = sampler.at(axis, along);
+    if (!gradients) continue;
+    if (const auto peak = find(*gradients, along, kind)) found.peaks.push_back(*peak);
   }
   return found;
 }
 
 /// How far the edge goes on beyond `from`, in steps of this sign and size.
-double grow(const EdgeSampler& sampler, const Axis& axis, double from, double step, int sign) {
+double grow(const EdgeSampler& sampler, const Axis& axis, double from, double step, const EdgeKind& kind) {
   double end = from;
   int misses = 0;
   for (double along = from + step; misses < kMaxMisses; along += step) {
-    const auto peak = sampler.peak(axis, along, sign, 2);
+    const auto gradients = sampler.at(axis, along);
+    const auto peak = gradients ? searchPeak(*gradients, along, kind) : std::nullopt;
     if (peak && std::abs(peak->across) < 1) {
       end = along;
       misses = 0;
@@ -197,12 +234,14 @@ double stationVariance(const std::vector<Peak>& peaks, const Fit& fit) {
 
 /// Sign of the edge: the one of which more gradient is found along the line.
 int edgeSign(const EdgeSampler& sampler, const Axis& axis, double half) {
-  double sum[2] = {0, 0};
+  double sum = 0;
   const double step = std::max(kStationStep, half / 4);
   for (double along = -half; along <= half; along += step)
-    for (const int sign : {-1, 1})
-      if (const auto peak = sampler.peak(axis, along, sign, kMaxRadius)) sum[sign > 0] += peak->gradient;
-  return sum[1] >= sum[0] ? 1 : -1;
+    if (const auto gradients = sampler.at(axis, along)) {
+      const auto [lowest, highest] = std::minmax_element(gradients->begin() + 1, gradients->end() - 1);
+      sum += *highest + *lowest;
+    }
+  return sum >= 0 ? 1 : -1;
 }
 
 LineSegment finish(const Axis& axis, const std::vector<Peak>& peaks, const Fit& fit, int sign) {
@@ -233,12 +272,12 @@ LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, 
 
 std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
                                       const Eigen::Vector2d& b, double min_gradient) {
-  const EdgeSampler sampler(image, ground, min_gradient);
+  const EdgeSampler sampler(image, ground);
   Axis axis = Axis::through(a, b);
   double from = -0.5 * (b - a).norm(), to = -from;
-  const int sign = edgeSign(sampler, axis, to);
+  const EdgeKind kind{edgeSign(sampler, axis, to), min_gradient};
   for (int pass = 0; pass < 2; ++pass) {
-    Collected found = collect(sampler, axis, from, to, sign, pass == 0 ? kMaxRadius : 2);
+    Collected found = collect(sampler, axis, from, to, kind, pass == 0 ? searchPeak : centrePeak);
     std::vector<Peak>& peaks = found.peaks;
     if (static_cast<int>(peaks.size()) < kMinStations) return std::nullopt;
     double scale = 0;
@@ -246,12 +285,12 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
     const auto used = std::count_if(peaks.begin(), peaks.end(), [](const Peak& p) { return p.weight > 0; });
     if (used < kMinStations || used < kMinSupport * found.stations || scale > kMaxScatter)
       return std::nullopt;
-    if (pass == 1) return finish(axis, peaks, fit, sign);
+    if (pass == 1) return finish(axis, peaks, fit, kind.sign);
     axis.origin += fit.centre * axis.along + fit.offset * axis.across;
     axis = Axis::through(axis.origin - (axis.along + fit.slope * axis.across),
                          axis.origin + (axis.along + fit.slope * axis.across));
-    from = grow(sampler, axis, from - fit.centre, -kStationStep, sign);
-    to = grow(sampler, axis, to - fit.centre, kStationStep, sign);
+    from = grow(sampler, axis, from - fit.centre, -kStationStep, kind);
+    to = grow(sampler, axis, to - fit.centre, kStationStep, kind);
   }
   return std::nullopt;
 }

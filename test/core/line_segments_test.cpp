@@ -1,0 +1,244 @@
+#include "uav_landing/line_segments.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace uav_landing {
+namespace {
+
+const cv::Size kSize(640, 480);
+constexpr int kSamples = 16;  // per pixel and axis
+
+using Polygon = std::vector<cv::Point2d>;
+
+/// Convex polygons on a dark ground, each pixel the mean over its square: pixel (u, v) is the square around
+/// that point. Blurred a little as a lens does, with noise of this many grey levels.
+cv::Mat render(const std::vector<Polygon>& polygons, double noise = 0, double blur = 0) {
+  cv::Mat image(kSize, CV_32F, cv::Scalar(70));
+  for (const Polygon& polygon : polygons) {
+    const auto inside = [&](double x, double y) {
+      for (size_t i = 0; i < polygon.size(); ++i) {
+        const cv::Point2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        if ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) < 0) return false;
+      }
+      return true;
+    };
+    for (int v = 0; v < kSize.height; ++v)
+      for (int u = 0; u < kSize.width; ++u) {
+        int count = 0, corners = 0;
+        for (const double dy : {-0.5, 0.5})
+          for (const double dx : {-0.5, 0.5}) corners += inside(u + dx, v + dy);
+        if (corners == 0 && polygon.size() == 4 && !inside(u, v)) continue;
+        if (corners == 4) {
+          count = kSamples * kSamples;
+        } else {
+          for (int i = 0; i < kSamples * kSamples; ++i)
+            count +=
+                inside(u - 0.5 + (i % kSamples + 0.5) / kSamples, v - 0.5 + (i / kSamples + 0.5) / kSamples);
+        }
+        const float share = static_cast<float>(count) / (kSamples * kSamples);
+        float& grey = image.at<float>(v, u);
+        grey += share * (190 - grey);
+      }
+  }
+  if (blur > 0) cv::GaussianBlur(image, image, {}, blur);
+  if (noise > 0) {
+    cv::Mat added(kSize, CV_32F);
+    cv::RNG random(5);
+    random.fill(added, cv::RNG::NORMAL, 0, noise);
+    image += added;
+  }
+  cv::Mat grey;
+  image.convertTo(grey, CV_8U);
+  return grey;
+}
+
+/// A runway from the threshold up to near the vanishing point (322, 95), and a centre line 4 px wide.
+std::vector<Polygon> runway() { return {{{301.3, 140.2}, {348.8, 140.2}, {548.4, 455.6}, {103.7, 455.6}}}; }
+
+cv::Mat allGround() {
+  cv::Mat ground = cv::Mat::zeros(kSize, CV_8UC1);
+  ground(cv::Rect(6, 100, 628, 374)) = 255;
+  return ground;
+}
+
+double distance(const LineSegment& line, const cv::Point2d& p) {
+  return std::abs(line.line.dot(Eigen::Vector3d(p.x, p.y, 1)));
+}
+
+/// The found line nearest to the edge from a to b: largest distance of the edge's ends from it.
+const LineSegment* nearest(const std::vector<LineSegment>& lines, const cv::Point2d& a,
+                           const cv::Point2d& b) {
+  const auto miss = [&](const LineSegment& line) { return std::max(distance(line, a), distance(line, b)); };
+  const auto best =
+      std::min_element(lines.begin(), lines.end(),
+                       [&](const LineSegment& l, const LineSegment& r) { return miss(l) < miss(r); });
+  return best == lines.end() ? nullptr : &*best;
+}
+
+void expectEdges(const std::vector<LineSegment>& lines, const Polygon& polygon, double tolerance) {
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const cv::Point2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const LineSegment* line = nearest(lines, a, b);
+    ASSERT_NE(line, nullptr);
+    EXPECT_LT(distance(*line, a), tolerance) << "edge " << i;
+    EXPECT_LT(distance(*line, b), tolerance) << "edge " << i;
+    EXPECT_GT(line->length(), 0.85 * cv::norm(b - a)) << "edge " << i;
+  }
+}
+
+TEST(FindLines, AreWithinATwentiethOfAPixel) {
+  const auto polygons = runway();
+  expectEdges(findLines(render(polygons), allGround(), {}), polygons[0], 0.05);
+}
+
+TEST(FindLines, AreWithinATwentiethOfAPixelWithNoiseAndBlur) {
+  const auto polygons = runway();
+  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), {});
+  expectEdges(lines, polygons[0], 0.05);
+  EXPECT_EQ(lines.size(), 4U);
+}
+
+TEST(FindLines, AreAccurateAtAnyAngleAndPlace) {
+  for (double angle = 0.02; angle < M_PI; angle += 0.31) {
+    const cv::Point2d centre(320.37 + 10 * angle, 280.81), along(std::cos(angle), std::sin(angle)),
+        across(-along.y, along.x);
+    const Polygon bar{centre - 120 * along - 20 * across, centre + 120 * along - 20 * across,
+                      centre + 120 * along + 20 * across, centre - 120 * along + 20 * across};
+    const std::vector<LineSegment> lines = findLines(render({bar}, 1), allGround(), {});
+    for (const int side : {0, 2}) {
+      const LineSegment* line = nearest(lines, bar[side], bar[side + 1]);
+      ASSERT_NE(line, nullptr);
+      EXPECT_LT(distance(*line, bar[side]), 0.05) << angle;
+      EXPECT_LT(distance(*line, bar[side + 1]), 0.05) << angle;
+    }
+  }
+}
+
+TEST(FindLines, StandardHoughFindsTheSameEdges) {
+  ApproachAngleParameters parameters;
+  parameters.hough_method = HoughMethod::kStandard;
+  const auto polygons = runway();
+  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
+  expectEdges(lines, polygons[0], 0.05);
+  EXPECT_EQ(lines.size(), 4U);
+}
+
+TEST(FindLines, StandardHoughCutsALineWhereTheEdgeEnds) {
+  ApproachAngleParameters parameters;
+  parameters.hough_method = HoughMethod::kStandard;
+  const std::vector<Polygon> dashes{{{300.3, 150}, {312.3, 150}, {312.3, 250}, {300.3, 250}},
+                                    {{300.3, 300}, {312.3, 300}, {312.3, 400}, {300.3, 400}}};
+  const std::vector<LineSegment> lines = findLines(render(dashes, 1), allGround(), parameters);
+  int upright = 0;
+  for (const LineSegment& line : lines) {
+    if (std::abs(line.b.x() - line.a.x()) > 5) continue;
+    ++upright;
+    EXPECT_NEAR(line.length(), 100, 8);
+  }
+  EXPECT_EQ(upright, 4);
+}
+
+TEST(FindLines, BothEdgesOfAThinStripeAreFoundApart) {
+  const std::vector<Polygon> stripe{{{310.2, 150.1}, {313.4, 150.1}, {265.3, 440.2}, {261.1, 440.2}}};
+  const std::vector<LineSegment> lines = findLines(render(stripe, 1), allGround(), {});
+  const LineSegment* left = nearest(lines, stripe[0][0], stripe[0][3]);
+  const LineSegment* right = nearest(lines, stripe[0][1], stripe[0][2]);
+  ASSERT_NE(left, nullptr);
+  EXPECT_NE(left, right);
+  // A stripe as thin as the gradient operator pushes its edges apart by some hundredths of a pixel.
+  EXPECT_LT(distance(*left, stripe[0][3]), 0.15);
+  EXPECT_LT(distance(*right, stripe[0][2]), 0.15);
+  // The normals point to the bright inside.
+  EXPECT_GT(left->line.x(), 0.9);
+  EXPECT_LT(right->line.x(), -0.9);
+}
+
+TEST(FindLines, DescribeThemselvesConsistently) {
+  for (const LineSegment& line : findLines(render(runway(), 2, 0.8), allGround(), {})) {
+    EXPECT_NEAR(line.line.head<2>().norm(), 1, 1e-12);
+    EXPECT_NEAR(distance(line, {line.a.x(), line.a.y()}), 0, 1e-9);
+    EXPECT_NEAR(distance(line, {line.b.x(), line.b.y()}), 0, 1e-9);
+    EXPECT_GT(line.offset_stddev, 0);
+    EXPECT_LT(line.offset_stddev, 0.1);
+    EXPECT_GT(line.angle_stddev, 0.05 / line.length());
+    EXPECT_LT(line.angle_stddev, 0.5 / line.length());
+  }
+}
+
+TEST(FindLines, AdmitTheErrorThatNoiseMakes) {
+  // Heavy noise on short bars; the errors in units of the stated deviations must be of order one.
+  double squares = 0;
+  int count = 0;
+  for (int k = 0; k < 6; ++k) {
+    std::vector<Polygon> bars;
+    for (int i = 0; i < 8; ++i) {
+      const double x = 40.2 + 70 * i + 3.1 * k, lean = 6 * i - 25 + k;
+      bars.push_back({{x, 200.3}, {x + 25, 200.3}, {x + 25 + lean, 260.4}, {x + lean, 260.4}});
+    }
+    const std::vector<LineSegment> lines = findLines(render(bars, 12, 0.7), allGround(), {});
+    for (const Polygon& bar : bars) {
+      const LineSegment* line = nearest(lines, bar[3], bar[0]);
+      ASSERT_NE(line, nullptr);
+      if (std::max(distance(*line, bar[0]), distance(*line, bar[3])) > 2) continue;  // not found
+      const Eigen::Vector2d m = line->middle();
+      const double t = (m.y() - bar[0].y) / (bar[3].y - bar[0].y);
+      squares += std::pow(distance(*line, bar[0] + t * (bar[3] - bar[0])) / line->offset_stddev, 2);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 30);
+  EXPECT_LT(squares / count, 2.0);
+  EXPECT_GT(squares / count, 0.2);
+}
+
+TEST(FindLines, AreOnTheGroundOnly) {
+  cv::Mat ground = cv::Mat::zeros(kSize, CV_8UC1);
+  ground(cv::Rect(0, 300, 640, 180)) = 255;
+  const std::vector<LineSegment> lines = findLines(render(runway(), 2, 0.8), ground, {});
+  ASSERT_GE(lines.size(), 2U);
+  for (const LineSegment& line : lines) EXPECT_GT(std::min(line.a.y(), line.b.y()), 299);
+  EXPECT_TRUE(findLines(render(runway()), cv::Mat::zeros(kSize, CV_8UC1), {}).empty());
+}
+
+TEST(FindLines, WithoutRefinementAreAsGoodAsTheirHoughCell) {
+  ApproachAngleParameters parameters;
+  parameters.refine_lines = false;
+  const auto polygons = runway();
+  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
+  for (const auto& [a, b] : {std::pair{polygons[0][1], polygons[0][2]}, {polygons[0][3], polygons[0][0]}}) {
+    const LineSegment* line = nearest(lines, a, b);
+    ASSERT_NE(line, nullptr);
+    EXPECT_LT(distance(*line, 0.5 * (a + b)), 2);
+    EXPECT_GE(line->offset_stddev, 0.3);
+  }
+}
+
+TEST(FindLines, HaveNothingToSayOnAUniformImage) {
+  for (const int grey : {0, 128, 255})
+    EXPECT_TRUE(findLines(cv::Mat(kSize, CV_8UC1, cv::Scalar(grey)), allGround(), {}).empty());
+}
+
+TEST(FindLines, AreTheSameEachTime) {
+  const cv::Mat image = render(runway(), 4, 0.8);
+  const std::vector<LineSegment> first = findLines(image, allGround(), {});
+  const std::vector<LineSegment> second = findLines(image.clone(), allGround(), {});
+  ASSERT_EQ(first.size(), second.size());
+  for (size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i].line, second[i].line);
+    EXPECT_EQ(first[i].a, second[i].a);
+    EXPECT_EQ(first[i].angle_stddev, second[i].angle_stddev);
+  }
+}
+
+TEST(FindLines, LookAtTheWholeOfATinyOrEmptyImageWithoutHarm) {
+  EXPECT_TRUE(findLines(cv::Mat::zeros(4, 4, CV_8UC1), cv::Mat::ones(4, 4, CV_8UC1), {}).empty());
+  const cv::Mat noise(40, 40, CV_8UC1);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
+  findLines(noise, cv::Mat(40, 40, CV_8UC1, cv::Scalar(255)), {});
+}
+
+}  // namespace
+}  // namespace uav_landing
