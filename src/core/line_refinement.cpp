@@ -8,15 +8,14 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kRadius = 3;           // px to both sides, first pass
-constexpr double kStationStep = 2;   // px between stations; closer ones share pixels
-constexpr double kMaxStations = 80;  // of a long line, which then is at the floor anyway
+constexpr int kRadius = 3;         // px to both sides, first pass
+constexpr int kMaxStations = 160;  // rows or columns looked at, roughly; a longer line skips some
 constexpr int kMinStations = 6;
-constexpr double kFewStations = 12;
 constexpr double kMinSupport = 0.6;    // share of stations that must show the edge
 constexpr double kMaxScatter = 0.6;    // px, 1 sigma of the peaks; more is no straight edge
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
-constexpr int kMaxMisses = 2;          // stations without edge at which a growing line ends
+constexpr int kGrowStep = 2;           // rows or columns
+constexpr int kMaxMisses = 2;          // steps without edge at which a growing line ends
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 
 /// Where the edge is at one station: distances along and across the current line, px.
@@ -24,57 +23,52 @@ struct Peak {
   double along, across, gradient, weight;
 };
 
-/// Frame of a line: origin, direction along and (across) 90 degrees clockwise in the picture.
+/// Frame of a line: origin, direction along and (across) 90 degrees clockwise in the picture. Along points
+/// down, or to the right when the line is flat, so that stations are whole rows or columns in rising order.
 struct Axis {
   Eigen::Vector2d origin, along, across;
+  int major, minor;  ///< image axis that the line runs along, and the other: 0 u, 1 v
 
-  static Axis through(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    const Eigen::Vector2d d = (b - a).normalized();
-    return {0.5 * (a + b), d, {-d.y(), d.x()}};
+  Axis(const Eigen::Vector2d& point, const Eigen::Vector2d& direction)
+      : origin(point), along(direction.normalized()) {
+    major = std::abs(along.y()) >= std::abs(along.x()) ? 1 : 0;
+    minor = 1 - major;
+    if (along[major] < 0) along = -along;
+    across = {-along.y(), along.x()};
   }
+  Eigen::Vector2d point(double distance) const { return origin + distance * along; }
+  /// Distance along at a row (of a steep line) or column (of a flat one).
+  double alongAt(int station) const { return (station - origin[major]) / along[major]; }
 };
 
-/// Gradient across the line at -kRadius to kRadius px from it, grey/px, positive when brighter `across`.
+/// Gradient at -kRadius to kRadius px from the line along the row or column of a station, as the gradient
+/// across the line, grey/px, positive when brighter `across`.
 using Gradients = std::array<double, 2 * kRadius + 1>;
 
+/// Looks at whole pixels only: interpolating between them biases the peak by up to 0.1 px.
 class EdgeSampler {
  public:
   EdgeSampler(const cv::Mat& image, const cv::Mat& ground) : image_(image), ground_(ground) {}
 
-  /// At one station, the mean of two places 1 px apart; nothing outside image and ground.
-  std::optional<Gradients> at(const Axis& axis, double along) const {
-    std::array<float, 2 * kRadius + 3> profile{};
-    for (const double shift : {-0.5, 0.5})
-      if (!addProfile(axis, along + shift, profile)) return std::nullopt;
+  /// Gradients and the pixel in their middle; nothing outside image and ground.
+  std::optional<std::pair<Gradients, cv::Point>> at(const Axis& axis, int station) const {
+    const int centre = cvRound(axis.point(axis.alongAt(station))[axis.minor]);
+    const cv::Point pixel = axis.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
+    constexpr int kReach = kRadius + 1;
+    const int size = axis.minor == 0 ? image_.cols : image_.rows;
+    if (centre < kReach || centre >= size - kReach || pixel.x < 0 || pixel.y < 0 || pixel.x >= image_.cols ||
+        pixel.y >= image_.rows || ground_.at<uchar>(pixel) == 0)
+      return std::nullopt;
+    const uchar* middle = image_.ptr<uchar>(pixel.y) + pixel.x;
+    const std::ptrdiff_t step = axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image_.step);
+    const double scale = 0.5 / axis.across[axis.minor];
     Gradients gradients;
-    // The central difference spans 2 px, and the profile is the sum of two.
-    for (size_t i = 0; i < gradients.size(); ++i) gradients[i] = 0.25 * (profile[i + 2] - profile[i]);
-    return gradients;
+    for (int k = -kRadius; k <= kRadius; ++k)
+      gradients[kRadius + k] = scale * (middle[(k + 1) * step] - middle[(k - 1) * step]);
+    return std::make_pair(gradients, pixel);
   }
 
  private:
-  bool addProfile(const Axis& axis, double along, std::array<float, 2 * kRadius + 3>& profile) const {
-    constexpr int reach = kRadius + 1;
-    const Eigen::Vector2d centre = axis.origin + along * axis.along;
-    const Eigen::Vector2d low = centre - reach * axis.across, high = centre + reach * axis.across;
-    if (!inside(low) || !inside(high)) return false;
-    if (ground_.at<uchar>(static_cast<int>(centre.y() + 0.5), static_cast<int>(centre.x() + 0.5)) == 0)
-      return false;
-    for (int i = 0; i <= 2 * reach; ++i) profile[i] += bilinear(low + i * axis.across);
-    return true;
-  }
-  bool inside(const Eigen::Vector2d& p) const {
-    return p.x() >= 0 && p.y() >= 0 && p.x() < image_.cols - 1 && p.y() < image_.rows - 1;
-  }
-  float bilinear(const Eigen::Vector2d& p) const {
-    const int x = static_cast<int>(p.x()), y = static_cast<int>(p.y());
-    const float fx = static_cast<float>(p.x() - x), fy = static_cast<float>(p.y() - y);
-    const uchar* row = image_.ptr<uchar>(y) + x;
-    const uchar* below = image_.ptr<uchar>(y + 1) + x;
-    const float top = row[0] + fx * (row[1] - row[0]), bottom = below[0] + fx * (below[1] - below[0]);
-    return top + fy * (bottom - top);
-  }
-
   const cv::Mat &image_, &ground_;
 };
 
@@ -84,35 +78,20 @@ struct EdgeKind {
   double min_gradient;
 };
 
-/// The strongest gradient near the line, interpolated by a parabola: anywhere, but biased by up to 0.1 px.
-std::optional<Peak> searchPeak(const Gradients& gradients, double along, const EdgeKind& kind) {
-  const auto g = [&](int k) { return kind.sign * gradients[kRadius + k]; };
-  int best = -kRadius;
-  for (int k = -kRadius + 1; k <= kRadius; ++k)
+/// The strongest gradient within `reach` px of the line, interpolated by a parabola.
+std::optional<Peak> findPeak(const EdgeSampler& sampler, const Axis& axis, int station, const EdgeKind& kind,
+                             int reach) {
+  const auto sample = sampler.at(axis, station);
+  if (!sample) return std::nullopt;
+  const auto g = [&](int k) { return kind.sign * sample->first[kRadius + k]; };
+  int best = -reach - 1;
+  for (int k = -reach; k <= reach + 1; ++k)
     if (g(k) > g(best)) best = k;
-  if (std::abs(best) == kRadius || g(best) < kind.min_gradient) return std::nullopt;
-  const double curvature = g(best - 1) - 2 * g(best) + g(best + 1);
-  return Peak{along, best + 0.5 * (g(best - 1) - g(best + 1)) / curvature, g(best), 1};
-}
-
-/// The centroid of the gradient within 2.5 px of a line that is nearly right: without bias, whatever the
-/// blur. What a wide edge loses outside the window is made up for: moving the edge by d moves the centroid
-/// by d (1 - W (f(-W) + f(W))), f the gradient's density and W the window's half width.
-std::optional<Peak> centrePeak(const Gradients& gradients, double along, const EdgeKind& kind) {
-  constexpr int kTaps = kRadius - 1;
-  const auto g = [&](int k) { return std::max(kind.sign * gradients[kRadius + k], 0.0); };
-  double sum = 0, moment = 0, strongest = 0;
-  int best = 0;
-  for (int k = -kTaps; k <= kTaps; ++k) {
-    sum += g(k);
-    moment += k * g(k);
-    if (g(k) <= strongest) continue;
-    strongest = g(k);
-    best = k;
-  }
-  if (std::abs(best) > 1 || strongest < kind.min_gradient) return std::nullopt;
-  const double border = 0.5 * (g(-kTaps - 1) + g(-kTaps) + g(kTaps) + g(kTaps + 1));
-  return Peak{along, moment / sum / std::max(1 - (kTaps + 0.5) * border / sum, 0.4), strongest, 1};
+  if (std::abs(best) > reach || g(best) < kind.min_gradient) return std::nullopt;
+  Eigen::Vector2d p(sample->second.x, sample->second.y);
+  p[axis.minor] += best + 0.5 * (g(best - 1) - g(best + 1)) / (g(best - 1) - 2 * g(best) + g(best + 1));
+  p -= axis.origin;
+  return Peak{axis.along.dot(p), axis.across.dot(p), g(best), 1};
 }
 
 struct Collected {
@@ -120,36 +99,28 @@ struct Collected {
   int stations = 0;
 };
 
-/// Closer stations on a short line: they share pixels, but it takes several to see that it is straight.
-double stationStep(double length) {
-  return std::max(std::clamp(length / kFewStations, 1.0, kStationStep), length / kMaxStations);
-}
-
-using PeakFinder = std::optional<Peak> (*)(const Gradients&, double, const EdgeKind&);
-
+/// Peaks at the rows or columns between two distances along the line.
 Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, const EdgeKind& kind,
-                  PeakFinder find) {
+                  int reach) {
   Collected found;
-  const double step = stationStep(to - from);
-  found.peaks.reserve(static_cast<size_t>((to - from) / step) + 2);
-  for (double along = from; along <= to; along += step) {
+  const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
+  const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
+  const int step = std::max(1, (last - first) / kMaxStations);
+  for (int station = first; station <= last; station += step) {
     ++found.stations;
-    const auto gradients = sampler.at(axis, along);
-    if (!gradients) continue;
-    if (const auto peak = find(*gradients, along, kind)) found.peaks.push_back(*peak);
+    if (const auto peak = findPeak(sampler, axis, station, kind, reach)) found.peaks.push_back(*peak);
   }
   return found;
 }
 
-/// How far the edge goes on beyond `from`, in steps of this sign and size.
-double grow(const EdgeSampler& sampler, const Axis& axis, double from, double step, const EdgeKind& kind) {
+/// How far the edge goes on beyond `from`, in steps of this many rows or columns.
+double grow(const EdgeSampler& sampler, const Axis& axis, double from, int step, const EdgeKind& kind) {
   double end = from;
   int misses = 0;
-  for (double along = from + step; misses < kMaxMisses; along += step) {
-    const auto gradients = sampler.at(axis, along);
-    const auto peak = gradients ? searchPeak(*gradients, along, kind) : std::nullopt;
+  for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
+    const auto peak = findPeak(sampler, axis, station, kind, 1);
     if (peak && std::abs(peak->across) < 1) {
-      end = along;
+      end = peak->along;
       misses = 0;
     } else {
       ++misses;
@@ -235,10 +206,11 @@ double stationVariance(const std::vector<Peak>& peaks, const Fit& fit) {
 /// Sign of the edge: the one of which more gradient is found along the line.
 int edgeSign(const EdgeSampler& sampler, const Axis& axis, double half) {
   double sum = 0;
-  const double step = std::max(kStationStep, half / 4);
-  for (double along = -half; along <= half; along += step)
-    if (const auto gradients = sampler.at(axis, along)) {
-      const auto [lowest, highest] = std::minmax_element(gradients->begin() + 1, gradients->end() - 1);
+  const int first = cvRound(axis.point(-half)[axis.major]), last = cvRound(axis.point(half)[axis.major]);
+  const int step = std::max(1, (last - first) / 16);
+  for (int station = first; station <= last; station += step)
+    if (const auto sample = sampler.at(axis, station)) {
+      const auto [lowest, highest] = std::minmax_element(sample->first.begin() + 1, sample->first.end() - 1);
       sum += *highest + *lowest;
     }
   return sum >= 0 ? 1 : -1;
@@ -249,7 +221,7 @@ LineSegment finish(const Axis& axis, const std::vector<Peak>& peaks, const Fit& 
   const double first = std::find_if(peaks.begin(), peaks.end(), used)->along;
   const double last = std::find_if(peaks.rbegin(), peaks.rend(), used)->along;
   const auto point = [&](double along) -> Eigen::Vector2d {
-    return axis.origin + along * axis.along + (fit.offset + fit.slope * (along - fit.centre)) * axis.across;
+    return axis.point(along) + (fit.offset + fit.slope * (along - fit.centre)) * axis.across;
   };
   const double variance = stationVariance(peaks, fit);
   const double off_centre = 0.5 * (first + last) - fit.centre;
@@ -265,19 +237,18 @@ LineSegment finish(const Axis& axis, const std::vector<Peak>& peaks, const Fit& 
 
 LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double offset_stddev,
                             double angle_stddev) {
-  const Axis axis = Axis::through(a, b);
-  return {
-      a, b, {axis.across.x(), axis.across.y(), -axis.across.dot(axis.origin)}, offset_stddev, angle_stddev};
+  const Eigen::Vector2d along = (b - a).normalized(), across(-along.y(), along.x());
+  return {a, b, {across.x(), across.y(), -across.dot(0.5 * (a + b))}, offset_stddev, angle_stddev};
 }
 
 std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
                                       const Eigen::Vector2d& b, double min_gradient) {
   const EdgeSampler sampler(image, ground);
-  Axis axis = Axis::through(a, b);
+  Axis axis(0.5 * (a + b), b - a);
   double from = -0.5 * (b - a).norm(), to = -from;
   const EdgeKind kind{edgeSign(sampler, axis, to), min_gradient};
-  for (int pass = 0; pass < 2; ++pass) {
-    Collected found = collect(sampler, axis, from, to, kind, pass == 0 ? searchPeak : centrePeak);
+  for (const int reach : {2, 1}) {
+    Collected found = collect(sampler, axis, from, to, kind, reach);
     std::vector<Peak>& peaks = found.peaks;
     if (static_cast<int>(peaks.size()) < kMinStations) return std::nullopt;
     double scale = 0;
@@ -285,12 +256,10 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
     const auto used = std::count_if(peaks.begin(), peaks.end(), [](const Peak& p) { return p.weight > 0; });
     if (used < kMinStations || used < kMinSupport * found.stations || scale > kMaxScatter)
       return std::nullopt;
-    if (pass == 1) return finish(axis, peaks, fit, kind.sign);
-    axis.origin += fit.centre * axis.along + fit.offset * axis.across;
-    axis = Axis::through(axis.origin - (axis.along + fit.slope * axis.across),
-                         axis.origin + (axis.along + fit.slope * axis.across));
-    from = grow(sampler, axis, from - fit.centre, -kStationStep, kind);
-    to = grow(sampler, axis, to - fit.centre, kStationStep, kind);
+    if (reach == 1) return finish(axis, peaks, fit, kind.sign);
+    axis = Axis(axis.point(fit.centre) + fit.offset * axis.across, axis.along + fit.slope * axis.across);
+    from = grow(sampler, axis, from - fit.centre, -kGrowStep, kind);
+    to = grow(sampler, axis, to - fit.centre, kGrowStep, kind);
   }
   return std::nullopt;
 }

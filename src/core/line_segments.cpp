@@ -125,15 +125,47 @@ void keepLongest(std::vector<T>& items, size_t count, const Ends& ends) {
   if (items.size() > count) items.resize(count);
 }
 
-/// Whether both ends of a segment lie on this line, within its ends.
-bool covers(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+/// Whether both ends of a segment lie on this line, and part of it within its ends.
+bool overlaps(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (std::abs(line.line.dot(a.homogeneous())) > kSameEdge ||
+      std::abs(line.line.dot(b.homogeneous())) > kSameEdge)
+    return false;
   const Eigen::Vector2d along = (line.b - line.a).normalized();
-  for (const Eigen::Vector2d* p : {&a, &b}) {
-    if (std::abs(line.line.dot(p->homogeneous())) > kSameEdge) return false;
-    const double position = along.dot(*p - line.a);
-    if (position < -2 || position > line.length() + 2) return false;
+  const double p = along.dot(a - line.a), q = along.dot(b - line.a);
+  return std::max(p, q) >= 0 && std::min(p, q) <= line.length();
+}
+
+/// Adds a refined line, or lets the longer one stand when it is an edge already found. The other edge of a
+/// thin stripe is another line: its brighter side is the opposite one.
+void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
+  const auto same = std::find_if(lines.begin(), lines.end(), [&line](const LineSegment& other) {
+    return other.line.head<2>().dot(line.line.head<2>()) > 0 &&
+           (overlaps(other, line.a, line.b) || overlaps(line, other.a, other.b));
+  });
+  if (same == lines.end())
+    lines.push_back(line);
+  else if (line.length() > same->length())
+    *same = line;
+}
+
+std::vector<LineSegment> refined(const std::vector<Segment>& candidates, const cv::Mat& image,
+                                 const cv::Mat& ground, double min_length, double min_gradient) {
+  std::vector<LineSegment> lines;
+  for (const auto& [a, b] : candidates) {
+    const auto line = refineLine(image, ground, a, b, min_gradient);
+    if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }
-  return true;
+  return lines;
+}
+
+std::vector<LineSegment> asFound(const std::vector<Segment>& candidates) {
+  std::vector<LineSegment> lines;
+  for (const Segment& s : candidates)
+    if (std::none_of(lines.begin(), lines.end(),
+                     [&s](const LineSegment& line) { return overlaps(line, s.first, s.second); }))
+      lines.push_back(makeLineSegment(s.first, s.second, kUnrefinedStddev,
+                                      kUnrefinedStddev * std::sqrt(12.0) / (s.second - s.first).norm()));
+  return lines;
 }
 
 void shift(LineSegment& line, const Eigen::Vector2d& by) {
@@ -153,29 +185,10 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
   std::vector<Segment> candidates = houghSegments(edges, min_length, parameters);
   keepLongest(candidates, kMaxCandidates, [](const Segment& s) { return s; });
 
-  std::vector<LineSegment> lines;
   const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
-  for (const auto& [a, b] : candidates) {
-    const auto known = [&, &a = a, &b = b](const LineSegment& line) { return covers(line, a, b); };
-    std::optional<LineSegment> line;
-    if (parameters.refine_lines) {
-      line = refineLine(image(part), ground(part), a, b, min_gradient);
-      if (!line || line->length() < min_length) continue;
-      // The other edge of a thin stripe is another line: its brighter side is the opposite one.
-      const auto same = std::find_if(lines.begin(), lines.end(), [&](const LineSegment& other) {
-        return other.line.head<2>().dot(line->line.head<2>()) > 0 &&
-               (covers(other, line->a, line->b) || covers(*line, other.a, other.b));
-      });
-      if (same != lines.end()) {
-        if (line->length() > same->length()) *same = *line;
-        continue;
-      }
-    } else {
-      if (std::any_of(lines.begin(), lines.end(), known)) continue;
-      line = makeLineSegment(a, b, kUnrefinedStddev, kUnrefinedStddev * std::sqrt(12.0) / (b - a).norm());
-    }
-    lines.push_back(*line);
-  }
+  std::vector<LineSegment> lines =
+      parameters.refine_lines ? refined(candidates, image(part), ground(part), min_length, min_gradient)
+                              : asFound(candidates);
   for (LineSegment& line : lines) shift(line, {part.x, part.y});
   keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Segment(l.a, l.b); });
   return lines;
