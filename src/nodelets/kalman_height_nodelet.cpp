@@ -1,0 +1,253 @@
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <sensor_msgs/Range.h>
+#include <tf2_eigen/tf2_eigen.h>
+#include <tf2_msgs/TFMessage.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "body_pose.h"
+#include "conversions.h"
+#include "landing_markers.h"
+#include "pairing.h"
+#include "rig_frames.h"
+#include "rig_watch.h"
+#include "runway_path.h"
+#include "stage_nodelet.h"
+#include "uav_landing/kalman_height_stage.h"
+
+namespace uav_landing {
+
+/// Height by reconstruction and Kalman filter; the landing estimate and what is made of it.
+///
+/// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, runway_width, runway_length,
+/// drop_frames and the common ones of NodeParameters. Subscribes stereo_depth, approach_angle,
+/// {left,right}/camera_info, /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate
+/// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
+/// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
+/// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. markers
+/// (MarkerArray).
+class KalmanHeightNodelet : public StageNodelet {
+ public:
+  KalmanHeightNodelet() : StageNodelet("kalman_height") {}
+  ~KalmanHeightNodelet() override {
+    stop();
+    age_timer_.stop();
+    tf_subscriber_.shutdown();
+    tf_static_subscriber_.shutdown();
+  }
+
+ private:
+  using Inputs = Pairing<StereoDepth, ApproachAngle, sensor_msgs::CameraInfo, sensor_msgs::CameraInfo>;
+  static constexpr double kMaxRange = 10000;  // m
+
+  void setUp() override {
+    parameters_ = loadParametersOrThrow<KalmanHeightParameters>();
+    frames_ = std::make_unique<RigFrames>(node_.base_frame, node_.runway_frame);
+    pairing_ = std::make_unique<Inputs>(
+        exactPairing(), resolved({kStereoDepth, kApproachAngle, kLeftInfo, kRightInfo}),
+        [this](const auto& stereo, const auto& approach, const auto& left_info, const auto& right_info) {
+          guard([&] { process(*stereo, *approach, *left_info, *right_info); });
+        });
+
+    ros::NodeHandle& handle = getNodeHandle();
+    estimate_publisher_ = handle.advertise<LandingEstimate>(kLandingEstimate, kStageQueue);
+    range_publisher_ = handle.advertise<sensor_msgs::Range>("height", kStageQueue);
+    pose_publisher_ = handle.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", kStageQueue);
+    marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("markers", 1);
+    if (node_.publish_tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+
+    tf_static_subscriber_ = handle.subscribe<tf2_msgs::TFMessage>(
+        "/tf_static", 100,
+        [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { frames_->add(*m, true); }); });
+    tf_subscriber_ = handle.subscribe<tf2_msgs::TFMessage>(
+        "/tf", 100,
+        [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { frames_->add(*m, false); }); });
+    if (node_.drop_frames)
+      age_timer_ = handle.createWallTimer(ros::WallDuration(parameters_.max_age / 4),
+                                          [this](const ros::WallTimerEvent&) { guard([&] { checkAge(); }); });
+  }
+
+  // The transform is an output that nobody subscribes by name, so the chain always runs.
+  bool wanted() const override { return true; }
+  void subscribe() override {
+    feed<0, StereoDepth>(kStereoDepth, *pairing_, subscribers_);
+    feed<1, ApproachAngle>(kApproachAngle, *pairing_, subscribers_);
+    feed<2, sensor_msgs::CameraInfo>(kLeftInfo, *pairing_, subscribers_);
+    feed<3, sensor_msgs::CameraInfo>(kRightInfo, *pairing_, subscribers_);
+  }
+  void unsubscribe() override {
+    subscribers_.clear();
+    pairing_->reset();
+  }
+  std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
+  std::string complaint() override { return pairing_->complaint(); }
+  void complainMore() override {
+    if (!valid_lately_ && !last_reason_.empty())
+      NODELET_WARN("%s: no valid estimate for %.3g s: %s", getName().c_str(), node_.complaint_period,
+                   last_reason_.c_str());
+    valid_lately_ = false;
+    last_reason_.clear();
+  }
+
+  void process(const StereoDepth& stereo, const ApproachAngle& approach,
+               const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
+    last_pair_ = ros::Time::now();
+    double compute_ms = stereo.compute_ms + approach.compute_ms;
+    const ApproachAngleResult approach_result = toResult(approach);
+    LandingResult camera = attempt<LandingResult>([&]() -> Expected<LandingResult> {
+      const Failure wrong_cameras = prepare(left_info, right_info);
+      if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
+      LandingResult result = stage_->process(toResult(stereo), approach_result);
+      compute_ms += stage_->timings().total();
+      return result;
+    });
+    camera.stamp = stereo.header.stamp.toSec();
+    report_.served(stereo.header.stamp, compute_ms, camera.failure.message());
+    publish(stereo, compute_ms, camera, approach_result.step, left_info);
+  }
+
+  Failure prepare(const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
+    if (cameras_.changed(left_info, right_info)) {
+      stage_.reset();
+      const auto rig = makeStereoRig(cameras_.left(), cameras_.right());
+      rig_failure_ = rig ? Failure() : rig.error();
+      if (rig) stage_.emplace(*rig, parameters_);
+    }
+    return rig_failure_;
+  }
+
+  void publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
+               const ApproachAngleResult::Motion& step, const sensor_msgs::CameraInfo& left_info) {
+    left_frame_ = left_info.header.frame_id;
+    const RigFrames::Child child = frames_->find(left_frame_);
+    // camera_info's R turns the camera as it is mounted into the rectified one.
+    const Eigen::Isometry3d rectified_from_left(Eigen::Quaterniond(cameras_.left().R));
+    const Eigen::Isometry3d rectified_from_child =
+        child.left_from_child ? rectified_from_left * *child.left_from_child : Eigen::Isometry3d::Identity();
+    const Eigen::Vector3d lever_arm = rectified_from_child.translation();
+    LandingResult estimate = child.left_from_child ? referTo(lever_arm, camera, step) : camera;
+    if (child.failure) {
+      estimate.failure = child.failure;
+      estimate.height_valid = estimate.angle_valid = false;
+    }
+    note(estimate);
+
+    std_msgs::Header header = stereo.header;
+    header.frame_id = node_.runway_frame;
+    estimate_publisher_.publish(boost::make_shared<LandingEstimate>(
+        toMessage(estimate, header, child.frame, stereo.skew, compute_ms)));
+    publishRange(estimate, stereo.header.stamp, child.frame);
+
+    const std::optional<RunwayPath::Position> place = path_.update(camera);
+    const bool placed = place && estimate.height_valid;
+    const Eigen::Matrix3d runway_from_camera = runwayFromCamera(camera);
+    if (placed) {
+      Eigen::Isometry3d runway_from_child = Eigen::Isometry3d::Identity();
+      runway_from_child.linear() = runway_from_camera * rectified_from_child.linear();
+      runway_from_child.translation() = place->position + runway_from_camera * lever_arm;
+      publishPose(header, runway_from_child, place->variance, estimate);
+      if (child.may_broadcast) broadcast(header, child.frame, runway_from_child);
+    }
+    if (marker_publisher_.getNumSubscribers() > 0) {
+      std::optional<Eigen::Vector3d> position;
+      if (placed) position = place->position;
+      marker_publisher_.publish(drawLanding(header, node_, estimate, position,
+                                            (runway_from_camera * camera.velocity).head<2>(), path_.track()));
+    }
+  }
+
+  void publishRange(const LandingResult& estimate, const ros::Time& stamp, const std::string& frame) {
+    const auto range = boost::make_shared<sensor_msgs::Range>();
+    range->header.stamp = stamp;
+    range->header.frame_id = frame;
+    range->radiation_type = sensor_msgs::Range::INFRARED;
+    range->min_range = 0;
+    range->max_range = kMaxRange;
+    range->range = static_cast<float>(estimate.height_valid ? estimate.height : kUnknown);
+    range_publisher_.publish(range);
+  }
+
+  void publishPose(const std_msgs::Header& header, const Eigen::Isometry3d& runway_from_child,
+                   const Eigen::Vector2d& xy_variance, const LandingResult& estimate) {
+    const auto pose = boost::make_shared<geometry_msgs::PoseWithCovarianceStamped>();
+    pose->header = header;
+    pose->pose.pose = tf2::toMsg(runway_from_child);
+    const double unknown_angle = M_PI * M_PI;  // rad^2
+    const double yaw_variance = std::isfinite(estimate.yaw_variance) ? estimate.yaw_variance : unknown_angle;
+    const double variances[] = {xy_variance.x(),        xy_variance.y(),         estimate.height_variance,
+                                estimate.roll_variance, estimate.pitch_variance, yaw_variance};
+    for (size_t i = 0; i < 6; ++i) pose->pose.covariance[7 * i] = variances[i];
+    pose_publisher_.publish(pose);
+  }
+
+  void broadcast(const std_msgs::Header& header, const std::string& child_frame,
+                 const Eigen::Isometry3d& runway_from_child) {
+    // One transform per stamp; a clock that was set back starts anew.
+    if (!broadcaster_ || header.stamp == last_broadcast_ || !runway_from_child.matrix().allFinite()) return;
+    last_broadcast_ = header.stamp;
+    geometry_msgs::TransformStamped transform = tf2::eigenToTransform(runway_from_child);
+    transform.header = header;
+    transform.child_frame_id = child_frame;
+    broadcaster_->sendTransform(transform);
+  }
+
+  /// Says that there is no estimate when no pair came for max_age, once per max_age of the ROS clock.
+  void checkAge() {
+    const ros::Time now = ros::Time::now();
+    const ros::Duration max_age(parameters_.max_age);
+    if (last_pair_.isZero() || now < last_pair_) last_pair_ = now;  // just started, or the clock was set back
+    if (now < last_timeout_) last_timeout_ = now;
+    if (now.isZero() || now - std::max(last_pair_, last_timeout_) < max_age) return;
+    last_timeout_ = now;
+    LandingResult lost;
+    if (stage_) {
+      lost = stage_->timeout(now.toSec());
+    } else {
+      lost.stamp = now.toSec();
+      lost.status = Status::kLost;
+      lost.failure = {Reason::kTimeout, "no image pair yet"};
+    }
+    note(lost);
+    std_msgs::Header header;
+    header.stamp = now;
+    header.frame_id = node_.runway_frame;
+    const std::string child = stage_ ? frames_->find(left_frame_).frame : "";
+    estimate_publisher_.publish(
+        boost::make_shared<LandingEstimate>(toMessage(lost, header, child, kUnknown, 0)));
+    publishRange(lost, now, child);
+    if (marker_publisher_.getNumSubscribers() > 0)
+      marker_publisher_.publish(
+          drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(), path_.track()));
+  }
+
+  void note(const LandingResult& estimate) {
+    valid_lately_ = valid_lately_ || estimate.valid();
+    if (!estimate.valid()) last_reason_ = estimate.failure.message();
+  }
+
+  KalmanHeightParameters parameters_;
+  std::unique_ptr<RigFrames> frames_;
+  std::unique_ptr<Inputs> pairing_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber tf_subscriber_, tf_static_subscriber_;
+  ros::Publisher estimate_publisher_, range_publisher_, pose_publisher_, marker_publisher_;
+  std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;
+  ros::WallTimer age_timer_;
+
+  RigWatch cameras_;
+  Failure rig_failure_;
+  std::optional<KalmanHeightStage> stage_;
+  RunwayPath path_;
+  std::string left_frame_;
+  ros::Time last_pair_, last_timeout_, last_broadcast_;
+  bool valid_lately_ = false;
+  std::string last_reason_;
+};
+
+}  // namespace uav_landing
+
+PLUGINLIB_EXPORT_CLASS(uav_landing::KalmanHeightNodelet, nodelet::Nodelet)

@@ -1,0 +1,260 @@
+#include <image_transport/image_transport.h>
+#include <sensor_msgs/TimeReference.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <optional>
+#include <pluginlib/class_list_macros.hpp>
+#include <thread>
+
+#include "camera_info.h"
+#include "image_input.h"
+#include "image_pool.h"
+#include "pairing.h"
+#include "pairs_in_flight.h"
+#include "stage_nodelet.h"
+#include "uav_landing/rectification.h"
+#include "uav_landing/timings.h"
+
+namespace uav_landing {
+
+/// Pairs and rectifies the images of two cameras.
+///
+/// Parameters: RectifyParameters; camera, image_transport, drop_frames, backlog and the common ones of
+/// NodeParameters. Subscribes <camera>/{left,right}/{image_raw, camera_info}, while somebody wants the
+/// output. Publishes {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the
+/// stamp of the left image and in the frames of the cameras; the time reference holds the stamp of the right
+/// image (the skew). A pair whose image or calibration cannot be used is left out, and the log says what is
+/// wrong with it.
+class RectifyNodelet : public StageNodelet {
+ public:
+  RectifyNodelet() : StageNodelet("rectify") {}
+  ~RectifyNodelet() override {
+    stop();
+    stopping_ = true;
+    job_came_.notify_all();
+    if (worker_.joinable()) worker_.join();
+  }
+
+ private:
+  /// The stages work on one pair each, and one waits.
+  static constexpr size_t kPairsInFlight = 3;
+  static constexpr uint32_t kOutputQueue = 20;
+
+  struct Job {
+    sensor_msgs::ImageConstPtr left, right;
+    sensor_msgs::CameraInfoConstPtr left_info, right_info;
+  };
+  struct View {
+    std::string topic;  // of the raw image
+    image_transport::Subscriber image_subscriber;
+    ros::Subscriber info_subscriber;
+    image_transport::Publisher image_publisher;
+    ros::Publisher info_publisher;
+    std::optional<CameraCalibration> calibration;  // that the rectifier was made for
+    Expected<Rectifier> rectifier = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+  };
+
+  void setUp() override {
+    parameters_ = loadParametersOrThrow<RectifyParameters>();
+    RectifyParameters pairing = parameters_;
+    // In order and complete: the four inputs are read from four connections, and one may be far ahead.
+    if (!node_.drop_frames) pairing.queue_size = std::max(pairing.queue_size, node_.backlog);
+    input_queue_ = static_cast<uint32_t>(pairing.queue_size);
+
+    transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
+    advertise("left", left_);
+    advertise("right", right_);
+    skew_publisher_ = getNodeHandle().advertise<sensor_msgs::TimeReference>(
+        "right/time_reference", kOutputQueue, onConnection(), onConnection());
+    in_flight_ = PairsInFlight::of(getNodeHandle().resolveName("left/image_rect"));
+    pairing_ = std::make_unique<StereoPairing>(
+        pairing, std::vector<std::string>{left_.topic, infoTopic("left"), right_.topic, infoTopic("right")},
+        [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info) {
+          enqueue({left, right, left_info, right_info});
+        });
+    worker_ = std::thread([this] { work(); });
+  }
+
+  std::string infoTopic(const std::string& side) const {
+    return getNodeHandle().resolveName(node_.camera + "/" + side + "/camera_info");
+  }
+
+  void advertise(const std::string& side, View& view) {
+    view.topic = getNodeHandle().resolveName(node_.camera + "/" + side + "/image_raw");
+    const image_transport::SubscriberStatusCallback changed =
+        [this](const image_transport::SingleSubscriberPublisher&) { updateSubscription(); };
+    view.image_publisher = transport_->advertise(side + "/image_rect", kOutputQueue, changed, changed);
+    view.info_publisher = getNodeHandle().advertise<sensor_msgs::CameraInfo>(
+        side + "/camera_info", kOutputQueue, onConnection(), onConnection());
+  }
+
+  bool wanted() const override {
+    return left_.image_publisher.getNumSubscribers() + right_.image_publisher.getNumSubscribers() +
+               left_.info_publisher.getNumSubscribers() + right_.info_publisher.getNumSubscribers() +
+               skew_publisher_.getNumSubscribers() >
+           0;
+  }
+
+  void subscribe() override {
+    subscribeView<0>("left", left_);
+    subscribeView<2>("right", right_);
+  }
+
+  template <size_t kInput>
+  void subscribeView(const std::string& side, View& view) {
+    const auto no_delay = ros::TransportHints().tcpNoDelay();
+    view.image_subscriber = transport_->subscribe(
+        view.topic, input_queue_,
+        boost::function<void(const sensor_msgs::ImageConstPtr&)>(
+            [this](const sensor_msgs::ImageConstPtr& image) {
+              guard([&] { pairing_->add<kInput>(image); });
+            }),
+        ros::VoidPtr(),
+        image_transport::TransportHints(node_.image_transport, no_delay, getPrivateNodeHandle()));
+    view.info_subscriber = getNodeHandle().subscribe<sensor_msgs::CameraInfo>(
+        infoTopic(side), input_queue_,
+        [this](const sensor_msgs::CameraInfoConstPtr& info) {
+          guard([&] { pairing_->add<kInput + 1>(info); });
+        },
+        ros::VoidConstPtr(), no_delay);
+  }
+
+  void unsubscribe() override {
+    for (View* view : {&left_, &right_}) {
+      view->image_subscriber.shutdown();
+      view->info_subscriber.shutdown();
+    }
+    pairing_->reset();
+  }
+
+  std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
+  std::string complaint() override { return pairing_->complaint(); }
+
+  void enqueue(Job job) {
+    const std::lock_guard<std::mutex> lock(jobs_mutex_);
+    jobs_.push_back(std::move(job));
+    const size_t most = node_.drop_frames ? 1 : static_cast<size_t>(node_.backlog);
+    while (jobs_.size() > most) {
+      jobs_.pop_front();
+      report_.dropped();
+    }
+    job_came_.notify_all();
+  }
+
+  void work() {
+    using std::chrono::milliseconds;
+    while (!stopping_) {
+      {
+        std::unique_lock<std::mutex> lock(jobs_mutex_);
+        if (!job_came_.wait_for(lock, milliseconds(100), [this] { return stopping_ || !jobs_.empty(); }))
+          continue;
+      }
+      // Waiting comes before taking the job: what is taken is then the newest.
+      if (!in_flight_->waitUntilBelow(kPairsInFlight, milliseconds(100))) continue;
+      Job job;
+      {
+        const std::lock_guard<std::mutex> lock(jobs_mutex_);
+        if (jobs_.empty()) continue;
+        job = std::move(jobs_.front());
+        jobs_.pop_front();
+      }
+      guard([&] { process(job); });
+    }
+  }
+
+  void process(const Job& job) {
+    Timings timings;
+    sensor_msgs::ImagePtr left, right;
+    {
+      const ScopedTimer timer(timings, "rectify");
+      // Both, so that the log names both when both are wrong.
+      left = rectify(left_, job.left, *job.left_info);
+      right = rectify(right_, job.right, *job.right_info);
+    }
+    if (!left || !right) return;
+    const ros::Time stamp = job.left->header.stamp;
+    report_.served(stamp, timings.total(), "");
+    in_flight_->handedOn(stamp);
+    publish(job, left, right);
+  }
+
+  /// The rectified image, or null when the input cannot be used.
+  sensor_msgs::ImagePtr rectify(View& view, const sensor_msgs::ImageConstPtr& raw,
+                                const sensor_msgs::CameraInfo& info) {
+    CameraCalibration calibration = toCalibration(info);
+    if (calibration != view.calibration) {
+      if (view.calibration) NODELET_WARN("%s: the camera_info changed: starting anew", view.topic.c_str());
+      view.rectifier = Rectifier::create(calibration);
+      view.calibration = std::move(calibration);
+    }
+    if (!view.rectifier) {
+      refuse("camera_info of " + view.topic + ": " + view.rectifier.error().detail);
+      return nullptr;
+    }
+    const auto mono = toMono8(raw, *view.calibration, view.topic);
+    if (!mono) {
+      refuse(mono.error().detail);
+      return nullptr;
+    }
+    const cv::Size size = view.calibration->imageSize();
+    const sensor_msgs::ImagePtr message = pool_.take();
+    message->header = raw->header;
+    message->width = static_cast<uint32_t>(size.width);
+    message->height = static_cast<uint32_t>(size.height);
+    message->encoding = sensor_msgs::image_encodings::MONO8;
+    message->is_bigendian = 0;
+    message->step = message->width;
+    message->data.resize(static_cast<size_t>(message->step) * message->height);
+    cv::Mat rectified(size, CV_8UC1, message->data.data());
+    const Failure failure = view.rectifier->rectify((*mono)->image, rectified);
+    if (failure) {
+      refuse(view.topic + ": " + failure.detail);
+      return nullptr;
+    }
+    return message;
+  }
+
+  void publish(const Job& job, const sensor_msgs::ImagePtr& left, const sensor_msgs::ImagePtr& right) {
+    const ros::Time stamp = job.left->header.stamp;
+    right->header.stamp = stamp;
+    const auto skew = boost::make_shared<sensor_msgs::TimeReference>();
+    skew->header = right->header;
+    skew->time_ref = job.right->header.stamp;
+    skew->source = job.right->header.frame_id;
+    skew_publisher_.publish(skew);
+
+    left_.info_publisher.publish(stampedInfo(job.left_info, stamp));
+    right_.info_publisher.publish(stampedInfo(job.right_info, stamp));
+    left_.image_publisher.publish(sensor_msgs::ImageConstPtr(left));
+    right_.image_publisher.publish(sensor_msgs::ImageConstPtr(right));
+  }
+
+  static sensor_msgs::CameraInfoConstPtr stampedInfo(const sensor_msgs::CameraInfoConstPtr& info,
+                                                     const ros::Time& stamp) {
+    if (info->header.stamp == stamp) return info;
+    const auto stamped = boost::make_shared<sensor_msgs::CameraInfo>(*info);
+    stamped->header.stamp = stamp;
+    return stamped;
+  }
+
+  RectifyParameters parameters_;
+  uint32_t input_queue_ = 1;
+  std::unique_ptr<image_transport::ImageTransport> transport_;
+  View left_, right_;
+  ros::Publisher skew_publisher_;
+  std::unique_ptr<StereoPairing> pairing_;
+  std::shared_ptr<PairsInFlight> in_flight_;
+  ImagePool pool_{4 * kPairsInFlight};
+
+  std::mutex jobs_mutex_;
+  std::condition_variable job_came_;
+  std::deque<Job> jobs_;
+  std::atomic<bool> stopping_{false};
+  std::thread worker_;
+};
+
+}  // namespace uav_landing
+
+PLUGINLIB_EXPORT_CLASS(uav_landing::RectifyNodelet, nodelet::Nodelet)

@@ -1,0 +1,101 @@
+#include "stage_nodelet.h"
+
+#include <stdexcept>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kRepeatAfter = 60;  // s: the same complaint again
+
+}  // namespace
+
+void StageNodelet::onInit() {
+  {
+    // Subscribers may connect while the publishers are still being created.
+    const std::lock_guard<std::mutex> lock(subscription_mutex_);
+    setUp();
+  }
+  updater_ =
+      std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
+  updater_->setHardwareID("none");
+  updater_->add(section_, [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    bool subscribed = false;
+    {
+      const std::lock_guard<std::mutex> lock(subscription_mutex_);
+      subscribed = subscribed_;
+    }
+    report_.write(status, inputs(), subscribed);
+  });
+  // Wall time: a clock that stands still is one of the things to report.
+  ros::NodeHandle& handle = getNodeHandle();
+  complaint_timer_ = handle.createWallTimer(ros::WallDuration(node_.complaint_period),
+                                            [this](const ros::WallTimerEvent&) { complain(); });
+  diagnostic_timer_ = handle.createWallTimer(ros::WallDuration(node_.diagnostic_period),
+                                             [this](const ros::WallTimerEvent&) { diagnose(); });
+  updateSubscription();
+}
+
+void StageNodelet::refuseToLoad(const std::string& problem) {
+  NODELET_FATAL("%s: %s", getName().c_str(), problem.c_str());
+  throw std::invalid_argument(getName() + ": " + problem);
+}
+
+ros::SubscriberStatusCallback StageNodelet::onConnection() {
+  return [this](const ros::SingleSubscriberPublisher&) { updateSubscription(); };
+}
+
+void StageNodelet::updateSubscription() {
+  const std::lock_guard<std::mutex> lock(subscription_mutex_);
+  const bool want = wanted();
+  if (want == subscribed_) return;
+  if (want)
+    subscribe();
+  else
+    unsubscribe();
+  subscribed_ = want;
+}
+
+void StageNodelet::refuse(const std::string& problem) {
+  report_.refused(problem);
+  const std::lock_guard<std::mutex> lock(refusal_mutex_);
+  const ros::WallTime now = ros::WallTime::now();
+  if (!last_refusal_.isZero() && (now - last_refusal_).toSec() < node_.complaint_period) return;
+  last_refusal_ = now;
+  NODELET_ERROR("%s: %s", getName().c_str(), problem.c_str());
+}
+
+void StageNodelet::warnOf(const Failure& failure) {
+  if (failure.reason == Reason::kInputInvalid || failure.reason == Reason::kNegativeDisparity)
+    refuse(failure.message());
+}
+
+void StageNodelet::stop() {
+  complaint_timer_.stop();
+  diagnostic_timer_.stop();
+  const std::lock_guard<std::mutex> lock(subscription_mutex_);
+  if (subscribed_) unsubscribe();
+  subscribed_ = false;
+}
+
+void StageNodelet::complain() {
+  {
+    const std::lock_guard<std::mutex> lock(subscription_mutex_);
+    if (!subscribed_) return;
+  }
+  const std::string missing = complaint();
+  const ros::WallTime now = ros::WallTime::now();
+  const bool repeated = missing == last_complaint_ && (now - last_complaint_time_).toSec() < kRepeatAfter;
+  if (!missing.empty() && !repeated) {
+    NODELET_WARN("%s: nothing to work on for %.3g s: %s", getName().c_str(), node_.complaint_period,
+                 missing.c_str());
+    last_complaint_time_ = now;
+  }
+  last_complaint_ = missing;
+  complainMore();
+}
+
+void StageNodelet::diagnose() {
+  guard([this] { updater_->force_update(); });
+}
+
+}  // namespace uav_landing

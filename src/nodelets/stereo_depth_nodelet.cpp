@@ -1,0 +1,93 @@
+#include <sensor_msgs/TimeReference.h>
+
+#include <pluginlib/class_list_macros.hpp>
+
+#include "conversions.h"
+#include "image_input.h"
+#include "pairing.h"
+#include "pairs_in_flight.h"
+#include "rig_watch.h"
+#include "stage_nodelet.h"
+#include "uav_landing/stereo_depth_stage.h"
+
+namespace uav_landing {
+
+/// Sparse stereo depth and the ground plane.
+///
+/// Parameters: StereoDepthParameters and the common ones of NodeParameters.
+/// Subscribes {left,right}/{image_rect, camera_info} and right/time_reference of rectify, while somebody
+/// wants the output. Publishes stereo_depth (StereoDepth): one message per pair, also when there is no plane.
+class StereoDepthNodelet : public StageNodelet {
+ public:
+  StereoDepthNodelet() : StageNodelet("stereo_depth") {}
+  ~StereoDepthNodelet() override { stop(); }
+
+ private:
+  using Inputs = Pairing<sensor_msgs::Image, sensor_msgs::CameraInfo, sensor_msgs::Image,
+                         sensor_msgs::CameraInfo, sensor_msgs::TimeReference>;
+
+  void setUp() override {
+    parameters_ = loadParametersOrThrow<StereoDepthParameters>();
+    publisher_ =
+        getNodeHandle().advertise<StereoDepth>("stereo_depth", kStageQueue, onConnection(), onConnection());
+    pairing_ = std::make_unique<Inputs>(
+        exactPairing(), resolved({kLeftImage, kLeftInfo, kRightImage, kRightInfo, kRightTime}),
+        [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info,
+               const auto& time) {
+          guard([&] { process(left, *left_info, right, *right_info, *time); });
+          if (in_flight_) in_flight_->finished(left->header.stamp);
+        });
+  }
+
+  bool wanted() const override { return publisher_.getNumSubscribers() > 0; }
+  void subscribe() override {
+    in_flight_ = PairsInFlight::join(getNodeHandle().resolveName(kLeftImage));
+    feed<0, sensor_msgs::Image>(kLeftImage, *pairing_, subscribers_);
+    feed<1, sensor_msgs::CameraInfo>(kLeftInfo, *pairing_, subscribers_);
+    feed<2, sensor_msgs::Image>(kRightImage, *pairing_, subscribers_);
+    feed<3, sensor_msgs::CameraInfo>(kRightInfo, *pairing_, subscribers_);
+    feed<4, sensor_msgs::TimeReference>(kRightTime, *pairing_, subscribers_);
+  }
+  void unsubscribe() override {
+    subscribers_.clear();
+    pairing_->reset();
+    in_flight_.reset();
+  }
+  std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
+  std::string complaint() override { return pairing_->complaint(); }
+
+  void process(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfo& left_info,
+               const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfo& right_info,
+               const sensor_msgs::TimeReference& time) {
+    const double stamp = left->header.stamp.toSec();
+    const double skew = (time.time_ref - left->header.stamp).toSec();
+    double compute_ms = 0;
+    StereoDepthResult result = attempt<StereoDepthResult>([&]() -> Expected<StereoDepthResult> {
+      const Failure wrong_cameras = stage_.prepare(left_info, right_info, parameters_);
+      if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
+      const auto left_view = toMono8(left, stage_.cameras().left(), kLeftImage);
+      if (!left_view) return tl::make_unexpected(left_view.error());
+      const auto right_view = toMono8(right, stage_.cameras().right(), kRightImage);
+      if (!right_view) return tl::make_unexpected(right_view.error());
+      auto processed = stage_->process(stamp, (*left_view)->image, (*right_view)->image, skew);
+      compute_ms = stage_->timings().total();
+      return processed;
+    });
+    result.stamp = stamp;
+    result.skew = skew;
+    warnOf(result.failure);
+    report_.served(left->header.stamp, compute_ms, result.failure.message());
+    publisher_.publish(boost::make_shared<StereoDepth>(toMessage(result, left->header, compute_ms)));
+  }
+
+  StereoDepthParameters parameters_;
+  ros::Publisher publisher_;
+  std::vector<ros::Subscriber> subscribers_;
+  std::unique_ptr<Inputs> pairing_;
+  std::unique_ptr<PairsInFlight::Consumer> in_flight_;
+  RigStage<StereoDepthStage, StereoDepthParameters> stage_;
+};
+
+}  // namespace uav_landing
+
+PLUGINLIB_EXPORT_CLASS(uav_landing::StereoDepthNodelet, nodelet::Nodelet)

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace uav_landing {
+
+/// How far the stages are behind rectify. Only rectify may drop a pair, so that everything behind it stays
+/// exactly synchronised; so it must know when the stages cannot keep up, before their queues overflow. The
+/// stages of one rig in one process share this object; stages in other processes are not seen. Thread safe.
+class PairsInFlight {
+ public:
+  /// A stage that works through the pairs.
+  class Consumer {
+   public:
+    ~Consumer();
+    Consumer(const Consumer&) = delete;
+    Consumer& operator=(const Consumer&) = delete;
+    /// The stage is done with the pair of this stamp, and with those handed on before.
+    void finished(const ros::Time& stamp);
+
+   private:
+    friend class PairsInFlight;
+    struct Pair {
+      ros::Time stamp;
+      std::chrono::steady_clock::time_point since;
+    };
+    explicit Consumer(std::shared_ptr<PairsInFlight> owner) : owner_(std::move(owner)) {}
+
+    std::shared_ptr<PairsInFlight> owner_;
+    std::deque<Pair> pairs_;  // guarded by the owner's mutex
+  };
+
+  /// The object that everybody shares who names the same topic.
+  static std::shared_ptr<PairsInFlight> of(const std::string& topic);
+
+  /// A stage begins to listen; it stops when the consumer is destroyed.
+  static std::unique_ptr<Consumer> join(const std::string& topic);
+
+  void handedOn(const ros::Time& stamp);
+  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. True when so. A
+  /// pair that a stage has not finished within a second counts as lost on the way.
+  bool waitUntilBelow(size_t limit, std::chrono::milliseconds timeout);
+
+ private:
+  void forgetLost();  // with the mutex held
+  bool below(size_t limit) const;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::list<Consumer*> consumers_;
+};
+
+}  // namespace uav_landing

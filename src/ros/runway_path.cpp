@@ -1,0 +1,48 @@
+#include "runway_path.h"
+
+#include <cmath>
+
+#include "body_pose.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kStartStddev = 1000;  // m: says "not known" in finite numbers
+constexpr double kSpeedError = 0.05;   // of the speed; does not average out
+constexpr size_t kTrackPoints = 2000;
+constexpr double kTrackSpacing = 0.02;  // of the height
+constexpr double kMaxStart = 100;       // heights: a path that hardly descends meets the ground far away
+
+}  // namespace
+
+std::optional<RunwayPath::Position> RunwayPath::update(const LandingResult& camera) {
+  if (last_stamp_ && camera.stamp <= *last_stamp_) reset();
+  const Eigen::Matrix3d rotation = runwayFromCamera(camera);
+  if (rotation.allFinite() && camera.velocity.allFinite()) velocity_ = (rotation * camera.velocity).head<2>();
+  if (last_stamp_) {
+    const double T = camera.stamp - *last_stamp_;
+    xy_ += velocity_ * T;
+    drift_stddev_ += kSpeedError * velocity_.norm() * T;
+    last_stamp_ = camera.stamp;
+  }
+  if (!camera.height_valid || !std::isfinite(camera.height) || !rotation.allFinite()) return std::nullopt;
+  if (!last_stamp_) {
+    const double slope = camera.angle_valid ? std::tan(camera.approach_angle) : 0;
+    xy_ = {slope > 1 / kMaxStart ? -camera.height / slope : -kMaxStart * camera.height, 0};
+    last_stamp_ = camera.stamp;
+  }
+  const Eigen::Vector3d position(xy_.x(), xy_.y(), camera.height);
+  remember(position);
+  const double variance = kStartStddev * kStartStddev + drift_stddev_ * drift_stddev_;
+  return Position{position, {variance, variance}};
+}
+
+void RunwayPath::remember(const Eigen::Vector3d& position) {
+  if (!track_.empty() && (position - track_.back()).norm() < kTrackSpacing * position.z()) return;
+  track_.push_back(position);
+  if (track_.size() > kTrackPoints) track_.pop_front();
+}
+
+void RunwayPath::reset() { *this = RunwayPath(); }
+
+}  // namespace uav_landing

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "input_watch.h"
+
+namespace uav_landing {
+
+/// What a nodelet did since the last diagnostics: rates, times, failures. Thread safe.
+class StageReport {
+ public:
+  /// One pair was served. stamp: of its left image. compute_ms: time it took. reason: "" or why there is no
+  /// result.
+  void served(const ros::Time& stamp, double compute_ms, const std::string& reason);
+  /// A pair was left out because newer ones were waiting.
+  void dropped(uint64_t count = 1);
+  /// An input could not be used; what is wrong with it.
+  void refused(const std::string& problem);
+
+  /// Fills in summary and values for the time since the last call and starts anew. inputs: counts of what is
+  /// paired here. subscribed: false when nobody wants the output.
+  void write(diagnostic_updater::DiagnosticStatusWrapper& status,
+             const std::vector<InputWatch::Input>& inputs, bool subscribed);
+
+ private:
+  struct Counts {
+    uint64_t served = 0, failed = 0, dropped = 0, refused = 0;
+    double compute_ms = 0, latency = 0;  // sums
+    std::string reason, problem;         // the last ones
+  };
+
+  std::mutex mutex_;
+  Counts now_;
+  uint64_t served_ = 0, dropped_ = 0, refused_ = 0;  // in all
+  std::vector<uint64_t> received_before_;
+  ros::WallTime since_ = ros::WallTime::now();
+};
+
+}  // namespace uav_landing
