@@ -43,6 +43,7 @@ class MotionTracker {
   };
 
   using Corners = std::vector<TrackedCorner>;
+  TemporalMatchOptions matchOptions(bool wide) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                     const Corners& corners, Result& result);

@@ -16,6 +16,15 @@ inline float cubicAt(const float* row, float x, float* derivative) {
   return b + t * (c1 + t * (c2 + t * c3));
 }
 
+/// Catmull-Rom weights of the four samples around the fraction t between the middle two.
+inline void cubicWeights(float t, float* weights) {
+  const float t2 = t * t, t3 = t2 * t;
+  weights[0] = 0.5f * (-t + 2.f * t2 - t3);
+  weights[1] = 0.5f * (2.f - 5.f * t2 + 3.f * t3);
+  weights[2] = 0.5f * (t + 4.f * t2 - 3.f * t3);
+  weights[3] = 0.5f * (t3 - t2);
+}
+
 /// Linear interpolation along a row. Needs 0 <= x < cols - 1.
 inline float linearAt(const float* row, float x) {
   const int i = static_cast<int>(x);
@@ -23,14 +32,26 @@ inline float linearAt(const float* row, float x) {
   return row[i] + t * (row[i + 1] - row[i]);
 }
 
+/// Bilinear interpolation of a float image. Needs 0 <= x < cols - 1 and 0 <= y < rows - 1.
+inline float linearAt(const cv::Mat& image, double x, double y) {
+  const int i = static_cast<int>(y);
+  const float t = static_cast<float>(y - i);
+  const float above = linearAt(image.ptr<float>(i), static_cast<float>(x));
+  return above + t * (linearAt(image.ptr<float>(i + 1), static_cast<float>(x)) - above);
+}
+
 /// Catmull-Rom interpolation of a float image. Needs 1 <= x < cols - 2 and 1 <= y < rows - 2.
 inline float cubicAt(const cv::Mat& image, double x, double y) {
   const int i = static_cast<int>(y);
-  float column[4], derivative;
+  const int j = static_cast<int>(x);
+  float weights[4], column[4];
+  cubicWeights(static_cast<float>(x - j), weights);
   for (int k = 0; k < 4; ++k) {
-    column[k] = cubicAt(image.ptr<float>(i - 1 + k), static_cast<float>(x), &derivative);
+    const float* p = image.ptr<float>(i - 1 + k) + j - 1;
+    column[k] = weights[0] * p[0] + weights[1] * p[1] + weights[2] * p[2] + weights[3] * p[3];
   }
-  return cubicAt(column, 1.f + static_cast<float>(y - i), &derivative);
+  cubicWeights(static_cast<float>(y - i), weights);
+  return weights[0] * column[0] + weights[1] * column[1] + weights[2] * column[2] + weights[3] * column[3];
 }
 
 }  // namespace uav_landing

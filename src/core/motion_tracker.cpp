@@ -13,6 +13,17 @@ namespace {
 // Share of the followed corners that must agree with a motion that grew from the last one.
 constexpr double kLeastShare = 0.35;
 
+// Fewest matches that make a motion good enough to search from.
+constexpr int kFewestScouts = 6;
+
+// About count of the corners, spread as the corners are.
+std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
+  std::vector<TrackedCorner> some;
+  const size_t stride = std::max<size_t>(1, (corners.size() + count / 2) / count);
+  for (size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
+  return some;
+}
+
 Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
   const Eigen::AngleAxisd turn(R);
   return turn.angle() * turn.axis();
@@ -44,6 +55,14 @@ void MotionTracker::reset() {
   for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
   past_.clear();
   last_step_.reset();
+}
+
+TemporalMatchOptions MotionTracker::matchOptions(bool wide) const {
+  TemporalMatchOptions options;
+  options.window_radius = parameters_.window_radius;
+  options.min_zncc = parameters_.min_zncc;
+  options.coarse_steps = wide ? static_cast<int>(std::ceil(parameters_.search_radius)) : 0;
+  return options;
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -107,25 +126,24 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
                                                    const Eigen::Vector3d& normal,
                                                    const Eigen::Matrix3d& covariance, const Corners& corners,
                                                    Result& result) {
-  TemporalMatchOptions options;
-  options.window_radius = parameters_.window_radius;
-  options.min_zncc = parameters_.min_zncc;
-  options.coarse_steps = static_cast<int>(std::ceil(parameters_.search_radius));
+  // A wide search for some corners makes the prediction good enough for a narrow one for all.
+  constexpr size_t kScouts = 60;
+  const MatchImage& then = past_.back().image;
+  CameraMotion start = predicted;
+  const std::vector<TemporalMatch> scouts = matchOverTime(
+      rig_, now.image, then, mask_, thinned(corners, kScouts), normal, predicted, matchOptions(true));
+  const Expected<MotionEstimate> scouted =
+      estimateMotion(rig_, scouts, normal, covariance, predicted, kFewestScouts);
+  if (scouted) start = scouted->motion;
   result.step_matches =
-      matchOverTime(rig_, now.image, past_.back().image, mask_, corners, normal, predicted, options);
-  return estimateMotion(rig_, result.step_matches, normal, covariance, predicted, parameters_.min_matches);
+      matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(false));
+  return estimateMotion(rig_, result.step_matches, normal, covariance, start, parameters_.min_matches);
 }
 
 CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d& normal,
                                         const Corners& corners) const {
   constexpr size_t kCorners = 90;
-  TemporalMatchOptions options;
-  options.window_radius = parameters_.window_radius;
-  options.min_zncc = parameters_.min_zncc;
-  options.coarse_steps = static_cast<int>(std::ceil(parameters_.search_radius));
-  Corners some;
-  const size_t stride = std::max<size_t>(1, corners.size() / kCorners);
-  for (size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
+  const Corners some = thinned(corners, kCorners);
   // Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
   // is left to the search radius.
   const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
@@ -136,8 +154,9 @@ CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d&
     CameraMotion guess;
     guess.t = share * ahead;
     const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, past_.back().image, mask_, some, normal, guess, options);
-    const Expected<MotionEstimate> estimate = estimateMotion(rig_, matches, normal, loose, guess, 6);
+        matchOverTime(rig_, now.image, past_.back().image, mask_, some, normal, guess, matchOptions(true));
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, matches, normal, loose, guess, kFewestScouts);
     if (estimate && estimate->inlier_count > most) {
       most = estimate->inlier_count;
       best = estimate->motion;
@@ -167,12 +186,8 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     // Lengths change from units of the previous height to those of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    TemporalMatchOptions options;
-    options.window_radius = parameters_.window_radius;
-    options.min_zncc = parameters_.min_zncc;
-    options.coarse_steps = 0;
     const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options);
+        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, matchOptions(false));
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, matches, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;

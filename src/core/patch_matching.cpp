@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "interpolation.h"
@@ -11,6 +12,74 @@ namespace {
 
 // Grey levels of contrast (RMS) below which a window holds nothing to match.
 constexpr double kMinContrast = 1.0;
+
+// Normal equations of: reference + gradient.shift = gain other + offset, for (shift, gain, offset).
+struct GainShiftProblem {
+  Eigen::Matrix4d information;
+  Eigen::Vector4d right;
+};
+
+// A window of the reference with its gradient, and all sums of it that do not depend on the other image.
+class ReferenceWindow {
+ public:
+  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : radius_(radius) {
+    for (int dy = -radius; dy <= radius; ++dy) {
+      const float* above = reference.ptr<float>(v + dy - 1) + u;
+      const float* row = reference.ptr<float>(v + dy) + u;
+      const float* below = reference.ptr<float>(v + dy + 1) + u;
+      for (int dx = -radius; dx <= radius; ++dx) {
+        const Pixel pixel{row[dx], -0.5f * (row[dx + 1] - row[dx - 1]), -0.5f * (below[dx] - above[dx])};
+        pixels_[size_++] = pixel;
+        const Eigen::Vector3d x(pixel.gx, pixel.gy, 1);
+        fixed_ += x * x.transpose();
+        right_ += x * pixel.value;
+        squares_ += double(pixel.value) * pixel.value;
+      }
+    }
+  }
+
+  double count() const { return size_; }
+  double squares() const { return squares_; }
+  double energy() const { return squares_ - right_[2] * right_[2] / size_; }  // about the mean
+
+  // kExact: cubic interpolation of the other image, else linear.
+  template <bool kExact>
+  GainShiftProblem compare(const cv::Mat& other, const Eigen::Vector2d& at,
+                           const Eigen::Matrix2d& warp) const {
+    double bx = 0, by = 0, bb = 0, b1 = 0, ba = 0;
+    const Pixel* pixel = pixels_.data();
+    for (int dy = -radius_; dy <= radius_; ++dy) {
+      const double x0 = at.x() + warp(0, 1) * dy, y0 = at.y() + warp(1, 1) * dy;
+      for (int dx = -radius_; dx <= radius_; ++dx, ++pixel) {
+        const double x = x0 + warp(0, 0) * dx, y = y0 + warp(1, 0) * dx;
+        const float b = kExact ? cubicAt(other, x, y) : linearAt(other, x, y);
+        bx += b * pixel->gx;
+        by += b * pixel->gy;
+        bb += b * b;
+        b1 += b;
+        ba += b * pixel->value;
+      }
+    }
+    GainShiftProblem problem;
+    problem.information << fixed_(0, 0), fixed_(0, 1), bx, fixed_(0, 2),  //
+        fixed_(1, 0), fixed_(1, 1), by, fixed_(1, 2),                     //
+        bx, by, bb, b1,                                                   //
+        fixed_(2, 0), fixed_(2, 1), b1, fixed_(2, 2);
+    problem.right << right_[0], right_[1], ba, right_[2];
+    return problem;
+  }
+
+ private:
+  struct Pixel {
+    float value, gx, gy;
+  };
+  static constexpr int kLargestRadius = 15;
+  std::array<Pixel, (2 * kLargestRadius + 1) * (2 * kLargestRadius + 1)> pixels_;
+  int radius_, size_ = 0;
+  Eigen::Matrix3d fixed_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  double squares_ = 0;
+};
 
 bool windowInside(const cv::Mat& image, int u, int v, int radius) {
   return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
@@ -52,12 +121,10 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
   }
   area_.resize(static_cast<size_t>(width) * width);
   for (int j = 0; j < width; ++j) {
+    const Eigen::Vector2d start = centre + warp * Eigen::Vector2d(-reach, j - reach);
+    float* out = area_.data() + static_cast<size_t>(j) * width;
     for (int i = 0; i < width; ++i) {
-      const Eigen::Vector2d at = centre + warp * Eigen::Vector2d(i - reach, j - reach);
-      const int y = static_cast<int>(at.y());
-      const float t = static_cast<float>(at.y() - y), x = static_cast<float>(at.x());
-      area_[static_cast<size_t>(j) * width + i] =
-          (1 - t) * linearAt(other_.ptr<float>(y), x) + t * linearAt(other_.ptr<float>(y + 1), x);
+      out[i] = linearAt(other_, start.x() + warp(0, 0) * i, start.y() + warp(1, 0) * i);
     }
   }
   return true;
@@ -120,61 +187,46 @@ PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, 
 
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
-  constexpr int kIterations = 8;
+  constexpr int kIterations = 10;
   constexpr double kConverged = 0.005, kMaxDrift = 2.0;
+  // Shift, in pixels, from which on linear interpolation is no longer good enough.
+  constexpr double kNearlyThere = 0.15;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
   constexpr double kIndependent = 0.25;
   PatchRefinement result;
   if (!windowInside(reference, u, v, radius + 1)) return result;
-  const double count = (2.0 * radius + 1) * (2.0 * radius + 1);
-  const double rx = (std::abs(warp(0, 0)) + std::abs(warp(0, 1))) * radius;
-  const double ry = (std::abs(warp(1, 0)) + std::abs(warp(1, 1))) * radius;
+  const ReferenceWindow window(reference, u, v, radius);
+  const double reach_x = (std::abs(warp(0, 0)) + std::abs(warp(0, 1))) * radius;
+  const double reach_y = (std::abs(warp(1, 0)) + std::abs(warp(1, 1))) * radius;
   Eigen::Vector2d at = position;
+  bool exact = false;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    if (!(at.x() - rx >= 1 && at.y() - ry >= 1 && at.x() + rx < other.cols - 3 &&
-          at.y() + ry < other.rows - 3)) {
+    if (!(at.x() - reach_x >= 1 && at.y() - reach_y >= 1 && at.x() + reach_x < other.cols - 3 &&
+          at.y() + reach_y < other.rows - 3)) {
       return result;
     }
-    // reference + gradient.shift = gain other + offset, solved for (shift, gain, offset).
-    Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d right = Eigen::Vector4d::Zero();
-    double sa = 0, saa = 0;
-    for (int dy = -radius; dy <= radius; ++dy) {
-      const float* above = reference.ptr<float>(v + dy - 1) + u;
-      const float* row = reference.ptr<float>(v + dy) + u;
-      const float* below = reference.ptr<float>(v + dy + 1) + u;
-      for (int dx = -radius; dx <= radius; ++dx) {
-        const Eigen::Vector2d x = at + warp * Eigen::Vector2d(dx, dy);
-        const double b = cubicAt(other, x.x(), x.y());
-        const double a = row[dx];
-        const Eigen::Vector4d jacobian(-0.5 * (row[dx + 1] - row[dx - 1]), -0.5 * (below[dx] - above[dx]), b,
-                                       1);
-        information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian);
-        right += jacobian * a;
-        sa += a;
-        saa += a * a;
-      }
-    }
-    information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
-    const Eigen::FullPivLU<Eigen::Matrix4d> lu(information);
+    const GainShiftProblem problem =
+        exact ? window.compare<true>(other, at, warp) : window.compare<false>(other, at, warp);
+    const Eigen::FullPivLU<Eigen::Matrix4d> lu(problem.information);
     if (!lu.isInvertible()) return result;
-    const Eigen::Vector4d solution = lu.solve(right);
+    const Eigen::Vector4d solution = lu.solve(problem.right);
     if (!(solution[2] > 0.1)) return result;
     Eigen::Vector2d shift = solution.head<2>();
     const double length = shift.norm();
     if (length > 1) shift /= length;
     at -= warp * shift;
     if ((at - position).norm() > kMaxDrift * std::sqrt(std::abs(warp.determinant()))) return result;
-    if (length < kConverged) {
-      const double residual = std::max(0.0, saa - right.dot(solution));
-      const double noise = residual / (count - 4) / kIndependent;
+    if (exact && length < kConverged) {
+      const double residual = std::max(0.0, window.squares() - problem.right.dot(solution));
+      const double noise = residual / (window.count() - 4) / kIndependent;
       const Eigen::Matrix4d inverse = lu.inverse();
       result.covariance = noise * warp * inverse.topLeftCorner<2, 2>() * warp.transpose();
-      result.score = std::sqrt(std::max(0.0, 1 - residual / std::max(1e-9, saa - sa * sa / count)));
+      result.score = std::sqrt(std::max(0.0, 1 - residual / std::max(1e-9, window.energy())));
       result.position = at;
       result.converged = true;
       return result;
     }
+    exact |= length < kNearlyThere;
   }
   return result;
 }
