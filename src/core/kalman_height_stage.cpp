@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "attitude.h"
+#include "pair_skew.h"
 #include "text.h"
 #include "uav_landing/reconstruction.h"
 #include "vertical_speed.h"
@@ -128,9 +129,10 @@ GroundPlane KalmanHeightStage::groundPlane(const StereoDepthResult& stereo,
   // contains the plane already.
   const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
                     approach.vanishing_covariance.allFinite();
-  if (!fuse) return stereo.plane;
+  const GroundPlane plane = withSkew(rig_, stereo, approach.step);
+  if (!fuse) return plane;
   double nis = 0;
-  return fuseVanishingPoint(stereo.plane, approach.vanishing_direction, approach.vanishing_covariance,
+  return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
                             std::pow(parameters_.vanishing_point_gate, 2), &nis);
 }
 
@@ -164,6 +166,9 @@ void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
   const double by_theta = averageHeight(rig_, stereo.points, theta + M_PI / 2, roll, only_on_plane).height;
   reconstruction.height = averaged.height;
   reconstruction.variance = averaged.variance + by_theta * by_theta * theta_variance;
+  // An angle of another meaning and matches off the ground make an error of their own, of which the scatter
+  // knows nothing. What they differ from the plane by is a measure of it.
+  if (!only_on_plane) reconstruction.variance += std::pow(averaged.height - reconstruction.plane.height(), 2);
 }
 
 Failure KalmanHeightStage::followTime(double stamp) {

@@ -7,6 +7,7 @@ uav_landing_add_gtest(row_matching_test test/core/row_matching_test.cpp)
 uav_landing_add_gtest(height_filter_test test/core/height_filter_test.cpp)
 uav_landing_add_gtest(reconstruction_test test/core/reconstruction_test.cpp)
 uav_landing_add_gtest(kalman_height_stage_test test/core/kalman_height_stage_test.cpp)
+uav_landing_add_gtest(pair_skew_test test/core/pair_skew_test.cpp)
 uav_landing_add_gtest(parameter_file_test test/core/parameter_file_test.cpp)
 # Calibration, rectification, ground plane, lines, vanishing point, approach angle.
 uav_landing_add_gtest(calibration_test test/core/calibration_test.cpp)

@@ -26,9 +26,9 @@ class EvaluateTest(unittest.TestCase):
     def evaluate(self, *options):
         return run([EVALUATE, "--truth", self.truth, "--estimates", self.estimates, *options])
 
-    def scores(self):
+    def scores(self, *options):
         path = self.folder / "scores.json"
-        result = self.evaluate("--json", path)
+        result = self.evaluate("--json", path, *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return json.loads(path.read_text())
 
@@ -66,6 +66,13 @@ class ScoresTest(EvaluateTest):
         self.assertAlmostEqual(angle["signed_mean"], -0.1)
         self.assertAlmostEqual(scores["quantities"]["raw_approach_angle"]["mean"], 0.5)
         self.assertAlmostEqual(scores["quantities"]["raw_height"]["worst"], 0.4)
+
+    def test_scores_invalid_frames_on_request_and_keeps_the_coverage(self):
+        self.write_example()
+        scores = self.scores("--invalid-too")
+        self.assertAlmostEqual(scores["quantities"]["height"]["worst"], 40.0)
+        self.assertEqual(scores["quantities"]["height"]["frames"], 4)
+        self.assertAlmostEqual(scores["coverage"], 0.75)
 
     def test_consistency_is_the_share_within_the_claimed_interval(self):
         self.write_example()

@@ -42,13 +42,16 @@ def pictures(report_data, name):
 
 
 def show_pictures(path, images, titles):
-    figure, axes = plt.subplots(1, len(images), figsize=(6 * len(images), 5), squeeze=False)
+    """Pictures side by side, as large as they are in proportion."""
+    images = [plt.imread(image) for image in images]
+    height, width = images[0].shape[:2]
+    figure, axes = plt.subplots(1, len(images), figsize=(12, 12 / len(images) * height / width + 0.4), squeeze=False)
     for axis, image, title in zip(axes[0], images, titles):
-        axis.imshow(plt.imread(image))
+        axis.imshow(image)
         axis.set_title(title)
         axis.axis("off")
     figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=120, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -67,36 +70,43 @@ def figure_5(path, _truth, _joined, report_data):
     show_pictures(path, [matches[frame]], [f"left and right, frame {frame}"])
 
 
-def plot_against_truth(path, truth, joined, column, label, curves):
-    """curves: (column of the estimates, format, name). Drawn over the whole run, invalid frames marked below."""
+def plot_against_truth(path, truth, joined, column, unit, label, curves):
+    """Curves (column of the estimates, format, name) over the whole run with the truth, frames that are not valid
+    marked below; where there is truth, the deviations from it in a second panel."""
     if not any(joined.estimates.has(name) for name, _, _ in curves):
         raise Missing(f"{joined.estimates.path}: no {' or '.join(name for name, _, _ in curves)}")
-    time = joined.stamp - joined.stamp[0]
-    figure, axis = plt.subplots(figsize=(9, 5))
+    time, known = joined.stamp - joined.stamp[0], truth.has(column)
+    figure, axes = plt.subplots(2 if known else 1, 1, figsize=(9, 7 if known else 5), sharex=True, squeeze=False)
+    top, bottom = axes[0][0], axes[-1][0]
     for name, style, title in curves:
-        axis.plot(time, joined.estimate(name), style, label=title, linewidth=1.2)
-    if truth.has(column):
-        axis.plot(time, truth.number(column), "k--", label="truth", linewidth=1)
+        top.plot(time, joined.estimate(name), style, label=title, linewidth=1.2)
+        if known:
+            bottom.plot(time, joined.estimate(name) - truth.number(column), style, linewidth=1.2)
+    if known:
+        top.plot(time, truth.number(column), "k--", label="truth", linewidth=1)
+        bottom.axhline(0, color="k", linewidth=0.8)
+        bottom.set_ylabel(f"deviation from truth, {unit}")
     invalid = joined.estimate("valid") != 1
     if np.any(invalid):
-        axis.plot(time[invalid], np.zeros(np.sum(invalid)), "r|", label="not valid", clip_on=False,
-                  transform=axis.get_xaxis_transform())
-    axis.set_xlabel("time, s")
-    axis.set_ylabel(label)
-    axis.grid(alpha=0.3)
-    axis.legend()
+        top.plot(time[invalid], np.zeros(np.sum(invalid)), "r|", label="not valid", clip_on=False,
+                 transform=top.get_xaxis_transform())
+    top.set_ylabel(f"{label}, {unit}")
+    top.legend()
+    bottom.set_xlabel("time, s")
+    for axis in axes[:, 0]:
+        axis.grid(alpha=0.3)
     figure.tight_layout()
     figure.savefig(path, dpi=120)
     plt.close(figure)
 
 
 def figure_6(path, truth, joined, _report_data):
-    plot_against_truth(path, truth, joined, "approach_angle_deg", "approach angle, deg",
+    plot_against_truth(path, truth, joined, "approach_angle_deg", "deg", "approach angle",
                        (("raw_approach_angle_deg", "b:", "last step alone"), ("approach_angle_deg", "b-", "estimate")))
 
 
 def figure_7(path, truth, joined, _report_data):
-    plot_against_truth(path, truth, joined, "height_m", "height, m",
+    plot_against_truth(path, truth, joined, "height_m", "m", "height",
                        (("raw_height_m", "b:", "matching of feature points"), ("height_m", "b-", "Kalman filter")))
 
 

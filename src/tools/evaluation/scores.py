@@ -47,7 +47,7 @@ def score_quantity(truth, joined, used, name, column, truth_column, unit):
         error = (error + 180) % 360 - 180
     known = used & np.isfinite(error)
     if not np.any(known):
-        return "no valid frame has it"
+        return "no scored frame has it"
     scores = statistics(error[known], unit)
     if unit == "m":
         percent = statistics(100 * (error / truth.number(truth_column))[known], "%")
@@ -57,15 +57,16 @@ def score_quantity(truth, joined, used, name, column, truth_column, unit):
     return scores
 
 
-def score(truth, joined):
-    """Everything as a dictionary, ready for JSON."""
+def score(truth, joined, invalid_too=False):
+    """Everything as a dictionary, ready for JSON. invalid_too: errors of all frames, not of the valid ones only."""
     stamp = joined.stamp
     scored = stamp > stamp[0] + SETTLING_TIME + 1e-6
-    used = scored & (joined.estimate("valid") == 1)
+    valid = scored & (joined.estimate("valid") == 1)
+    used = scored if invalid_too else valid
     scores = {
         "frames": int(truth.rows), "frames_without_estimate": int(np.sum(~joined.found)),
-        "scored_frames": int(np.sum(scored)), "valid_frames": int(np.sum(used)),
-        "coverage": float(np.mean(used[scored])) if np.any(scored) else None,
+        "scored_frames": int(np.sum(scored)), "valid_frames": int(np.sum(valid)),
+        "invalid_scored_too": invalid_too, "coverage": float(np.mean(valid[scored])) if np.any(scored) else None,
         "quantities": {}, "missing": {},
     }
     for name, column, truth_column, unit in QUANTITIES:
@@ -88,7 +89,8 @@ def summary(scores):
     coverage = "unknown" if scores["coverage"] is None else f"{100 * scores['coverage']:.1f} %"
     lines = [f"{scores['frames']} frames, {scores['frames_without_estimate']} without an estimate; "
              f"{scores['scored_frames']} later than {SETTLING_TIME:g} s after the first, "
-             f"{scores['valid_frames']} of them valid: coverage {coverage}",
+             f"{scores['valid_frames']} of them valid: coverage {coverage}"
+             + ("; errors are those of invalid frames, too" if scores["invalid_scored_too"] else ""),
              f"{'error':<20} {'unit':<5}" + "".join(f"{title:>10}" for title, _ in COLUMNS) + "  within claimed 95 %"]
     for name, values in scores["quantities"].items():
         lines.append(row(name, values["unit"], values, values.get("within_claimed_95")))

@@ -1,0 +1,53 @@
+#include "pair_skew.h"
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+double meanInverseDepth(const StereoRig& rig, const StereoDepthResult& stereo) {
+  double sum = 0;
+  int count = 0;
+  for (const StereoDepthResult::Point& point : stereo.points) {
+    if (!point.on_plane) continue;
+    sum += point.disparity;
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count / rig.fb();
+}
+
+}  // namespace
+
+Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g, double mean_inverse_depth,
+                                 const CameraRates& rates, double skew) {
+  const Eigen::Vector3d& v = rates.velocity;
+  const Eigen::Vector3d& w = rates.angular_velocity;
+  const double q = mean_inverse_depth, b = rig.baseline;
+  return skew / b * ((v.x() + b * q * v.z()) * g + Eigen::Vector3d(-v.z() * q, -w.z(), w.y()));
+}
+
+GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
+                     const ApproachAngleResult::Motion& step) {
+  GroundPlane plane = stereo.plane;
+  if (stereo.skew == 0) return plane;
+  const double q = meanInverseDepth(rig, stereo);
+  const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity) {
+    const Eigen::Vector3d error =
+        planeErrorOfSkew(rig, plane.g, q, {velocity, angular_velocity}, stereo.skew);
+    plane.covariance += error * error.transpose();
+  };
+  if (!step.failure && step.duration > 0) {
+    const double speed_scale = plane.height() / step.duration;
+    // The step's rotation is that of the scene in the camera, opposite to the camera's.
+    add(speed_scale * step.translation_over_height, -step.rotation / step.duration);
+  } else {
+    constexpr double kSpeed = 20, kSideways = 2, kTurnRate = 0.3;  // m/s, m/s, rad/s
+    add(kSpeed * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
+    add(kSideways * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
+    for (int axis = 0; axis < 3; ++axis)
+      add(Eigen::Vector3d::Zero(), kTurnRate * Eigen::Vector3d::Unit(axis));
+  }
+  return plane;
+}
+
+}  // namespace uav_landing

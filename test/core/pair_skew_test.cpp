@@ -1,0 +1,106 @@
+#include "pair_skew.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+namespace uav_landing {
+namespace {
+
+StereoRig makeRig() {
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 600;
+  rig.cx = rig.cx_right = 320;
+  rig.cy = 240;
+  rig.baseline = 0.8;
+  return rig;
+}
+
+const Eigen::Vector3d kTruePlane = Eigen::Vector3d(0.02, 0.99, 0.06).normalized() / 12;
+
+/// Ground points as seen by the left camera and, `skew` later, by the right camera of the moved rig: exact
+/// projections, the points turned and shifted the other way than the camera.
+std::vector<StereoDepthResult::Point> seePoints(const StereoRig& rig, const CameraRates& rates, double skew) {
+  const Eigen::Vector3d turned = rates.angular_velocity * skew;
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(-turned.norm(), turned.norm() > 0 ? turned.normalized() : Eigen::Vector3d::UnitX())
+          .toRotationMatrix();
+  std::vector<StereoDepthResult::Point> points;
+  for (double u = 20; u < 640; u += 40) {
+    for (double v = 300; v < 480; v += 20) {
+      const Eigen::Vector3d ray((u - 320) / 600, (v - 240) / 600, 1);
+      const Eigen::Vector3d X = ray / kTruePlane.dot(ray);
+      const Eigen::Vector3d moved = R * (X - rates.velocity * skew);
+      StereoDepthResult::Point point;
+      point.u = u;
+      point.v = v;
+      point.disparity = u - (600 * (moved.x() - rig.baseline) / moved.z() + 320);
+      point.on_plane = true;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+Eigen::Vector3d fitPlane(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points) {
+  Eigen::MatrixXd rays(points.size(), 3);
+  Eigen::VectorXd inverse_depths(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    rays.row(i) = rig.ray(points[i].u, points[i].v).transpose();
+    inverse_depths[i] = points[i].disparity / (rig.fx * rig.baseline);
+  }
+  return rays.colPivHouseholderQr().solve(inverse_depths);
+}
+
+double meanInverseDepth(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points) {
+  double sum = 0;
+  for (const auto& point : points) sum += point.disparity / rig.fb();
+  return sum / points.size();
+}
+
+TEST(PairSkew, PredictsHowThePlaneOfAMovedRigIsWrong) {
+  const StereoRig rig = makeRig();
+  const double skew = 0.002;
+  const std::vector<CameraRates> movements = {
+      {{3, 0, 0}, {0, 0, 0}}, {{0, 0, 20}, {0, 0, 0}}, {{0, 0, 0}, {0, 0.4, 0}}, {{0, 0, 0}, {0, 0, 0.4}}};
+  for (const CameraRates& rates : movements) {
+    const auto points = seePoints(rig, rates, skew);
+    const Eigen::Vector3d error = fitPlane(rig, points) - kTruePlane;
+    const Eigen::Vector3d predicted =
+        planeErrorOfSkew(rig, kTruePlane, meanInverseDepth(rig, points), rates, skew);
+    EXPECT_LT((predicted - error).norm(), 0.3 * error.norm())
+        << "error " << error.transpose() << " predicted " << predicted.transpose();
+  }
+}
+
+TEST(PairSkew, EnlargesTheCovarianceByTheErrorOfTheKnownMotion) {
+  const StereoRig rig = makeRig();
+  const CameraRates rates{{1, 0.5, 20}, {0.02, 0.1, 0.05}};
+  StereoDepthResult stereo;
+  stereo.points = seePoints(rig, rates, 0.003);
+  stereo.plane.g = fitPlane(rig, stereo.points);
+  stereo.plane.covariance = 1e-12 * Eigen::Matrix3d::Identity();
+  ApproachAngleResult::Motion step;
+  step.duration = 0.1;
+  step.rotation = -rates.angular_velocity * step.duration;
+  step.translation_over_height = rates.velocity * step.duration / stereo.plane.height();
+
+  stereo.skew = 0;
+  EXPECT_EQ(withSkew(rig, stereo, step).covariance, stereo.plane.covariance);
+
+  stereo.skew = 0.003;
+  const double error = stereo.plane.height() - 12;
+  EXPECT_GT(std::abs(error), 0.05);
+  const double claimed = std::sqrt(withSkew(rig, stereo, step).heightVariance());
+  EXPECT_GT(claimed, 0.6 * std::abs(error));
+  EXPECT_LT(claimed, 1.7 * std::abs(error));
+
+  step.failure = {Reason::kNotYet, ""};
+  EXPECT_GT(std::sqrt(withSkew(rig, stereo, step).heightVariance()), std::abs(error));
+}
+
+}  // namespace
+}  // namespace uav_landing
