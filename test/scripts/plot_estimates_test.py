@@ -11,9 +11,9 @@ TRUTH = "stamp_s,left,right,height_m,approach_angle_deg\n" + "".join(
 
 
 def estimates(valid, height_error):
-    columns = "stamp_s,height_m,height_stddev_m,height_valid,approach_angle_deg,approach_angle_stddev_deg,angle_valid\n"
-    return columns + "".join(f"{100 + 0.1 * i:.3f},{2 - 0.02 * i + height_error},0.01,{valid},5.1,0.05,{valid}\n"
-                             for i in range(50)) + "105.0,,,0,,,0\n"
+    columns = "stamp_s,valid,height_m,height_stddev_m,height_valid,approach_angle_deg,approach_angle_stddev_deg,angle_valid"
+    return columns + "\n" + "".join(
+        f"{100 + 0.1 * i:.3f},{valid},{2 - 0.02 * i + height_error},0.01,{valid},5.1,0.05,{valid}\n" for i in range(50))
 
 
 class PlotEstimatesTest(unittest.TestCase):
@@ -36,3 +36,9 @@ class PlotEstimatesTest(unittest.TestCase):
         for name, text in (("wrong", estimates(valid=1, height_error=0.5)), ("invalid", estimates(valid=0, height_error=0))):
             with self.subTest(name):
                 self.assertTrue((self.plot(name, text) != good).any())
+
+    def test_names_the_file_that_is_missing(self):
+        result = run([SOURCE_DIR / "scripts/plot_estimates", "--truth", self.folder / "frames.csv",
+                      "--estimates", self.folder / "nonsuch.csv", "--output", self.folder / "a.png"])
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("nonsuch.csv", result.stderr)
