@@ -27,7 +27,7 @@ void EstimateBag::take(const ProcessedPair& pair) {
   if (pair.unusable) return;
   std_msgs::Header image;
   image.stamp = pair.stamp;
-  image.frame_id = pair.left_frame + "_rect";
+  image.frame_id = pair.left_frame;
   std_msgs::Header runway = image;
   runway.frame_id = "runway";
   const Pipeline::Output& output = pair.output;
@@ -36,7 +36,7 @@ void EstimateBag::take(const ProcessedPair& pair) {
   bag_.write("/uav_landing/approach_angle", pair.stamp,
              toMessage(output.approach, image, millisecondsOf(output.stages, "approach_angle")));
   bag_.write("/uav_landing/landing_estimate", pair.stamp,
-             toMessage(output.landing, runway, image.frame_id, pair.skew, output.stages.total()));
+             toMessage(output.landing, runway, pair.left_frame + "_rect", pair.skew, output.stages.total()));
 }
 
 void EstimateBag::finish() {

@@ -341,6 +341,8 @@ class DatasetTest(ProcessBagTest):
                 self.assertEqual(str(message.header.stamp.to_nsec()), row["stamp_s"].replace(".", ""))
                 self.assertEqual(stamp, message.header.stamp)
                 self.assertEqual(message.valid, row["valid"] == "1")
+                self.assertEqual((message.header.frame_id, message.child_frame_id),
+                                 ("runway", "stereo_left_optical_frame_rect"))
                 if row["height_m"]:
                     self.assertAlmostEqual(message.height, float(row["height_m"]), delta=1e-9)
                 if row["approach_angle_deg"]:
