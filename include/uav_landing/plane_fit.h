@@ -29,7 +29,8 @@ struct DisparitySample {
 /// Plane by consensus (MSAC over triples; fixed seed): the plausible plane with the most support. A pixel
 /// that matches nearer than the plane stands above the ground and costs nothing; one that matches farther
 /// would lie below it, which ground does not allow, and counts against the plane.
-/// slope_range, when not null: bounds on the change of disparity per row.
+/// slope_range, when not null: bounds on the change of disparity per row of the planes drawn (the least
+/// squares that follow may leave them).
 struct Consensus {
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   double support = 0;  ///< about the number of agreeing samples

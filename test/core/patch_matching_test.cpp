@@ -1,0 +1,198 @@
+#include "uav_landing/patch_matching.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+#include "support/random_texture.h"
+#include "uav_landing/match_image.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr int kSize = 200, kRadius = 5;
+
+/// Two images, the reference's pixel x seen in the other one at centre + A (x - centre) + shift.
+struct Pair {
+  struct Look {
+    Eigen::Matrix2d A = Eigen::Matrix2d::Identity();
+    Eigen::Vector2d shift{0, 0};
+    double gain = 1, offset = 0, noise = 0;
+  };
+  Look look;
+  MatchImage reference, other;
+
+  explicit Pair(const Look& given) : look(given) {
+    const test::RandomTexture texture(3);
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    cv::Mat first(kSize, kSize, CV_8UC1), second = first.clone();
+    const auto light = [&](const Eigen::Vector2d& x) { return 110 + 30 * texture.at(x.x() / 3, x.y() / 3); };
+    for (int v = 0; v < kSize; ++v)
+      for (int u = 0; u < kSize; ++u) {
+        const Eigen::Vector2d x(u, v);
+        const Eigen::Vector2d source = centre() + look.A.inverse() * (x - look.shift - centre());
+        first.at<uchar>(v, u) = cv::saturate_cast<uchar>(light(x) + look.noise * normal(random));
+        second.at<uchar>(v, u) =
+            cv::saturate_cast<uchar>(look.gain * light(source) + look.offset + look.noise * normal(random));
+      }
+    reference.assign(first);
+    other.assign(second);
+  }
+
+  static Eigen::Vector2d centre() { return {kSize / 2.0, kSize / 2.0}; }
+  Eigen::Vector2d place(int u, int v) const {
+    return centre() + look.A * (Eigen::Vector2d(u, v) - centre()) + look.shift;
+  }
+};
+
+struct Errors {
+  double rms = 0;   ///< of a component, pixels
+  double nees = 0;  ///< mean normalised squared error
+  int matched = 0, tried = 0;
+};
+
+/// Searches and refines a grid of patches from places 2.4 and -1.7 pixels off.
+Errors matchGrid(const Pair& pair, const Eigen::Matrix2d& warp) {
+  PatchSearch search(pair.reference.fine, pair.other.fine, kRadius);
+  Errors errors;
+  double squares = 0;
+  for (int v = 40; v <= kSize - 40; v += 6)
+    for (int u = 40; u <= kSize - 40; u += 6) {
+      ++errors.tried;
+      const Eigen::Vector2d wanted = pair.place(u, v);
+      const PatchSearch::Best best = search.run(u, v, wanted + Eigen::Vector2d(2.4, -1.7), warp, 6);
+      if (!best.found) continue;
+      const PatchRefinement refined =
+          refinePatch(pair.reference.fine, pair.other.fine, u, v, best.position, warp, kRadius);
+      if (!refined.converged) continue;
+      const Eigen::Vector2d error = refined.position - wanted;
+      ++errors.matched;
+      squares += error.squaredNorm();
+      errors.nees += error.dot(refined.covariance.inverse() * error);
+    }
+  errors.rms = std::sqrt(squares / (2 * errors.matched));
+  errors.nees /= errors.matched;
+  return errors;
+}
+
+Eigen::Matrix2d turned(double angle, double scale_u, double scale_v) {
+  return Eigen::Rotation2Dd(angle).toRotationMatrix() * Eigen::Vector2d(scale_u, scale_v).asDiagonal();
+}
+
+TEST(PatchMatching, FindsShiftsToSubPixelWhateverTheGainAndOffset) {
+  for (const Eigen::Vector2d& shift :
+       {Eigen::Vector2d(0, 0), Eigen::Vector2d(3.5, -2.5), Eigen::Vector2d(-1.23, 4.71)}) {
+    Pair::Look look;
+    look.shift = shift;
+    look.gain = 0.8;
+    look.offset = 20;
+    look.noise = 1;
+    const Errors errors = matchGrid(Pair(look), Eigen::Matrix2d::Identity());
+    EXPECT_GT(errors.matched, 0.98 * errors.tried);
+    EXPECT_LT(errors.rms, 0.03) << shift.transpose();
+  }
+}
+
+TEST(PatchMatching, FindsWarpedPatchesWithTheirWarpOnly) {
+  for (const Eigen::Matrix2d& A :
+       {turned(0.15, 1, 1), turned(0, 0.8, 0.8), turned(0.05, 1.15, 1.3), turned(-0.1, 0.9, 0.7)}) {
+    Pair::Look look;
+    look.A = A;
+    look.shift = {1.37, -0.62};
+    look.noise = 1;
+    const Pair pair(look);
+    const Errors warped = matchGrid(pair, A), upright = matchGrid(pair, Eigen::Matrix2d::Identity());
+    EXPECT_GT(warped.matched, 0.95 * warped.tried) << A;
+    EXPECT_LT(warped.rms, 0.03) << A;
+    EXPECT_GT(upright.rms, 2 * warped.rms) << A;
+  }
+}
+
+TEST(RefinePatch, ClaimsTheScatterItHas) {
+  for (const double noise : {1.0, 4.0}) {
+    Pair::Look look;
+    look.A = turned(0.05, 0.9, 1.1);
+    look.shift = {0.4, 0.7};
+    look.noise = noise;
+    const Errors errors = matchGrid(Pair(look), look.A);
+    // Factor two in the standard deviation; two components.
+    EXPECT_LT(errors.nees, 2 * 4) << noise;
+    EXPECT_GT(errors.nees, 2 / 4.0) << noise;
+  }
+}
+
+TEST(RefinePatch, KnowsThatAnEdgeSaysNothingAlongIt) {
+  // Brightness changes along u only, but for a little texture.
+  const test::RandomTexture texture(5);
+  cv::Mat image(kSize, kSize, CV_8UC1);
+  for (int v = 0; v < kSize; ++v)
+    for (int u = 0; u < kSize; ++u)
+      image.at<uchar>(v, u) =
+          cv::saturate_cast<uchar>(100 + 60 * std::tanh((u - 100) / 2.0) + 3 * texture.at(u / 3.0, v / 3.0));
+  MatchImage match;
+  match.assign(image);
+  cv::Mat noisy = image.clone(), noise(image.size(), CV_8UC1);
+  cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 0, 5);
+  noisy += noise;
+  MatchImage other;
+  other.assign(noisy);
+  const PatchRefinement refined =
+      refinePatch(match.fine, other.fine, 100, 100, {100.3, 100.2}, Eigen::Matrix2d::Identity(), kRadius);
+  ASSERT_TRUE(refined.converged);
+  EXPECT_NEAR(refined.position.x(), 100, 0.1);
+  EXPECT_GT(refined.covariance(1, 1), 10 * refined.covariance(0, 0));
+  EXPECT_GT(refined.covariance.determinant(), 0);
+}
+
+TEST(PatchSearch, DoesNotTakeAPeakOnTheBorderOfTheRange) {
+  Pair::Look look;
+  look.shift = {6, 0};
+  const Pair pair(look);
+  PatchSearch search(pair.reference.fine, pair.other.fine, kRadius);
+  const Eigen::Matrix2d upright = Eigen::Matrix2d::Identity();
+  EXPECT_FALSE(search.run(100, 100, {100, 100}, upright, 6).found);
+  const PatchSearch::Best best = search.run(100, 100, {100, 100}, upright, 8);
+  EXPECT_TRUE(best.found);
+  EXPECT_NEAR((best.position - Eigen::Vector2d(106, 100)).norm(), 0, 1e-9);
+  EXPECT_GT(best.score, 0.99);
+  EXPECT_LT(best.second, 0.9);
+}
+
+TEST(PatchSearch, ReportsASecondPlaceThatIsAsGood) {
+  cv::Mat image(kSize, kSize, CV_32F);
+  for (int v = 0; v < kSize; ++v)
+    for (int u = 0; u < kSize; ++u)
+      image.at<float>(v, u) =
+          static_cast<float>(100 + 40 * std::sin(2 * M_PI * u / 8) * std::sin(2 * M_PI * v / 30));
+  PatchSearch search(image, image, kRadius);
+  const PatchSearch::Best best = search.run(100, 100, {100, 100}, Eigen::Matrix2d::Identity(), 10);
+  EXPECT_GT(best.second, 0.99);
+}
+
+TEST(PatchMatching, SaysNoWithoutContrastAndOutsideTheImage) {
+  const Pair pair{Pair::Look()};
+  const cv::Mat flat(kSize, kSize, CV_32F, cv::Scalar(77));
+  const Eigen::Matrix2d upright = Eigen::Matrix2d::Identity();
+  PatchSearch from_flat(flat, pair.other.fine, kRadius), to_flat(pair.reference.fine, flat, kRadius);
+  EXPECT_FALSE(from_flat.run(100, 100, {100, 100}, upright, 3).found);
+  EXPECT_FALSE(to_flat.run(100, 100, {100, 100}, upright, 3).found);
+  EXPECT_FALSE(refinePatch(flat, flat, 100, 100, {100, 100}, upright, kRadius).converged);
+  EXPECT_FALSE(refinePatch(pair.reference.fine, flat, 100, 100, {100, 100}, upright, kRadius).converged);
+  PatchSearch search(pair.reference.fine, pair.other.fine, kRadius);
+  for (const Eigen::Vector2d& at :
+       {Eigen::Vector2d(2, 100), Eigen::Vector2d(100, kSize - 2), Eigen::Vector2d(-300, 100),
+        Eigen::Vector2d(1e9, 1e9), Eigen::Vector2d(std::nan(""), 100)}) {
+    EXPECT_FALSE(search.run(100, 100, at, upright, 3).found) << at.transpose();
+    EXPECT_FALSE(refinePatch(pair.reference.fine, pair.other.fine, 100, 100, at, upright, kRadius).converged)
+        << at.transpose();
+  }
+  EXPECT_FALSE(search.run(3, 100, {100, 100}, upright, 3).found);
+  EXPECT_FALSE(search.run(100, kSize, {100, 100}, upright, 3).found);
+}
+
+}  // namespace
+}  // namespace uav_landing

@@ -1,0 +1,283 @@
+#include "uav_landing/plane_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+
+#include "support/consistency.h"
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+
+PlaneLimits makeLimits() {
+  PlaneLimits limits;
+  limits.max_roll = limits.max_pitch = 30 * kDegree;
+  limits.min_points = 20;
+  limits.tolerance = 0.6;
+  return limits;
+}
+
+const StereoRig& rig() {
+  static const StereoRig rig = test::makeRig(640, 480, 1.0);
+  return rig;
+}
+
+Eigen::Vector3d plane(double height, double pitch_deg, double roll_deg) {
+  test::Pose pose;
+  pose.pitch = pitch_deg * kDegree;
+  pose.roll = roll_deg * kDegree;
+  return pose.down() / height;
+}
+
+/// Disparities of random ground pixels, each by cutting its ray with the plane g.X = 1.
+class Sampler {
+ public:
+  explicit Sampler(unsigned seed) : random_(seed) {}
+
+  std::vector<DisparitySample> ground(const Eigen::Vector3d& g, int count, double stddev) {
+    std::vector<DisparitySample> samples;
+    while (static_cast<int>(samples.size()) < count) {
+      const double u = uniform_(random_) * (rig().size.width - 1);
+      const double v = uniform_(random_) * (rig().size.height - 1);
+      const double depth = 1 / g.dot(rig().ray(u, v));
+      if (!(depth > 0 && depth < rig().fb())) continue;  // from one pixel of disparity on
+      samples.push_back({u, v, std::max(stddev, 1e-3), {rig().fb() / depth + stddev * normal_(random_)}});
+    }
+    return samples;
+  }
+
+  /// Lifts a share of the samples to between 1.05 and 2 times their disparity, as what stands above the
+  /// ground.
+  void lift(std::vector<DisparitySample>& samples, double share) {
+    for (DisparitySample& sample : samples)
+      if (uniform_(random_) < share) sample.disparities[0] *= 1.05 + 0.95 * uniform_(random_);
+  }
+
+  double normal() { return normal_(random_); }
+
+ private:
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> uniform_;
+  std::normal_distribution<double> normal_;
+};
+
+TEST(IsPlausibleGround, KnowsItsLimits) {
+  const PlaneLimits limits = makeLimits();
+  for (const double pitch : {-29.0, 0.0, 29.0})
+    for (const double roll : {-29.0, 0.0, 29.0})
+      EXPECT_TRUE(isPlausibleGround(plane(5, pitch, roll), limits));
+  for (const double pitch : {-31.0, 31.0}) EXPECT_FALSE(isPlausibleGround(plane(5, pitch, 0), limits));
+  for (const double roll : {-31.0, 31.0}) EXPECT_FALSE(isPlausibleGround(plane(5, 0, roll), limits));
+  EXPECT_FALSE(isPlausibleGround(-plane(5, 0, 0), limits)) << "a ceiling";
+  EXPECT_FALSE(isPlausibleGround(Eigen::Vector3d::Zero(), limits));
+  EXPECT_FALSE(isPlausibleGround(Eigen::Vector3d(0, std::nan(""), 0), limits));
+}
+
+TEST(PlaneFit, IsExactOnExactData) {
+  Sampler sampler(1);
+  for (const double height : {0.5, 3.0, 30.0})
+    for (const double pitch : {-15.0, -4.0, 3.0})
+      for (const double roll : {-10.0, 0.0, 10.0}) {
+        const Eigen::Vector3d g = plane(height, pitch, roll);
+        const std::vector<DisparitySample> samples = sampler.ground(g, 200, 0);
+        const Consensus consensus = findPlane(rig(), samples, makeLimits(), 200, nullptr);
+        ASSERT_TRUE(consensus.found) << height << " " << pitch << " " << roll;
+        EXPECT_GT(consensus.support, 190);
+        const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
+        ASSERT_TRUE(fit) << fit.error().message();
+        EXPECT_TRUE(fit->plane.g.isApprox(g, 1e-9)) << height << " " << pitch << " " << roll;
+        EXPECT_EQ(fit->count, 200);
+      }
+}
+
+TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
+  const Eigen::Vector3d g = plane(6, -6, 4);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Sampler sampler(seed);
+    std::vector<DisparitySample> samples = sampler.ground(g, 300, 0.1);
+    sampler.lift(samples, 0.4);
+    const Consensus consensus = findPlane(rig(), samples, makeLimits(), 200, nullptr);
+    ASSERT_TRUE(consensus.found);
+    const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->plane.height(), 6, 4 * std::sqrt(fit->plane.heightVariance())) << seed;
+    EXPECT_NEAR(fit->plane.height(), 6, 0.005 * 6) << seed;
+    EXPECT_NEAR(pitchOf(fit->plane.normal()), -6 * kDegree, 0.1 * kDegree) << seed;
+    EXPECT_NEAR(rollOf(fit->plane.normal()), 4 * kDegree, 0.2 * kDegree) << seed;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const double above =
+          samples[i].disparities[0] - rig().fb() * g.dot(rig().ray(samples[i].u, samples[i].v));
+      EXPECT_FALSE(above > 2 && fit->agrees[i]) << above;
+      EXPECT_FALSE(std::abs(above) < 0.2 && !fit->agrees[i]) << above;
+    }
+  }
+}
+
+TEST(FindPlane, PrefersTheGroundToALargerPlaneAboveIt) {
+  // 45 % on the ground, 55 % on the roof of something 1.5 m tall: nothing lies below the ground.
+  const Eigen::Vector3d g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
+  Sampler sampler(3);
+  std::vector<DisparitySample> samples = sampler.ground(g, 135, 0.1);
+  const std::vector<DisparitySample> above = sampler.ground(roof, 165, 0.1);
+  samples.insert(samples.end(), above.begin(), above.end());
+  const Consensus consensus = findPlane(rig(), samples, makeLimits(), 300, nullptr);
+  ASSERT_TRUE(consensus.found);
+  EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1);
+}
+
+TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
+  const Eigen::Vector3d g = plane(4, -5, -3);
+  Sampler sampler(5);
+  std::vector<DisparitySample> samples = sampler.ground(g, 200, 0.1);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    // The true one anywhere among four, the others one period and more off, as zebra bars are.
+    const double true_disparity = samples[i].disparities[0];
+    samples[i].disparities = {true_disparity + 9, true_disparity + 18, true_disparity - 9};
+    samples[i].disparities.insert(samples[i].disparities.begin() + i % 4, true_disparity);
+  }
+  // Three planes fit equally well. All of them are found below the camera; rows tell them apart only by where
+  // disparity is zero, so the range of slopes must not decide either.
+  const Consensus consensus = findPlane(rig(), samples, makeLimits(), 500, nullptr);
+  ASSERT_TRUE(consensus.found);
+  EXPECT_GT(consensus.support, 150);
+  // With 60 pixels of plain texture beside the zebra there is only one.
+  const std::vector<DisparitySample> plain = sampler.ground(g, 60, 0.1);
+  samples.insert(samples.end(), plain.begin(), plain.end());
+  const Consensus decided = findPlane(rig(), samples, makeLimits(), 500, nullptr);
+  ASSERT_TRUE(decided.found);
+  EXPECT_NEAR(1 / decided.g.norm(), 4, 0.1);
+}
+
+TEST(FindPlane, KeepsToTheRangeOfSlopes) {
+  // Two planes; the upper one, which would lose, is the only one in the range.
+  const Eigen::Vector3d low = plane(4, -5, 0), high = plane(2, -5, 0);
+  Sampler sampler(6);
+  std::vector<DisparitySample> samples = sampler.ground(low, 100, 0.05);
+  const std::vector<DisparitySample> above = sampler.ground(high, 100, 0.05);
+  samples.insert(samples.end(), above.begin(), above.end());
+  const double slope = rig().fb() * high.y() / rig().fy;
+  const Eigen::Vector2d around(0.8 * slope, 1.2 * slope);
+  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), 200, nullptr).g.norm(), 4, 0.1);
+  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), 200, &around).g.norm(), 2, 0.1);
+}
+
+TEST(FindPlane, FindsNothingAmongFewOrImplausibleSamples) {
+  Sampler sampler(7);
+  EXPECT_FALSE(findPlane(rig(), sampler.ground(plane(4, 0, 0), 2, 0), makeLimits(), 100, nullptr).found);
+  EXPECT_FALSE(findPlane(rig(), {}, makeLimits(), 100, nullptr).found);
+  PlaneLimits tight = makeLimits();
+  tight.max_pitch = 5 * kDegree;
+  const std::vector<DisparitySample> steep = sampler.ground(plane(4, -20, 0), 200, 0.02);
+  const Consensus consensus = findPlane(rig(), steep, tight, 200, nullptr);
+  EXPECT_LT(consensus.support, 60);
+}
+
+TEST(FindPlane, IsDeterministic) {
+  Sampler sampler(8);
+  std::vector<DisparitySample> samples = sampler.ground(plane(4, -5, 2), 200, 0.2);
+  sampler.lift(samples, 0.4);
+  EXPECT_EQ(findPlane(rig(), samples, makeLimits(), 100, nullptr).g,
+            findPlane(rig(), samples, makeLimits(), 100, nullptr).g);
+}
+
+/// Mean of the normalised squared errors over many draws, and of each component's alone.
+struct Nees {
+  double all = 0;
+  Eigen::Vector3d each = Eigen::Vector3d::Zero();
+};
+
+Nees simulate(const Eigen::Vector3d& g, int runs, double actual, double claimed, double common) {
+  Sampler sampler(11);
+  Nees nees;
+  for (int run = 0; run < runs; ++run) {
+    std::vector<DisparitySample> samples = sampler.ground(g, 150, actual);
+    const double shift = common * sampler.normal();
+    for (DisparitySample& sample : samples) {
+      sample.stddev = claimed;
+      sample.disparities[0] += shift;
+    }
+    const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), common);
+    EXPECT_TRUE(fit);
+    if (!fit) continue;
+    const Eigen::Vector3d error = fit->plane.g - g;
+    nees.all += error.dot(fit->plane.covariance.ldlt().solve(error)) / runs;
+    nees.each += error.cwiseAbs2().cwiseQuotient(fit->plane.covariance.diagonal()) / runs;
+  }
+  return nees;
+}
+
+// Robust weights and factors that never go below one make the claim a little larger than the scatter.
+constexpr double kLeastShare = 0.65;
+
+TEST(RefinePlane, ClaimsTheScatterOfIndependentErrors) {
+  constexpr int kRuns = 400;
+  for (const Eigen::Vector3d& g : {plane(6, -6, 4), plane(0.7, -12, 0), plane(25, -3, -8)}) {
+    const Nees nees = simulate(g, kRuns, 0.1, 0.1, 0);
+    const double tolerance = test::chiSquareMeanTolerance(kRuns, 3);
+    EXPECT_LT(nees.all, 3 + tolerance);
+    EXPECT_GT(nees.all, kLeastShare * 3 - tolerance);
+  }
+}
+
+TEST(RefinePlane, FindsOutThatMatchesClaimTooLittle) {
+  constexpr int kRuns = 400;
+  const Nees nees = simulate(plane(6, -6, 4), kRuns, 0.15, 0.05, 0);
+  EXPECT_LT(nees.all, 3 + test::chiSquareMeanTolerance(kRuns, 3));
+}
+
+TEST(RefinePlane, WidensByAnErrorCommonToAllDisparities) {
+  constexpr int kRuns = 400;
+  const Eigen::Vector3d g = plane(6, -6, 0);
+  const Nees nees = simulate(g, kRuns, 0.1, 0.1, 0.1);
+  const double tolerance = test::chiSquareMeanTolerance(kRuns, 1);
+  // The bias is along the optical axis of g: d = f b g.r with r_z = 1.
+  EXPECT_LT(nees.each.z(), 1 + tolerance);
+  EXPECT_GT(nees.each.z(), kLeastShare - tolerance);
+}
+
+TEST(RefinePlane, WidensPitchByWhatACommonErrorTurnsTheHorizonAndNothingElse) {
+  // A common error e of disparity moves the horizon by e / (slope of disparity) rows, here at roll 0:
+  // d pitch = e h / (f b), about; height changes by less, roll not at all.
+  const double height = 6, e = 0.05;
+  const Eigen::Vector3d g = plane(height, 0, 0);
+  const std::vector<DisparitySample> samples = Sampler(12).ground(g, 200, 0.1);
+  const Expected<PlaneFit> without = refinePlane(rig(), samples, g, makeLimits(), 0);
+  const Expected<PlaneFit> with = refinePlane(rig(), samples, g, makeLimits(), e);
+  ASSERT_TRUE(without && with);
+  EXPECT_EQ(with->plane.g, without->plane.g);
+  const auto added = [&](auto variance) { return variance(with->plane) - variance(without->plane); };
+  const double pitch =
+      added([](const GroundPlane& plane) { return pitchVariance(plane.normal(), plane.normalCovariance()); });
+  const double roll =
+      added([](const GroundPlane& plane) { return rollVariance(plane.normal(), plane.normalCovariance()); });
+  const double in_height = added([](const GroundPlane& plane) { return plane.heightVariance(); });
+  const double expected = e * height / rig().fb();
+  EXPECT_NEAR(std::sqrt(pitch) / expected, 1, 0.02);
+  EXPECT_NEAR(roll, 0, 1e-4 * pitch);
+  EXPECT_LT(std::sqrt(in_height) / height, 0.1 * expected);
+}
+
+TEST(RefinePlane, SaysWhyThereIsNone) {
+  const Eigen::Vector3d g = plane(6, -6, 0);
+  Sampler sampler(13);
+  const Expected<PlaneFit> few = refinePlane(rig(), sampler.ground(g, 19, 0.1), g, makeLimits(), 0);
+  ASSERT_FALSE(few);
+  EXPECT_EQ(few.error().reason, Reason::kNoPlane);
+  EXPECT_NE(few.error().detail.find("20"), std::string::npos) << few.error().detail;
+  const Expected<PlaneFit> wrong =
+      refinePlane(rig(), sampler.ground(g, 100, 0.1), plane(3, -6, 0), makeLimits(), 0);
+  EXPECT_FALSE(wrong) << "from a start that nothing agrees with";
+  const Expected<PlaneFit> steep =
+      refinePlane(rig(), sampler.ground(plane(6, -35, 0), 100, 0.1), plane(6, -35, 0), makeLimits(), 0);
+  ASSERT_FALSE(steep);
+  EXPECT_EQ(steep.error().reason, Reason::kNoPlane);
+  EXPECT_FALSE(refinePlane(rig(), {}, g, makeLimits(), 0));
+}
+
+}  // namespace
+}  // namespace uav_landing
