@@ -20,7 +20,7 @@ Expected<FocusOfExpansion> foeFromMotion(const StereoRig& rig, const Eigen::Vect
 /// The paper's form (2.3): every velocity vector is extended over the whole image, and the 3x3 window that
 /// most lines cross is the focus. Only one counting image, whatever the number of vectors. R: rotation from
 /// then to now to take out first (identity: the paper to the letter). Covariance: from the lines through the
-/// window.
+/// window, and how far its middle is from the point nearest to them.
 Expected<FocusOfExpansion> foeSlidingWindow(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                             const Eigen::Matrix3d& R);
 

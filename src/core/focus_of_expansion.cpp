@@ -36,8 +36,10 @@ void addLine(const Velocity& velocity, cv::Mat& counts) {
   for (int i = 0; i < line.count; ++i, ++line) ++counts.at<ushort>(line.pos());
 }
 
-// Point nearest to the lines that pass close by, and the covariance their scatter gives.
-Expected<FocusOfExpansion> nearestPoint(const std::vector<Velocity>& lines, const Eigen::Vector2d& start) {
+// The window with its covariance: that of the point nearest to the lines that pass close by, from their
+// scatter, and how far the window's middle is from that point.
+Expected<FocusOfExpansion> windowWithCovariance(const std::vector<Velocity>& lines,
+                                                const Eigen::Vector2d& window) {
   constexpr double kNear = 4.0;
   constexpr int kFewest = 3;
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
@@ -47,7 +49,7 @@ Expected<FocusOfExpansion> nearestPoint(const std::vector<Velocity>& lines, cons
   for (const Velocity& line : lines) {
     const Eigen::Vector2d along = (line.to - line.from).normalized();
     const Eigen::Vector2d normal(-along.y(), along.x());
-    const double distance = normal.dot(line.to - start);
+    const double distance = normal.dot(line.to - window);
     if (std::abs(distance) > kNear) continue;
     information += normal * normal.transpose();
     right += normal * distance;
@@ -57,7 +59,9 @@ Expected<FocusOfExpansion> nearestPoint(const std::vector<Velocity>& lines, cons
   if (count < kFewest || information.determinant() < 1e-6 * count * count) {
     return tl::make_unexpected(Failure{Reason::kNoMotion, "the image velocities do not meet in one point"});
   }
-  return FocusOfExpansion{start, squares / count * information.inverse()};
+  const Eigen::Matrix2d inverse = information.inverse();
+  const Eigen::Vector2d offset = inverse * right;
+  return FocusOfExpansion{window, squares / count * inverse + offset * offset.transpose()};
 }
 
 }  // namespace
@@ -83,7 +87,7 @@ Expected<FocusOfExpansion> foeSlidingWindow(const StereoRig& rig, const std::vec
   cv::Point at;
   cv::minMaxLoc(sums, nullptr, &most, nullptr, &at);
   if (!(most > 0)) return tl::make_unexpected(Failure{Reason::kNoMotion, "no image velocities"});
-  return nearestPoint(lines, {double(at.x), double(at.y)});
+  return windowWithCovariance(lines, {double(at.x), double(at.y)});
 }
 
 }  // namespace uav_landing
