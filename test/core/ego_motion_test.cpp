@@ -1,0 +1,313 @@
+#include "uav_landing/ego_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "support/consistency.h"
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::Movement;
+using test::Pose;
+
+const StereoRig& rig() {
+  static const StereoRig rig = test::makeRig(640, 480, 1.0);
+  return rig;
+}
+
+/// Two poses of an approach with drift and rotation in all axes.
+struct Step {
+  Pose then, now;
+  Movement movement;
+  Eigen::Vector3d t;  ///< over the height now
+  Eigen::Vector3d n;
+
+  static Step make(double pitch_deg = -6) {
+    Pose then, now;
+    then.position = {-30, 0.5, 6.2};
+    then.pitch = pitch_deg * kDegree;
+    then.roll = 2 * kDegree;
+    now.position = {-28.4, 0.6, 6.0};
+    now.pitch = (pitch_deg + 0.7) * kDegree;
+    now.roll = 0.5 * kDegree;
+    now.yaw = 0.9 * kDegree;
+    return Step(then, now);
+  }
+  Step(const Pose& from, const Pose& to)
+      : then(from), now(to), movement(from, to), t(movement.t / to.height()), n(to.down()) {}
+};
+
+/// Matches by projecting points of the world into both poses.
+class Matcher {
+ public:
+  Matcher(const Step& step, unsigned seed) : step_(step), random_(seed) {}
+
+  std::vector<TemporalMatch> ground(int count, double noise) {
+    std::vector<TemporalMatch> matches;
+    while (static_cast<int>(matches.size()) < count) {
+      const Eigen::Vector2d pixel = anyPixel();
+      const double slope = step_.n.dot(rig().ray(pixel.x(), pixel.y()));
+      if (slope < 0.02) continue;
+      add(pixel, step_.now.height() / slope, noise, true, 0, matches);
+    }
+    return matches;
+  }
+
+  /// Points that stand at random depths; their inverse depth (times height) is known to depth_noise.
+  std::vector<TemporalMatch> standing(int count, double noise, double depth_noise) {
+    std::vector<TemporalMatch> matches;
+    while (static_cast<int>(matches.size()) < count)
+      add(anyPixel(), 8 + 40 * uniform_(random_), noise, false, depth_noise, matches);
+    return matches;
+  }
+
+  /// Moves a share of the matches elsewhere.
+  void spoil(std::vector<TemporalMatch>& matches, double share) {
+    for (TemporalMatch& match : matches)
+      if (uniform_(random_) < share) match.then += 4 * draw() + 30 * Eigen::Vector2d(uniform_(random_), 0);
+  }
+
+  Eigen::Vector2d draw() { return {normal_(random_), normal_(random_)}; }
+
+ private:
+  Eigen::Vector2d anyPixel() {
+    return {uniform_(random_) * (rig().size.width - 1), uniform_(random_) * (rig().size.height - 1)};
+  }
+
+  void add(const Eigen::Vector2d& pixel, double depth, double noise, bool on_plane, double depth_noise,
+           std::vector<TemporalMatch>& matches) {
+    const Eigen::Vector3d X = depth * rig().ray(pixel.x(), pixel.y());
+    const Eigen::Vector3d world = step_.now.worldFromOptical() * X + step_.now.position;
+    const Eigen::Vector3d before = step_.then.seen(world - step_.then.position);
+    if (!(before.z() > 0.1)) return;
+    TemporalMatch match;
+    match.now = pixel;
+    match.then = rig().project(before) + noise * draw();
+    match.covariance = std::pow(std::max(noise, 0.01), 2) * Eigen::Matrix2d::Identity();
+    match.on_plane = on_plane;
+    match.inverse_depth = step_.now.height() / depth + depth_noise * normal_(random_);
+    match.inverse_depth_stddev = depth_noise;
+    matches.push_back(match);
+  }
+
+  const Step& step_;
+  std::mt19937 random_;
+  std::uniform_real_distribution<double> uniform_;
+  std::normal_distribution<double> normal_;
+};
+
+/// Covariance of a normal that is known to this, rad.
+Eigen::Matrix3d across(const Eigen::Vector3d& n, double stddev) {
+  return stddev * stddev * (Eigen::Matrix3d::Identity() - n * n.transpose());
+}
+
+Eigen::Vector3d rotationError(const Eigen::Matrix3d& R, const Eigen::Matrix3d& truth) {
+  const Eigen::AngleAxisd turn(R * truth.transpose());
+  return turn.angle() * turn.axis();
+}
+
+Expected<MotionEstimate> estimate(const std::vector<TemporalMatch>& matches, const Eigen::Vector3d& n,
+                                  double stddev, const CameraMotion& start = {}) {
+  return estimateMotion(rig(), matches, n, across(n, stddev), start, 15);
+}
+
+TEST(CameraMotion, SeesPointsThenWhereTheWorldSaysTheyWere) {
+  const Step step = Step::make();
+  const CameraMotion motion{step.movement.R, step.t};
+  std::vector<TemporalMatch> matches = Matcher(step, 1).standing(20, 0, 0);
+  for (const TemporalMatch& match : matches) {
+    const Eigen::Vector3d y = motion.seenThen(rig().ray(match.now.x(), match.now.y()), match.inverse_depth);
+    EXPECT_NEAR((rig().project(y) - match.then).norm(), 0, 1e-9);
+  }
+}
+
+TEST(EstimateMotion, IsExactOnExactMatches) {
+  for (const double pitch : {-15.0, -6.0, 3.0}) {
+    const Step step = Step::make(pitch);
+    const Expected<MotionEstimate> found = estimate(Matcher(step, 2).ground(100, 0), step.n, 1e-3);
+    ASSERT_TRUE(found) << found.error().message();
+    EXPECT_LT(rotationError(found->motion.R, step.movement.R).norm(), 1e-8);
+    EXPECT_LT((found->motion.t - step.t).norm(), 1e-7);
+    EXPECT_LT((found->normal - step.n).norm(), 1e-7);
+    EXPECT_EQ(found->inlier_count, 100);
+  }
+}
+
+TEST(EstimateMotion, FindsNoMovementAndPureRotation) {
+  Pose now;
+  now.position = {0, 0, 5};
+  now.pitch = -5 * kDegree;
+  Pose turned = now;
+  turned.yaw = 2 * kDegree;
+  turned.pitch = -4 * kDegree;
+  for (const Pose& then : {now, turned}) {
+    const Step step(then, now);
+    const Expected<MotionEstimate> found = estimate(Matcher(step, 3).ground(100, 0), step.n, 1e-3);
+    ASSERT_TRUE(found);
+    EXPECT_LT(rotationError(found->motion.R, step.movement.R).norm(), 1e-8);
+    EXPECT_LT(found->motion.t.norm(), 1e-7);
+  }
+}
+
+TEST(EstimateMotion, IgnoresThirtyPercentOutliers) {
+  const Step step = Step::make();
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Matcher matcher(step, seed);
+    std::vector<TemporalMatch> matches = matcher.ground(150, 0.1);
+    const Expected<MotionEstimate> clean = estimate(matches, step.n, 1e-3);
+    matcher.spoil(matches, 0.3);
+    const Expected<MotionEstimate> found = estimate(matches, step.n, 1e-3);
+    ASSERT_TRUE(clean && found);
+    EXPECT_NEAR(found->inlier_count, 105, 20);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(found->motion.t[i], step.t[i], 4.5 * std::sqrt(found->covariance(3 + i, 3 + i)));
+      // No wider than fewer matches and a few of them half believed make it.
+      EXPECT_LT(found->covariance(3 + i, 3 + i), 3 * clean->covariance(3 + i, 3 + i));
+    }
+  }
+}
+
+TEST(EstimateMotion, ClaimsTheScatterItHas) {
+  constexpr int kRuns = 300;
+  const Step step = Step::make();
+  const double normal_stddev = 0.003;
+  Matcher matcher(step, 5);
+  double rotation = 0, translation = 0, normal = 0, joint = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<TemporalMatch> matches = matcher.ground(100, 0.15);
+    const std::vector<TemporalMatch> above = matcher.standing(20, 0.15, 0.004);
+    matches.insert(matches.end(), above.begin(), above.end());
+    // Prior normal off by its own covariance.
+    const Eigen::Vector2d a = normal_stddev * matcher.draw();
+    const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized(), e2 = step.n.cross(e1);
+    const Eigen::Vector3d prior = (step.n + a.x() * e1 + a.y() * e2).normalized();
+    const Expected<MotionEstimate> found =
+        estimateMotion(rig(), matches, prior, across(prior, normal_stddev), {}, 15);
+    ASSERT_TRUE(found);
+    Eigen::Matrix<double, 8, 1> error;
+    error << rotationError(found->motion.R, step.movement.R), found->motion.t - step.t,
+        e1.dot(found->normal.normalized() - step.n), e2.dot(found->normal.normalized() - step.n);
+    Eigen::Matrix<double, 8, 9> pick = Eigen::Matrix<double, 8, 9>::Zero();
+    pick.topLeftCorner<6, 6>().setIdentity();
+    pick.block<1, 3>(6, 6) = e1.transpose();
+    pick.block<1, 3>(7, 6) = e2.transpose();
+    const Eigen::Matrix<double, 8, 8> P = pick * found->covariance * pick.transpose();
+    rotation += error.head<3>().dot(P.topLeftCorner<3, 3>().ldlt().solve(error.head<3>())) / kRuns;
+    translation += error.segment<3>(3).dot(P.block<3, 3>(3, 3).ldlt().solve(error.segment<3>(3))) / kRuns;
+    normal += error.tail<2>().dot(P.bottomRightCorner<2, 2>().ldlt().solve(error.tail<2>())) / kRuns;
+    joint += error.dot(P.ldlt().solve(error)) / kRuns;
+  }
+  // Robust weights and a scale that never goes below one make the claim a little larger than the scatter.
+  constexpr double kLeastShare = 0.65;
+  const auto expect = [&](double nees, int dof) {
+    const double tolerance = test::chiSquareMeanTolerance(kRuns, dof);
+    EXPECT_LT(nees, dof + tolerance);
+    EXPECT_GT(nees, kLeastShare * dof - tolerance);
+  };
+  expect(rotation, 3);
+  expect(translation, 3);
+  expect(normal, 2);
+  expect(joint, 8);
+}
+
+TEST(EstimateMotion, FindsOutThatMatchesClaimTooLittle) {
+  constexpr int kRuns = 200;
+  const Step step = Step::make();
+  Matcher matcher(step, 6);
+  double nees = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<TemporalMatch> matches = matcher.ground(100, 0.3);
+    for (TemporalMatch& match : matches) match.covariance /= 9;
+    const Expected<MotionEstimate> found = estimate(matches, step.n, 1e-5);
+    ASSERT_TRUE(found);
+    const Eigen::Vector3d error = found->motion.t - step.t;
+    nees += error.dot(found->covariance.block<3, 3>(3, 3).ldlt().solve(error)) / kRuns;
+  }
+  EXPECT_LT(nees, 3 + test::chiSquareMeanTolerance(kRuns, 3));
+}
+
+TEST(EstimateMotion, UsesThePriorOfTheNormal) {
+  // A short step says little of the normal: then the prior decides, as far as it is trusted.
+  const Step step = Step::make();
+  const std::vector<TemporalMatch> matches = Matcher(step, 7).ground(60, 0.3);
+  const Eigen::Vector3d wrong =
+      (step.n + 0.02 * step.n.cross(Eigen::Vector3d::UnitX()).normalized()).normalized();
+  const Expected<MotionEstimate> trusted = estimate(matches, wrong, 1e-4),
+                                 doubted = estimate(matches, wrong, 0.2);
+  ASSERT_TRUE(trusted && doubted);
+  EXPECT_LT((trusted->normal.normalized() - wrong).norm(), 1e-3);
+  EXPECT_LT((doubted->normal.normalized() - step.n).norm(), 0.5 * (wrong - step.n).norm());
+  const auto spread = [&](const MotionEstimate& motion) {
+    return motion.covariance.bottomRightCorner<3, 3>().trace();
+  };
+  EXPECT_LT(spread(*trusted), 2.1e-8);
+  EXPECT_LT(spread(*doubted), 2 * 0.04);
+  EXPECT_GT(spread(*doubted), spread(*trusted));
+}
+
+TEST(EstimateMotion, UsesPointsOffTheGroundWithTheirOwnDepth) {
+  const Step step = Step::make();
+  Matcher matcher(step, 8);
+  // Nothing on the ground at all.
+  const std::vector<TemporalMatch> above = matcher.standing(100, 0, 0);
+  const Expected<MotionEstimate> found = estimate(above, step.n, 1e-3);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->motion.t - step.t).norm(), 1e-7);
+  // Taken for ground, they contradict each other.
+  std::vector<TemporalMatch> confused = above;
+  for (TemporalMatch& match : confused) match.on_plane = true;
+  const Expected<MotionEstimate> wrong = estimate(confused, step.n, 1e-3);
+  EXPECT_TRUE(!wrong || wrong->inlier_count < 80);
+  // Depth known badly weighs less than depth known well.
+  const Expected<MotionEstimate> vague = estimate(matcher.standing(100, 0.1, 0.1), step.n, 1e-3);
+  const Expected<MotionEstimate> sharp = estimate(matcher.standing(100, 0.1, 0.001), step.n, 1e-3);
+  ASSERT_TRUE(vague && sharp);
+  EXPECT_GT(vague->covariance(5, 5), 4 * sharp->covariance(5, 5));
+}
+
+TEST(EstimateMotion, SaysWhyThereIsNone) {
+  const Step step = Step::make();
+  Matcher matcher(step, 9);
+  const Expected<MotionEstimate> few = estimate(matcher.ground(14, 0), step.n, 1e-3);
+  ASSERT_FALSE(few);
+  EXPECT_EQ(few.error().reason, Reason::kTooFewMatches);
+  EXPECT_NE(few.error().detail.find("14"), std::string::npos) << few.error().detail;
+  EXPECT_FALSE(estimate({}, step.n, 1e-3));
+  std::vector<TemporalMatch> scattered = matcher.ground(60, 0);
+  matcher.spoil(scattered, 2);
+  for (TemporalMatch& match : scattered) match.then += 40 * matcher.draw();
+  const Expected<MotionEstimate> none = estimate(scattered, step.n, 1e-3);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().reason, Reason::kMotionInconsistent);
+}
+
+TEST(EstimateMotion, DoesNotTakeOneTimesTheSamePointForAMotion) {
+  const Step step = Step::make();
+  const std::vector<TemporalMatch> same(40, Matcher(step, 10).ground(1, 0).front());
+  const Expected<MotionEstimate> found = estimate(same, step.n, 1e-3);
+  // A failure, or a covariance that says that nothing is known.
+  if (!found) return;
+  const double variance = found->covariance.block(3, 3, 3, 3).trace();
+  EXPECT_GT(variance, found->motion.t.squaredNorm());
+}
+
+TEST(EstimateMotion, IsDeterministic) {
+  const Step step = Step::make();
+  Matcher matcher(step, 11);
+  std::vector<TemporalMatch> matches = matcher.ground(120, 0.2);
+  matcher.spoil(matches, 0.3);
+  const Expected<MotionEstimate> a = estimate(matches, step.n, 1e-3), b = estimate(matches, step.n, 1e-3);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->motion.t, b->motion.t);
+  EXPECT_EQ(a->covariance, b->covariance);
+}
+
+}  // namespace
+}  // namespace uav_landing
