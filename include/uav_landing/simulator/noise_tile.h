@@ -21,8 +21,8 @@ class NoiseTile {
   float mean(float x, float y, float width, float height) const;
 
  private:
-  const float* level(int i, int j) const { return levels_[i * kLevels + j].ptr<float>(); }
-  float bilinear(int i, int j, float x, float y) const;
+  struct Taps;
+  float interpolate(int i, int j, const Taps& column, const Taps& row) const;
 
   static constexpr int kLevels = 10;  ///< 2^9 texels are the whole side
   std::vector<cv::Mat> levels_;       ///< [i * kLevels + j]: averaged over 2^i columns and 2^j rows

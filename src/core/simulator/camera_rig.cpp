@@ -118,7 +118,10 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   rig.left.calibration = lensOf(parameters.left_camera, parameters.image);
   rig.right.calibration = lensOf(parameters.right_camera, parameters.image);
   rig.right.offset_x = rectify(parameters.rig, rig.left.calibration, rig.right.calibration);
-  if (!(rig.right.offset_x > 0 && rig.left.calibration.P.allFinite() && rig.right.calibration.P.allFinite()))
+  constexpr double kLeastForward = 0.7;  // of the optical axis after rectification: cosine of 45 degrees
+  const bool usable = rig.right.offset_x > 0 && rig.left.calibration.P.allFinite() &&
+                      rig.right.calibration.P.allFinite() && rig.left.calibration.R(2, 2) > kLeastForward;
+  if (!usable)
     return tl::make_unexpected(Failure{
         Reason::kInputInvalid, "rig: the cameras stand too far out of line to be rectified as a pair"});
   if (Failure failure = traceRays("left_camera", rig.left)) return tl::make_unexpected(failure);

@@ -38,19 +38,38 @@ int roundDown(float x) {
   return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
 }
 
-/// Whole and fractional level whose averaging, together with the linear interpolation between its texels, has
-/// the variance of a box of this width: box plus interpolation are sqrt(3) times as wide as the box alone.
+/// Whole and fractional level whose texels are as large as the patch. With the interpolation between them
+/// (see Taps) a pixel then averages by a spline with zeros at all multiples of the pixels' own frequency:
+/// detail that pixels cannot show does not come back as false coarse texture that differs between the
+/// cameras. It costs some sharpness, as 0.5 px of blur would.
 struct Level {
   int whole;
   float fraction;
   Level(float width, int levels) {
-    const float exact = std::clamp(roughLog2(width * 0.57735f), 0.0f, static_cast<float>(levels - 1));
+    const float exact = std::clamp(roughLog2(width), 0.0f, static_cast<float>(levels - 1));
     whole = std::min(static_cast<int>(exact), levels - 2);
     fraction = exact - static_cast<float>(whole);
   }
 };
 
 }  // namespace
+
+/// Quadratic B-spline over three texels. Its variance is the same wherever between the texels it is
+/// evaluated, that of linear interpolation is not, and shows as a flicker of the texture.
+struct NoiseTile::Taps {
+  int index[3];
+  float weight[3];
+  Taps(float x, int level) {
+    const int texels = kSize >> level;
+    const float position = x / static_cast<float>(1 << level);
+    const int nearest = roundDown(position);
+    const float t = position - static_cast<float>(nearest) - 0.5f;
+    for (int i = 0; i < 3; ++i) index[i] = (nearest + i - 1) & (texels - 1);
+    weight[0] = 0.5f * (0.5f - t) * (0.5f - t);
+    weight[1] = 0.75f - t * t;
+    weight[2] = 0.5f * (0.5f + t) * (0.5f + t);
+  }
+};
 
 NoiseTile::NoiseTile(uint64_t seed, double slope) : levels_(kLevels * kLevels) {
   levels_[0] = makeNoise(kSize, seed, slope);
@@ -63,31 +82,30 @@ NoiseTile::NoiseTile(uint64_t seed, double slope) : levels_(kLevels * kLevels) {
   }
 }
 
-float NoiseTile::bilinear(int i, int j, float x, float y) const {
-  const int columns = kSize >> i, rows = kSize >> j;
-  const float u = x / static_cast<float>(1 << i) - 0.5f, v = y / static_cast<float>(1 << j) - 0.5f;
-  const int column = roundDown(u), row = roundDown(v);
-  const float fu = u - static_cast<float>(column), fv = v - static_cast<float>(row);
-  const int u0 = column & (columns - 1), u1 = (u0 + 1) & (columns - 1);
-  const int v0 = row & (rows - 1), v1 = (v0 + 1) & (rows - 1);
-  const float* data = level(i, j);
-  const float* upper = data + v0 * columns;
-  const float* lower = data + v1 * columns;
-  const float top = upper[u0] + fu * (upper[u1] - upper[u0]);
-  const float bottom = lower[u0] + fu * (lower[u1] - lower[u0]);
-  return top + fv * (bottom - top);
+float NoiseTile::interpolate(int i, int j, const Taps& column, const Taps& row) const {
+  const float* data = levels_[i * kLevels + j].ptr<float>();
+  float sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float* texels = data + row.index[k] * (kSize >> i);
+    sum += row.weight[k] *
+           (column.weight[0] * texels[column.index[0]] + column.weight[1] * texels[column.index[1]] +
+            column.weight[2] * texels[column.index[2]]);
+  }
+  return sum;
 }
 
 float NoiseTile::mean(float x, float y, float width, float height) const {
   const Level i(width, kLevels), j(height, kLevels);
-  const auto blend = [&](int column_level) {
-    const float fine = bilinear(column_level, j.whole, x, y);
+  const Taps row(y, j.whole), coarse_row(y, j.whole + 1);
+  const auto blendRows = [&](int column_level) {
+    const Taps column(x, column_level);
+    const float fine = interpolate(column_level, j.whole, column, row);
     if (j.fraction == 0.0f) return fine;
-    return fine + j.fraction * (bilinear(column_level, j.whole + 1, x, y) - fine);
+    return fine + j.fraction * (interpolate(column_level, j.whole + 1, column, coarse_row) - fine);
   };
-  const float fine = blend(i.whole);
+  const float fine = blendRows(i.whole);
   if (i.fraction == 0.0f) return fine;
-  return fine + i.fraction * (blend(i.whole + 1) - fine);
+  return fine + i.fraction * (blendRows(i.whole + 1) - fine);
 }
 
 }  // namespace uav_landing

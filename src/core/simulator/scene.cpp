@@ -32,10 +32,12 @@ float Scene::texture(const NoiseTile& tile, const RunwaySurface::Patch& patch, f
   float texels_per_metre = 1.0f / grain;
   for (int scale = 0; scale < 3; ++scale, texels_per_metre /= kScaleRatio) {
     const float length = patch.length * texels_per_metre, width = patch.width * texels_per_metre;
-    if (std::max(length, width) > NoiseTile::kSize) continue;  // averages out
-    sum += tile.mean(patch.x * texels_per_metre + kTileShift, patch.y * texels_per_metre + kTileShift, length,
-                     width);
-    if (std::min(length, width) < 1.0f / kScaleRatio) break;  // the next scale has nothing left to show
+    // What is as large as the whole tile must not show its repeats.
+    constexpr float kWhole = NoiseTile::kSize, kNone = kWhole / 4;
+    const float fade = (kWhole - std::max(length, width)) / (kWhole - kNone);
+    if (fade <= 0) continue;
+    sum += std::min(fade, 1.0f) * tile.mean(patch.x * texels_per_metre + kTileShift,
+                                            patch.y * texels_per_metre + kTileShift, length, width);
   }
   return sum;
 }
