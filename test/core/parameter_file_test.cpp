@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -129,6 +130,15 @@ TEST(ParameterFile, ShippedPresetsLoad) {
         loadParameterFile(std::string(UAV_LANDING_SOURCE_DIR "/config/") + name + ".yaml");
     EXPECT_TRUE(parameters) << parameters.error().message();
   }
+}
+
+TEST(ParameterTable, IsTheOneInTheDocumentation) {
+  std::ifstream file(UAV_LANDING_SOURCE_DIR "/docs/parameters.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  EXPECT_EQ(page.str(), parameterTable())
+      << "docs/parameters.md is out of date. Regenerate it:\n"
+         "rosrun uav_landing process_bag --list-parameters > docs/parameters.md";
 }
 
 }  // namespace
