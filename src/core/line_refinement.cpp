@@ -170,7 +170,7 @@ Fit fitRobustly(std::vector<Peak>& peaks, double& scale) {
   const auto base = [typical](const Peak& p) { return std::min(1.0, std::pow(p.gradient / typical, 2)); };
   for (Peak& p : peaks) p.weight = base(p);
   Fit fit = fitOnce(peaks);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 3; ++i) {
     std::transform(peaks.begin(), peaks.end(), values.begin(),
                    [&](const Peak& p) { return std::abs(fit.residual(p)); });
     scale = std::max(1.4826 * median(values), kMinScale);
@@ -239,6 +239,12 @@ LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, 
                             double angle_stddev) {
   const Eigen::Vector2d along = (b - a).normalized(), across(-along.y(), along.x());
   return {a, b, {across.x(), across.y(), -across.dot(0.5 * (a + b))}, offset_stddev, angle_stddev};
+}
+
+Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
+                             const Eigen::Vector2d& b) {
+  const Axis axis(0.5 * (a + b), b - a);
+  return edgeSign(EdgeSampler(image, ground), axis, 0.5 * (b - a).norm()) * axis.across;
 }
 
 std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,

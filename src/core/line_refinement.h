@@ -16,6 +16,10 @@ namespace uav_landing {
 std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
                                       const Eigen::Vector2d& b, double min_gradient);
 
+/// Unit vector across a rough segment towards its brighter side, as a refined line's normal would be.
+Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
+                             const Eigen::Vector2d& b);
+
 /// Line through two points with these standard deviations, the normal 90 degrees clockwise (in the picture)
 /// of the direction from a to b.
 LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double offset_stddev,

@@ -148,10 +148,20 @@ void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
     *same = line;
 }
 
+/// Whether this rough segment is a piece of a line already found: saves refining it again.
+bool isKnown(const std::vector<LineSegment>& lines, const Segment& segment,
+             const Eigen::Vector2d& brighter_side) {
+  return std::any_of(lines.begin(), lines.end(), [&](const LineSegment& line) {
+    return line.line.head<2>().dot(brighter_side) > 0 && overlaps(line, segment.first, segment.second);
+  });
+}
+
 std::vector<LineSegment> refined(const std::vector<Segment>& candidates, const cv::Mat& image,
                                  const cv::Mat& ground, double min_length, double min_gradient) {
   std::vector<LineSegment> lines;
-  for (const auto& [a, b] : candidates) {
+  for (const Segment& segment : candidates) {
+    const auto& [a, b] = segment;
+    if (isKnown(lines, segment, brighterSide(image, ground, a, b))) continue;
     const auto line = refineLine(image, ground, a, b, min_gradient);
     if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }

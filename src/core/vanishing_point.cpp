@@ -235,12 +235,11 @@ class Search {
     Matrix32 B;
     std::vector<int> used = passing(direction);
     double scale = 1;
-    for (int iteration = 0; iteration < 8; ++iteration) {
+    for (int iteration = 0; iteration < 8 && used.size() >= 2; ++iteration) {
       scale = robustScale(normalised(direction, used));
       step(direction, used, 2.385 * scale, information, B);
       if (!direction.allFinite()) return tl::unexpected(noVanishingPoint("%.0f lines are parallel", count()));
       used = passing(direction);
-      if (static_cast<int>(used.size()) < 2) break;
     }
     used = withinGate(direction, used, kGate * scale);
     const int n = static_cast<int>(used.size());

@@ -142,7 +142,7 @@ TEST(FindLines, StandardHoughCutsALineWhereTheEdgeEnds) {
 }
 
 TEST(FindLines, BothEdgesOfAThinStripeAreFoundApart) {
-  const std::vector<Polygon> stripe{{{310.2, 150.1}, {313.4, 150.1}, {265.3, 440.2}, {261.1, 440.2}}};
+  const std::vector<Polygon> stripe{{{310.2, 150.1}, {312.3, 150.1}, {263.3, 440.2}, {261.1, 440.2}}};
   const std::vector<LineSegment> lines = findLines(render(stripe, 1), allGround(), {});
   const LineSegment* left = nearest(lines, stripe[0][0], stripe[0][3]);
   const LineSegment* right = nearest(lines, stripe[0][1], stripe[0][2]);
