@@ -96,6 +96,7 @@ class KalmanHeightNodelet : public StageNodelet {
   void process(const StereoDepth& stereo, const ApproachAngle& approach,
                const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
     last_pair_ = ros::Time::now();
+    last_stamp_ = stereo.header.stamp;
     double compute_ms = stereo.compute_ms + approach.compute_ms;
     const ApproachAngleResult approach_result = toResult(approach);
     LandingResult camera = attempt<LandingResult>([&]() -> Expected<LandingResult> {
@@ -203,22 +204,24 @@ class KalmanHeightNodelet : public StageNodelet {
     if (now < last_timeout_) last_timeout_ = now;
     if (now.isZero() || now - std::max(last_pair_, last_timeout_) < max_age) return;
     last_timeout_ = now;
+    // In the clock of the images, which may be another one than that of this machine.
+    const ros::Time stamp = last_stamp_.isZero() ? now : last_stamp_ + (now - last_pair_);
     LandingResult lost;
     if (stage_) {
-      lost = stage_->timeout(now.toSec());
+      lost = stage_->timeout(stamp.toSec());
     } else {
-      lost.stamp = now.toSec();
+      lost.stamp = stamp.toSec();
       lost.status = Status::kLost;
       lost.failure = {Reason::kTimeout, "no image pair yet"};
     }
     note(lost);
     std_msgs::Header header;
-    header.stamp = now;
+    header.stamp = stamp;
     header.frame_id = node_.runway_frame;
     const std::string child = stage_ ? frames_->find(left_frame_).frame : "";
     estimate_publisher_.publish(
         boost::make_shared<LandingEstimate>(toMessage(lost, header, child, kUnknown, 0)));
-    publishRange(lost, now, child);
+    publishRange(lost, stamp, child);
     if (marker_publisher_.getNumSubscribers() > 0)
       marker_publisher_.publish(
           drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(), path_.track()));
@@ -243,7 +246,8 @@ class KalmanHeightNodelet : public StageNodelet {
   std::optional<KalmanHeightStage> stage_;
   RunwayPath path_;
   std::string left_frame_;
-  ros::Time last_pair_, last_timeout_, last_broadcast_;
+  ros::Time last_pair_, last_timeout_;     // by the ROS clock
+  ros::Time last_stamp_, last_broadcast_;  // of images
   bool valid_lately_ = false;
   std::string last_reason_;
 };

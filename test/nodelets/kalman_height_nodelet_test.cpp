@@ -1,0 +1,292 @@
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <sensor_msgs/Range.h>
+#include <tf2_msgs/TFMessage.h>
+#include <uav_landing/ApproachAngle.h>
+#include <uav_landing/LandingEstimate.h>
+#include <uav_landing/StereoDepth.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "nodelets/nodelet_fixture.h"
+#include "nodelets/nodelet_test_main.h"
+#include "nodelets/stereo_scene.h"
+
+using namespace uav_landing::test;
+using uav_landing::ApproachAngle;
+using uav_landing::LandingEstimate;
+using uav_landing::StereoDepth;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A camera 2 m above the ground, looking 15 degrees down, that moves level and straight ahead at 1 m/s.
+class KalmanHeightNodeletTest : public NodeletTest {
+ protected:
+  void start() {
+    setParameter("kalman_height", "complaint_period", 0.2);
+    load("kalman_height");
+    ASSERT_TRUE(eventually([&] {
+      return stereo_.getNumSubscribers() > 0 && approach_.getNumSubscribers() > 0 &&
+             left_info_.getNumSubscribers() > 0 && right_info_.getNumSubscribers() > 0 &&
+             estimates_.connected() && ranges_.connected() && poses_.connected() && transforms_.connected() &&
+             markers_.connected() && static_.getNumSubscribers() > 0;
+    }));
+  }
+
+  void publish(double t, bool known = true) {
+    const ros::Time stamp = PairPublisher::stampOf(t);
+    for (const bool right : {false, true}) {
+      const auto info = scene_.info(right);
+      info->header.stamp = stamp;
+      info->header.frame_id = right ? "right_optical" : "left_optical";
+      (right ? right_info_ : left_info_).publish(info);
+    }
+    const double h = 2, c = std::cos(scene_.pitch), s = std::sin(scene_.pitch);
+    auto depth = boost::make_shared<StereoDepth>();
+    depth->header.stamp = stamp;
+    depth->header.frame_id = "left_optical";
+    auto angle = boost::make_shared<ApproachAngle>();
+    angle->header = depth->header;
+    angle->vanishing_direction.assign(kNan);
+    angle->vanishing_covariance.assign(kNan);
+    angle->n_vp.assign(kNan);
+    angle->n_vp_covariance.assign(kNan);
+    angle->foe.assign(kNan);
+    angle->foe_covariance.assign(kNan);
+    if (known) {
+      depth->plane = {0, c / h, -s / h};
+      fillDiagonal(depth->plane_covariance, 1e-8);
+      angle->n = {0, c, -s};
+      fillDiagonal(angle->n_covariance, 1e-8);
+      // 0.1 m along the horizontal in 0.1 s.
+      angle->step.duration = 0.1;
+      angle->step.translation_over_height = {0, 0.1 / h * s, 0.1 / h * c};
+      fillDiagonal(angle->step.covariance, 1e-8);
+      angle->step.approach_angle = 0;
+      angle->step.approach_angle_variance = 1e-6;
+      angle->window = angle->step;
+    } else {
+      depth->reason = "no_plane";
+      angle->reason = angle->step.reason = angle->window.reason = "no_ground_normal";
+      depth->plane.assign(kNan);
+      depth->plane_covariance.assign(kNan);
+      angle->n.assign(kNan);
+      angle->n_covariance.assign(kNan);
+    }
+    stereo_.publish(depth);
+    approach_.publish(angle);
+  }
+  template <class Array>
+  static void fillDiagonal(Array& matrix, double value) {
+    const auto size = static_cast<size_t>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
+    for (size_t i = 0; i < size; ++i) matrix[i * size + i] = value;
+  }
+
+  /// Publishes pairs of every 0.1 s until their estimates have come. The first two heights wait for
+  /// confirmation.
+  void publishSome(double from, int count) {
+    for (int i = 0; i < count; ++i) {
+      publish(from + 0.1 * i);
+      ASSERT_TRUE(waitFor(from + 0.1 * i));
+    }
+  }
+  bool waitFor(double t) {
+    return estimates_.waitFor([t](const auto& e) { return e.header.stamp == PairPublisher::stampOf(t); });
+  }
+  LandingEstimate estimateOf(double t) const {
+    for (const auto& estimate : estimates_.messages())
+      if (estimate->header.stamp == PairPublisher::stampOf(t)) return *estimate;
+    return LandingEstimate();
+  }
+
+  /// A camera 1 m ahead of and 0.5 m below base_link, looking straight ahead (not pitched itself).
+  void publishLeverArm(const std::string& parent, const std::string& child) {
+    tf2_msgs::TFMessage message;
+    message.transforms.resize(1);
+    auto& transform = message.transforms[0];
+    transform.header.frame_id = parent;
+    transform.child_frame_id = child;
+    transform.transform.translation.x = 1;
+    transform.transform.translation.z = -0.5;
+    transform.transform.rotation.x = -0.5;  // forward-left-up to right-down-forward
+    transform.transform.rotation.y = 0.5;
+    transform.transform.rotation.z = -0.5;
+    transform.transform.rotation.w = 0.5;
+    static_.publish(message);
+  }
+
+  StereoScene scene_;
+  ros::Publisher stereo_ = handle_.advertise<StereoDepth>("/uav_landing/stereo_depth", 100);
+  ros::Publisher approach_ = handle_.advertise<ApproachAngle>("/uav_landing/approach_angle", 100);
+  ros::Publisher left_info_ =
+      handle_.advertise<sensor_msgs::CameraInfo>("/uav_landing/left/camera_info", 100);
+  ros::Publisher right_info_ =
+      handle_.advertise<sensor_msgs::CameraInfo>("/uav_landing/right/camera_info", 100);
+  ros::Publisher static_ = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 100, true);
+  Listener<LandingEstimate> estimates_{"/uav_landing/landing_estimate"};
+  Listener<sensor_msgs::Range> ranges_{"/uav_landing/height"};
+  Listener<geometry_msgs::PoseWithCovarianceStamped> poses_{"/uav_landing/pose"};
+  Listener<tf2_msgs::TFMessage> transforms_{"/tf"};
+  Listener<visualization_msgs::MarkerArray> markers_{"/uav_landing/markers"};
+};
+
+TEST_F(KalmanHeightNodeletTest, PublishesEstimateRangePoseAndTransformOfTheImageStamp) {
+  start();
+  publishSome(0, 5);
+  const LandingEstimate estimate = estimateOf(0.4);
+  EXPECT_EQ(estimate.reason, "");
+  EXPECT_TRUE(estimate.valid);
+  EXPECT_EQ(estimate.status, LandingEstimate::TRACKING);
+  EXPECT_EQ(estimate.header.frame_id, "runway");
+  EXPECT_EQ(estimate.child_frame_id, "left_optical_rect");
+  EXPECT_NEAR(estimate.height, 2, 0.01);
+  EXPECT_NEAR(estimate.pitch, scene_.pitch, 1e-3);
+  EXPECT_FALSE(estimate.x_known);
+  EXPECT_FALSE(estimate.y_known);
+
+  ASSERT_TRUE(ranges_.waitFor(5));
+  EXPECT_EQ(ranges_.messages()[4]->header.stamp, PairPublisher::stampOf(0.4));
+  EXPECT_NEAR(ranges_.messages()[4]->range, 2, 0.01);
+  EXPECT_TRUE(std::isnan(ranges_.messages()[0]->range)) << "not confirmed yet";
+
+  ASSERT_TRUE(transforms_.waitFor(
+      [](const auto& m) { return m.transforms[0].header.stamp == PairPublisher::stampOf(0.4); }));
+  const auto transform = transforms_.messages().back()->transforms[0];
+  EXPECT_EQ(transform.header.frame_id, "runway");
+  EXPECT_EQ(transform.child_frame_id, "left_optical_rect");
+  EXPECT_NEAR(transform.transform.translation.z, 2, 0.01);
+  // 1 m/s for the 0.2 s since the first valid estimate.
+  const auto poses = poses_.messages();
+  EXPECT_NEAR(poses.back()->pose.pose.position.x - poses.front()->pose.pose.position.x,
+              (poses.back()->header.stamp - poses.front()->header.stamp).toSec(), 0.01);
+  EXPECT_GE(poses.back()->pose.covariance[0], 1e6) << "the place along the runway is not known";
+  EXPECT_NEAR(poses.back()->pose.covariance[14], estimate.height_variance, 1e-9);
+}
+
+TEST_F(KalmanHeightNodeletTest, FailedPairsHaveTheirMessagesButNoTransform) {
+  start();
+  for (int i = 0; i < 4; ++i) publish(0.1 * i, false);
+  ASSERT_TRUE(waitFor(0.3));
+  ASSERT_TRUE(ranges_.waitFor(4));
+  const LandingEstimate estimate = estimateOf(0.3);
+  EXPECT_EQ(estimate.status, LandingEstimate::SEARCHING);
+  EXPECT_FALSE(estimate.valid);
+  EXPECT_EQ(estimate.reason, "no_plane");
+  EXPECT_TRUE(std::isnan(estimate.height));
+  for (const auto& range : ranges_.messages()) EXPECT_TRUE(std::isnan(range->range));
+  EXPECT_TRUE(transforms_.messages().empty());
+  EXPECT_TRUE(poses_.messages().empty());
+}
+
+TEST_F(KalmanHeightNodeletTest, OneTransformPerStampAlsoAfterAJumpBackInTime) {
+  start();
+  publishSome(10, 5);
+  estimates_.clear();
+  publishSome(0, 5);
+  ASSERT_TRUE(transforms_.waitFor(
+      [](const auto& m) { return m.transforms[0].header.stamp == PairPublisher::stampOf(0.4); }));
+  std::vector<ros::Time> stamps;
+  for (const auto& message : transforms_.messages()) stamps.push_back(message->transforms[0].header.stamp);
+  std::sort(stamps.begin(), stamps.end());
+  EXPECT_EQ(std::adjacent_find(stamps.begin(), stamps.end()), stamps.end());
+  EXPECT_TRUE(estimateOf(0.4).valid);
+}
+
+TEST_F(KalmanHeightNodeletTest, WithoutPairsItIsLost) {
+  start();
+  ASSERT_TRUE(estimates_.waitFor([](const auto& e) { return e.status == LandingEstimate::LOST; }));
+  publishSome(0, 5);
+  EXPECT_TRUE(estimateOf(0.4).valid);
+  estimates_.clear();
+  ASSERT_TRUE(estimates_.waitFor([](const auto& e) { return e.status == LandingEstimate::LOST; }));
+  const LandingEstimate lost = *estimates_.messages().back();
+  EXPECT_FALSE(lost.valid);
+  EXPECT_EQ(lost.reason.rfind("timeout", 0), 0u) << lost.reason;
+  EXPECT_TRUE(std::isnan(lost.height));
+  EXPECT_GT(lost.header.stamp, PairPublisher::stampOf(0.4)) << "in the clock of the images";
+  EXPECT_LT(lost.header.stamp, PairPublisher::stampOf(0.4) + ros::Duration(60));
+}
+
+TEST_F(KalmanHeightNodeletTest, WhenNothingIsDroppedRecordedPairsDoNotGrowOld) {
+  setParameter("kalman_height", "drop_frames", false);
+  setParameter("kalman_height", "max_age", 0.05);
+  start();
+  // The complaint comes later than several times max_age.
+  ASSERT_TRUE(logged("/uav_landing/kalman_height: nothing to work on"));
+  EXPECT_TRUE(estimates_.messages().empty());
+}
+
+TEST_F(KalmanHeightNodeletTest, BaseLinkOfTheStaticTfIsEstimatedWithItsLeverArm) {
+  start();
+  publishLeverArm("base_link", "left_optical");
+  // Until the transform has arrived, the camera itself is estimated.
+  double t = 0;
+  ASSERT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).child_frame_id == "base_link" && estimateOf(t).valid;
+  }));
+  // The aircraft is pitched by -15 degrees: the camera, 1 m ahead and 0.5 m below, is lower by
+  // 1 m sin 15 + 0.5 m cos 15.
+  EXPECT_NEAR(estimateOf(t).height, 2 + std::sin(15 * M_PI / 180) + 0.5 * std::cos(15 * M_PI / 180), 0.02);
+  ASSERT_TRUE(
+      transforms_.waitFor([](const auto& m) { return m.transforms[0].child_frame_id == "base_link"; }));
+  const auto transform = transforms_.messages().back()->transforms[0].transform;
+  EXPECT_NEAR(transform.translation.z, estimateOf(t).height, 0.05);
+  // Nose down by 15 degrees is a positive rotation about y (left).
+  EXPECT_NEAR(transform.rotation.y, std::sin(7.5 * M_PI / 180), 1e-3);
+  EXPECT_NEAR(transform.rotation.w, std::cos(7.5 * M_PI / 180), 1e-3);
+}
+
+TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {
+  setParameter("kalman_height", "base_frame", std::string("imu_link"));
+  start();
+  publishSome(0, 5);
+  const LandingEstimate estimate = estimateOf(0.4);
+  EXPECT_FALSE(estimate.valid);
+  EXPECT_FALSE(estimate.height_valid);
+  EXPECT_EQ(estimate.reason, "transform_missing: no static transform between imu_link and left_optical");
+  EXPECT_TRUE(transforms_.messages().empty());
+  publishLeverArm("imu_link", "left_optical");
+  double t = 0.4;
+  EXPECT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).valid;
+  }));
+  EXPECT_EQ(estimateOf(t).child_frame_id, "imu_link");
+}
+
+TEST_F(KalmanHeightNodeletTest, ABadRigIsTheReasonOfEveryMessage) {
+  start();
+  scene_.baseline = 0;
+  publish(0);
+  ASSERT_TRUE(waitFor(0));
+  EXPECT_EQ(estimateOf(0).reason.rfind("input_invalid: right P[3]", 0), 0u) << estimateOf(0).reason;
+  EXPECT_FALSE(estimateOf(0).valid);
+  EXPECT_TRUE(std::isnan(estimateOf(0).height));
+}
+
+TEST_F(KalmanHeightNodeletTest, MarkersAreFinite) {
+  start();
+  publishSome(0, 5);
+  publish(0.5, false);
+  ASSERT_TRUE(waitFor(0.5));
+  ASSERT_TRUE(markers_.waitFor(6));
+  for (const auto& array : markers_.messages()) {
+    EXPECT_GE(array->markers.size(), 5u);
+    for (const auto& marker : array->markers) {
+      EXPECT_EQ(marker.header.frame_id, "runway");
+      EXPECT_TRUE(std::isfinite(marker.pose.position.z));
+      for (const auto& point : marker.points)
+        EXPECT_TRUE(std::isfinite(point.x + point.y + point.z)) << marker.ns;
+    }
+  }
+}
+
+TEST_F(KalmanHeightNodeletTest, BadParametersRefuseToLoadByName) {
+  setParameter("kalman_height", "gate", 0.5);
+  expectRefusal("kalman_height", "kalman_height/gate: 0.5 is out of range, expected 1 to 20 sigma");
+}
+
+}  // namespace
+
+UAV_LANDING_NODELET_TEST_MAIN("kalman_height_nodelet_test")

@@ -1,0 +1,185 @@
+#include "nodelets/nodelet_fixture.h"
+#include "nodelets/nodelet_test_main.h"
+#include "nodelets/stereo_scene.h"
+
+using namespace uav_landing::test;
+
+namespace {
+
+class RectifyNodeletTest : public NodeletTest {
+ protected:
+  /// Loads the nodelet and subscribes to its output.
+  void start() {
+    setParameter("rectify", "complaint_period", 0.2);
+    load("rectify");
+    left_ = std::make_unique<Listener<sensor_msgs::Image>>("/uav_landing/left/image_rect");
+    right_ = std::make_unique<Listener<sensor_msgs::Image>>("/uav_landing/right/image_rect");
+    ASSERT_TRUE(
+        eventually([&] { return cameras_.connected() && left_->connected() && right_->connected(); }));
+  }
+
+  StereoScene scene_;
+  PairPublisher cameras_{PairPublisher::kRaw};
+  std::unique_ptr<Listener<sensor_msgs::Image>> left_, right_;
+};
+
+TEST_F(RectifyNodeletTest, SubscribesOnlyWhileSomebodyListens) {
+  load("rectify");
+  EXPECT_TRUE(cameras_.unconnected());
+  {
+    Listener<sensor_msgs::CameraInfo> info("/uav_landing/right/camera_info");
+    EXPECT_TRUE(eventually([&] { return cameras_.connected(); }));
+  }
+  EXPECT_TRUE(eventually([&] { return cameras_.unconnected(); }));
+}
+
+TEST_F(RectifyNodeletTest, PublishesBothImagesInfosAndTheSkewWithTheLeftStamp) {
+  start();
+  Listener<sensor_msgs::CameraInfo> info("/uav_landing/right/camera_info");
+  Listener<sensor_msgs::TimeReference> time("/uav_landing/right/time_reference");
+  ASSERT_TRUE(eventually([&] { return info.connected() && time.connected(); }));
+  cameras_.publish(scene_, 0);
+  ASSERT_TRUE(left_->waitFor(1) && right_->waitFor(1) && info.waitFor(1) && time.waitFor(1));
+  const ros::Time stamp = PairPublisher::stampOf(0);
+  EXPECT_EQ(left_->messages()[0]->header.stamp, stamp);
+  EXPECT_EQ(left_->messages()[0]->header.frame_id, "left_optical");
+  EXPECT_EQ(right_->messages()[0]->header.stamp, stamp);
+  EXPECT_EQ(right_->messages()[0]->header.frame_id, "right_optical");
+  EXPECT_EQ(info.messages()[0]->P, scene_.info(true)->P);
+  EXPECT_EQ(time.messages()[0]->time_ref, stamp);
+  EXPECT_EQ(left_->messages()[0]->data, scene_.image(0, false)->data) << "ideal cameras: nothing to rectify";
+}
+
+TEST_F(RectifyNodeletTest, AnApproximatePairCarriesTheLeftStampAndReportsTheSkew) {
+  setParameter("rectify", "approximate_sync", true);
+  start();
+  Listener<sensor_msgs::TimeReference> time("/uav_landing/right/time_reference");
+  ASSERT_TRUE(eventually([&] { return time.connected(); }));
+  cameras_.publishLeft(ros::Time(1000), scene_.image(0, false), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000.004), scene_.image(0, true), scene_.info(true));
+  ASSERT_TRUE(right_->waitFor(1) && time.waitFor(1));
+  EXPECT_EQ(right_->messages()[0]->header.stamp, ros::Time(1000));
+  EXPECT_NEAR((time.messages()[0]->time_ref - ros::Time(1000)).toSec(), 0.004, 1e-9);
+}
+
+TEST_F(RectifyNodeletTest, TheMissingRightCameraIsNamed) {
+  start();
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), scene_.info(false));
+  EXPECT_TRUE(eventually([&] {
+    cameras_.publishLeft(ros::Time::now(), scene_.blank(0), scene_.info(false));
+    return wholeLog().find("no message on /stereo/right/image_raw, /stereo/right/camera_info") !=
+           std::string::npos;
+  })) << wholeLog();
+}
+
+TEST_F(RectifyNodeletTest, StampsThatNeverMatchAreShown) {
+  start();
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    cameras_.publishLeft(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(false));
+    cameras_.publishRight(PairPublisher::stampOf(t + 0.003), scene_.blank(0), scene_.info(true));
+    t += 0.1;
+    return wholeLog().find("the stamps do not match (approximate_sync") != std::string::npos;
+  })) << wholeLog();
+}
+
+TEST_F(RectifyNodeletTest, ABagThatLoopsIsFollowed) {
+  start();
+  cameras_.publish(scene_, 5);
+  ASSERT_TRUE(left_->waitFor(1));
+  cameras_.publish(scene_, 0);
+  cameras_.publish(scene_, 0.1);
+  ASSERT_TRUE(
+      left_->waitFor([](const auto& image) { return image.header.stamp == PairPublisher::stampOf(0.1); }));
+}
+
+TEST_F(RectifyNodeletTest, ProcessesAllInOrderWhenToldNotToDrop) {
+  setParameter("rectify", "drop_frames", false);
+  start();
+  for (int i = 0; i < 50; ++i) cameras_.publishUniform(scene_, 0.1 * i, 100);
+  ASSERT_TRUE(right_->waitFor(50));
+  const auto images = right_->messages();
+  for (size_t i = 0; i < 50; ++i)
+    EXPECT_EQ(images[i]->header.stamp, PairPublisher::stampOf(0.1 * static_cast<double>(i)));
+}
+
+TEST_F(RectifyNodeletTest, AnImageOfAnotherSizeIsRefusedByName) {
+  start();
+  StereoScene larger = scene_;
+  larger.width = 400;
+  cameras_.publishLeft(ros::Time(1000), larger.blank(0), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), scene_.info(true));
+  EXPECT_TRUE(logged("/stereo/left/image_raw: width, height: 400x240, but camera_info announces 320x240"));
+  cameras_.publish(scene_, 1);
+  EXPECT_TRUE(left_->waitFor(1)) << "goes on with the next";
+}
+
+TEST_F(RectifyNodeletTest, AnUnknownEncodingIsRefusedByName) {
+  start();
+  const auto image = scene_.blank(0);
+  image->encoding = "16SC1";
+  cameras_.publishLeft(ros::Time(1000), image, scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), scene_.info(true));
+  EXPECT_TRUE(logged("/stereo/left/image_raw: encoding: \"16SC1\" is not one of"));
+}
+
+TEST_F(RectifyNodeletTest, TruncatedDataIsRefusedByName) {
+  start();
+  const auto image = scene_.blank(0);
+  image->data.resize(1000);
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), image, scene_.info(true));
+  EXPECT_TRUE(logged("/stereo/right/image_raw: data: 1000 bytes"));
+}
+
+TEST_F(RectifyNodeletTest, ACameraInfoOfZerosIsRefusedByName) {
+  start();
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), boost::make_shared<sensor_msgs::CameraInfo>());
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), scene_.info(true));
+  EXPECT_TRUE(logged("camera_info of /stereo/left/image_raw: ")) << wholeLog();
+  cameras_.publish(scene_, 1);
+  EXPECT_TRUE(left_->waitFor(1)) << "goes on with the next";
+}
+
+TEST_F(RectifyNodeletTest, ACameraInfoThatChangesIsFollowed) {
+  start();
+  cameras_.publish(scene_, 0);
+  ASSERT_TRUE(left_->waitFor(1));
+  StereoScene smaller = scene_;
+  smaller.width = 160;
+  cameras_.publish(smaller, 0.1);
+  ASSERT_TRUE(left_->waitFor(2));
+  EXPECT_EQ(left_->messages()[1]->width, 160u);
+  EXPECT_TRUE(logged("/stereo/left/image_raw: the camera_info changed"));
+}
+
+TEST_F(RectifyNodeletTest, BadParametersRefuseToLoadByName) {
+  setParameter("rectify", "max_skew", 7.0);
+  expectRefusal("rectify", "rectify/max_skew: 7 is out of range");
+  ros::param::del("/uav_landing/rectify");
+  setParameter("rectify", "que_size", 5);
+  expectRefusal("rectify", "rectify/que_size: no such parameter; did you mean queue_size?");
+  ros::param::del("/uav_landing/rectify");
+  setParameter("rectify", "drop_frames", std::string("perhaps"));
+  expectRefusal("rectify", "rectify/drop_frames: 'perhaps' is not true or false");
+  EXPECT_TRUE(cameras_.unconnected());
+}
+
+TEST_F(RectifyNodeletTest, AnotherCameraNamespaceIsAParameter) {
+  setParameter("rectify", "camera", std::string("/rig"));
+  load("rectify");
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  const ros::Publisher raw = handle_.advertise<sensor_msgs::Image>("/rig/left/image_raw", 1);
+  EXPECT_TRUE(eventually([&] { return raw.getNumSubscribers() > 0; }));
+}
+
+TEST_F(RectifyNodeletTest, CanBeUnloadedAtAnyTime) {
+  start();
+  for (int i = 0; i < 20; ++i) cameras_.publishUniform(scene_, 0.1 * i, 100);
+  unload("rectify");
+  EXPECT_TRUE(eventually([&] { return cameras_.unconnected(); }));
+}
+
+}  // namespace
+
+UAV_LANDING_NODELET_TEST_MAIN("rectify_nodelet_test")
