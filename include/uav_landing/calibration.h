@@ -11,8 +11,8 @@ namespace uav_landing {
 
 /// One camera's calibration, field by field as in sensor_msgs/CameraInfo (REP 104), without ROS.
 struct CameraCalibration {
-  int width = 0;   ///< full-resolution image width, pixels
-  int height = 0;  ///< full-resolution image height, pixels
+  int width = 0;                 ///< full-resolution image width, pixels
+  int height = 0;                ///< full-resolution image height, pixels
   std::string distortion_model;  ///< "plumb_bob" (up to 5 coefficients) or "rational_polynomial" (8)
   std::vector<double> D;
   Eigen::Matrix3d K = Eigen::Matrix3d::Zero();

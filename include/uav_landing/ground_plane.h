@@ -17,7 +17,7 @@ struct GroundPlane {
   bool valid() const { return g.allFinite() && g.norm() > 0; }
   double height() const { return 1.0 / g.norm(); }
   Eigen::Vector3d normal() const { return g.normalized(); }
-  double heightVariance() const;           ///< m^2, first order
+  double heightVariance() const;             ///< m^2, first order
   Eigen::Matrix3d normalCovariance() const;  ///< of n, rank 2
   double inverseDepth(const Eigen::Vector3d& ray) const { return g.dot(ray); }
   double disparity(const StereoRig& rig, double u, double v) const { return rig.fb() * g.dot(rig.ray(u, v)); }

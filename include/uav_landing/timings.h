@@ -26,7 +26,8 @@ class ScopedTimer {
   ScopedTimer(Timings& timings, const char* part)
       : timings_(timings), part_(part), start_(std::chrono::steady_clock::now()) {}
   ~ScopedTimer() {
-    timings_.add(part_, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count());
+    timings_.add(
+        part_, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count());
   }
   ScopedTimer(const ScopedTimer&) = delete;
   ScopedTimer& operator=(const ScopedTimer&) = delete;
