@@ -8,6 +8,7 @@
 #include "uav_landing/ego_motion.h"
 #include "uav_landing/match_image.h"
 #include "uav_landing/parameters.h"
+#include "uav_landing/path_angle_filter.h"
 #include "uav_landing/rectification.h"
 #include "uav_landing/temporal_matching.h"
 #include "uav_landing/timings.h"
@@ -24,6 +25,8 @@ class MotionTracker {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
     std::vector<TemporalMatch> step_matches;
+    /// Variances of the two angles that come from the matches alone, the normal taken as exact. rad^2
+    double step_match_variance = kUnknown, window_match_variance = kUnknown;
   };
 
   /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
@@ -54,8 +57,9 @@ class MotionTracker {
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);
   void advance(Frame&& now, const Result& result);
+  void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
-                                       size_t matches) const;
+                                       size_t matches, double* match_variance) const;
 
   StereoRig rig_;
   cv::Mat mask_;  // left, eroded by the window
@@ -64,6 +68,7 @@ class MotionTracker {
   std::vector<MatchImage> spare_;
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;
+  PathAngleFilter filter_;
 };
 
 }  // namespace uav_landing

@@ -79,6 +79,7 @@ enum class HoughMethod { kProbabilistic, kStandard };
 enum class NormalSource { kFused, kVanishingLine };
 enum class FoeMethod { kMotion, kSlidingWindow };
 enum class AngleFormula { kGeneral, kEq1 };
+enum class AngleSmoothing { kAdaptive, kChord };
 
 /// Lines, vanishing points, focus of expansion, approach angle (nodelet approach_angle; paper 2, eq 1).
 struct ApproachAngleParameters {
@@ -106,6 +107,7 @@ struct ApproachAngleParameters {
   double min_zncc = 0.75;
   int min_matches = 15;
   double angle_window = 0.5;
+  AngleSmoothing angle_smoothing = AngleSmoothing::kAdaptive;
   double min_motion = 5.0;
 
   template <class Visitor>
@@ -149,6 +151,10 @@ struct ApproachAngleParameters {
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
     v.number("min_matches", min_matches, 6, 1000, "matches", "fewest matches that make a motion");
     v.number("angle_window", angle_window, 0.0, 0.5, "s", "images used for the published angle; 0: one step");
+    v.choice("angle_smoothing", angle_smoothing, {"adaptive", "chord"},
+             "adaptive: angle of the last step, averaged as far back as the path has been steady; chord: "
+             "mean over "
+             "angle_window, half of it late");
     v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
              "translation must exceed its own uncertainty by this factor, or no angle is claimed");
   }

@@ -71,7 +71,7 @@ struct ApproachAngleResult {
   Eigen::Vector3d n = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_covariance = Eigen::Matrix3d::Constant(kUnknown);
   Motion step;    ///< from the previous frame
-  Motion window;  ///< over up to angle_window seconds
+  Motion window;  ///< over up to angle_window seconds; its angle is the path's now (angle_smoothing)
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
 };

@@ -40,6 +40,17 @@ double jointAngleVariance(const MotionEstimate& estimate) {
   return gradient.dot(estimate.covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
 }
 
+// The part of it that the matches answer for: t's own variance with the normal taken as exact.
+double matchAngleVariance(const MotionEstimate& estimate) {
+  const Eigen::Matrix3d cross = estimate.covariance.block<3, 3>(3, 6);
+  const Eigen::Matrix3d normal = estimate.covariance.bottomRightCorner<3, 3>();
+  const Eigen::Matrix3d of_t =
+      estimate.covariance.block<3, 3>(3, 3) -
+      cross * normal.completeOrthogonalDecomposition().pseudoInverse() * cross.transpose();
+  return approachAngleVariance(estimate.normal.normalized(), Eigen::Matrix3d::Zero(), estimate.motion.t,
+                               of_t);
+}
+
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
@@ -49,12 +60,14 @@ double largestEigenvalue(const Eigen::Matrix3d& matrix) {
 MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
     : rig_(model.rig),
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
-      parameters_(parameters) {}
+      parameters_(parameters),
+      filter_(parameters.angle_window) {}
 
 void MotionTracker::reset() {
   for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
   past_.clear();
   last_step_.reset();
+  filter_.reset();
 }
 
 TemporalMatchOptions MotionTracker::matchOptions(bool wide) const {
@@ -96,6 +109,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
   }
   ScopedTimer timer(timings, "window_motion");
   estimateWindow(now, normal, normal_covariance, corners, result);
+  smoothAngle(stamp, result);
   advance(std::move(now), result);
   return result;
 }
@@ -116,7 +130,7 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
     const CameraMotion first = searchFirst(now, normal, corners);
     estimate = followFrom(now, first, normal, covariance, corners, result);
   }
-  result.step = describe(estimate, duration, result.step_matches.size());
+  result.step = describe(estimate, duration, result.step_matches.size(), &result.step_match_variance);
   if (!estimate) return;
   result.step_estimate = *estimate;
   last_duration_ = duration;
@@ -191,14 +205,14 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, matches, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;
-    result.window = describe(estimate, duration, matches.size());
+    result.window = describe(estimate, duration, matches.size(), &result.window_match_variance);
     return;
   }
   result.window = result.step;
 }
 
 ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimate>& estimate, double duration,
-                                                    size_t matches) const {
+                                                    size_t matches, double* match_variance) const {
   ApproachAngleResult::Motion motion;
   motion.duration = duration;
   motion.matches = static_cast<int>(matches);
@@ -217,7 +231,28 @@ ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimat
   }
   motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
   motion.angle_variance = jointAngleVariance(*estimate);
+  *match_variance = matchAngleVariance(*estimate);
   return motion;
+}
+
+// The chord's angle is that of half its duration ago; the published one is that of now.
+void MotionTracker::smoothAngle(double stamp, Result& result) {
+  if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
+  if (result.step.failure) {
+    filter_.reset();
+    return;
+  }
+  const PathAngleFilter::Measurement step{result.step.angle, result.step_match_variance,
+                                          result.step.duration};
+  PathAngleFilter::Measurement chord = step;
+  if (!result.window.failure && std::isfinite(result.window_match_variance)) {
+    chord = {result.window.angle, result.window_match_variance, result.window.duration};
+  }
+  const double of_normal = std::max(0.0, result.step.angle_variance - result.step_match_variance);
+  const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, chord);
+  if (result.window.failure) result.window = result.step;
+  result.window.angle = estimate.angle;
+  result.window.angle_variance = estimate.variance + of_normal;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <deque>
+
+namespace uav_landing {
+
+/// Approach angle of the path now from the angles of the last steps and of one chord over all of them.
+///
+/// A chord over half a second is far more accurate than one step, but tells the angle a quarter of a second
+/// ago. How much the angle may have changed since is not known beforehand: a steady glide, a flare and gusts
+/// differ. So the path is a Gaussian process, a start angle plus the integral of a rate with correlation time
+/// one second, in one model for each of several standard deviations of the rate; each model's weight is its
+/// evidence, the likelihood of the recent measurements with old ones forgotten (multiple-model adaptive
+/// estimation, Magill 1965). The result is the mixture's mean and variance. Only measurements of the last
+/// window seconds enter the estimate itself.
+class PathAngleFilter {
+ public:
+  /// window: s, of measurements used.
+  explicit PathAngleFilter(double window) : window_(window) {}
+
+  struct Measurement {
+    double angle = 0;     ///< rad
+    double variance = 0;  ///< rad^2, of the matches alone (not of the normal, which is common to all)
+    double duration = 0;  ///< s, back from now
+  };
+  struct Estimate {
+    double angle = 0;        ///< of the last step, rad
+    double variance = 0;     ///< rad^2
+    double rate_stddev = 0;  ///< rad/s, of the model with the most weight
+  };
+
+  /// stamp: end of the step, s. chord: over several of the steps, or equal to the step when there is none.
+  Estimate update(double stamp, const Measurement& step, const Measurement& chord);
+  void reset();
+
+ private:
+  static constexpr int kModels = 6;
+  struct Step {
+    double stamp;
+    Measurement measurement;
+  };
+
+  double window_;
+  std::deque<Step> steps_;  // oldest first
+  std::array<double, kModels> log_weights_{};
+};
+
+}  // namespace uav_landing
