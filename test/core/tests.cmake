@@ -6,6 +6,7 @@ uav_landing_add_gtest(row_matching_test test/core/row_matching_test.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(patch_matching_test test/core/patch_matching_test.cpp)
+uav_landing_add_gtest(path_angle_filter_test test/core/path_angle_filter_test.cpp)
 uav_landing_add_gtest(ego_motion_test test/core/ego_motion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(focus_of_expansion_test test/core/focus_of_expansion_test.cpp

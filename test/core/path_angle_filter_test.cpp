@@ -1,0 +1,103 @@
+#include "uav_landing/path_angle_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kRate = 20;                    // Hz
+constexpr double kStepNoise = 0.1 * kDegree;    // of one step
+constexpr double kChordNoise = 0.02 * kDegree;  // of half a second
+
+struct Outcome {
+  double squares_over_variance = 0, squares = 0, lag_sum = 0;
+  int count = 0;
+  double rms() const { return std::sqrt(squares / count); }
+};
+
+// Feeds steps and chords of a path whose angle at time t is given, and compares with the truth of the last
+// step.
+Outcome follow(const std::function<double(double)>& angle, double duration, double from, unsigned seed) {
+  PathAngleFilter filter(0.5);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> truths;
+  Outcome outcome;
+  for (int k = 1; k <= duration * kRate; ++k) {
+    const double now = k / kRate;
+    truths.push_back(angle(now - 0.5 / kRate));
+    const PathAngleFilter::Measurement step{truths.back() + kStepNoise * normal(random),
+                                            kStepNoise * kStepNoise, 1 / kRate};
+    PathAngleFilter::Measurement chord = step;
+    if (truths.size() >= 10) {
+      double mean = 0;
+      for (int i = 0; i < 10; ++i) mean += truths[truths.size() - 1 - i] / 10;
+      chord = {mean + kChordNoise * normal(random), kChordNoise * kChordNoise, 0.5};
+    }
+    const PathAngleFilter::Estimate estimate = filter.update(now, step, chord);
+    if (now < from) continue;
+    const double error = estimate.angle - truths.back();
+    outcome.squares += error * error;
+    outcome.squares_over_variance += error * error / estimate.variance;
+    outcome.lag_sum += error;
+    ++outcome.count;
+  }
+  return outcome;
+}
+
+TEST(PathAngleFilter, IsNearlyAsAccurateAsTheChordOnASteadyGlide) {
+  const Outcome glide = follow([](double) { return 5 * kDegree; }, 60, 3, 1);
+  // Chord and the mean of ten steps together: 1 / (1 / 0.02^2 + 10 / 0.1^2) = (0.0169 deg)^2.
+  EXPECT_LT(glide.rms(), 1.6 * 0.0169 * kDegree);
+}
+
+TEST(PathAngleFilter, DoesNotLagThroughAFlare) {
+  // 5 degrees down to 0.5 in three seconds; a chord would be a quarter of a second late, 0.375 degrees.
+  const auto flare = [](double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; };
+  Outcome during;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Outcome one = follow(flare, 7, 4.6, seed);
+    during.squares += one.squares;
+    during.lag_sum += one.lag_sum;
+    during.count += one.count;
+  }
+  EXPECT_LT(during.rms(), kStepNoise);
+  EXPECT_LT(std::abs(during.lag_sum / during.count), 1.5 * kDegree * 0.04)
+      << "mean error beyond 0.04 s of lag";
+}
+
+TEST(PathAngleFilter, ClaimsATrueVarianceInGusts) {
+  const auto gusts = [](double t) {
+    return (4 + 0.4 * std::sin(2.5 * t) + 0.2 * std::sin(6.1 * t)) * kDegree;
+  };
+  const Outcome outcome = follow(gusts, 120, 3, 7);
+  const double mean_square = outcome.squares_over_variance / outcome.count;
+  EXPECT_GT(mean_square, 0.6);
+  EXPECT_LT(mean_square, 1.5);
+  EXPECT_LT(outcome.rms(), kStepNoise);
+}
+
+TEST(PathAngleFilter, GivesTheFirstStepAsItIs) {
+  PathAngleFilter filter(0.5);
+  const PathAngleFilter::Measurement step{0.07, 1e-6, 0.05};
+  const PathAngleFilter::Estimate estimate = filter.update(10.0, step, step);
+  EXPECT_NEAR(estimate.angle, 0.07, 1e-5);
+  EXPECT_NEAR(estimate.variance, 1e-6, 1e-8);
+}
+
+TEST(PathAngleFilter, ForgetsWhatWasBeforeAReset) {
+  PathAngleFilter filter(0.5);
+  for (int k = 1; k < 40; ++k) filter.update(0.05 * k, {0.1, 1e-8, 0.05}, {0.1, 1e-8, 0.05});
+  filter.reset();
+  const PathAngleFilter::Measurement step{-0.02, 1e-6, 0.05};
+  EXPECT_NEAR(filter.update(2.0, step, step).angle, -0.02, 1e-5);
+}
+
+}  // namespace
+}  // namespace uav_landing
