@@ -13,7 +13,7 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 // Failing frames for which the last plane stays the first guess.
 constexpr int kKeepPlaneFor = 5;
-// In how many failing frames one is also tried with left and right swapped.
+// In how many failing searches one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
 
 }  // namespace
@@ -28,7 +28,8 @@ struct StereoDepthStage::Implementation {
   bool has_last = false;
   double last_stamp = 0;
   bool started = false;
-  int failures = 0;
+  int failures = 0, failed_searches = 0;
+  bool looks_swapped = false;
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p) : model(rig), parameters(p) {
@@ -52,7 +53,10 @@ struct StereoDepthStage::Implementation {
     result.failure = checkPair(model, left_image, right_image);
     if (!result.failure) estimate(left_image, right_image, result);
     failures = result.failure ? failures + 1 : 0;
-    if (!result.failure) last_g = result.plane.g;
+    if (!result.failure) {
+      last_g = result.plane.g;
+      failed_searches = 0;
+    }
     // One bad pair does not make the last plane a bad guess; many do.
     has_last = !result.failure || (has_last && failures < kKeepPlaneFor);
     return result;
@@ -91,7 +95,10 @@ struct StereoDepthStage::Implementation {
   }
 
   Failure whyNotFound() {
-    if (failures % kSwapCheckInterval == 0 && searchPlane(swapped(coarse), parameters, limits).found) {
+    if (failed_searches++ % kSwapCheckInterval == 0) {
+      looks_swapped = searchPlane(swapped(coarse), parameters, limits).found;
+    }
+    if (looks_swapped) {
       return {
           Reason::kNegativeDisparity,
           "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
