@@ -7,6 +7,8 @@ uav_landing_add_gtest(plane_fit_test test/core/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(patch_matching_test test/core/patch_matching_test.cpp)
 uav_landing_add_gtest(path_angle_filter_test test/core/path_angle_filter_test.cpp)
+uav_landing_add_gtest(stereo_depth_stage_test test/core/stereo_depth_stage_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(ego_motion_test test/core/ego_motion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(focus_of_expansion_test test/core/focus_of_expansion_test.cpp

@@ -1,0 +1,331 @@
+#include "uav_landing/stereo_depth_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "support/ground_renderer.h"
+#include "uav_landing/image_check.h"
+
+namespace uav_landing {
+namespace {
+
+using test::Exposure;
+using test::GroundRenderer;
+using test::kDegree;
+using test::Pose;
+
+constexpr double kBaseline = 0.65;
+
+Pose makePose(double height, double pitch_deg, double roll_deg) {
+  Pose pose;
+  pose.position = {0, 0, height};
+  pose.pitch = pitch_deg * kDegree;
+  pose.roll = roll_deg * kDegree;
+  return pose;
+}
+
+struct Pair {
+  cv::Mat left, right;
+};
+
+/// One rig, one ground, one stage.
+struct Scene {
+  StereoRig rig = test::makeRig(320, 240, kBaseline);
+  RigModel model = test::makeModel(rig);
+  GroundRenderer ground;
+  StereoDepthParameters parameters;
+
+  explicit Scene(unsigned seed, double grain = 0.01) : ground(seed) { ground.grain = grain; }
+
+  Pair render(const Pose& pose, const Exposure& left = {}, const Exposure& right = {}) const {
+    return {ground.left(rig, pose, left), ground.right(rig, pose, right)};
+  }
+  StereoDepthResult first(const Pair& pair) const {
+    return StereoDepthStage(model, parameters).process(1, pair.left, pair.right);
+  }
+};
+
+/// Height, pitch and roll are within 3.5 of the claimed sigmas of the truth, and these are small. A surface
+/// is not known to be a plane to better than a thousandth of the height, so a third of that is granted
+/// besides.
+void expectPose(const StereoDepthResult& result, const Pose& truth, const std::string& where) {
+  ASSERT_FALSE(result.failure) << where << ": " << result.failure.message();
+  const GroundPlane& plane = result.plane;
+  const double height_stddev = std::hypot(std::sqrt(plane.heightVariance()), truth.height() / 3000);
+  const Eigen::Vector3d n = plane.normal();
+  const double pitch_stddev = std::sqrt(pitchVariance(n, plane.normalCovariance()));
+  const double roll_stddev = std::sqrt(rollVariance(n, plane.normalCovariance()));
+  EXPECT_NEAR(plane.height(), truth.height(), 3.5 * height_stddev) << where;
+  EXPECT_NEAR(pitchOf(n), truth.pitch, 3.5 * pitch_stddev) << where;
+  EXPECT_NEAR(rollOf(n), truth.roll, 3.5 * roll_stddev) << where;
+  EXPECT_LT(height_stddev, 0.005 * truth.height()) << where;
+  EXPECT_LT(pitch_stddev, 0.2 * kDegree) << where;
+  EXPECT_LT(roll_stddev, 0.2 * kDegree) << where;
+}
+
+TEST(StereoDepthStage, FindsThePlaneFromFarToVeryLow) {
+  // At 0.48 m the nearest ground has a disparity of two thirds of the width.
+  for (const double height : {8.0, 4.0, 2.0, 1.0, 0.48}) {
+    const Scene scene(1, 0.005 * height);
+    const Pose pose = makePose(height, -8, 0);
+    const StereoDepthResult result = scene.first(scene.render(pose));
+    expectPose(result, pose, std::to_string(height));
+    EXPECT_TRUE(result.from_search);
+  }
+  const Scene scene(1);
+  const GroundPlane low = test::exactPlane(makePose(0.48, -8, 0), 0, 0);
+  EXPECT_GT(low.disparity(scene.rig, 160, 239), 320 * 2 / 3.0);
+}
+
+TEST(StereoDepthStage, FindsThePlaneWhateverPitchAndRoll) {
+  for (const double pitch : {-15.0, -6.0, 3.0})
+    for (const double roll : {-10.0, 0.0, 10.0}) {
+      const Scene scene(2);
+      const Pose pose = makePose(1.6, pitch, roll);
+      expectPose(scene.first(scene.render(pose)), pose, std::to_string(pitch) + " " + std::to_string(roll));
+    }
+}
+
+TEST(StereoDepthStage, GivesTheSamePlaneTrackingAsSearching) {
+  const Scene scene(3);
+  StereoDepthStage tracking(scene.model, scene.parameters);
+  for (int i = 0; i < 4; ++i) {
+    const Pose pose = makePose(1.5 - 0.08 * i, -8 + 0.6 * i, -3 + 1.5 * i);
+    const Pair pair = scene.render(pose);
+    const StereoDepthResult tracked = tracking.process(i * 0.1, pair.left, pair.right);
+    const StereoDepthResult searched = scene.first(pair);
+    expectPose(tracked, pose, "tracked");
+    ASSERT_FALSE(searched.failure);
+    EXPECT_EQ(tracked.from_search, i == 0);
+    EXPECT_TRUE(searched.from_search);
+    EXPECT_NEAR(tracked.plane.height(), searched.plane.height(),
+                0.5 * std::sqrt(searched.plane.heightVariance()));
+  }
+}
+
+TEST(StereoDepthStage, IsBlindToGainAndOffsetBetweenTheCameras) {
+  const Scene scene(4);
+  const Pose pose = makePose(1.6, -8, 4);
+  expectPose(scene.first(scene.render(pose, {1, 0, 1}, {0.8, 45, 1})), pose, "flatter");
+  expectPose(scene.first(scene.render(pose, {1, 0, 1}, {1.15, -10, 1})), pose, "brighter");
+}
+
+TEST(StereoDepthStage, IsNotBlindToThemBySsd) {
+  // The paper's choice works with equal cameras only.
+  Scene scene(4);
+  scene.parameters.matching_cost = MatchingCost::kSsd;
+  scene.parameters.warp_window = false;
+  const Pose pose = makePose(3, -8, 0);
+  const StereoDepthResult same = scene.first(scene.render(pose));
+  ASSERT_FALSE(same.failure) << same.failure.message();
+  EXPECT_NEAR(same.plane.height(), 3, 0.15);
+  const StereoDepthResult different = scene.first(scene.render(pose, {1, 0, 1}, {0.8, 45, 1}));
+  EXPECT_TRUE(different.failure || different.points.size() < 0.8 * same.points.size());
+}
+
+TEST(StereoDepthStage, SurvivesNoise) {
+  const Scene scene(5);
+  const Pose pose = makePose(1.6, -8, 2);
+  expectPose(scene.first(scene.render(pose, {1, 0, 5}, {0.95, 3, 5})), pose, "noise");
+}
+
+TEST(StereoDepthStage, IsNotPulledByBoxesOnTheGround) {
+  Scene scene(6);
+  scene.ground.boxes = {
+      {{3, -2.5, 0}, {5, -0.8, 1.0}}, {{4, 0.7, 0}, {6, 2.5, 1.2}}, {{9, -4, 0}, {12, 0, 2}}};
+  const Pose pose = makePose(1.6, -6, -2);
+  const StereoDepthResult result = scene.first(scene.render(pose));
+  expectPose(result, pose, "boxes");
+  // Where the picture is another without the boxes, for the width of a window: no ground is to be seen.
+  GroundRenderer bare = scene.ground;
+  bare.boxes.clear();
+  cv::Mat box;
+  cv::absdiff(scene.ground.left(scene.rig, pose, {1, 0, 0}), bare.left(scene.rig, pose, {1, 0, 0}), box);
+  cv::morphologyEx(box > 0, box, cv::MORPH_CLOSE, cv::Mat(), {-1, -1}, 3);
+  box = erodeMask(box, scene.parameters.window_radius);
+  ASSERT_GT(cv::countNonZero(box), 5000);
+  int on_box = 0;
+  for (const StereoDepthResult::Point& point : result.points)
+    on_box += point.on_plane && box.at<uchar>(cvRound(point.v), cvRound(point.u)) != 0;
+  EXPECT_LT(on_box, 0.03 * static_cast<double>(result.points.size()));
+}
+
+TEST(StereoDepthStage, DoesNotLockOnePeriodOffOnZebraBars) {
+  Scene scene(7);
+  scene.ground.contrast = 5;
+  scene.ground.bar_period = 0.24;
+  scene.ground.bar_from = 2.2;
+  scene.ground.bar_to = 5;
+  scene.ground.bar_reach = 1.5;
+  for (const double height : {1.6, 1.2, 0.9}) {
+    const Pose pose = makePose(height, -9, 0);
+    expectPose(scene.first(scene.render(pose)), pose, "zebra");
+  }
+}
+
+TEST(StereoDepthStage, FollowsAnApproachAndRollAtFullSize) {
+  Scene scene(8);
+  scene.rig = test::makeRig(640, 480, 1.0);
+  scene.model = test::makeModel(scene.rig);
+  scene.ground.grain = 0.05;
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 3; ++i) {
+    const Pose pose = makePose(12 - 0.5 * i, -4 + i, 3.0 * i - 4);
+    const Pair pair = scene.render(pose);
+    expectPose(stage.process(i * 0.1, pair.left, pair.right), pose, "full size");
+  }
+}
+
+TEST(StereoDepthStage, NamesUniformBlackAndSaturatedImages) {
+  const Scene scene(9);
+  const Pair good = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  double stamp = 0;
+  for (const int grey : {0, 128, 255}) {
+    const cv::Mat flat(scene.rig.size, CV_8UC1, cv::Scalar(grey));
+    EXPECT_EQ(stage.process(stamp += 0.1, flat, flat).failure.reason, Reason::kUniformImage) << grey;
+    EXPECT_EQ(stage.process(stamp += 0.1, good.left, flat).failure.reason, Reason::kUniformImage) << grey;
+  }
+  const StereoDepthResult after = stage.process(stamp + 0.1, good.left, good.right);
+  EXPECT_FALSE(after.failure) << after.failure.message();
+}
+
+TEST(StereoDepthStage, SaysThatTheImagesAreSwapped) {
+  const Scene scene(10);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const StereoDepthResult result = stage.process(1, pair.right, pair.left);
+  EXPECT_EQ(result.failure.reason, Reason::kNegativeDisparity) << result.failure.message();
+  EXPECT_FALSE(result.plane.valid());
+  EXPECT_FALSE(stage.process(1.1, pair.left, pair.right).failure) << "once they are put right";
+}
+
+TEST(StereoDepthStage, KeepsSayingThatTheImagesAreSwapped) {
+  const Scene scene(10);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const cv::Mat black(scene.rig.size, CV_8UC1, cv::Scalar(0));
+  stage.process(0, black, black);
+  for (int i = 1; i < 4; ++i)
+    EXPECT_EQ(stage.process(0.1 * i, pair.right, pair.left).failure.reason, Reason::kNegativeDisparity) << i;
+}
+
+TEST(StereoDepthStage, FindsNoPlaneInImagesThatHaveNothingToDoWithEachOther) {
+  const Scene scene(11), other(12);
+  const Pose pose = makePose(1.6, -8, 0);
+  const StereoDepthResult result = scene.first({scene.render(pose).left, other.render(pose).right});
+  EXPECT_TRUE(result.failure);
+  EXPECT_NE(result.failure.reason, Reason::kNegativeDisparity);
+  EXPECT_FALSE(result.plane.valid());
+}
+
+TEST(StereoDepthStage, FindsNoPlaneInNoise) {
+  const Scene scene(11);
+  cv::Mat left(scene.rig.size, CV_8UC1), right = left.clone();
+  cv::RNG(1).fill(left, cv::RNG::UNIFORM, 0, 255);
+  cv::RNG(2).fill(right, cv::RNG::UNIFORM, 0, 255);
+  EXPECT_TRUE(scene.first({left, right}).failure);
+}
+
+TEST(StereoDepthStage, SearchesAnewWhenTheStampDoesNotIncrease) {
+  const Scene scene(13);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  for (const double back : {0.0, -5.0}) {
+    StereoDepthStage stage(scene.model, scene.parameters);
+    EXPECT_TRUE(stage.process(10, pair.left, pair.right).from_search);
+    EXPECT_FALSE(stage.process(10.1, pair.left, pair.right).from_search);
+    const StereoDepthResult result = stage.process(10.1 + back, pair.left, pair.right);
+    EXPECT_FALSE(result.failure);
+    EXPECT_TRUE(result.from_search) << back;
+    EXPECT_FALSE(stage.process(10.2 + back, pair.left, pair.right).from_search);
+  }
+  StereoDepthStage stage(scene.model, scene.parameters);
+  stage.process(1, pair.left, pair.right);
+  stage.reset();
+  EXPECT_TRUE(stage.process(2, pair.left, pair.right).from_search);
+}
+
+TEST(StereoDepthStage, FindsThePlaneAgainAfterAJump) {
+  // As when a bag is cut: the next pair shows another height with an increasing stamp.
+  const Scene scene(14);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair high = scene.render(makePose(3, -8, 0));
+  stage.process(1, high.left, high.right);
+  const Pose pose = makePose(0.7, -8, 0);
+  const Pair low = scene.render(pose);
+  expectPose(stage.process(2, low.left, low.right), pose, "jump");
+}
+
+TEST(StereoDepthStage, RefusesAnotherSize) {
+  const Scene scene(15);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const cv::Mat small = pair.right(cv::Rect(0, 0, 300, 240)).clone();
+  EXPECT_EQ(stage.process(1, pair.left, small).failure.reason, Reason::kInputInvalid);
+  EXPECT_EQ(stage.process(2, small, pair.right).failure.reason, Reason::kInputInvalid);
+  EXPECT_EQ(stage.process(3, cv::Mat(), pair.right).failure.reason, Reason::kInputInvalid);
+  EXPECT_FALSE(stage.process(4, pair.left, pair.right).failure);
+}
+
+TEST(StereoDepthStage, LooksInsideTheMasksOnly) {
+  Scene scene(16);
+  const cv::Rect inside(50, 40, 220, 190);
+  scene.model.left_mask = 0;
+  scene.model.right_mask = 0;
+  scene.model.left_mask(inside) = 255;
+  scene.model.right_mask(inside) = 255;
+  const Pose pose = makePose(2.5, -8, 0);
+  Pair pair = scene.render(pose);
+  // Garbage where rectification has no picture, the same in both, as lens borders are.
+  cv::Mat garbage(scene.rig.size, CV_8UC1);
+  cv::RNG(5).fill(garbage, cv::RNG::UNIFORM, 0, 255);
+  garbage.copyTo(pair.left, 255 - scene.model.left_mask);
+  garbage.copyTo(pair.right, 255 - scene.model.right_mask);
+  const StereoDepthResult result = scene.first(pair);
+  expectPose(result, pose, "mask");
+  for (const StereoDepthResult::Point& point : result.points) {
+    EXPECT_TRUE(inside.contains(cv::Point(cvRound(point.u), cvRound(point.v))));
+    const double column = point.u - point.disparity - scene.rig.principalOffset();
+    EXPECT_TRUE(inside.contains(cv::Point(cvRound(column), cvRound(point.v))));
+  }
+}
+
+TEST(StereoDepthStage, PassesStampAndSkewOnAndIsDeterministic) {
+  const Scene scene(17);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage a(scene.model, scene.parameters), b(scene.model, scene.parameters);
+  const StereoDepthResult first = a.process(12.5, pair.left, pair.right, 0.004);
+  const StereoDepthResult second = b.process(99, pair.left, pair.right);
+  EXPECT_EQ(first.stamp, 12.5);
+  EXPECT_EQ(first.skew, 0.004);
+  EXPECT_EQ(first.plane.g, second.plane.g);
+  EXPECT_EQ(first.plane.covariance, second.plane.covariance);
+  EXPECT_FALSE(a.timings().parts().empty());
+}
+
+TEST(StereoDepthStage, MeasuresDisparitiesThatAreThoseOfTheGround) {
+  const Scene scene(18);
+  const Pose pose = makePose(1.6, -8, 5);
+  const StereoDepthResult result = scene.first(scene.render(pose));
+  ASSERT_FALSE(result.failure);
+  const GroundPlane truth = test::exactPlane(pose, 0, 0);
+  ASSERT_GT(result.points.size(), 100U);
+  double normalised = 0;
+  int good = 0;
+  for (const StereoDepthResult::Point& point : result.points) {
+    const double error = point.disparity - truth.disparity(scene.rig, point.u, point.v);
+    if (std::abs(error) > 0.5) continue;
+    ++good;
+    normalised += std::pow(error / point.disparity_stddev, 2);
+  }
+  EXPECT_GT(good, 0.9 * static_cast<double>(result.points.size()));
+  const double ratio = std::sqrt(normalised / good);
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 2);
+}
+
+}  // namespace
+}  // namespace uav_landing
