@@ -8,6 +8,7 @@
 #include "camera_info.h"
 #include "command_line.h"
 #include "dataset_writer.h"
+#include "progress_bar.h"
 #include "stereo_bag_writer.h"
 #include "uav_landing/simulator/approach_simulator.h"
 #include "uav_landing/simulator/parameter_file.h"
@@ -30,7 +31,8 @@ ros::Time stampOf(double time) {
 
 /// Renders all frames into the bag and the dataset (null: none).
 Failure simulate(const ApproachSimulator& simulator, StereoBagWriter& bag, DatasetWriter* dataset) {
-  for (int i = 0; i < simulator.frames(); ++i) {
+  ProgressBar progress(simulator.frames());
+  for (int i = 0; i < simulator.frames(); ++i, progress.step()) {
     const ApproachSimulator::Frame frame = simulator.frame(i);
     const ros::Time stamp = stampOf(frame.time);
     bag.write(stamp, frame.left, frame.right, frame.truth);
