@@ -150,7 +150,8 @@ struct ApproachAngleParameters {
              "searched around the place the previous motion predicts");
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
     v.number("min_matches", min_matches, 6, 1000, "matches", "fewest matches that make a motion");
-    v.number("angle_window", angle_window, 0.0, 0.5, "s", "images used for the published angle; 0: one step");
+    v.number("angle_window", angle_window, 0.0, 0.5, "s",
+             "images used for the published angle; 0: one step, as always with sliding_window and eq1");
     v.choice("angle_smoothing", angle_smoothing, {"adaptive", "chord"},
              "adaptive: angle of the last step, averaged as far back as the path has been steady; chord: "
              "mean over "

@@ -110,6 +110,7 @@ struct ApproachAngleStage::Implementation {
     result.step = motion.step;
     result.window = motion.window;
     findFoe(motion, result);
+    if (paperForm()) result.window = result.step;
     const Failure& angle = result.window.failure ? result.step.failure : result.window.failure;
     if (angle) result.failure = angle;
   }
@@ -145,6 +146,12 @@ struct ApproachAngleStage::Implementation {
     return corners;
   }
 
+  // The paper's forms are of one step.
+  bool paperForm() const {
+    return parameters.foe_method == FoeMethod::kSlidingWindow ||
+           parameters.angle_formula == AngleFormula::kEq1;
+  }
+
   void findFoe(const MotionTracker::Result& motion, ApproachAngleResult& result) const {
     if (motion.step.failure || !motion.step_estimate) return;
     const MotionEstimate& estimate = *motion.step_estimate;
@@ -154,12 +161,14 @@ struct ApproachAngleStage::Implementation {
                                 parameters.remove_rotation ? estimate.motion.R : Eigen::Matrix3d::Identity())
              : foeFromMotion(model.rig, estimate.motion.t, estimate.covariance.block<3, 3>(3, 3));
     if (!foe) {
-      if (vote) result.step.failure = result.window.failure = foe.error();
+      if (!vote) return;
+      result.step.failure = foe.error();
+      result.step.angle = result.step.angle_variance = kUnknown;
       return;
     }
     result.foe = foe->pixel;
     result.foe_covariance = foe->covariance;
-    if (vote || parameters.angle_formula == AngleFormula::kEq1) angleFromFoe(result);
+    if (paperForm()) angleFromFoe(result);
   }
 
   // Approach angle of the step from the FOE as a pixel, as the paper does.
@@ -174,10 +183,6 @@ struct ApproachAngleStage::Implementation {
             ? approachAngleEq1(rig.fy * result.n.z() / result.n.y(), rig.cy - result.foe.y(), rig.fy)
             : approachAngle(result.n, direction);
     result.step.angle_variance = approachAngleVariance(result.n, result.n_covariance, direction, covariance);
-    if (parameters.angle_window <= 0) {
-      result.window.angle = result.step.angle;
-      result.window.angle_variance = result.step.angle_variance;
-    }
   }
 };
 
