@@ -13,6 +13,10 @@ uav_landing_add_gtest(ego_motion_test test/core/ego_motion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(focus_of_expansion_test test/core/focus_of_expansion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(temporal_matching_test test/core/temporal_matching_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(approach_angle_stage_test test/core/approach_angle_stage_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 # Height: reconstruction, filter, validity; parameter files.
 uav_landing_add_gtest(height_filter_test test/core/height_filter_test.cpp)
 uav_landing_add_gtest(reconstruction_test test/core/reconstruction_test.cpp)

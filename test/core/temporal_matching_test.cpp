@@ -1,0 +1,179 @@
+#include "uav_landing/temporal_matching.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "support/ground_renderer.h"
+#include "uav_landing/corners.h"
+
+namespace uav_landing {
+namespace {
+
+using test::GroundRenderer;
+using test::kDegree;
+using test::Movement;
+using test::Pose;
+
+/// Two frames of an approach with corners of the later one.
+struct Frames {
+  StereoRig rig;
+  Pose then, now;
+  GroundRenderer ground{21};
+  MatchImage image_then, image_now;
+  cv::Mat mask;
+  std::vector<TrackedCorner> corners;
+  Movement movement;
+
+  Frames(const Pose& from, const Pose& to, int width = 320, const std::vector<test::Box>& boxes = {})
+      : rig(test::makeRig(width, width * 3 / 4, 0.65)),
+        then(from),
+        now(to),
+        mask(rig.size, CV_8UC1, cv::Scalar(255)),
+        movement(from, to) {
+    ground.boxes = boxes;
+    const cv::Mat grey = ground.left(rig, now);
+    image_then.assign(ground.left(rig, then));
+    image_now.assign(grey);
+    cv::Mat below = cv::Mat::zeros(rig.size, CV_8UC1);
+    below.rowRange(rig.size.height * 45 / 100, rig.size.height - 8) = 255;
+    for (const cv::Point& p : findCorners(grey, below, 250, 1e-7, 4, 0.04)) {
+      TrackedCorner corner;
+      corner.u = p.x;
+      corner.v = p.y;
+      corners.push_back(corner);
+    }
+  }
+
+  CameraMotion truth() const { return {movement.R, movement.t / now.height()}; }
+
+  std::vector<TemporalMatch> match(const CameraMotion& predicted, int coarse_steps) const {
+    TemporalMatchOptions options;
+    options.coarse_steps = coarse_steps;
+    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options);
+  }
+
+  /// Where the point of the world that is seen at a pixel now, at this depth, was then.
+  Eigen::Vector2d wanted(const Eigen::Vector2d& pixel, double depth) const {
+    const Eigen::Vector3d X = depth * rig.ray(pixel.x(), pixel.y());
+    return rig.project(then.seen(now.worldFromOptical() * X + now.position - then.position));
+  }
+  double groundDepth(const Eigen::Vector2d& pixel) const {
+    return now.height() / now.down().dot(rig.ray(pixel.x(), pixel.y()));
+  }
+};
+
+Frames approach(int width = 320) {
+  Pose then, now;
+  then.position = {-0.35, 0.02, 1.56};
+  then.pitch = -8 * kDegree;
+  then.roll = 1 * kDegree;
+  now.position = {0, 0, 1.5};
+  now.pitch = -7.6 * kDegree;
+  now.roll = 1.8 * kDegree;
+  now.yaw = 0.5 * kDegree;
+  return Frames(then, now, width);
+}
+
+/// RMS of a component over the matches that are not plainly wrong, the normalised square, the share of wrong
+/// ones.
+struct Errors {
+  double rms = 0, nees = 0, wrong = 0;
+};
+
+Errors errorsOf(const Frames& frames, const std::vector<TemporalMatch>& matches) {
+  Errors errors;
+  int good = 0;
+  for (const TemporalMatch& match : matches) {
+    const Eigen::Vector2d error = match.then - frames.wanted(match.now, frames.groundDepth(match.now));
+    if (error.norm() > 1) continue;
+    ++good;
+    errors.rms += error.squaredNorm() / 2;
+    errors.nees += error.dot(match.covariance.inverse() * error);
+  }
+  errors.rms = std::sqrt(errors.rms / good);
+  errors.nees /= good;
+  errors.wrong = 1 - good / static_cast<double>(matches.size());
+  return errors;
+}
+
+TEST(MatchOverTime, FindsGroundCornersToSubPixelFromTheTruePrediction) {
+  const Frames frames = approach();
+  const std::vector<TemporalMatch> matches = frames.match(frames.truth(), 0);
+  EXPECT_GT(matches.size(), 0.8 * static_cast<double>(frames.corners.size()));
+  const Errors errors = errorsOf(frames, matches);
+  EXPECT_LT(errors.rms, 0.08);
+  EXPECT_LT(errors.wrong, 0.01);
+  // Factor two in the deviation; two components.
+  EXPECT_LT(errors.nees, 2 * 4);
+  EXPECT_GT(errors.nees, 2 / 4.0);
+}
+
+TEST(MatchOverTime, FindsThemBySearchingAroundAPoorPrediction) {
+  for (const int width : {320, 640}) {
+    const Frames frames = approach(width);
+    CameraMotion poor = frames.truth();
+    poor.t *= 0.8;
+    poor.R = Eigen::AngleAxisd(0.8 * kDegree, Eigen::Vector3d(1, 1, 0).normalized()) * poor.R;
+    const std::vector<TemporalMatch> matches = frames.match(poor, 10);
+    EXPECT_GT(matches.size(), 0.6 * static_cast<double>(frames.corners.size())) << width;
+    const Errors errors = errorsOf(frames, matches);
+    EXPECT_LT(errors.rms, 0.08) << width;
+    EXPECT_LT(errors.wrong, 0.03) << width;
+    EXPECT_LT(frames.match(poor, 0).size(), matches.size()) << "without searching";
+  }
+}
+
+TEST(MatchOverTime, UsesTheDepthOfCornersOffTheGround) {
+  // A wall across the view; its distance is known.
+  Pose then, now;
+  then.position = {-0.4, 0, 1.55};
+  now.position = {0, 0, 1.5};
+  then.pitch = now.pitch = -3 * kDegree;
+  const double wall = 4;
+  Frames frames(then, now, 320, {{{wall, -6, 0}, {wall + 1, 6, 3}}});
+  const Eigen::Matrix3d R = now.worldFromOptical();
+  std::vector<TrackedCorner> on_wall;
+  for (TrackedCorner corner : frames.corners) {
+    const Eigen::Vector3d ray = R * frames.rig.ray(corner.u, corner.v);
+    const double depth = wall / ray.x();
+    if (now.height() + depth * ray.z() < 0.3) continue;  // on the floor before it
+    corner.on_plane = false;
+    corner.inverse_depth = now.height() / depth;
+    corner.inverse_depth_stddev = 0.01;
+    on_wall.push_back(corner);
+  }
+  ASSERT_GT(on_wall.size(), 30U);
+  frames.corners = on_wall;
+  const std::vector<TemporalMatch> matches = frames.match(frames.truth(), 0);
+  EXPECT_GT(matches.size(), 0.7 * static_cast<double>(on_wall.size()));
+  for (const TemporalMatch& match : matches) {
+    EXPECT_FALSE(match.on_plane);
+    EXPECT_EQ(match.inverse_depth_stddev, 0.01);
+    const Eigen::Vector2d wanted = frames.wanted(match.now, now.height() / match.inverse_depth);
+    EXPECT_LT((match.then - wanted).norm(), 0.5);
+  }
+}
+
+TEST(MatchOverTime, TakesNothingFromOutsideTheMask) {
+  Frames frames = approach();
+  const size_t all = frames.match(frames.truth(), 0).size();
+  frames.mask.colRange(0, 160) = 0;
+  const std::vector<TemporalMatch> matches = frames.match(frames.truth(), 0);
+  EXPECT_LT(matches.size(), 0.8 * static_cast<double>(all));
+  for (const TemporalMatch& match : matches) EXPECT_GE(match.then.x(), 159.5);
+}
+
+TEST(MatchOverTime, FindsNothingInAnotherScene) {
+  Frames frames = approach();
+  GroundRenderer other(77);
+  frames.image_then.assign(other.left(frames.rig, frames.then));
+  EXPECT_LT(frames.match(frames.truth(), 10).size(), 0.1 * static_cast<double>(frames.corners.size()));
+  frames.corners.clear();
+  EXPECT_TRUE(frames.match(frames.truth(), 10).empty());
+}
+
+}  // namespace
+}  // namespace uav_landing
