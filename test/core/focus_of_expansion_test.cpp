@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "support/counting_allocator.h"
 #include "support/ground_renderer.h"
 
 namespace uav_landing {
@@ -158,37 +159,13 @@ TEST(FoeSlidingWindow, IsNoneForPureRotationTakenOut) {
   EXPECT_EQ(foe.error().reason, Reason::kNoMotion);
 }
 
-/// Counts the images that are allocated, and leaves the work to OpenCV.
-class CountingAllocator : public cv::MatAllocator {
- public:
-  CountingAllocator() : standard_(cv::Mat::getStdAllocator()) { cv::Mat::setDefaultAllocator(this); }
-  ~CountingAllocator() override { cv::Mat::setDefaultAllocator(standard_); }
-  CountingAllocator(const CountingAllocator&) = delete;
-  CountingAllocator& operator=(const CountingAllocator&) = delete;
-
-  cv::UMatData* allocate(int dims, const int* sizes, int type, void* data, size_t* step, cv::AccessFlag flags,
-                         cv::UMatUsageFlags usage) const override {
-    ++count;
-    return standard_->allocate(dims, sizes, type, data, step, flags, usage);
-  }
-  bool allocate(cv::UMatData* data, cv::AccessFlag flags, cv::UMatUsageFlags usage) const override {
-    return standard_->allocate(data, flags, usage);
-  }
-  void deallocate(cv::UMatData* data) const override { standard_->deallocate(data); }
-
-  mutable int count = 0;
-
- private:
-  cv::MatAllocator* standard_;
-};
-
 TEST(FoeSlidingWindow, AllocatesNoImagePerVector) {
   const Pose then = makePose(-2, 0, 6.2), now = makePose(0, 0, 6);
   const auto images = [&](int vectors) {
     const std::vector<TemporalMatch> matches = makeMatches(then, now, vectors, 0.1, 6);
-    const CountingAllocator allocator;
+    const test::CountingAllocator allocator;
     EXPECT_TRUE(foeSlidingWindow(rig(), matches, Eigen::Matrix3d::Identity()));
-    return allocator.count;
+    return allocator.allocated;
   };
   images(10);  // what OpenCV allocates once
   const int few = images(10);

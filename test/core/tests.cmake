@@ -15,6 +15,10 @@ uav_landing_add_gtest(focus_of_expansion_test test/core/focus_of_expansion_test.
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(temporal_matching_test test/core/temporal_matching_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(motion_tracker_test test/core/motion_tracker_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(approach_angle_stage_test test/core/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 # Height: reconstruction, filter, validity; parameter files.

@@ -1,0 +1,151 @@
+#include "uav_landing/motion_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "support/counting_allocator.h"
+#include "support/ground_renderer.h"
+#include "uav_landing/corners.h"
+
+namespace uav_landing {
+namespace {
+
+using test::GroundRenderer;
+using test::kDegree;
+using test::Movement;
+using test::Pose;
+
+Pose makePose(double x, double z, double pitch_deg = -8, double yaw_deg = 0) {
+  Pose pose;
+  pose.position = {x, 0, z};
+  pose.pitch = pitch_deg * kDegree;
+  pose.yaw = yaw_deg * kDegree;
+  return pose;
+}
+
+struct Scene {
+  StereoRig rig = test::makeRig(320, 240, 0.65);
+  GroundRenderer ground{51};
+  ApproachAngleParameters parameters;
+  Timings timings;
+  MotionTracker tracker{test::makeModel(rig), parameters};
+
+  cv::Mat image(const Pose& pose) const { return ground.left(rig, pose); }
+
+  MotionTracker::Result process(double stamp, const Pose& pose) { return process(stamp, pose, image(pose)); }
+  MotionTracker::Result process(double stamp, const Pose& pose, const cv::Mat& left) {
+    cv::Mat below = cv::Mat::zeros(left.size(), CV_8UC1);
+    below.rowRange(110, 230) = 255;
+    std::vector<TrackedCorner> corners;
+    for (const cv::Point& p : findCorners(left, below, 250, 1e-7, 4, 0.04)) {
+      TrackedCorner corner;
+      corner.u = p.x;
+      corner.v = p.y;
+      corners.push_back(corner);
+    }
+    const Eigen::Vector3d n = pose.down();
+    return tracker.process(stamp, left, n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose()), corners,
+                           timings);
+  }
+};
+
+void expectStep(const MotionTracker::Result& result, const Pose& then, const Pose& now) {
+  ASSERT_FALSE(result.step.failure) << result.step.failure.message();
+  const Movement truth(then, now);
+  const Eigen::Vector3d t = truth.t / now.height();
+  EXPECT_LT((result.step.translation_over_height - t).norm(), 0.01 * t.norm() + 0.002);
+  const Eigen::AngleAxisd turn(truth.R);
+  EXPECT_LT((result.step.rotation - turn.angle() * turn.axis()).norm(), 1e-3);
+}
+
+TEST(MotionTracker, FindsAFirstStepOfAnyLength) {
+  for (const double share : {0.02, 0.1, 0.3, 0.7}) {
+    Scene scene;
+    const Pose then = makePose(-1.6 * share, 1.6 + 0.1 * share), now = makePose(0, 1.6, -7.5, 0.5);
+    EXPECT_EQ(scene.process(1, then).step.failure.reason, Reason::kNotYet);
+    expectStep(scene.process(1.1, now), then, now);
+  }
+}
+
+TEST(MotionTracker, FollowsMotionThatChangesFromStepToStep) {
+  Scene scene;
+  const std::vector<Pose> poses = {makePose(-1, 1.8), makePose(-0.9, 1.8), makePose(-0.6, 1.75, -7),
+                                   makePose(-0.55, 1.74, -6, 2), makePose(-0.1, 1.65, -8, 0)};
+  scene.process(0, poses[0]);
+  for (size_t i = 1; i < poses.size(); ++i)
+    expectStep(scene.process(0.1 * static_cast<double>(i), poses[i]), poses[i - 1], poses[i]);
+}
+
+TEST(MotionTracker, ScalesItsPredictionWithTheTimeBetweenFrames) {
+  Scene scene;
+  const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t, -8 + 3 * t); };
+  for (const double t : {0.0, 0.1, 0.2}) scene.process(t, at(t));
+  expectStep(scene.process(0.5, at(0.5)), at(0.2), at(0.5));
+  expectStep(scene.process(0.55, at(0.55)), at(0.5), at(0.55));
+}
+
+TEST(MotionTracker, MeasuresTheStepFromASkippedFrame) {
+  Scene scene;
+  const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t); };
+  scene.process(0, at(0));
+  scene.process(0.1, at(0.1));
+  scene.tracker.skip(0.2, scene.image(at(0.2)));
+  const MotionTracker::Result result = scene.process(0.3, at(0.3));
+  EXPECT_NEAR(result.step.duration, 0.1, 1e-9);
+  expectStep(result, at(0.2), at(0.3));
+  EXPECT_FALSE(result.window.failure);
+}
+
+TEST(MotionTracker, LooksBackNoLongerThanItsWindow) {
+  Scene scene;
+  scene.parameters.angle_window = 0.3;
+  scene.tracker = MotionTracker(test::makeModel(scene.rig), scene.parameters);
+  const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t); };
+  MotionTracker::Result result;
+  for (int i = 0; i < 6; ++i) result = scene.process(0.1 * i, at(0.1 * i));
+  ASSERT_FALSE(result.window.failure);
+  EXPECT_NEAR(result.window.duration, 0.3, 1e-9);
+  const Movement truth(at(0.2), at(0.5));
+  const Eigen::Vector3d t = truth.t / at(0.5).height();
+  EXPECT_LT((result.window.translation_over_height - t).norm(), 0.005 * t.norm());
+  EXPECT_GT(result.window.translation_over_height.norm(), 2.8 * result.step.translation_over_height.norm());
+}
+
+TEST(MotionTracker, FailsOnAnotherSceneAndRecovers) {
+  Scene scene;
+  scene.process(0, makePose(0, 1.8));
+  EXPECT_FALSE(scene.process(0.1, makePose(0.15, 1.78)).step.failure);
+  const GroundRenderer elsewhere(99);
+  const auto other = [&](double x) { return elsewhere.left(scene.rig, makePose(x, 1.8)); };
+  const MotionTracker::Result cut = scene.process(0.2, makePose(0, 1.8), other(0));
+  EXPECT_TRUE(cut.step.failure.reason == Reason::kTooFewMatches ||
+              cut.step.failure.reason == Reason::kMotionInconsistent)
+      << cut.step.failure.message();
+  EXPECT_TRUE(cut.window.failure);
+  EXPECT_TRUE(std::isnan(cut.step.angle) && std::isnan(cut.window.angle));
+  expectStep(scene.process(0.3, makePose(0.15, 1.8), other(0.15)), makePose(0, 1.8), makePose(0.15, 1.8));
+}
+
+TEST(MotionTracker, HoldsNoMoreImagesTheLongerItRuns) {
+  Scene scene;
+  const std::vector<cv::Mat> images = {scene.image(makePose(0, 1.8)), scene.image(makePose(0.1, 1.8))};
+  const test::CountingAllocator allocator;
+  {
+    Scene counted;
+    int after_warm_up = 0;
+    for (int i = 0; i < 24; ++i) {
+      counted.process(0.1 * i, makePose(0, 1.8), images[i % 2]);
+      if (i == 11) after_warm_up = allocator.held;
+    }
+    EXPECT_GT(after_warm_up, 0);
+    EXPECT_LE(allocator.held, after_warm_up);
+    for (int i = 24; i < 36; ++i) counted.tracker.skip(0.1 * i, images[i % 2]);
+    EXPECT_LE(allocator.held, after_warm_up + 1);
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing
