@@ -1,0 +1,89 @@
+#include "runway_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace uav_landing;
+
+namespace {
+
+/// A level camera that flies 10 m/s forward, 1 m/s to the left and sinks 1 m/s.
+LandingResult flying(double stamp) {
+  LandingResult camera;
+  camera.stamp = stamp;
+  camera.height_valid = camera.angle_valid = true;
+  camera.height = 50 - stamp;
+  camera.pitch = camera.roll = camera.yaw = 0;
+  camera.approach_angle = std::atan(0.1);
+  camera.velocity = {-1, 1, 10};  // right, down, forward
+  return camera;
+}
+
+TEST(RunwayPath, BeginsWhereThePathMeetsTheGroundAtTheOrigin) {
+  RunwayPath path;
+  const auto place = path.update(flying(0));
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->position.x(), -500, 1e-9) << "50 m high on a slope of 0.1";
+  EXPECT_NEAR(place->position.z(), 50, 1e-12);
+  EXPECT_GE(place->variance.x(), 1e6);
+}
+
+TEST(RunwayPath, SumsUpTheVelocity) {
+  RunwayPath path;
+  path.update(flying(0));
+  path.update(flying(1));
+  const auto place = path.update(flying(2));
+  ASSERT_TRUE(place);
+  EXPECT_NEAR(place->position.x(), -480, 1e-9);
+  EXPECT_NEAR(place->position.y(), 2, 1e-9);
+  EXPECT_NEAR(place->position.z(), 48, 1e-12);
+}
+
+TEST(RunwayPath, TurnsTheVelocityIntoTheRunwayFrame) {
+  RunwayPath path;
+  LandingResult camera = flying(0);
+  path.update(camera);
+  camera.stamp = 1;
+  camera.yaw = M_PI / 2;  // looks to the left and flies there
+  camera.velocity = {0, 0, 10};
+  const auto place = path.update(camera);
+  EXPECT_NEAR(place->position.x(), -500, 1e-9);
+  EXPECT_NEAR(place->position.y(), 10, 1e-9);
+}
+
+TEST(RunwayPath, TheVarianceGrows) {
+  RunwayPath path;
+  const double first = path.update(flying(0))->variance.x();
+  path.update(flying(1));
+  EXPECT_GT(path.update(flying(2))->variance.x(), first);
+}
+
+TEST(RunwayPath, FliesOnThroughPairsWithoutAnEstimate) {
+  RunwayPath path;
+  path.update(flying(0));
+  LandingResult nothing;
+  nothing.stamp = 1;
+  EXPECT_FALSE(path.update(nothing));
+  EXPECT_NEAR(path.update(flying(2))->position.x(), -480, 1e-9);
+}
+
+TEST(RunwayPath, AStampThatGoesBackBeginsAnew) {
+  RunwayPath path;
+  path.update(flying(10));
+  path.update(flying(11));
+  EXPECT_NEAR(path.update(flying(0))->position.x(), -500, 1e-9);
+  EXPECT_EQ(path.track().size(), 1u);
+}
+
+TEST(RunwayPath, TheTrackIsBounded) {
+  RunwayPath path;
+  for (int i = 0; i < 5000; ++i) {
+    LandingResult camera = flying(i);
+    camera.height = 10;
+    path.update(camera);
+  }
+  EXPECT_EQ(path.track().size(), 2000u);
+}
+
+}  // namespace
