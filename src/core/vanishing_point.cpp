@@ -97,7 +97,11 @@ class Search {
         K_(K),
         Kinv_(K.inverse()),
         parameters_(parameters),
-        prior_normal_(prior_normal) {}
+        prior_normal_(prior_normal) {
+    const Eigen::Vector3d horizon =
+        prior_normal ? Eigen::Vector3d(Kinv_.transpose() * *prior_normal) : Eigen::Vector3d::UnitY();
+    horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();
+  }
 
   Expected<VanishingPoint> run() {
     if (count() < std::max(parameters_.min_lines, 2))
@@ -127,18 +131,34 @@ class Search {
     return alongRunway(direction);
   }
 
-  /// Length of the lines that pass through, each weighted by how well, less the length of those that could
-  /// not be on the ground if this were its horizon. Of the lines in one sector of directions only the best
-  /// counts: the pieces of one transverse edge pass through each of its points, and say no more than one.
+  /// Probability that a line of random direction on the ground, seen where this one is, passes through V
+  /// within the tolerance at its ends. Texture seen at a grazing angle looks like lines along the horizon, so
+  /// these pass near every point of it and say next to nothing; lines that rise towards it say much.
+  double chance(const Candidate& line, const Eigen::Vector3d& V, double tolerance) const {
+    const double miss = tolerance * line.towards(V).norm() / (line.half * V.z());
+    const double sine = std::abs(line.along.x() * horizon_.y() - line.along.y() * horizon_.x());
+    const double turn = miss / (K_(0, 0) * std::max(sine, 1e-6));  // of the direction on the ground, rad
+    return std::min(1.0, 2 / M_PI * std::atan(turn));
+  }
+
+  /// Evidence (-log of the chance) of the lines that pass through, each weighted by how well, less that of
+  /// those that could not be on the ground if this were its horizon. Of the lines in one sector of directions
+  /// only the best counts: the pieces of one transverse edge pass through each of its points, and say no more
+  /// than one.
   double score(const Eigen::Vector3d& direction) const {
     const Eigen::Vector3d V = K_ * direction;
     const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
     double impossible = 0;
     std::array<double, kSectors> agreeing{};
     for (const Candidate& line : lines_) {
-      if (line.isAboveHorizon(V)) impossible += line.half;
+      if (line.isAboveHorizon(V)) {
+        impossible += std::log1p(line.half / parameters_.ransac_tolerance);
+        continue;
+      }
+      const double fit = 1 - line.endMiss2(V) / tolerance2;
+      if (fit <= 0) continue;
       double& best = agreeing[line.sector];
-      best = std::max(best, line.half * (1 - line.endMiss2(V) / tolerance2));
+      best = std::max(best, -fit * std::log(chance(line, V, parameters_.ransac_tolerance)));
     }
     return std::accumulate(agreeing.begin(), agreeing.end(), -impossible);
   }
@@ -268,7 +288,7 @@ class Search {
     if (spread < kMinSpread)
       return noVanishingPoint("lines are parallel within %.1f deg, less than %.1f", spread / kDegree,
                               kMinSpread / kDegree);
-    const double coincidences = expectedCoincidences(used, scale);
+    const double coincidences = expectedCoincidences(direction, used, scale);
     if (parameters_.min_lines > 2 && coincidences > kChance)
       return noVanishingPoint("as many lines meet by chance: %.0f of %.0f", static_cast<double>(used.size()),
                               count());
@@ -288,16 +308,17 @@ class Search {
     return M_PI - gap;
   }
 
-  /// How many meeting points as well supported as this one are expected of lines of random direction: pairs
-  /// of lines that meet along the runway times (Chernoff's bound of) the probability that the other lines
-  /// pass through. A line passes by chance with p = 2 asin(tolerance / half length) / pi and counts with -log
-  /// p, so long lines count more.
-  double expectedCoincidences(const std::vector<int>& used, double scale) const {
+  /// How many meeting points as well supported as this one are expected of lines of random direction on the
+  /// ground: pairs of lines that meet along the runway times (Chernoff's bound of) the probability that the
+  /// other lines pass through. Each counts with -log of its own chance.
+  double expectedCoincidences(const Eigen::Vector3d& direction, const std::vector<int>& used,
+                              double scale) const {
+    const Eigen::Vector3d V = K_ * direction;
     std::vector<double> p(lines_.size()), evidence;
     for (int i = 0; i < count(); ++i) {
       const double tolerance =
           std::min(parameters_.ransac_tolerance, kGate * scale * std::sqrt(lines_[i].endVariance()));
-      p[i] = 2 / M_PI * std::asin(std::min(1.0, tolerance / lines_[i].half));
+      p[i] = chance(lines_[i], V, tolerance);
     }
     for (const int i : used) evidence.push_back(-std::log(p[i]));
     std::sort(evidence.begin(), evidence.end());
@@ -336,7 +357,8 @@ class Search {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  double meetings_ = 0;  // pairs of lines that meet along the runway
+  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
+  double meetings_ = 0;      // pairs of lines that meet along the runway
 };
 
 Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
