@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -21,6 +22,7 @@ constexpr double kMinSpread = 3 * kDegree;       // between the inlier lines in 
 constexpr double kMaxStddev = 5 * kDegree;       // of a direction that is worth reporting
 constexpr double kGate = 4;                      // robust sigma, of the lines that count in the end
 constexpr double kChance = 1;                    // accepted number of such coincidences among random lines
+constexpr double kLikely = 0.15;                 // chance from which on a line that passes says nothing
 constexpr double kClearance = 4;                 // px between a line's end and the point where it vanishes
 constexpr double kMaxHorizonSlope = 0.577;       // 30 degrees of roll
 constexpr int kSectors = 60;                     // 3 degrees
@@ -310,27 +312,34 @@ class Search {
 
   /// How many meeting points as well supported as this one are expected of lines of random direction on the
   /// ground: pairs of lines that meet along the runway times (Chernoff's bound of) the probability that the
-  /// other lines pass through. Each counts with -log of its own chance.
+  /// other lines pass through. Each counts with -log of its own chance; those that say nothing are left out.
   double expectedCoincidences(const Eigen::Vector3d& direction, const std::vector<int>& used,
                               double scale) const {
     const Eigen::Vector3d V = K_ * direction;
-    std::vector<double> p(lines_.size()), evidence;
+    std::vector<double> passing_by, others;  // chances
     for (int i = 0; i < count(); ++i) {
       const double tolerance =
           std::min(parameters_.ransac_tolerance, kGate * scale * std::sqrt(lines_[i].endVariance()));
-      p[i] = chance(lines_[i], V, tolerance);
+      const double p = chance(lines_[i], V, tolerance);
+      if (p > kLikely) continue;
+      const bool passes = std::binary_search(used.begin(), used.end(), i);
+      (passes ? passing_by : others).push_back(p);
     }
-    for (const int i : used) evidence.push_back(-std::log(p[i]));
-    std::sort(evidence.begin(), evidence.end());
-    // Two lines always meet.
-    const double total = std::accumulate(evidence.begin(), evidence.end() - 2, 0.0);
+    if (passing_by.size() <= 2) return meetings_;
+    const double lines = static_cast<double>(passing_by.size() + others.size());
+    // Two lines always meet: the two that say most do not count.
+    std::sort(passing_by.begin(), passing_by.end(), std::greater<double>());
+    passing_by.resize(passing_by.size() - 2);
+    double evidence = 0;
+    for (const double p : passing_by) evidence -= std::log(p);
+    others.insert(others.end(), passing_by.begin(), passing_by.end());
     double log_probability = 0;
     for (double lambda = 0.1; lambda < 1.05; lambda += 0.1) {
-      double bound = -lambda * total;
-      for (const double pi : p) bound += std::log1p(pi * (std::pow(pi, -lambda) - 1));
+      double bound = -lambda * evidence;
+      for (const double p : others) bound += std::log1p(p * (std::pow(p, -lambda) - 1));
       log_probability = std::min(log_probability, bound);
     }
-    return meetings_ * std::exp(log_probability);
+    return std::min(meetings_, 0.5 * lines * (lines - 1)) * std::exp(log_probability);
   }
 
   Expected<VanishingPoint> describe(const Eigen::Vector3d& direction, const std::vector<int>& used,
