@@ -187,9 +187,8 @@ class KalmanHeightNodelet : public StageNodelet {
 
   void broadcast(const std_msgs::Header& header, const std::string& child_frame,
                  const Eigen::Isometry3d& runway_from_child) {
-    // One transform per stamp; a clock that was set back starts anew.
-    if (!broadcaster_ || header.stamp == last_broadcast_ || !runway_from_child.matrix().allFinite()) return;
-    last_broadcast_ = header.stamp;
+    // One transform per stamp: the pairing drops stamps that repeat.
+    if (!broadcaster_ || !runway_from_child.matrix().allFinite()) return;
     geometry_msgs::TransformStamped transform = tf2::eigenToTransform(runway_from_child);
     transform.header = header;
     transform.child_frame_id = child_frame;
@@ -246,8 +245,8 @@ class KalmanHeightNodelet : public StageNodelet {
   std::optional<KalmanHeightStage> stage_;
   RunwayPath path_;
   std::string left_frame_;
-  ros::Time last_pair_, last_timeout_;     // by the ROS clock
-  ros::Time last_stamp_, last_broadcast_;  // of images
+  ros::Time last_pair_, last_timeout_;  // by the ROS clock
+  ros::Time last_stamp_;                // of the last pair
   bool valid_lately_ = false;
   std::string last_reason_;
 };

@@ -38,6 +38,8 @@ class KalmanHeightNodeletTest : public NodeletTest {
     for (const bool right : {false, true}) {
       const auto info = scene_.info(right);
       info->header.stamp = stamp;
+      const double c = std::cos(rectifying_pitch_), s = std::sin(rectifying_pitch_);
+      info->R = {1, 0, 0, 0, c, -s, 0, s, c};
       info->header.frame_id = right ? "right_optical" : "left_optical";
       (right ? right_info_ : left_info_).publish(info);
     }
@@ -116,6 +118,7 @@ class KalmanHeightNodeletTest : public NodeletTest {
   }
 
   StereoScene scene_;
+  double rectifying_pitch_ = 0;  // rad, of R in camera_info: from the camera as mounted to the rectified one
   ros::Publisher stereo_ = handle_.advertise<StereoDepth>("/uav_landing/stereo_depth", 100);
   ros::Publisher approach_ = handle_.advertise<ApproachAngle>("/uav_landing/approach_angle", 100);
   ros::Publisher left_info_ =
@@ -235,6 +238,20 @@ TEST_F(KalmanHeightNodeletTest, BaseLinkOfTheStaticTfIsEstimatedWithItsLeverArm)
   // Nose down by 15 degrees is a positive rotation about y (left).
   EXPECT_NEAR(transform.rotation.y, std::sin(7.5 * M_PI / 180), 1e-3);
   EXPECT_NEAR(transform.rotation.w, std::cos(7.5 * M_PI / 180), 1e-3);
+}
+
+TEST_F(KalmanHeightNodeletTest, TheRotationOfRectificationTurnsTheLeverArm) {
+  rectifying_pitch_ = 10 * M_PI / 180;
+  start();
+  publishLeverArm("base_link", "left_optical");
+  double t = 0;
+  ASSERT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).child_frame_id == "base_link" && estimateOf(t).valid;
+  }));
+  // The rectified camera looks 15 degrees down. R turns forward (z) towards up (-y): the mounted camera's
+  // axis lies 10 degrees above the rectified one's, so the aircraft is pitched by -5 degrees only.
+  EXPECT_NEAR(estimateOf(t).height, 2 + std::sin(5 * M_PI / 180) + 0.5 * std::cos(5 * M_PI / 180), 0.02);
 }
 
 TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {
