@@ -12,6 +12,8 @@ namespace {
 
 // Grey levels of contrast (RMS) below which a window holds nothing to match.
 constexpr double kMinContrast = 1.0;
+// Values behind each resampled row that may be read but do not count.
+constexpr int kPadding = 3;
 
 // Normal equations of: reference + gradient.shift = gain other + offset, for (shift, gain, offset).
 struct GainShiftProblem {
@@ -119,10 +121,10 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
         centre.y() + ry < other_.rows - 1)) {
     return false;
   }
-  area_.resize(static_cast<size_t>(width) * width);
+  area_.assign(static_cast<size_t>(width + kPadding) * width, 0.f);
   for (int j = 0; j < width; ++j) {
     const Eigen::Vector2d start = centre + warp * Eigen::Vector2d(-reach, j - reach);
-    float* out = area_.data() + static_cast<size_t>(j) * width;
+    float* out = area_.data() + static_cast<size_t>(j) * (width + kPadding);
     for (int i = 0; i < width; ++i) {
       out[i] = linearAt(other_, start.x() + warp(0, 0) * i, start.y() + warp(1, 0) * i);
     }
@@ -132,13 +134,14 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
 
 void PatchSearch::score(int steps) {
   const int size = 2 * radius_ + 1, count = 2 * steps + 1, width = size + 2 * steps;
+  const int padded = (count + kPadding) / 4 * 4;  // no remainder for vector instructions
   scores_.assign(static_cast<size_t>(count) * count, -1.f);
   for (int j = 0; j < count; ++j) {
-    cross_.assign(count, 0.f);
+    cross_.assign(padded, 0.f);
     sums_.assign(width, 0.0);
     squares_.assign(width, 0.0);
     for (int dy = 0; dy < size; ++dy) {
-      const float* row = area_.data() + static_cast<size_t>(j + dy) * width;
+      const float* row = area_.data() + static_cast<size_t>(j + dy) * (width + kPadding);
       for (int i = 0; i < width; ++i) {
         sums_[i] += row[i];
         squares_[i] += double(row[i]) * row[i];
@@ -148,7 +151,7 @@ void PatchSearch::score(int steps) {
         const float weight = wanted[dx];
         const float* values = row + dx;
         float* cross = cross_.data();
-        for (int i = 0; i < count; ++i) cross[i] += weight * values[i];
+        for (int i = 0; i < padded; ++i) cross[i] += weight * values[i];
       }
     }
     for (int i = 0; i < count; ++i) {

@@ -12,6 +12,7 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
+constexpr int kPadding = 3;  // values behind each resampled row that may be read but do not count
 // Grey levels of contrast (RMS) below which a window holds nothing to match.
 constexpr double kMinContrast = 1.0;
 
@@ -47,15 +48,15 @@ bool RowSearch::loadTemplate(int u, int v) {
 bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp) {
   scores_.clear();
   if (!loadTemplate(u, v)) return false;
-  const int size = 2 * radius_ + 1, width = size + 2 * steps;
+  const int size = 2 * radius_ + 1, width = size + 2 * steps, stride = width + kPadding;
   steps_ = steps;
   centre_ = centre;
   scale_ = warp.scale;
-  strip_.resize(static_cast<size_t>(width) * size);
+  strip_.assign(static_cast<size_t>(stride) * size, 0.f);
   for (int dy = 0; dy < size; ++dy) {
     const float* row = other_.ptr<float>(v - radius_ + dy);
     const double start = centre + warp.shear * (dy - radius_) - warp.scale * (radius_ + steps);
-    float* out = strip_.data() + static_cast<size_t>(dy) * width;
+    float* out = strip_.data() + static_cast<size_t>(dy) * stride;
     for (int i = 0; i < width; ++i) {
       const double x = start + warp.scale * i;
       out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x))
@@ -66,15 +67,17 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
   return true;
 }
 
-// The sums run over the positions k in the inner loop, which compilers turn into vector instructions.
+// The sums run over the positions k in the inner loop, which compilers turn into vector instructions; a
+// multiple of four of them, so that no remainder is left over.
 void RowSearch::scoreAll() {
   const int size = 2 * radius_ + 1, count = 2 * steps_ + 1, width = size + 2 * steps_;
+  const int padded = (count + kPadding) / 4 * 4;
   const float mean = static_cast<float>(template_mean_);
-  cross_.assign(count, 0.f);
+  cross_.assign(padded, 0.f);
   column_sums_.assign(width, 0.f);
   column_squares_.assign(width, 0.f);
   for (int dy = 0; dy < size; ++dy) {
-    float* row = strip_.data() + static_cast<size_t>(dy) * width;
+    float* row = strip_.data() + static_cast<size_t>(dy) * (width + kPadding);
     for (int i = 0; i < width; ++i) {
       row[i] -= mean;
       column_sums_[i] += row[i];
@@ -85,7 +88,7 @@ void RowSearch::scoreAll() {
       const float weight = wanted[dx];
       const float* values = row + dx;
       float* cross = cross_.data();
-      for (int k = 0; k < count; ++k) cross[k] += weight * values[k];
+      for (int k = 0; k < padded; ++k) cross[k] += weight * values[k];
     }
   }
   scores_.resize(count);

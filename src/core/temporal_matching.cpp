@@ -76,10 +76,14 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
       if (!best.found || best.score < options.min_zncc || best.second > kUniqueness * best.score) continue;
       local.centre += factor * (best.position - start);
     }
-    const PatchSearch::Best best = fine.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
-    if (!best.found || best.score < options.min_zncc) continue;
-    const PatchRefinement refined =
-        refinePatch(now.fine, then.fine, corner.u, corner.v, best.position, local.warp, radius);
+    PatchRefinement refined =
+        refinePatch(now.fine, then.fine, corner.u, corner.v, local.centre, local.warp, radius);
+    if (!refined.converged || refined.score < options.min_zncc) {
+      // The prediction was not good enough for that after all.
+      const PatchSearch::Best best = fine.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
+      if (!best.found || best.score < options.min_zncc) continue;
+      refined = refinePatch(now.fine, then.fine, corner.u, corner.v, best.position, local.warp, radius);
+    }
     if (!refined.converged || refined.score < options.min_zncc || !visible(mask, refined.position)) continue;
     TemporalMatch match;
     match.now = x;
