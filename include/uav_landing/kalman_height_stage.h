@@ -40,7 +40,10 @@ class KalmanHeightStage {
   GroundPlane groundPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
+  /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
+  /// and the unevenness that shows ahead.
   double modelVariance(double height) const;
+  void followSurface(double surface_stddev);
 
   Failure followTime(double stamp);
   void filterHeight(double stamp, const Reconstruction& reconstruction,
@@ -60,6 +63,7 @@ class KalmanHeightStage {
 
   std::optional<double> last_stamp_;  ///< s
   double last_accepted_ = 0;          ///< stamp of the last measurement that was believed, s
+  double surface_variance_ = 0;       ///< of the surface about its plane, recent mean, m^2
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;
   int resets_ = 0;

@@ -50,6 +50,8 @@ struct PlaneFit {
   std::vector<char> agrees;
   int count = 0;
   double residual_stddev = 0;  ///< pixels, robust
+  double surface_stddev =
+      0;  ///< m, by which the surface rises and falls about the plane, match errors taken off
 };
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev);

@@ -29,6 +29,7 @@ struct StereoDepthResult {
   std::vector<Point> points;
   GroundPlane plane;
   double residual_stddev = kUnknown;  ///< of the points on the plane, pixels of disparity
+  double surface_stddev = kUnknown;   ///< by which the surface ahead rises and falls about the plane, m
   bool from_search = false;           ///< found without a plane from the previous pair
   double skew = 0;                    ///< stamp of right minus left image, seconds
 };

@@ -97,7 +97,14 @@ void KalmanHeightStage::reset() {
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
-  return std::pow(parameters_.height_model_error * height, 2);
+  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_;
+}
+
+void KalmanHeightStage::followSurface(double surface_stddev) {
+  constexpr double kShareOfNew = 0.2;
+  if (!std::isfinite(surface_stddev)) return;
+  const double share = filter_.initialised() ? kShareOfNew : 1.0;
+  surface_variance_ += share * (surface_stddev * surface_stddev - surface_variance_);
 }
 
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
@@ -107,6 +114,7 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   reconstruction.failure = missingPlane(stereo);
   if (reconstruction.failure) return reconstruction;
 
+  followSurface(stereo.surface_stddev);
   reconstruction.plane = groundPlane(stereo, approach);
   const Eigen::Vector3d n = reconstruction.plane.normal();
   reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;

@@ -194,6 +194,30 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
   return std::max(1.0, (information.inverse() * middle).trace() / 3.0);
 }
 
+// Height by which the surface near the camera rises and falls about the plane (robust), from what the
+// residuals have beyond the errors of the matches.
+double surfaceStddev(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                     const Eigen::Vector3d& g, const std::vector<char>& agrees) {
+  // Share of the largest disparity; farther away a pixel is too much height to say anything of the surface.
+  constexpr double kNear = 0.4;
+  const Eigen::Vector3d row = rig.fb() * g;
+  double largest = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (agrees[i]) largest = std::max(largest, row.dot(rig.ray(samples[i].u, samples[i].v)));
+  }
+  std::vector<double> heights, match_errors;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double expected = row.dot(rig.ray(samples[i].u, samples[i].v));
+    if (!agrees[i] || expected < kNear * largest) continue;
+    const double per_pixel = 1 / (g.norm() * expected);
+    heights.push_back(std::abs(samples[i].disparities.front() - expected) * per_pixel);
+    match_errors.push_back(samples[i].stddev * per_pixel);
+  }
+  if (heights.empty()) return 0;
+  const double stddev = 1.4826 * medianOf(heights), match_stddev = medianOf(match_errors);
+  return std::sqrt(std::max(0.0, stddev * stddev - match_stddev * match_stddev));
+}
+
 }  // namespace
 
 bool isPlausibleGround(const Eigen::Vector3d& g, const PlaneLimits& limits) {
@@ -249,6 +273,7 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
   fit.plane.g = g;
+  fit.surface_stddev = surfaceStddev(rig, samples, g, fit.agrees);
   const Eigen::Vector3d common = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
   const Eigen::Matrix3d information = sums.information / (scale * scale);
   const double inflation = clusterInflation(rig, samples, g, fit.agrees, scale, information);

@@ -109,6 +109,7 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.g, message.plane);
   toArray(result.plane.covariance, message.plane_covariance);
   message.residual_stddev = result.residual_stddev;
+  message.surface_stddev = result.surface_stddev;
   message.from_search = result.from_search;
   message.skew = result.skew;
   message.compute_ms = compute_ms;
@@ -127,6 +128,7 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
   result.residual_stddev = message.residual_stddev;
+  result.surface_stddev = message.surface_stddev;
   result.from_search = message.from_search;
   result.skew = message.skew;
   return result;

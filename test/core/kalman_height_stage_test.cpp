@@ -98,6 +98,21 @@ TEST(KalmanHeightStage, ReportsTheMeasurementAndKeepsTheModelErrorInTheVariance)
   EXPECT_LT(result.height_variance, 1.5 * 0.02 * 0.02);
 }
 
+TEST(KalmanHeightStage, DoesNotAverageAwayTheUnevennessOfTheSurface) {
+  KalmanHeightParameters parameters;
+  parameters.height_model_error = 0;
+  parameters.acceleration_stddev = 0.01;
+  KalmanHeightStage stage(makeRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 300; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, 10);
+    stereo.surface_stddev = 0.03;
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  EXPECT_GT(result.height_variance, 0.03 * 0.03);
+  EXPECT_LT(result.height_variance, 1.5 * 0.03 * 0.03);
+}
+
 TEST(KalmanHeightStage, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDirection) {
   const double pitch = -8 * kDegree, roll = 12 * kDegree, yaw = 3 * kDegree;
   // R(runway <- body FLU) = Rz(yaw) Ry(-pitch) Rx(roll); optical axes are (-left, -up, forward) of the body.

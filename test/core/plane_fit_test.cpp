@@ -262,6 +262,25 @@ TEST(RefinePlane, WidensPitchByWhatACommonErrorTurnsTheHorizonAndNothingElse) {
   EXPECT_LT(std::sqrt(in_height) / height, 0.1 * expected);
 }
 
+TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
+  const double height = 2, bumps = 0.02, match_stddev = 0.1;
+  const Eigen::Vector3d g = plane(height, -10, 0);
+  Sampler sampler(14);
+  std::vector<DisparitySample> flat = sampler.ground(g, 400, match_stddev), uneven = flat;
+  for (DisparitySample& sample : uneven) {
+    // A point higher by e is seen at the disparity of a plane nearer by e: d h / (h - e).
+    const double expected = rig().fb() * g.dot(rig().ray(sample.u, sample.v));
+    sample.disparities[0] += expected * (height / (height - bumps * sampler.normal()) - 1);
+  }
+  PlaneLimits limits = makeLimits();
+  limits.tolerance = 2;
+  const Expected<PlaneFit> of_flat = refinePlane(rig(), flat, g, limits, 0);
+  const Expected<PlaneFit> of_uneven = refinePlane(rig(), uneven, g, limits, 0);
+  ASSERT_TRUE(of_flat && of_uneven);
+  EXPECT_LT(of_flat->surface_stddev, 0.25 * bumps);
+  EXPECT_NEAR(of_uneven->surface_stddev, bumps, 0.3 * bumps);
+}
+
 TEST(RefinePlane, SaysWhyThereIsNone) {
   const Eigen::Vector3d g = plane(6, -6, 0);
   Sampler sampler(13);

@@ -81,6 +81,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.plane.g);
   fill(result.plane.covariance);
   result.residual_stddev = next();
+  result.surface_stddev = next();
   result.from_search = true;
   result.skew = next();
 
@@ -104,6 +105,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.plane.g, result.plane.g);
   EXPECT_EQ(back.plane.covariance, result.plane.covariance);
   EXPECT_EQ(back.residual_stddev, result.residual_stddev);
+  EXPECT_EQ(back.surface_stddev, result.surface_stddev);
   EXPECT_TRUE(back.from_search);
   EXPECT_EQ(back.skew, result.skew);
 }
