@@ -7,6 +7,7 @@
 #include "uav_landing/approach_angle.h"
 #include "uav_landing/corners.h"
 #include "uav_landing/focus_of_expansion.h"
+#include "uav_landing/half_plane.h"
 #include "uav_landing/image_check.h"
 #include "uav_landing/motion_tracker.h"
 #include "uav_landing/runway_direction.h"
@@ -134,11 +135,8 @@ struct ApproachAngleStage::Implementation {
     constexpr double kLeastSlope = 0.01;
     ScopedTimer timer(timings, "harris_corners_motion");
     cv::Mat mask = left_mask.clone();
-    for (int v = 0; v < mask.rows; ++v) {
-      for (int u = 0; u < mask.cols; ++u) {
-        if (normal.dot(model.rig.ray(u, v)) < kLeastSlope) mask.at<uchar>(v, u) = 0;
-      }
-    }
+    const Eigen::Vector3d slope = model.rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
+    keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope);
     std::vector<TrackedCorner> corners;
     for (const cv::Point& point : findCorners(left, mask, parameters.corner_count, 1e-7, 4.0, 0.04)) {
       corners.push_back({point.x, point.y, true, 0, 0});

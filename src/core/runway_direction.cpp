@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "uav_landing/half_plane.h"
+
 namespace uav_landing {
 namespace {
 
@@ -21,12 +23,7 @@ cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::V
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
   const double scale = line.head<2>().norm();
   cv::Mat ground = mask.clone();
-  for (int v = 0; v < ground.rows; ++v) {
-    uchar* row = ground.ptr<uchar>(v);
-    for (int u = 0; u < ground.cols; ++u) {
-      if (line.x() * u + line.y() * v + line.z() < margin * scale) row[u] = 0;
-    }
-  }
+  keepHalfPlane(ground, line.x(), line.y(), line.z() - margin * scale);
   return ground;
 }
 

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "uav_landing/corners.h"
+#include "uav_landing/half_plane.h"
 #include "uav_landing/image_check.h"
 #include "uav_landing/row_matching.h"
 
@@ -172,14 +173,10 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
   constexpr double kLeastDisparity = 0.3;
   const ShiftModel shift(level.rig, g);
   cv::Mat mask = level.left_mask.clone();
-  for (int v = 0; v < mask.rows; ++v) {
-    uchar* row = mask.ptr<uchar>(v);
-    for (int u = 0; u < mask.cols; ++u) {
-      const double column = u - shift.at(u, v);
-      const double disparity = shift.at(u, v) - level.rig.principalOffset();
-      if (disparity < kLeastDisparity || column < 0 || column > mask.cols - 1) row[u] = 0;
-    }
-  }
+  keepHalfPlane(mask, shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity);
+  // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
+  keepHalfPlane(mask, 1 - shift.a, -shift.b, -shift.c);
+  keepHalfPlane(mask, shift.a - 1, shift.b, shift.c + mask.cols - 1);
   return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
                      parameters.harris_k);
 }

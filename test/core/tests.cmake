@@ -1,5 +1,6 @@
 # Corners, matching, stereo plane, motion.
 uav_landing_add_gtest(corners_test test/core/corners_test.cpp)
+uav_landing_add_gtest(half_plane_test test/core/half_plane_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(row_matching_test test/core/row_matching_test.cpp)
