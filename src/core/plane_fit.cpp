@@ -43,6 +43,10 @@ Votes votesFor(const StereoRig& rig, const std::vector<DisparitySample>& samples
     const double ratio = nearest / tolerance;
     if (ratio < 1) {
       votes.agreeing += 1 - ratio * ratio;
+    } else if (sample.u - expected < rig.principalOffset()) {
+      // Its place in the right image is outside of it: what it matched instead says nothing against the
+      // plane.
+      continue;
     } else if (largest < expected - 2 * tolerance) {
       votes.penalty += kBelowPenalty;
     } else {

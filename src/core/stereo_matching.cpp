@@ -137,6 +137,43 @@ std::vector<DisparitySample> candidates(const StereoLevel& level, const std::vec
   return samples;
 }
 
+// A plane with how well each corner correlates where it says, in a window warped as it says; below 0 where
+// that is outside the right image.
+struct Hypothesis {
+  Consensus plane;
+  std::vector<double> correlation;
+};
+
+Hypothesis makeHypothesis(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                          const Consensus& plane, const StereoDepthParameters& parameters) {
+  constexpr int kSteps = 1;
+  const ShiftModel shift(level.rig, plane.g);
+  const RowWarp warp = parameters.warp_window ? shift.forward() : RowWarp{};
+  RowSearch search(level.left, level.right, parameters.window_radius, parameters.matching_cost);
+  Hypothesis hypothesis{plane, std::vector<double>(corners.size(), -1)};
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const double column = corners[i].x - shift.at(corners[i].x, corners[i].y);
+    if (!inside(level.right_mask, column, corners[i].y)) continue;
+    if (!search.run(corners[i].x, corners[i].y, column, kSteps, warp)) continue;
+    hypothesis.correlation[i] = search.best(nullptr).score;
+  }
+  return hypothesis;
+}
+
+// Whether the corners that match on both planes match better on the second. Only repeated texture matches on
+// two: where much of it is outside the other view on the right plane, the one that is a bar off may have more
+// votes, but it does not look quite the same. Sign test, so that a few corners do not decide.
+bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least) {
+  constexpr double kMatches = 0.6, kSigmas = 3.0;
+  int both = 0, better = 0;
+  for (size_t i = 0; i < first.correlation.size(); ++i) {
+    if (first.correlation[i] < kMatches || second.correlation[i] < kMatches) continue;
+    ++both;
+    better += second.correlation[i] > first.correlation[i];
+  }
+  return both >= least && 2 * better - both > kSigmas * std::sqrt(both);
+}
+
 }  // namespace
 
 StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
@@ -201,22 +238,32 @@ Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
 Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
                       const PlaneLimits& limits) {
   constexpr int kCorners = 500, kIterations = 400;
+  // Votes of a rival plane as a share of those of the strongest: a bar off has about as many.
+  constexpr double kRivalShare = 0.8;
   // Changes of disparity per row that windows are sheared for; each serves the range to its neighbours.
   const std::vector<double> slopes = {0.0, 0.04, 0.09, 0.16, 0.25, 0.37, 0.52, 0.72, 1.0, 1.4};
   const std::vector<cv::Point> corners =
       findCorners(level.left, level.left_mask, kCorners, parameters.corner_quality,
                   parameters.min_corner_distance, parameters.harris_k);
-  Consensus best;
+  std::vector<Hypothesis> hypotheses;
   for (size_t i = 0; i < slopes.size(); ++i) {
     const Eigen::Vector2d range(i == 0 ? 0.0 : slopes[i - 1],
                                 i + 1 == slopes.size() ? 2.0 * slopes[i] : slopes[i + 1]);
     const std::vector<DisparitySample> samples =
         candidates(level, corners, parameters.warp_window ? slopes[i] : 0.0, parameters);
     const Consensus found = findPlane(level.rig, samples, limits, kIterations, &range);
-    if (found.found && (!best.found || found.score > best.score)) best = found;
+    if (!found.found || found.support < limits.min_points) continue;
+    hypotheses.push_back(makeHypothesis(level, corners, found, parameters));
   }
-  best.found &= best.support >= limits.min_points;
-  return best;
+  if (hypotheses.empty()) return {};
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.plane.score > b.plane.score; });
+  const Hypothesis* best = &hypotheses.front();
+  for (const Hypothesis& other : hypotheses) {
+    if (other.plane.score < kRivalShare * hypotheses.front().plane.score) break;
+    if (matchesBetter(*best, other, limits.min_points)) best = &other;
+  }
+  return best->plane;
 }
 
 }  // namespace uav_landing
