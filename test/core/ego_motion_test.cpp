@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -250,6 +251,41 @@ TEST(EstimateMotion, UsesThePriorOfTheNormal) {
   EXPECT_LT(spread(*trusted), 2.1e-8);
   EXPECT_LT(spread(*doubted), 2 * 0.04);
   EXPECT_GT(spread(*doubted), spread(*trusted));
+}
+
+TEST(EstimateMotion, WeighsThePriorOfTheNormalAgainstTheMatches) {
+  const Step step = Step::make();
+  const std::vector<TemporalMatch> matches = Matcher(step, 12).ground(100, 0.05);
+  const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized(), e2 = step.n.cross(e1);
+  Eigen::Matrix<double, 3, 2> B;
+  B << e1, e2;
+  const Expected<MotionEstimate> alone = estimate(matches, step.n, 0.3);
+  ASSERT_TRUE(alone);
+  // Each as good as the other, in the plane across the normal.
+  const Eigen::Matrix2d of_matches = B.transpose() * alone->covariance.bottomRightCorner<3, 3>() * B;
+  const double stddev = std::sqrt(of_matches.trace() / 2);
+  const Eigen::Vector3d prior = (step.n + stddev * (1.6 * e1 - 1.2 * e2)).normalized();
+  const Eigen::Matrix2d information = of_matches.inverse();
+  const Eigen::Matrix2d of_prior = Eigen::Matrix2d::Identity() / (stddev * stddev);
+  const Eigen::Vector2d data = B.transpose() * (alone->normal - step.n);
+  const Eigen::Vector2d believed = B.transpose() * (prior - step.n);
+  const Eigen::Vector2d expected =
+      (information + of_prior).inverse() * (information * data + of_prior * believed);
+  const Expected<MotionEstimate> found = estimate(matches, prior, stddev);
+  ASSERT_TRUE(found);
+  EXPECT_LT((B.transpose() * (found->normal - step.n) - expected).norm(), 0.15 * (data - believed).norm());
+  EXPECT_GT((data - expected).norm(), 0.25 * (data - believed).norm());
+}
+
+TEST(EstimateMotion, ExpectsPointsOfUncertainDepthToMissAsMuch) {
+  const Step step = Step::make();
+  Matcher matcher(step, 13);
+  std::vector<TemporalMatch> matches = matcher.ground(80, 0.05);
+  const std::vector<TemporalMatch> vague = matcher.standing(60, 0.05, 0.04);
+  matches.insert(matches.end(), vague.begin(), vague.end());
+  const Expected<MotionEstimate> found = estimate(matches, step.n, 1e-3);
+  ASSERT_TRUE(found);
+  EXPECT_GE(found->inlier_count, 0.97 * 140);
 }
 
 TEST(EstimateMotion, UsesPointsOffTheGroundWithTheirOwnDepth) {
