@@ -223,7 +223,8 @@ TEST(ApproachAngleStage, GivesTheDirectionOfTheRunwayInBothViews) {
 
 TEST(ApproachAngleStage, CorrectsTheStereoNormalByTheVanishingPoint) {
   // Stereo that is wrong in pitch by one of its own sigma, of 0.3 degrees.
-  const Scene scene(37);
+  Scene scene(37);
+  scene.ground.contrast = 5;
   const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
   Pose believed = pose;
   believed.pitch += 0.3 * kDegree;
