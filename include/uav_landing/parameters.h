@@ -101,7 +101,7 @@ struct ApproachAngleParameters {
   FoeMethod foe_method = FoeMethod::kMotion;
   bool remove_rotation = true;
   AngleFormula angle_formula = AngleFormula::kGeneral;
-  int corner_count = 300;
+  int corner_count = 400;
   int window_radius = 5;
   double search_radius = 10.0;
   double min_zncc = 0.75;

@@ -16,11 +16,11 @@ constexpr double kLeastShare = 0.35;
 // Fewest matches that make a motion good enough to search from.
 constexpr int kFewestScouts = 6;
 
-// About count of the corners, spread as the corners are.
+// At most count of the corners, spread as the corners are.
 std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
+  if (corners.size() <= count) return corners;
   std::vector<TrackedCorner> some;
-  const size_t stride = std::max<size_t>(1, (corners.size() + count / 2) / count);
-  for (size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
+  for (size_t i = 0; i < count; ++i) some.push_back(corners[i * corners.size() / count]);
   return some;
 }
 
@@ -93,9 +93,10 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
 void MotionTracker::skip(double stamp, const cv::Mat& left) { advance(takeFrame(stamp, left), Result()); }
 
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
-                                             const Eigen::Matrix3d& normal_covariance, const Corners& corners,
-                                             Timings& timings) {
+                                             const Eigen::Matrix3d& normal_covariance,
+                                             const Corners& all_corners, Timings& timings) {
   Result result;
+  const Corners corners = thinned(all_corners, static_cast<size_t>(parameters_.corner_count));
   Frame now;
   {
     ScopedTimer timer(timings, "match_images_motion");
