@@ -43,7 +43,7 @@ struct ApproachAngleResult {
   struct View {
     std::vector<Line> lines;
     Failure failure;
-    Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);  ///< unit, towards +z
+    Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);   ///< unit, towards +z
     Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2, rank 2
   };
   /// Camera motion over an interval that ends at this frame.
@@ -56,7 +56,7 @@ struct ApproachAngleResult {
     /// Camera motion expressed in the current frame, over the current height: t / h.
     Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
     Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
-    double angle = kUnknown;         ///< approach angle over the interval, rad, positive descending
+    double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
   };
   double stamp = 0;
@@ -84,7 +84,7 @@ const char* toString(Status status);
 struct LandingResult {
   double stamp = 0;
   Status status = Status::kSearching;
-  Failure failure;        ///< why the status is not tracking, or why valid is false
+  Failure failure;  ///< why the status is not tracking, or why valid is false
   bool height_valid = false;
   bool angle_valid = false;
   bool valid() const { return height_valid && angle_valid; }
@@ -100,9 +100,9 @@ struct LandingResult {
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
   double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
-  bool rejected = false;           ///< the raw height failed the gate
+  bool rejected = false;                                           ///< the raw height failed the gate
   int consecutive_rejections = 0;
-  int resets = 0;                  ///< filter resets since start
+  int resets = 0;  ///< filter resets since start
 };
 
 }  // namespace uav_landing
