@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -22,10 +21,11 @@ constexpr double kMinSpread = 3 * kDegree;       // between the inlier lines in 
 constexpr double kMaxStddev = 5 * kDegree;       // of a direction that is worth reporting
 constexpr double kGate = 4;                      // robust sigma, of the lines that count in the end
 constexpr double kChance = 1;                    // accepted number of such coincidences among random lines
-constexpr double kLikely = 0.15;                 // chance from which on a line that passes says nothing
+constexpr double kStraightness = 1.0;            // px by which an edge may differ from a straight line
+constexpr double kRunwayShare = 0.25;            // of the lines, that are along the runway
+constexpr double kLikely = 0.05;                 // chance from which on a line that passes says nothing
 constexpr double kClearance = 4;                 // px between a line's end and the point where it vanishes
 constexpr double kMaxHorizonSlope = 0.577;       // 30 degrees of roll
-constexpr int kSectors = 60;                     // 3 degrees
 constexpr double kViewsDiffer = 1 * kDegree;     // with kViewsGate: left and right saw different things
 constexpr double kViewsGate = 25;                // squared, 2 degrees of freedom
 
@@ -51,7 +51,6 @@ struct Candidate {
   Eigen::Vector2d middle, along;  // along: unit
   Eigen::Vector2d top;            // the end that is higher in the image
   double half;                    // length
-  int sector;                     // of directions in the image
   double offset_variance, angle_variance;
 
   explicit Candidate(const LineSegment& s)
@@ -60,9 +59,6 @@ struct Candidate {
         along((s.b - s.a).normalized()),
         top(s.a.y() < s.b.y() ? s.a : s.b),
         half(0.5 * s.length()),
-        sector(std::clamp(static_cast<int>((std::atan2(along.y(), along.x()) + M_PI) / M_PI * kSectors), 0,
-                          2 * kSectors - 1) %
-               kSectors),
         offset_variance(s.offset_stddev * s.offset_stddev),
         angle_variance(s.angle_stddev * s.angle_stddev) {}
 
@@ -103,6 +99,7 @@ class Search {
     const Eigen::Vector3d horizon =
         prior_normal ? Eigen::Vector3d(Kinv_.transpose() * *prior_normal) : Eigen::Vector3d::UnitY();
     horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();
+    groupPieces();
   }
 
   Expected<VanishingPoint> run() {
@@ -139,30 +136,60 @@ class Search {
   double chance(const Candidate& line, const Eigen::Vector3d& V, double tolerance) const {
     const double miss = tolerance * line.towards(V).norm() / (line.half * V.z());
     const double sine = std::abs(line.along.x() * horizon_.y() - line.along.y() * horizon_.x());
-    const double turn = miss / (K_(0, 0) * std::max(sine, 1e-6));  // of the direction on the ground, rad
+    // Along the horizon a pixel is less of an angle the farther it is to the side.
+    const double cosine = V.z() / (Kinv_ * V).norm();
+    const double turn = miss * cosine * cosine / (K_(0, 0) * std::max(sine, 1e-6));  // on the ground, rad
     return std::min(1.0, 2 / M_PI * std::atan(turn));
   }
 
-  /// Evidence (-log of the chance) of the lines that pass through, each weighted by how well, less that of
-  /// those that could not be on the ground if this were its horizon. Of the lines in one sector of directions
-  /// only the best counts: the pieces of one transverse edge pass through each of its points, and say no more
-  /// than one.
+  /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
+  /// perfectly straight.
+  double toleranceOf(const Candidate& line) const {
+    return std::min(std::max(kStraightness, kGate * std::sqrt(line.endVariance())),
+                    parameters_.ransac_tolerance);
+  }
+
+  /// Log-likelihood ratio of a line that passes, where a share of the lines does because they are the
+  /// runway's and the others do by chance.
+  static double evidence(double chance) { return std::log(1 - kRunwayShare + kRunwayShare / chance); }
+
+  /// Evidence of the lines that pass through, each weighted by how well, less that of those that do not and
+  /// of those that could not be on the ground if this were its horizon. Lines that pass nearly everywhere do
+  /// not count, however many they are; of the pieces of one edge only the best does.
   double score(const Eigen::Vector3d& direction) const {
     const Eigen::Vector3d V = K_ * direction;
-    const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
+    std::vector<double> agreeing(lines_.size(), 0.0);  // by edge
     double impossible = 0;
-    std::array<double, kSectors> agreeing{};
-    for (const Candidate& line : lines_) {
+    for (size_t i = 0; i < lines_.size(); ++i) {
+      const Candidate& line = lines_[i];
       if (line.isAboveHorizon(V)) {
         impossible += std::log1p(line.half / parameters_.ransac_tolerance);
         continue;
       }
-      const double fit = 1 - line.endMiss2(V) / tolerance2;
+      const double tolerance = toleranceOf(line);
+      const double fit = 1 - line.endMiss2(V) / (tolerance * tolerance);
       if (fit <= 0) continue;
-      double& best = agreeing[line.sector];
-      best = std::max(best, -fit * std::log(chance(line, V, parameters_.ransac_tolerance)));
+      const double p = chance(line, V, tolerance);
+      double& best = agreeing[edge_[i]];
+      if (p < kLikely) best = std::max(best, fit * evidence(p));
     }
     return std::accumulate(agreeing.begin(), agreeing.end(), -impossible);
+  }
+
+  /// Numbers the edges that the lines are pieces of: lines that continue each other belong to one.
+  void groupPieces() {
+    constexpr double kSameEdge = 1.5;  // px
+    edge_.resize(lines_.size());
+    std::iota(edge_.begin(), edge_.end(), size_t(0));
+    for (size_t i = 0; i < lines_.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const double miss = std::max(std::abs(lines_[i].line.dot(lines_[j].middle.homogeneous())),
+                                     std::abs(lines_[j].line.dot(lines_[i].middle.homogeneous())));
+        if (miss >= kSameEdge) continue;
+        edge_[i] = edge_[j];
+        break;
+      }
+    }
   }
 
   /// RANSAC: the meeting point of the pair of lines on which most length of lines agrees. All pairs when
@@ -210,10 +237,10 @@ class Search {
   /// Indices of the lines that pass through by the consensus tolerance.
   std::vector<int> passing(const Eigen::Vector3d& direction) const {
     const Eigen::Vector3d V = K_ * direction;
-    const double tolerance2 = std::pow(parameters_.ransac_tolerance, 2);
     std::vector<int> indices;
     for (int i = 0; i < count(); ++i)
-      if (lines_[i].endMiss2(V) <= tolerance2 && !lines_[i].isAboveHorizon(V)) indices.push_back(i);
+      if (lines_[i].endMiss2(V) <= std::pow(toleranceOf(lines_[i]), 2) && !lines_[i].isAboveHorizon(V))
+        indices.push_back(i);
     return indices;
   }
 
@@ -270,7 +297,7 @@ class Search {
           noVanishingPoint("%.0f lines of at least %.0f meet in one point", n, parameters_.min_lines));
     constexpr double kNoRobustness = 1e6;
     for (int iteration = 0; iteration < 3; ++iteration) step(direction, used, kNoRobustness, information, B);
-    if (const Failure failure = check(direction, used, scale)) return tl::unexpected(failure);
+    if (const Failure failure = check(direction, used)) return tl::unexpected(failure);
     return describe(direction, used, information, B);
   }
 
@@ -283,14 +310,14 @@ class Search {
     return kept;
   }
 
-  Failure check(const Eigen::Vector3d& direction, const std::vector<int>& used, double scale) const {
+  Failure check(const Eigen::Vector3d& direction, const std::vector<int>& used) const {
     if (!direction.allFinite() || direction.z() <= 0 || !alongRunway(direction))
       return noVanishingPoint("%.0f lines meet, but not along the runway", static_cast<double>(used.size()));
     const double spread = directionSpread(used);
     if (spread < kMinSpread)
       return noVanishingPoint("lines are parallel within %.1f deg, less than %.1f", spread / kDegree,
                               kMinSpread / kDegree);
-    const double coincidences = expectedCoincidences(direction, used, scale);
+    const double coincidences = expectedCoincidences(direction, used);
     if (parameters_.min_lines > 2 && coincidences > kChance)
       return noVanishingPoint("as many lines meet by chance: %.0f of %.0f", static_cast<double>(used.size()),
                               count());
@@ -313,14 +340,11 @@ class Search {
   /// How many meeting points as well supported as this one are expected of lines of random direction on the
   /// ground: pairs of lines that meet along the runway times (Chernoff's bound of) the probability that the
   /// other lines pass through. Each counts with -log of its own chance; those that say nothing are left out.
-  double expectedCoincidences(const Eigen::Vector3d& direction, const std::vector<int>& used,
-                              double scale) const {
+  double expectedCoincidences(const Eigen::Vector3d& direction, const std::vector<int>& used) const {
     const Eigen::Vector3d V = K_ * direction;
     std::vector<double> passing_by, others;  // chances
     for (int i = 0; i < count(); ++i) {
-      const double tolerance =
-          std::min(parameters_.ransac_tolerance, kGate * scale * std::sqrt(lines_[i].endVariance()));
-      const double p = chance(lines_[i], V, tolerance);
+      const double p = chance(lines_[i], V, toleranceOf(lines_[i]));
       if (p > kLikely) continue;
       const bool passes = std::binary_search(used.begin(), used.end(), i);
       (passes ? passing_by : others).push_back(p);
@@ -366,8 +390,9 @@ class Search {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
-  double meetings_ = 0;      // pairs of lines that meet along the runway
+  std::vector<size_t> edge_;  // per line, the edge it is a piece of
+  Eigen::Vector2d horizon_;   // direction of the horizon in the image, unit
+  double meetings_ = 0;       // pairs of lines that meet along the runway
 };
 
 Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
