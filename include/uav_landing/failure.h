@@ -16,6 +16,7 @@ enum class Reason {
   kNegativeDisparity,   ///< the scene lies behind the rig: left and right are swapped
   kNoPlane,             ///< matches do not agree on one ground plane
   kNoVanishingPoint,    ///< lines do not agree on one vanishing point
+  kNoRunway,            ///< no edges, or no threshold, that are certainly the runway's
   kNoGroundNormal,      ///< neither stereo nor a vanishing point gives the ground normal
   kNoMotion,            ///< standing still or too slow for a direction of motion
   kMotionInconsistent,  ///< temporal matches do not agree on one motion

@@ -4,6 +4,7 @@
 
 #include "uav_landing/height_filter.h"
 #include "uav_landing/parameters.h"
+#include "uav_landing/position_filter.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/timings.h"
 
@@ -59,6 +60,7 @@ class KalmanHeightStage {
   StereoRig rig_;
   KalmanHeightParameters parameters_;
   HeightFilter filter_;
+  PositionFilter position_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s

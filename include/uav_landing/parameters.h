@@ -109,6 +109,7 @@ struct ApproachAngleParameters {
   double angle_window = 0.5;
   AngleSmoothing angle_smoothing = AngleSmoothing::kAdaptive;
   double min_motion = 5.0;
+  double runway_width = 0;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -158,6 +159,8 @@ struct ApproachAngleParameters {
              "angle_window, half of it late");
     v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
              "translation must exceed its own uncertainty by this factor, or no angle is claimed");
+    v.number("runway_width", runway_width, 0.0, 200.0, "m",
+             "between the outermost long edges along the runway; edges of another width are not believed. 0: not known");
   }
 };
 

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "uav_landing/line_segments.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/rectification.h"
 #include "uav_landing/stage_results.h"
@@ -14,6 +15,7 @@ namespace uav_landing {
 /// Lines and vanishing point of the runway in both rectified views, and both views' direction combined.
 struct RunwayDirection {
   ApproachAngleResult::View left, right;
+  std::vector<LineSegment> left_lines, right_lines;  ///< those of the views, with their uncertainty
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 

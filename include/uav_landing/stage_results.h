@@ -59,6 +59,14 @@ struct ApproachAngleResult {
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
   };
+  /// Position over the runway, of this pair alone: frames before only tell which edges are the runway's.
+  struct Runway {
+    Failure failure;  ///< set when the centre line is not known
+    double y = kUnknown, y_variance = kUnknown;          ///< camera left of the centre line, over h
+    double width = kUnknown, width_variance = kUnknown;  ///< between the outermost edges, over h
+    Failure threshold_failure;                           ///< set when the threshold is not seen
+    double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
+  };
   double stamp = 0;
   Failure failure;  ///< set when there is no approach angle
   View left, right;
@@ -75,6 +83,7 @@ struct ApproachAngleResult {
   Motion window;  ///< over up to angle_window seconds; its angle is the path's now (angle_smoothing)
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
+  Runway runway;
 };
 
 enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
@@ -97,6 +106,9 @@ struct LandingResult {
   double pitch = kUnknown, pitch_variance = kUnknown;
   double roll = kUnknown, roll_variance = kUnknown;
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
+  double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
+  double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
+  double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
   double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height

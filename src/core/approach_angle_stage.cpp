@@ -11,6 +11,7 @@
 #include "uav_landing/image_check.h"
 #include "uav_landing/motion_tracker.h"
 #include "uav_landing/runway_direction.h"
+#include "uav_landing/runway_tracker.h"
 
 namespace uav_landing {
 namespace {
@@ -26,10 +27,11 @@ struct ApproachAngleStage::Implementation {
   ApproachAngleParameters parameters;
   cv::Mat left_mask, right_mask;  // eroded, for lines and corners
   MotionTracker tracker;
+  RunwayTracker runway;
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p)
-      : model(rig), parameters(p), tracker(rig, p) {
+      : model(rig), parameters(p), tracker(rig, p), runway(rig, p) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
   }
@@ -42,36 +44,43 @@ struct ApproachAngleStage::Implementation {
     result.failure = checkPair(model, left, right);
     if (result.failure) {
       result.step.failure = result.window.failure = result.failure;
+      result.runway.failure = result.runway.threshold_failure = result.failure;
       if (result.failure.reason == Reason::kInputInvalid) return result;
       tracker.skip(stamp, left);
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
+    const RunwayDirection direction =
+        findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal, "neither a stereo plane nor a vanishing point"};
       result.step.failure = result.window.failure = result.failure;
+      result.runway.failure = result.runway.threshold_failure = result.failure;
       tracker.skip(stamp, left);
       return result;
     }
     followMotion(stamp, left, has_plane ? &stereo : nullptr, result);
+    ScopedTimer timer(timings, "runway_position");
+    result.runway =
+        runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
     return result;
   }
 
-  void findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
-                     ApproachAngleResult& result) {
+  RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
+                                ApproachAngleResult& result) {
     const Eigen::Vector3d stereo_normal = plane ? plane->normal() : Eigen::Vector3d::UnitY();
     RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask,
                                                     plane ? &stereo_normal : nullptr, parameters, timings);
-    result.left = std::move(direction.left);
-    result.right = std::move(direction.right);
-    if (!direction.combined) return;
+    result.left = direction.left;
+    result.right = direction.right;
+    if (!direction.combined) return direction;
     result.vanishing_direction = direction.combined->direction;
     result.vanishing_covariance = direction.combined->covariance;
     const GroundNormal level =
         normalFromVanishingPoint(*direction.combined, 0.0, parameters.level_roll_stddev_deg * kDegree);
     result.n_vp = level.n;
     result.n_vp_covariance = level.covariance;
+    return direction;
   }
 
   // The normal that the angles refer to; false when there is none.
@@ -194,7 +203,10 @@ ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& lef
   return implementation_->process(stamp, left, right, stereo);
 }
 
-void ApproachAngleStage::reset() { implementation_->tracker.reset(); }
+void ApproachAngleStage::reset() {
+  implementation_->tracker.reset();
+  implementation_->runway.reset();
+}
 
 const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }
 

@@ -22,6 +22,8 @@ const char* toString(Reason reason) {
       return "no_plane";
     case Reason::kNoVanishingPoint:
       return "no_vanishing_point";
+    case Reason::kNoRunway:
+      return "no_runway";
     case Reason::kNoGroundNormal:
       return "no_ground_normal";
     case Reason::kNoMotion:

@@ -77,6 +77,11 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
   }
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
+  {
+    const ScopedTimer timer(timings_, "runway_filter");
+    position_.process(approach, reconstruction.plane.valid() ? reconstruction.plane.normal() : approach.n,
+                      result.height_valid ? result.height : kUnknown, result.height_variance, result);
+  }
   return result;
 }
 
@@ -91,6 +96,7 @@ LandingResult KalmanHeightStage::timeout(double stamp) {
 }
 
 void KalmanHeightStage::reset() {
+  position_.reset();
   if (filter_.initialised()) loseTrack();
   last_stamp_.reset();
   lost_ = false;

@@ -29,8 +29,8 @@ cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::V
 
 Expected<VanishingPoint> analyse(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
                                  const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
-                                 Timings& timings, ApproachAngleResult::View& view) {
-  std::vector<LineSegment> lines;
+                                 Timings& timings, ApproachAngleResult::View& view,
+                                 std::vector<LineSegment>& lines) {
   {
     ScopedTimer timer(timings, "hough_transform");
     lines = findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
@@ -57,9 +57,11 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
                                     Timings& timings) {
   RunwayDirection result;
   const Expected<VanishingPoint> in_left =
-      analyse(left, left_mask, viewK(rig, true), normal, parameters, timings, result.left);
+      analyse(left, left_mask, viewK(rig, true), normal, parameters, timings, result.left,
+              result.left_lines);
   const Expected<VanishingPoint> in_right =
-      analyse(right, right_mask, viewK(rig, false), normal, parameters, timings, result.right);
+      analyse(right, right_mask, viewK(rig, false), normal, parameters, timings, result.right,
+              result.right_lines);
   result.combined = combineVanishingPoints(in_left, in_right, parameters.runway_straightness_deg * kDegree);
   return result;
 }

@@ -21,6 +21,7 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   if (!n.allFinite()) {
     body.height = body.height_variance = body.raw_height = body.raw_height_variance = kUnknown;
     body.points_height = body.vertical_speed = body.vertical_speed_variance = kUnknown;
+    body.x = body.x_variance = body.y = body.y_variance = kUnknown;
     if (body.height_valid && !body.failure)
       body.failure = {Reason::kNoGroundNormal, "the lever arm needs the attitude"};
     body.height_valid = false;
@@ -39,6 +40,14 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   body.raw_height += shift;
   body.raw_height_variance += variance;
   body.points_height += shift;
+
+  const Eigen::Vector3d across = runwayFromCamera(camera) * point;
+  body.x += across.x();
+  body.y += across.y();
+  if (std::isfinite(camera.yaw_variance)) {
+    body.x_variance += across.y() * across.y() * camera.yaw_variance;
+    body.y_variance += across.x() * across.x() * camera.yaw_variance;
+  }
 
   const double angle = step.rotation.norm();
   if (!std::isfinite(angle) || !(step.duration > 0)) {

@@ -1,5 +1,7 @@
 #include "conversions.h"
 
+#include <cmath>
+
 namespace uav_landing {
 namespace {
 
@@ -72,6 +74,32 @@ ApproachAngleResult::Motion toResult(const Motion& message) {
   motion.angle = message.approach_angle;
   motion.angle_variance = message.approach_angle_variance;
   return motion;
+}
+
+RunwayPosition toMessage(const ApproachAngleResult::Runway& runway) {
+  RunwayPosition message;
+  message.reason = runway.failure.message();
+  message.y = runway.y;
+  message.y_variance = runway.y_variance;
+  message.width = runway.width;
+  message.width_variance = runway.width_variance;
+  message.threshold_reason = runway.threshold_failure.message();
+  message.x = runway.x;
+  message.x_variance = runway.x_variance;
+  return message;
+}
+
+ApproachAngleResult::Runway toResult(const RunwayPosition& message) {
+  ApproachAngleResult::Runway runway;
+  runway.failure = parseFailure(message.reason);
+  runway.y = message.y;
+  runway.y_variance = message.y_variance;
+  runway.width = message.width;
+  runway.width_variance = message.width_variance;
+  runway.threshold_failure = parseFailure(message.threshold_reason);
+  runway.x = message.x;
+  runway.x_variance = message.x_variance;
+  return runway;
 }
 
 }  // namespace
@@ -151,6 +179,7 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   message.window = toMessage(result.window);
   toArray(result.foe, message.foe);
   toArray(result.foe_covariance, message.foe_covariance);
+  message.runway = toMessage(result.runway);
   message.compute_ms = compute_ms;
   return message;
 }
@@ -171,6 +200,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   result.window = toResult(message.window);
   fromArray(message.foe, result.foe);
   fromArray(message.foe_covariance, result.foe_covariance);
+  result.runway = toResult(message.runway);
   return result;
 }
 
@@ -208,6 +238,14 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.rejected = result.rejected;
   message.consecutive_rejections = static_cast<uint32_t>(result.consecutive_rejections);
   message.resets = static_cast<uint32_t>(result.resets);
+  message.x_known = std::isfinite(result.x);
+  message.y_known = std::isfinite(result.y);
+  message.x = result.x;
+  message.x_variance = result.x_variance;
+  message.y = result.y;
+  message.y_variance = result.y_variance;
+  message.runway_width = result.runway_width;
+  message.runway_width_variance = result.runway_width_variance;
   message.height_protection_level = kUnknown;
   message.skew = skew;
   message.compute_ms = compute_ms;
@@ -245,6 +283,12 @@ LandingResult toResult(const LandingEstimate& message) {
   result.rejected = message.rejected;
   result.consecutive_rejections = static_cast<int>(message.consecutive_rejections);
   result.resets = static_cast<int>(message.resets);
+  result.x = message.x;
+  result.x_variance = message.x_variance;
+  result.y = message.y;
+  result.y_variance = message.y_variance;
+  result.runway_width = message.runway_width;
+  result.runway_width_variance = message.runway_width_variance;
   return result;
 }
 

@@ -23,8 +23,8 @@ StereoDepthResult toResult(const StereoDepth& message);
 ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Header& header, double compute_ms);
 ApproachAngleResult toResult(const ApproachAngle& message);
 
-/// header: stamp of the image, frame of the runway. skew: right minus left, s. x_known, y_known and the
-/// protection level stay at their defaults.
+/// header: stamp of the image, frame of the runway. skew: right minus left, s. The protection level stays
+/// unknown.
 LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& header,
                           const std::string& child_frame_id, double skew, double compute_ms);
 LandingResult toResult(const LandingEstimate& message);

@@ -31,10 +31,26 @@ std::optional<RunwayPath::Position> RunwayPath::update(const LandingResult& came
     xy_ = {slope > 1 / kMaxStart ? -camera.height / slope : -kMaxStart * camera.height, 0};
     last_stamp_ = camera.stamp;
   }
+  const double unknown = kStartStddev * kStartStddev + drift_stddev_ * drift_stddev_;
+  Eigen::Vector2d variance(unknown, unknown);
+  takeKnown(0, camera.x, camera.x_variance, variance);
+  takeKnown(1, camera.y, camera.y_variance, variance);
   const Eigen::Vector3d position(xy_.x(), xy_.y(), camera.height);
   remember(position);
-  const double variance = kStartStddev * kStartStddev + drift_stddev_ * drift_stddev_;
-  return Position{position, {variance, variance}};
+  return Position{position, variance};
+}
+
+void RunwayPath::takeKnown(int axis, double value, double value_variance, Eigen::Vector2d& variance) {
+  if (!std::isfinite(value)) {
+    known_[axis] = false;
+    return;
+  }
+  // When the runway is found the path behind, drawn from an arbitrary start, moves with the aircraft.
+  if (!known_[axis])
+    for (Eigen::Vector3d& point : track_) point[axis] += value - xy_[axis];
+  known_[axis] = true;
+  xy_[axis] = value;
+  variance[axis] = value_variance;
 }
 
 void RunwayPath::remember(const Eigen::Vector3d& position) {

@@ -8,14 +8,14 @@
 
 namespace uav_landing {
 
-/// Where the left camera is in the runway frame. Only the height is measured; along and across the runway the
-/// velocity is summed up from an arbitrary start: the point where the first path meets the ground becomes the
-/// origin.
+/// Where the left camera is in the runway frame. Along and across the runway it is as the estimate says once that
+/// knows; until then the velocity is summed up from an arbitrary start: the point where the first path meets the
+/// ground becomes the origin.
 class RunwayPath {
  public:
   struct Position {
     Eigen::Vector3d position;  ///< m, runway frame
-    Eigen::Vector2d variance;  ///< of x and y, m^2: huge and growing, as the start is not known
+    Eigen::Vector2d variance;  ///< of x and y, m^2: huge and growing while not known
   };
 
   /// Of one pair; none while the height is not valid or the attitude unknown. A stamp that goes back starts
@@ -27,12 +27,15 @@ class RunwayPath {
   const std::deque<Eigen::Vector3d>& track() const { return track_; }
 
  private:
+  /// Of x (axis 0) or y (1), when it is known.
+  void takeKnown(int axis, double value, double value_variance, Eigen::Vector2d& variance);
   void remember(const Eigen::Vector3d& position);
 
   std::optional<double> last_stamp_;
   Eigen::Vector2d xy_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d velocity_ = Eigen::Vector2d::Zero();  // m/s, the last known
   double drift_stddev_ = 0;                             // m
+  bool known_[2] = {false, false};                      // x, y: of the last estimate
   std::deque<Eigen::Vector3d> track_;
 };
 

@@ -14,7 +14,8 @@ constexpr double kDegrees = 180 / M_PI;
 const char* const kHeader =
     "stamp_s,valid,height_m,height_stddev_m,raw_height_m,vertical_speed_m_s,approach_angle_deg,"
     "approach_angle_stddev_deg,pitch_deg,roll_deg,yaw_deg,x_m,y_m,foe_u_px,foe_v_px,status,compute_ms,"
-    "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason";
+    "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason,x_stddev_m,y_stddev_m,"
+    "runway_width_m";
 
 /// Writes the fields of one row.
 class Row {
@@ -53,13 +54,15 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.number(landing.vertical_speed);
   row.number(landing.approach_angle * kDegrees).number(std::sqrt(landing.approach_angle_variance) * kDegrees);
   row.number(landing.pitch * kDegrees).number(landing.roll * kDegrees).number(landing.yaw * kDegrees);
-  row.blank().blank();  // x, y: the threshold is not looked for
+  row.number(landing.x).number(landing.y);
   row.number(landing.foe.x()).number(landing.foe.y());
   row.text(toString(landing.status)).number(pair.output.stages.total());
   row.flag(landing.height_valid).flag(landing.angle_valid);
   row.number(landing.raw_approach_angle * kDegrees);
   row.blank();  // no protection level is computed
   row.text(toString(landing.failure.reason));
+  row.number(std::sqrt(landing.x_variance)).number(std::sqrt(landing.y_variance));
+  row.number(landing.runway_width);
   file_ << '\n';
 }
 

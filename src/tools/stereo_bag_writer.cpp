@@ -50,6 +50,11 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   message.innovation = message.innovation_variance = kUnknown;
   message.x_known = !std::isnan(truth.x);
   message.y_known = !std::isnan(truth.y);
+  message.x = truth.x;
+  message.x_variance = varianceOf(truth.x);
+  message.y = truth.y;
+  message.y_variance = varianceOf(truth.y);
+  message.runway_width = message.runway_width_variance = kUnknown;
   message.height_protection_level = kUnknown;
   message.compute_ms = kUnknown;
   return message;

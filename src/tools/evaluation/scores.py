@@ -14,10 +14,13 @@ QUANTITIES = (
     ("pitch", "pitch_deg", "pitch_deg", "deg"),
     ("roll", "roll_deg", "roll_deg", "deg"),
     ("yaw", "yaw_deg", "yaw_deg", "deg"),
+    ("x", "x_m", "x_m", "m"),
+    ("y", "y_m", "y_m", "m"),
     ("foe_u", "foe_u_px", "foe_u_px", "px"),
     ("foe_v", "foe_v_px", "foe_v_px", "px"),
 )
-CLAIMED = {"height": "height_stddev_m", "approach_angle": "approach_angle_stddev_deg"}
+CLAIMED = {"height": "height_stddev_m", "approach_angle": "approach_angle_stddev_deg", "x": "x_stddev_m",
+           "y": "y_stddev_m"}
 
 
 def statistics(error, unit):
@@ -49,7 +52,7 @@ def score_quantity(truth, joined, used, name, column, truth_column, unit):
     if not np.any(known):
         return "no scored frame has it"
     scores = statistics(error[known], unit)
-    if unit == "m":
+    if truth_column == "height_m":
         percent = statistics(100 * (error / truth.number(truth_column))[known], "%")
         scores["percent"] = {key: value for key, value in percent.items() if key not in ("unit", "frames")}
     if name in CLAIMED:

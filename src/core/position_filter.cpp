@@ -1,0 +1,108 @@
+#include "uav_landing/position_filter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kGate = 5;             // sigma
+constexpr double kRestart = 1.0;        // s of rejected measurements after which they are believed
+constexpr double kCommon = 0.5;         // share of a measurement's variance that successive ones have in common
+constexpr double kAlongError = 0.01;    // of the distance flown, 1 sigma
+constexpr double kAcrossError = 0.005;  // of the distance flown: direction of the runway in the picture, rad
+constexpr double kBlindError = 0.2;     // of the distance flown while the motion is not seen
+constexpr double kWorthlessX = 0.5;     // of the runway's width
+constexpr double kWorthlessY = 0.1;     // of the runway's width
+
+Eigen::Vector3d turned(const Eigen::Vector3d& rotation, const Eigen::Vector3d& v) {
+  const double angle = rotation.norm();
+  return angle > 0 ? Eigen::AngleAxisd(angle, rotation / angle) * v : v;
+}
+
+}  // namespace
+
+void PositionFilter::Axis::predict(double movement, double stddev) {
+  if (!value_) return;
+  value_ = *value_ + movement;
+  variance_ = std::pow(std::sqrt(variance_) + stddev, 2);
+}
+
+void PositionFilter::Axis::update(double value, double variance, double seconds) {
+  if (value_ && std::pow(value - *value_, 2) > kGate * kGate * (variance_ + common_ + variance)) {
+    rejected_ += seconds;
+    if (rejected_ < kRestart) return;
+    value_.reset();
+  }
+  rejected_ = 0;
+  common_ = kCommon * variance;
+  const double own = variance - common_;
+  if (!value_) {
+    value_ = value;
+    variance_ = own;
+    return;
+  }
+  const double gain = variance_ / (variance_ + own);
+  value_ = *value_ + gain * (value - *value_);
+  variance_ *= 1 - gain;
+}
+
+void PositionFilter::Axis::forgetAbove(double stddev) {
+  if (variance_ + common_ > stddev * stddev) *this = Axis();
+}
+
+void PositionFilter::Axis::report(double& value, double& variance) const {
+  if (!value_) return;
+  value = *value_;
+  variance = variance_ + common_;
+}
+
+void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
+                             double height, double height_variance, LandingResult& result) {
+  const double seconds = last_stamp_ ? result.stamp - *last_stamp_ : 0;
+  last_stamp_ = result.stamp;
+  move(approach, normal, height, seconds);
+  const ApproachAngleResult::Runway& seen = approach.runway;
+  const auto metric = [&](double ratio, double variance) {
+    return variance * height * height + ratio * ratio * height_variance;
+  };
+  if (std::isfinite(height) && !seen.failure) {
+    if (std::isfinite(seen.width)) {
+      result.runway_width = width_ = seen.width * height;
+      result.runway_width_variance = metric(seen.width, seen.width_variance);
+    }
+    y_.update(seen.y * height, metric(seen.y, seen.y_variance), seconds);
+    if (!seen.threshold_failure) x_.update(seen.x * height, metric(seen.x, seen.x_variance), seconds);
+  }
+  x_.forgetAbove(kWorthlessX * width_);
+  y_.forgetAbove(kWorthlessY * width_);
+  x_.report(result.x, result.x_variance);
+  y_.report(result.y, result.y_variance);
+}
+
+void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
+                          double seconds) {
+  const ApproachAngleResult::Motion& step = approach.step;
+  const bool moved = !step.failure && step.translation_over_height.allFinite() && step.rotation.allFinite();
+  if (approach.vanishing_direction.allFinite()) {
+    direction_ = approach.vanishing_direction;
+  } else if (moved) {
+    direction_ = turned(step.rotation, direction_);
+  }
+  if (moved && std::isfinite(height) && direction_.allFinite() && normal.allFinite()) {
+    const Eigen::Vector3d forward = (direction_ - normal.dot(direction_) * normal).normalized();
+    const Eigen::Vector3d t = step.translation_over_height * height;
+    const Eigen::Vector2d movement(forward.dot(t), forward.cross(normal).dot(t));
+    x_.predict(movement.x(), kAlongError * t.norm());
+    y_.predict(movement.y(), kAcrossError * t.norm());
+    if (step.duration > 0) velocity_ = movement / step.duration;
+    return;
+  }
+  const Eigen::Vector2d movement = velocity_.value_or(Eigen::Vector2d::Zero()) * seconds;
+  const double unseen = kBlindError * movement.norm();
+  x_.predict(movement.x(), unseen);
+  y_.predict(movement.y(), unseen);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,285 @@
+#include "uav_landing/runway_threshold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "text.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr int kColumns = 96;            // samples across the runway
+constexpr double kAcross = 0.92;        // of the width that is sampled: without the lines along the edges
+constexpr double kFarthest = 60;        // heights
+constexpr double kFootprint = 0.02;     // of the width: largest length on the ground of a pixel that tells
+constexpr double kLeastPicture = 0.75;  // share of a station's samples that must lie in the picture
+constexpr double kLeastContrast = 20;   // grey levels between bars and what lies between them
+constexpr int kLeastFlips = 8;          // between light and dark across the bars
+constexpr double kLargestGap = 0.25;    // of the width between two of them, or to the runway's edge
+constexpr int kBlock = 3;               // stations to each side that make one pattern
+constexpr double kShortestBars = 0.2;   // of the width
+constexpr double kLeastLikeness = 0.7;   // correlation of the pattern with itself further on, and mirrored
+constexpr double kLineSearch = 0.3;     // of the width, before the bars
+constexpr double kSpanning = 0.8;       // share of the width that the threshold line takes
+constexpr double kNothing = 0.25;       // share below which there is no line
+constexpr double kLineContrast = 0.35;  // of the bars' contrast: weakest step onto the line
+constexpr double kLocation = 0.5;       // px, 1 sigma of an edge across the runway
+
+/// The runway as seen from above, one row for each pixel of distance.
+class TopView {
+ public:
+  TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
+          const RunwayCrossSection& runway)
+      : image_(image), mask_(mask), rig_(rig), axes_(axes), runway_(runway), step_(1 / rig.fy) {
+    // Stations lie evenly in the inverse of the distance, as pixels do.
+    const double farthest = std::min(kFarthest, std::sqrt(kFootprint * runway.width / step_));
+    bool begun = false;
+    for (int k = 0;; ++k) {
+      const double inverse = 1 / kNearest - k * step_;
+      if (inverse <= 1 / farthest) break;
+      std::vector<float> row(kColumns);
+      if (!sample(1 / inverse, row)) {
+        if (begun) break;
+        continue;
+      }
+      begun = true;
+      inverse_.push_back(inverse);
+      rows_.push_back(std::move(row));
+    }
+  }
+
+  int size() const { return static_cast<int>(rows_.size()); }
+  const std::vector<float>& row(int k) const { return rows_[k]; }
+  /// Forward of the camera, in heights, of a station that need not be whole.
+  double distance(double k) const { return 1 / (inverse_.front() - k * step_); }
+  /// Of one station, in heights.
+  double footprint(double k) const { return step_ * distance(k) * distance(k); }
+
+ private:
+  static constexpr double kNearest = 0.5;  // heights
+
+  bool sample(double x, std::vector<float>& row) const {
+    int inside = 0;
+    for (int c = 0; c < kColumns; ++c) {
+      const double y = runway_.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway_.width;
+      const Eigen::Vector3d ray = x * axes_.forward + y * axes_.left + axes_.down;
+      row[c] = std::numeric_limits<float>::quiet_NaN();
+      if (ray.z() <= 0) continue;
+      const Eigen::Vector2d pixel = rig_.project(ray);
+      const int i = static_cast<int>(pixel.y()), j = static_cast<int>(pixel.x());
+      if (!(pixel.x() >= 0 && pixel.y() >= 0 && j < image_.cols - 1 && i < image_.rows - 1)) continue;
+      if (mask_.at<uchar>(i, j) == 0) continue;
+      const double s = pixel.x() - j, t = pixel.y() - i;
+      const uchar *above = image_.ptr<uchar>(i) + j, *below = image_.ptr<uchar>(i + 1) + j;
+      row[c] = static_cast<float>((1 - t) * ((1 - s) * above[0] + s * above[1]) +
+                                  t * ((1 - s) * below[0] + s * below[1]));
+      ++inside;
+    }
+    return inside >= kLeastPicture * kColumns;
+  }
+
+  const cv::Mat &image_, &mask_;
+  const StereoRig& rig_;
+  const GroundAxes& axes_;
+  const RunwayCrossSection& runway_;
+  double step_;
+  std::vector<double> inverse_;
+  std::vector<std::vector<float>> rows_;
+};
+
+double meanOf(const std::vector<float>& row) {
+  double sum = 0;
+  int count = 0;
+  for (const float value : row) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+/// Mean of the stations around k.
+std::vector<float> blockAround(const TopView& view, int k) {
+  std::vector<float> block(kColumns, 0.F);
+  for (int i = k - kBlock; i <= k + kBlock; ++i)
+    for (int c = 0; c < kColumns; ++c) block[c] += view.row(i)[c] / (2 * kBlock + 1);
+  return block;
+}
+
+/// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars.
+double barContrast(const std::vector<float>& pattern) {
+  std::vector<float> sorted;
+  std::copy_if(pattern.begin(), pattern.end(), std::back_inserter(sorted),
+               [](float value) { return std::isfinite(value); });
+  if (sorted.size() < kLeastPicture * kColumns) return 0;
+  std::sort(sorted.begin(), sorted.end());
+  const float dark = sorted[sorted.size() / 8], light = sorted[sorted.size() - 1 - sorted.size() / 8];
+  const float contrast = light - dark;
+  if (contrast < kLeastContrast) return 0;
+  int flips = 0, last = 0, state = 0, gap = 0;
+  for (int c = 0; c < kColumns; ++c) {
+    if (!std::isfinite(pattern[c])) {
+      last = c;  // outside the picture: nothing is known to be missing
+      continue;
+    }
+    const float level = (pattern[c] - dark) / contrast;
+    const int now = level > 0.65F ? 1 : (level < 0.35F ? -1 : state);
+    if (now != state) {
+      gap = std::max(gap, c - last);
+      last = c;
+      if (state != 0) ++flips;
+      state = now;
+    }
+  }
+  gap = std::max(gap, kColumns - last);
+  return flips >= kLeastFlips && gap <= kLargestGap * kColumns ? contrast : 0;
+}
+
+/// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.
+double share(const std::vector<float>& pattern, const std::vector<float>& row) {
+  const double pattern_mean = meanOf(pattern), row_mean = meanOf(row);
+  double product = 0, square = 0;
+  for (int c = 0; c < kColumns; ++c) {
+    if (!std::isfinite(pattern[c]) || !std::isfinite(row[c])) continue;
+    const double p = pattern[c] - pattern_mean;
+    product += p * (row[c] - row_mean);
+    square += p * p;
+  }
+  return square > 0 ? product / square : 0;
+}
+
+/// Correlation of two patterns across the runway.
+double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  const double product = share(a, b) * share(b, a);
+  return share(a, b) > 0 ? std::sqrt(std::max(0.0, product)) : 0;
+}
+
+/// Place between stations k and k + step where the share falls through one half.
+double crossing(double k, double step, double inside, double outside) {
+  return k + step * (inside - 0.5) / std::max(inside - outside, 1e-6);
+}
+
+/// Where the bars begin and end, stations; nothing when that is not in the picture.
+struct Bars {
+  double contrast = 0;
+  double begin = 0, end = 0;
+};
+
+/// Whether the bars are the same at both ends, and on both sides of the centre line. Texture is neither.
+bool areBars(const TopView& view, const Bars& bars) {
+  const int first = static_cast<int>(std::ceil(bars.begin)) + 1, last = static_cast<int>(bars.end) - 1;
+  if (last - first < 2 * kBlock) return false;
+  const int quarter = (last - first) / 4;
+  const auto block = [&](int k) { return blockAround(view, std::clamp(k, kBlock, view.size() - 1 - kBlock)); };
+  const std::vector<float> near = block(first + quarter), far = block(last - quarter);
+  std::vector<float> mirrored = near;
+  std::reverse(mirrored.begin(), mirrored.end());
+  return correlation(near, far) >= kLeastLikeness && correlation(near, mirrored) >= kLeastLikeness;
+}
+
+std::optional<Bars> findBars(const TopView& view) {
+  int anchor = -1;
+  Bars bars;
+  for (int k = kBlock; k + kBlock < view.size(); ++k) {
+    const double contrast = barContrast(blockAround(view, k));
+    if (contrast <= bars.contrast) continue;
+    bars.contrast = contrast;
+    anchor = k;
+  }
+  if (anchor < 0) return std::nullopt;
+  const std::vector<float> pattern = blockAround(view, anchor);
+  const auto follow = [&](int step, double& place) {
+    double inside = 1;
+    for (int k = anchor; k >= 0 && k < view.size(); k += step) {
+      const double s = share(pattern, view.row(k));
+      if (s < 0.5) {
+        place = crossing(k - step, step, inside, s);
+        return true;
+      }
+      inside = s;
+    }
+    return false;
+  };
+  if (!follow(-1, bars.begin)) return std::nullopt;
+  if (!follow(1, bars.end)) bars.end = view.size() - 1;
+  if (!areBars(view, bars)) return std::nullopt;
+  return bars;
+}
+
+/// Share of the width on which it gets brighter towards the far side around a station by at least this much. The
+/// line may lie slightly aslant.
+double rising(const TopView& view, int k, double least) {
+  int up = 0, known = 0;
+  for (int c = 0; c < kColumns; ++c) {
+    const float before = std::min(view.row(k - 2)[c], view.row(k - 1)[c]);
+    const float after = std::max(view.row(k + 1)[c], view.row(k + 2)[c]);
+    if (!std::isfinite(after - before)) continue;
+    ++known;
+    if (after - before >= least) ++up;
+  }
+  return known > 0 ? static_cast<double>(up) / known : 0;
+}
+
+/// The near edge of the line before the bars.
+struct Line {
+  double spanning = 0;  // largest share of the width on which there is something like it
+  double station = 0;
+};
+
+Line findLine(const TopView& view, const Bars& bars, int first) {
+  Line line;
+  double steepest = 0;
+  const int end = static_cast<int>(bars.begin) - 2;  // what rises there is the bars
+  for (int k = std::max(2, first); k < end; ++k) {
+    const double spanning = rising(view, k, kLineContrast * bars.contrast);
+    line.spanning = std::max(line.spanning, spanning);
+    if (spanning < kSpanning) continue;
+    const auto slope = [&](int i) { return meanOf(view.row(i + 1)) - meanOf(view.row(i - 1)); };
+    const double here = slope(k);
+    if (here <= steepest) continue;
+    steepest = here;
+    // Top of the parabola through three slopes.
+    const double before = slope(k - 1), after = slope(k + 1), curve = before - 2 * here + after;
+    line.station = k + (curve < 0 ? std::clamp(0.5 * (before - after) / curve, -1.0, 1.0) : 0.0);
+  }
+  return line;
+}
+
+template <class... Parts>
+tl::unexpected<Failure> noThreshold(const Parts&... parts) {
+  return tl::make_unexpected(Failure{Reason::kNoRunway, text(parts...)});
+}
+
+}  // namespace
+
+Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
+                                  const GroundAxes& axes, const RunwayCrossSection& runway) {
+  const TopView view(image, mask, rig, axes, runway);
+  const std::optional<Bars> bars = findBars(view);
+  if (!bars) return noThreshold("no threshold bars in the picture");
+  const double begin = view.distance(bars->begin);
+  if (view.distance(bars->end) - begin < kShortestBars * runway.width)
+    return noThreshold("bars of the threshold are too short");
+  // The line before them must be in the picture if there is one: without it the bars tell nothing.
+  const double search = begin - kLineSearch * runway.width;
+  int first = 0;
+  while (first < view.size() && view.distance(first) < search) ++first;
+  if (first == 0) return noThreshold("what lies before the threshold bars is not in the picture");
+  const Line line = findLine(view, *bars, first);
+  if (line.spanning > kNothing && line.spanning < kSpanning)
+    return noThreshold("a mark before the bars takes ", line.spanning, " of the width");
+  const double station = line.spanning >= kSpanning ? line.station : bars->begin;
+  Threshold threshold;
+  threshold.distance = view.distance(station);
+  const Eigen::Vector3d by_rotation =
+      GroundAxes::meetByRotation({threshold.distance, runway.centre}).row(0).transpose();
+  threshold.variance = std::pow(kLocation * view.footprint(station), 2) +
+                       by_rotation.dot(axes.covariance * by_rotation);
+  return threshold;
+}
+
+}  // namespace uav_landing
