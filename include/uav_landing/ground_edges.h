@@ -22,8 +22,8 @@ struct GroundAxes {
   GroundAxes(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
              const Eigen::Vector3d& direction, const Eigen::Matrix3d& direction_covariance);
 
-  /// Where a ray from a camera meets the ground, in multiples of that camera's height: forward and left of the
-  /// point below it. ray: any length; must point below the horizon.
+  /// Where a ray from a camera meets the ground, in multiples of that camera's height: forward and left of
+  /// the point below it. ray: any length; must point below the horizon.
   Eigen::Vector2d meet(const Eigen::Vector3d& ray) const;
   /// Derivatives of meet() by the rotations that covariance is of. One row for forward, one for left.
   static Eigen::Matrix<double, 2, 3> meetByRotation(const Eigen::Vector2d& point);
@@ -31,12 +31,12 @@ struct GroundAxes {
 
 /// An edge on the ground along the runway: all of it has the same lateral position.
 struct GroundEdge {
-  double lateral = 0;            ///< left of the left camera, in multiples of its height
-  double variance = 0;           ///< of the edge in the image alone
-  Eigen::Vector3d by_rotation;   ///< derivatives by the rotations of the axes: common to all edges
-  bool brighter_left = false;    ///< which side is
-  double near = 0, far = 0;      ///< from where to where it is seen, forward of the camera
-  double extent = 0;             ///< sum of log(far / near) of its pieces
+  double lateral = 0;           ///< left of the left camera, in multiples of its height
+  double variance = 0;          ///< of the edge in the image alone
+  Eigen::Vector3d by_rotation;  ///< derivatives by the rotations of the axes: common to all edges
+  bool brighter_left = false;   ///< which side is
+  double near = 0, far = 0;     ///< from where to where it is seen, forward of the camera
+  double extent = 0;            ///< sum of log(far / near) of its pieces
 };
 
 /// The lines of one view that lie along the runway, pieces of one edge joined. lines: of that view, with

@@ -160,7 +160,8 @@ struct ApproachAngleParameters {
     v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
              "translation must exceed its own uncertainty by this factor, or no angle is claimed");
     v.number("runway_width", runway_width, 0.0, 200.0, "m",
-             "between the outermost long edges along the runway; edges of another width are not believed. 0: not known");
+             "between the outermost long edges along the runway; edges of another width are not believed. 0: "
+             "not known");
   }
 };
 

@@ -7,8 +7,8 @@
 
 namespace uav_landing {
 
-/// Position over the runway in metres: where it is measured the measurement smoothed over time, in between the
-/// motion summed up with growing variance. x and y are filtered by themselves and known from their first
+/// Position over the runway in metres: where it is measured the measurement smoothed over time, in between
+/// the motion summed up with growing variance. x and y are filtered by themselves and known from their first
 /// measurement on, until the uncertainty makes them worthless or the time jumps.
 class PositionFilter {
  public:
@@ -36,7 +36,8 @@ class PositionFilter {
     double rejected_ = 0;  // s
   };
 
-  void move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height, double seconds);
+  void move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
+            double seconds);
 
   Axis x_, y_;
   std::optional<double> last_stamp_;

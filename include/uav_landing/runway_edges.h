@@ -10,8 +10,8 @@ namespace uav_landing {
 
 /// Where the runway lies across. Multiples of the left camera's height; left of the camera is positive.
 struct RunwayCrossSection {
-  double centre = 0, variance = 0;        ///< centre line
-  double width = 0, width_variance = 0;   ///< between the outermost long edges
+  double centre = 0, variance = 0;       ///< centre line
+  double width = 0, width_variance = 0;  ///< between the outermost long edges
 };
 
 /// Where the centre line is expected, and by how much it may differ.

@@ -15,8 +15,8 @@ struct Threshold {
 
 /// The threshold: the near edge of a bright line across the runway just before its bars, or where the bars
 /// begin when there is none. Bars: at least eight edges between light and dark side by side, evenly over the
-/// runway's width, unlike the marks of the touchdown zone. image: left rectified mono8. mask: 255 where it has
-/// picture.
+/// runway's width, unlike the marks of the touchdown zone. image: left rectified mono8. mask: 255 where it
+/// has picture.
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway);
 

@@ -64,8 +64,8 @@ class RunwayTracker {
   void followWidth(const RunwayCrossSection& seen, ApproachAngleResult::Runway& result);
 
   Follower centre_, threshold_;
-  Follower width_, wider_;      // between the outermost edges; edges farther out that are not confirmed yet
-  double contradicted_ = 0;     // s for which the pairs have told of another runway
+  Follower width_, wider_;   // between the outermost edges; edges farther out that are not confirmed yet
+  double contradicted_ = 0;  // s for which the pairs have told of another runway
 };
 
 }  // namespace uav_landing

@@ -61,7 +61,7 @@ struct ApproachAngleResult {
   };
   /// Position over the runway, of this pair alone: frames before only tell which edges are the runway's.
   struct Runway {
-    Failure failure;  ///< set when the centre line is not known
+    Failure failure;                                     ///< set when the centre line is not known
     double y = kUnknown, y_variance = kUnknown;          ///< camera left of the centre line, over h
     double width = kUnknown, width_variance = kUnknown;  ///< between the outermost edges, over h
     Failure threshold_failure;                           ///< set when the threshold is not seen
@@ -106,8 +106,8 @@ struct LandingResult {
   double pitch = kUnknown, pitch_variance = kUnknown;
   double roll = kUnknown, roll_variance = kUnknown;
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
-  double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
-  double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
+  double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
+  double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s

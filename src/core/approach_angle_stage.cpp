@@ -50,8 +50,7 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const RunwayDirection direction =
-        findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
+    const RunwayDirection direction = findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal, "neither a stereo plane nor a vanishing point"};
       result.step.failure = result.window.failure = result.failure;

@@ -7,9 +7,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kSameEdge = 3;           // sigma between measurements of one edge
+constexpr double kSameEdge = 3;            // sigma between measurements of one edge
 constexpr double kLeastTolerance = 0.003;  // of the distance from the camera to the edge, in the same
-constexpr double kLeastSlope = 1e-3;      // n.r of the horizon's neighbourhood, where nothing is measured
+constexpr double kLeastSlope = 1e-3;       // n.r of the horizon's neighbourhood, where nothing is measured
 
 double distanceOf(double lateral) { return std::hypot(1.0, lateral); }
 

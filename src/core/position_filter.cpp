@@ -7,10 +7,10 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kGate = 5;             // sigma
-constexpr double kRestart = 1.0;        // s of rejected measurements after which they are believed
-constexpr double kCommon = 0.5;         // share of a measurement's variance that successive ones have in common
-constexpr double kAlongError = 0.01;    // of the distance flown, 1 sigma
+constexpr double kGate = 5;           // sigma
+constexpr double kRestart = 1.0;      // s of rejected measurements after which they are believed
+constexpr double kCommon = 0.5;       // share of a measurement's variance that successive ones have in common
+constexpr double kAlongError = 0.01;  // of the distance flown, 1 sigma
 constexpr double kAcrossError = 0.005;  // of the distance flown: direction of the runway in the picture, rad
 constexpr double kBlindError = 0.2;     // of the distance flown while the motion is not seen
 constexpr double kWorthlessX = 0.5;     // of the runway's width
@@ -67,13 +67,14 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
   const auto metric = [&](double ratio, double variance) {
     return variance * height * height + ratio * ratio * height_variance;
   };
-  if (std::isfinite(height) && !seen.failure) {
+  if (std::isfinite(height) && !seen.failure && std::isfinite(seen.y)) {
     if (std::isfinite(seen.width)) {
       result.runway_width = width_ = seen.width * height;
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
     y_.update(seen.y * height, metric(seen.y, seen.y_variance), seconds);
-    if (!seen.threshold_failure) x_.update(seen.x * height, metric(seen.x, seen.x_variance), seconds);
+    if (!seen.threshold_failure && std::isfinite(seen.x))
+      x_.update(seen.x * height, metric(seen.x, seen.x_variance), seconds);
   }
   x_.forgetAbove(kWorthlessX * width_);
   y_.forgetAbove(kWorthlessY * width_);

@@ -57,11 +57,9 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
                                     Timings& timings) {
   RunwayDirection result;
   const Expected<VanishingPoint> in_left =
-      analyse(left, left_mask, viewK(rig, true), normal, parameters, timings, result.left,
-              result.left_lines);
-  const Expected<VanishingPoint> in_right =
-      analyse(right, right_mask, viewK(rig, false), normal, parameters, timings, result.right,
-              result.right_lines);
+      analyse(left, left_mask, viewK(rig, true), normal, parameters, timings, result.left, result.left_lines);
+  const Expected<VanishingPoint> in_right = analyse(right, right_mask, viewK(rig, false), normal, parameters,
+                                                    timings, result.right, result.right_lines);
   result.combined = combineVanishingPoints(in_left, in_right, parameters.runway_straightness_deg * kDegree);
   return result;
 }

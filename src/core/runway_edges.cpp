@@ -9,14 +9,14 @@
 namespace uav_landing {
 namespace {
 
-constexpr size_t kMaxEdges = 30;        // longest ones
-constexpr double kGate = 3;             // sigma between two pairs' centres
-constexpr double kAsymmetry = 0.002;    // of the width: 1 sigma by which a pair of marks is painted off centre
+constexpr size_t kMaxEdges = 30;      // longest ones
+constexpr double kGate = 3;           // sigma between two pairs' centres
+constexpr double kAsymmetry = 0.002;  // of the width: 1 sigma by which a pair of marks is painted off centre
 constexpr double kWidthTolerance = 0.05;  // of the width that is known
-constexpr double kLong = 0.4;           // of the longest wide pair's extent: long enough for a runway's edge
-constexpr double kLeastExtent = 0.3;    // log(far / near) of the runway's edges
-constexpr double kLeastMargin = 1.4;    // evidence over that of any other symmetry
-constexpr size_t kLeastPairs = 2;       // that make a symmetry
+constexpr double kLong = 0.4;         // of the longest wide pair's extent: long enough for a runway's edge
+constexpr double kLeastExtent = 0.3;  // log(far / near) of the runway's edges
+constexpr double kLeastMargin = 1.4;  // evidence over that of any other symmetry
+constexpr size_t kLeastPairs = 2;     // that make a symmetry
 
 /// An edge and its counterpart on the other side.
 struct MirroredPair {
@@ -81,9 +81,13 @@ class Search {
   MirroredPair mirrored(size_t i, size_t j) const {
     const GroundEdge &l = edges_[i], &r = edges_[j];
     const double width = l.lateral - r.lateral;
-    return {i, j, 0.5 * (l.lateral + r.lateral), width,
+    return {i,
+            j,
+            0.5 * (l.lateral + r.lateral),
+            width,
             0.25 * (l.variance + r.variance) + std::pow(kAsymmetry * width, 2),
-            0.5 * (l.by_rotation + r.by_rotation), std::min(l.extent, r.extent)};
+            0.5 * (l.by_rotation + r.by_rotation),
+            std::min(l.extent, r.extent)};
   }
 
   double toleranceOf(const MirroredPair& a, const MirroredPair& b) const {

@@ -22,7 +22,7 @@ constexpr int kLeastFlips = 8;          // between light and dark across the bar
 constexpr double kLargestGap = 0.25;    // of the width between two of them, or to the runway's edge
 constexpr int kBlock = 3;               // stations to each side that make one pattern
 constexpr double kShortestBars = 0.2;   // of the width
-constexpr double kLeastLikeness = 0.7;   // correlation of the pattern with itself further on, and mirrored
+constexpr double kLeastLikeness = 0.7;  // correlation of the pattern with itself further on, and mirrored
 constexpr double kLineSearch = 0.3;     // of the width, before the bars
 constexpr double kSpanning = 0.8;       // share of the width that the threshold line takes
 constexpr double kNothing = 0.25;       // share below which there is no line
@@ -174,7 +174,9 @@ bool areBars(const TopView& view, const Bars& bars) {
   const int first = static_cast<int>(std::ceil(bars.begin)) + 1, last = static_cast<int>(bars.end) - 1;
   if (last - first < 2 * kBlock) return false;
   const int quarter = (last - first) / 4;
-  const auto block = [&](int k) { return blockAround(view, std::clamp(k, kBlock, view.size() - 1 - kBlock)); };
+  const auto block = [&](int k) {
+    return blockAround(view, std::clamp(k, kBlock, view.size() - 1 - kBlock));
+  };
   const std::vector<float> near = block(first + quarter), far = block(last - quarter);
   std::vector<float> mirrored = near;
   std::reverse(mirrored.begin(), mirrored.end());
@@ -210,8 +212,8 @@ std::optional<Bars> findBars(const TopView& view) {
   return bars;
 }
 
-/// Share of the width on which it gets brighter towards the far side around a station by at least this much. The
-/// line may lie slightly aslant.
+/// Share of the width on which it gets brighter towards the far side around a station by at least this much.
+/// The line may lie slightly aslant.
 double rising(const TopView& view, int k, double least) {
   int up = 0, known = 0;
   for (int c = 0; c < kColumns; ++c) {
@@ -277,8 +279,8 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   threshold.distance = view.distance(station);
   const Eigen::Vector3d by_rotation =
       GroundAxes::meetByRotation({threshold.distance, runway.centre}).row(0).transpose();
-  threshold.variance = std::pow(kLocation * view.footprint(station), 2) +
-                       by_rotation.dot(axes.covariance * by_rotation);
+  threshold.variance =
+      std::pow(kLocation * view.footprint(station), 2) + by_rotation.dot(axes.covariance * by_rotation);
   return threshold;
 }
 

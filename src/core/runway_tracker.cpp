@@ -10,13 +10,13 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kGate = 4;              // sigma between what is seen and what was expected
-constexpr double kSlack = 0.01;          // of the runway's width, that the gate is wider
-constexpr double kSameWidth = 0.1;       // of the width: between the surface's edges and the lines along them
-constexpr double kPatience = 1.0;        // s without the edges, after which the interpretation is forgotten
+constexpr double kGate = 4;         // sigma between what is seen and what was expected
+constexpr double kSlack = 0.01;     // of the runway's width, that the gate is wider
+constexpr double kSameWidth = 0.1;  // of the width: between the surface's edges and the lines along them
+constexpr double kPatience = 1.0;   // s without the edges, after which the interpretation is forgotten
 constexpr double kThresholdPatience = 0.5;
-constexpr double kUnknownMotion = 0.1;   // of the height: 1 sigma of a step's movement that is not known
-constexpr double kLongestStep = 1.0;     // s
+constexpr double kUnknownMotion = 0.1;  // of the height: 1 sigma of a step's movement that is not known
+constexpr double kLongestStep = 1.0;    // s
 
 }  // namespace
 
@@ -81,8 +81,8 @@ ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& 
   // The runway's own slope and curve turn its vanishing point up and down, not to the sides.
   const Eigen::Vector3d& p = direction.combined->direction;
   const double straightness = std::pow(parameters_.runway_straightness_deg * kDegree, 2);
-  const Eigen::Matrix3d own = direction.combined->covariance -
-                              straightness * (Eigen::Matrix3d::Identity() - p * p.transpose());
+  const Eigen::Matrix3d own =
+      direction.combined->covariance - straightness * (Eigen::Matrix3d::Identity() - p * p.transpose());
   const GroundAxes axes(approach.n, approach.n_covariance, p, own);
   predict(&axes, approach.step);
   findCentre(seconds, axes, direction, height, result);
@@ -149,8 +149,8 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
     return;
   }
   if (!centre_.update(seen->centre, seen->variance, kSlack * seen->width)) {
-    result.failure = {Reason::kNotYet,
-                      text(centre_.confirmations(), " of ", kConfirmations, " pairs that agree on the runway")};
+    result.failure = {Reason::kNotYet, text(centre_.confirmations(), " of ", kConfirmations,
+                                            " pairs that agree on the runway")};
     return;
   }
   result.y = -seen->centre;
@@ -178,9 +178,8 @@ void RunwayTracker::findThresholdLine(double seconds, const cv::Mat& left, const
     threshold_.miss(seconds, kThresholdPatience);
     return;
   }
-  const Expected<Threshold> seen =
-      findThreshold(left, model_.left_mask, model_.rig, axes,
-                    {-result.y, result.y_variance, width_.value(), 0});
+  const Expected<Threshold> seen = findThreshold(left, model_.left_mask, model_.rig, axes,
+                                                 {-result.y, result.y_variance, width_.value(), 0});
   if (!seen) {
     result.threshold_failure = seen.error();
     threshold_.miss(seconds, kThresholdPatience);

@@ -8,9 +8,9 @@
 
 namespace uav_landing {
 
-/// Where the left camera is in the runway frame. Along and across the runway it is as the estimate says once that
-/// knows; until then the velocity is summed up from an arbitrary start: the point where the first path meets the
-/// ground becomes the origin.
+/// Where the left camera is in the runway frame. Along and across the runway it is as the estimate says once
+/// that knows; until then the velocity is summed up from an arbitrary start: the point where the first path
+/// meets the ground becomes the origin.
 class RunwayPath {
  public:
   struct Position {

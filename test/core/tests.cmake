@@ -20,6 +20,12 @@ uav_landing_add_gtest(motion_tracker_test test/core/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(ground_edges_test test/core/ground_edges_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(runway_edges_test test/core/runway_edges_test.cpp)
+uav_landing_add_gtest(runway_tracker_test test/core/runway_tracker_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(position_filter_test test/core/position_filter_test.cpp)
 uav_landing_add_gtest(approach_angle_stage_test test/core/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 # Height: reconstruction, filter, validity; parameter files.

@@ -134,6 +134,11 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   result.window = distinctMotion();
   fill(result.foe);
   fill(result.foe_covariance);
+  result.runway.failure = {Reason::kNotYet, "2 of 3"};
+  result.runway.threshold_failure = {Reason::kNoRunway, "no bars"};
+  for (double* number : {&result.runway.x, &result.runway.x_variance, &result.runway.y,
+                         &result.runway.y_variance, &result.runway.width, &result.runway.width_variance})
+    *number = next();
 
   const ApproachAngleResult back = toResult(toMessage(result, header(), 1));
 
@@ -151,6 +156,14 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   expectEqual(back.window, result.window);
   EXPECT_EQ(back.foe, result.foe);
   EXPECT_EQ(back.foe_covariance, result.foe_covariance);
+  EXPECT_EQ(back.runway.failure.message(), result.runway.failure.message());
+  EXPECT_EQ(back.runway.threshold_failure.message(), result.runway.threshold_failure.message());
+  EXPECT_EQ(back.runway.x, result.runway.x);
+  EXPECT_EQ(back.runway.x_variance, result.runway.x_variance);
+  EXPECT_EQ(back.runway.y, result.runway.y);
+  EXPECT_EQ(back.runway.y_variance, result.runway.y_variance);
+  EXPECT_EQ(back.runway.width, result.runway.width);
+  EXPECT_EQ(back.runway.width_variance, result.runway.width_variance);
 }
 
 TEST(Conversions, LandingEstimateComesBackBitForBit) {
@@ -159,13 +172,31 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   result.status = Status::kCoasting;
   result.failure = {Reason::kRejected, "raw height 3 m"};
   result.height_valid = true;
-  for (double* number :
-       {&result.height, &result.height_variance, &result.raw_height, &result.raw_height_variance,
-        &result.points_height, &result.vertical_speed, &result.vertical_speed_variance,
-        &result.approach_angle, &result.approach_angle_variance, &result.raw_approach_angle,
-        &result.raw_approach_angle_variance, &result.pitch, &result.pitch_variance, &result.roll,
-        &result.roll_variance, &result.yaw, &result.yaw_variance, &result.innovation,
-        &result.innovation_variance})
+  for (double* number : {&result.height,
+                         &result.height_variance,
+                         &result.raw_height,
+                         &result.raw_height_variance,
+                         &result.points_height,
+                         &result.vertical_speed,
+                         &result.vertical_speed_variance,
+                         &result.approach_angle,
+                         &result.approach_angle_variance,
+                         &result.raw_approach_angle,
+                         &result.raw_approach_angle_variance,
+                         &result.pitch,
+                         &result.pitch_variance,
+                         &result.roll,
+                         &result.roll_variance,
+                         &result.yaw,
+                         &result.yaw_variance,
+                         &result.innovation,
+                         &result.innovation_variance,
+                         &result.x,
+                         &result.x_variance,
+                         &result.y,
+                         &result.y_variance,
+                         &result.runway_width,
+                         &result.runway_width_variance})
     *number = next();
   fill(result.foe);
   fill(result.velocity);
@@ -186,7 +217,11 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_EQ(message.innovation_variance, result.innovation_variance);
   EXPECT_EQ(message.skew, 0.002);
   EXPECT_EQ(message.compute_ms, 3.5);
-  EXPECT_FALSE(message.x_known);
+  EXPECT_TRUE(message.x_known);
+  EXPECT_TRUE(message.y_known);
+  EXPECT_EQ(message.x, result.x);
+  EXPECT_EQ(message.y_variance, result.y_variance);
+  EXPECT_FALSE(toMessage(LandingResult(), header(), "base_link", 0, 0).x_known);
   auto comparable = [](LandingEstimate estimate) {
     estimate.height_protection_level = 0;  // NaN equals nothing
     return estimate;

@@ -76,6 +76,22 @@ TEST(RunwayPath, AStampThatGoesBackBeginsAnew) {
   EXPECT_EQ(path.track().size(), 1u);
 }
 
+TEST(RunwayPath, GoesWhereTheRunwayIsOnceItIsFoundAndTakesThePathBehindAlong) {
+  RunwayPath path;
+  path.update(flying(0));
+  path.update(flying(1));
+  LandingResult camera = flying(2);
+  camera.y = -7;
+  camera.y_variance = 0.25;
+  const auto place = path.update(camera);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->position.y(), -7);
+  EXPECT_EQ(place->variance.y(), 0.25);
+  EXPECT_NEAR(place->position.x(), -480, 1e-9) << "not known";
+  EXPECT_GE(place->variance.x(), 1e6);
+  EXPECT_NEAR(path.track()[0].y(), -9, 1e-9) << "2 s at 1 m/s to the right";
+}
+
 TEST(RunwayPath, TheTrackIsBounded) {
   RunwayPath path;
   for (int i = 0; i < 5000; ++i) {

@@ -1,0 +1,119 @@
+#include "uav_landing/ground_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::Pose;
+
+const Eigen::Matrix3d kExact = Eigen::Matrix3d::Identity() * 1e-12;
+
+Pose banked() {
+  Pose pose;
+  pose.position = {0, 1.5, 8};
+  pose.yaw = 7 * kDegree;
+  pose.pitch = -5 * kDegree;
+  pose.roll = -9 * kDegree;
+  return pose;
+}
+
+GroundAxes axesOf(const Pose& pose) {
+  // The direction of the vanishing point need not lie in the ground exactly.
+  const Eigen::Vector3d direction = (pose.seen(Eigen::Vector3d::UnitX()) + 0.01 * pose.down()).normalized();
+  return GroundAxes(pose.down(), kExact, direction, kExact);
+}
+
+/// Image of the ground line at y from x to x, drawn from near to far so that the left side is the brighter
+/// one when asked for. offset: of the camera to the right of the left one, m.
+LineSegment seen(const StereoRig& rig, const Pose& pose, double y, double from, double to, double offset,
+                 bool brighter_left) {
+  const auto pixel = [&](double x) -> Eigen::Vector2d {
+    const Eigen::Vector3d point =
+        pose.seen(Eigen::Vector3d(x, y, 0) - pose.position) - Eigen::Vector3d(offset, 0, 0);
+    const double cx = offset > 0 ? rig.cx_right : rig.cx;
+    return {rig.fx * point.x() / point.z() + cx, rig.fy * point.y() / point.z() + rig.cy};
+  };
+  const Eigen::Vector2d a = pixel(from), b = pixel(to), along = (b - a).normalized();
+  // Left of the direction of travel is -u when going up the picture.
+  Eigen::Vector2d normal(along.y(), -along.x());
+  if (!brighter_left) normal = -normal;
+  return {a, b, {normal.x(), normal.y(), -normal.dot(a)}, 0.1, 1e-3};
+}
+
+TEST(GroundAxes, MeetTheGroundWhereTheRayDoes) {
+  const Pose pose = banked();
+  const GroundAxes axes = axesOf(pose);
+  const Eigen::Vector2d met = axes.meet(pose.seen(Eigen::Vector3d(40, -3, 0) - pose.position));
+  EXPECT_NEAR(met.x(), 40.0 / 8, 1e-9);
+  EXPECT_NEAR(met.y(), (-3 - 1.5) / 8, 1e-9);
+}
+
+TEST(GroundAxes, ErrorsOfTheNormalMoveThePointAsTheyClaim) {
+  const Pose pose = banked();
+  const GroundAxes axes = axesOf(pose);
+  const Eigen::Vector3d ray = pose.seen(Eigen::Vector3d(40, -13, 0) - pose.position);
+  const Eigen::Vector2d met = axes.meet(ray);
+  for (const Eigen::Vector3d& tip : {axes.left, axes.forward}) {
+    const double size = 1e-4;
+    const GroundAxes tipped((axes.down + size * tip).normalized(), kExact, axes.forward, kExact);
+    const GroundAxes claimed(axes.down, size * size * tip * tip.transpose(), axes.forward,
+                             Eigen::Matrix3d::Zero());
+    const Eigen::Matrix<double, 2, 3> by_rotation = GroundAxes::meetByRotation(met);
+    const Eigen::Matrix2d covariance = by_rotation * claimed.covariance * by_rotation.transpose();
+    const Eigen::Vector2d moved = tipped.meet(ray) - met;
+    EXPECT_NEAR(std::sqrt(covariance(0, 0)), std::abs(moved.x()), 0.02 * moved.norm());
+    EXPECT_NEAR(std::sqrt(covariance(1, 1)), std::abs(moved.y()), 0.02 * moved.norm());
+  }
+}
+
+TEST(GroundEdges, HaveTheLateralPositionOfTheLineInBothViews) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const GroundAxes axes = axesOf(pose);
+  for (const double y : {-6.0, 0.4, 9.0}) {
+    for (const bool right : {false, true}) {
+      const LineSegment line = seen(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
+      const auto edges =
+          groundEdges(rig, axes, {line}, {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+      ASSERT_EQ(edges.size(), 1u);
+      EXPECT_NEAR(edges[0].lateral, (y - 1.5) / 8, 1e-6);
+      EXPECT_EQ(edges[0].brighter_left, y < 0);
+      EXPECT_NEAR(edges[0].extent, std::log(90.0 / 25), 0.02);
+    }
+  }
+}
+
+TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const auto edges = groundEdges(rig, axesOf(pose),
+                                 {seen(rig, pose, 2, 25, 40, 0, true), seen(rig, pose, 2, 50, 80, 0, true),
+                                  seen(rig, pose, 2, 25, 40, 0, false)},
+                                 {1, 1, 1}, rig.cx, 0);
+  ASSERT_EQ(edges.size(), 2u);
+  EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
+}
+
+TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const GroundAxes axes = axesOf(pose);
+  Pose from_above = pose;  // the edge of a roof 2 m up is seen as from a camera 2 m lower
+  from_above.position.z() -= 2;
+  const auto view = [&](bool right, const Pose& edge_pose) {
+    return groundEdges(rig, axes, {seen(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)}, {1},
+                       right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+  };
+  EXPECT_EQ(matchEdges(axes, view(false, pose), view(true, pose)).size(), 1u);
+  EXPECT_TRUE(matchEdges(axes, view(false, from_above), view(true, from_above)).empty());
+}
+
+}  // namespace
+}  // namespace uav_landing

@@ -1,0 +1,103 @@
+#include "uav_landing/position_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kHeight = 10;
+constexpr double kPeriod = 0.1;
+
+/// A level camera that flies 2 m forward and 0.1 m to the left in every step, over a runway 30 m wide.
+struct Flight {
+  PositionFilter filter;
+  int frame = 0;
+  double x = -100, y = 3;
+
+  /// x_seen, y_seen: whether the runway is seen. error: of y as seen, m.
+  LandingResult next(bool x_seen, bool y_seen, double error = 0) {
+    x += 2;
+    y += 0.1;
+    ApproachAngleResult approach;
+    approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+    approach.step.duration = kPeriod;
+    approach.step.rotation.setZero();
+    approach.step.translation_over_height = Eigen::Vector3d(-0.1, 0, 2) / kHeight;
+    approach.runway.failure = {Reason::kNoRunway, ""};
+    approach.runway.threshold_failure = {Reason::kNoRunway, ""};
+    if (y_seen) {
+      approach.runway.failure = {};
+      approach.runway.y = (y + error) / kHeight;
+      approach.runway.width = 30 / kHeight;
+      approach.runway.y_variance = approach.runway.width_variance = std::pow(0.1 / kHeight, 2);
+    }
+    if (x_seen) {
+      approach.runway.threshold_failure = {};
+      approach.runway.x = x / kHeight;
+      approach.runway.x_variance = std::pow(0.5 / kHeight, 2);
+    }
+    LandingResult result;
+    result.stamp = kPeriod * frame++;
+    filter.process(approach, Eigen::Vector3d::UnitY(), kHeight, 1e-4, result);
+    return result;
+  }
+};
+
+TEST(PositionFilter, KnowsNothingBeforeTheRunwayIsSeen) {
+  Flight flight;
+  const LandingResult result = flight.next(false, false);
+  EXPECT_TRUE(std::isnan(result.x) && std::isnan(result.y) && std::isnan(result.runway_width));
+}
+
+TEST(PositionFilter, ScalesWhatIsSeenByTheHeight) {
+  Flight flight;
+  const LandingResult result = flight.next(true, true);
+  EXPECT_NEAR(result.x, flight.x, 1e-9);
+  EXPECT_NEAR(result.y, flight.y, 1e-9);
+  EXPECT_NEAR(result.runway_width, 30, 1e-9);
+  // The height's 0.1 % makes 0.1 % of the distance besides.
+  EXPECT_NEAR(result.x_variance, 0.25 + std::pow(98 * 0.001, 2), 1e-6);
+}
+
+TEST(PositionFilter, TheThresholdIsNotKnownFromTheEdges) {
+  Flight flight;
+  const LandingResult result = flight.next(false, true);
+  EXPECT_FALSE(std::isnan(result.y));
+  EXPECT_TRUE(std::isnan(result.x));
+}
+
+TEST(PositionFilter, FollowsTheMotionWithGrowingVarianceWhileNothingIsSeen) {
+  Flight flight;
+  double variance = flight.next(true, true).y_variance;
+  for (int i = 0; i < 20; ++i) {
+    const LandingResult result = flight.next(false, false);
+    EXPECT_NEAR(result.x, flight.x, 1e-9);
+    EXPECT_NEAR(result.y, flight.y, 1e-9);
+    EXPECT_GT(result.y_variance, variance);
+    variance = result.y_variance;
+  }
+}
+
+TEST(PositionFilter, IsGivenUpWhenItSaysLittle) {
+  Flight flight;
+  flight.next(true, true);
+  int frames = 0;
+  while (frames < 10000 && !std::isnan(flight.next(false, false).y)) ++frames;
+  EXPECT_GT(frames, 50) << "100 m";
+  EXPECT_LT(frames, 2000) << "4 km";
+}
+
+TEST(PositionFilter, LeavesOutOneOutlierButBelievesASecondOfThem) {
+  Flight flight;
+  for (int i = 0; i < 5; ++i) flight.next(true, true);
+  const LandingResult outlier = flight.next(true, true, 4);
+  EXPECT_NEAR(outlier.y, flight.y, 0.05);
+  for (int i = 0; i < 12; ++i) flight.next(true, true, 4);
+  const LandingResult believed = flight.next(true, true, 4);
+  EXPECT_NEAR(believed.y, flight.y + 4, 0.05);
+}
+
+}  // namespace
+}  // namespace uav_landing

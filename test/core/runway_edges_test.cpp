@@ -1,0 +1,102 @@
+#include "uav_landing/runway_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+/// A level camera that knows its attitude to 1 sigma of so much, rad.
+GroundAxes level(double stddev) {
+  const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * stddev * stddev;
+  return GroundAxes(Eigen::Vector3d::UnitY(), covariance, Eigen::Vector3d::UnitZ(), covariance);
+}
+
+GroundEdge edge(double lateral, bool brighter_left, double extent = 1.5) {
+  GroundEdge made;
+  made.lateral = lateral;
+  made.variance = 1e-6;
+  made.by_rotation = GroundAxes::meetByRotation({4, lateral}).row(1).transpose();
+  made.brighter_left = brighter_left;
+  made.near = 2;
+  made.far = 2 * std::exp(extent);
+  made.extent = extent;
+  return made;
+}
+
+/// Both edges of a bright stripe along the runway.
+void addStripe(std::vector<GroundEdge>& edges, double middle, double width, double extent = 1.5) {
+  edges.push_back(edge(middle + width / 2, false, extent));
+  edges.push_back(edge(middle - width / 2, true, extent));
+}
+
+std::vector<GroundEdge> runway(double centre) {
+  std::vector<GroundEdge> edges;
+  for (const int side : {-1, 1}) addStripe(edges, centre + side * 1.1, 0.05);
+  addStripe(edges, centre, 0.04, 0.6);
+  return edges;
+}
+
+TEST(RunwayEdges, TheCentreIsThatOfTheSymmetry) {
+  for (const double centre : {0.0, -0.8, 1.7}) {
+    const auto found = findRunwayEdges(level(1e-4), runway(centre), 0, std::nullopt);
+    ASSERT_TRUE(found) << found.error().message();
+    EXPECT_NEAR(found->centre, centre, 1e-9);
+    EXPECT_NEAR(found->width, 2.25, 1e-9);
+    EXPECT_LT(found->variance, 1e-4);
+  }
+}
+
+TEST(RunwayEdges, EdgesOfOtherThingsDoNotMoveIt) {
+  std::vector<GroundEdge> edges = runway(0.3);
+  edges.push_back(edge(4.1, true, 1.2));
+  edges.push_back(edge(-2.9, true, 0.9));
+  edges.push_back(edge(0.77, false, 0.4));
+  const auto found = findRunwayEdges(level(1e-4), edges, 0, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->centre, 0.3, 1e-6);
+}
+
+TEST(RunwayEdges, OneStripeAloneIsNoRunway) {
+  std::vector<GroundEdge> edges;
+  addStripe(edges, 0.4, 0.05);
+  EXPECT_EQ(findRunwayEdges(level(1e-4), edges, 0, std::nullopt).error().reason, Reason::kNoRunway);
+}
+
+TEST(RunwayEdges, OnePairOfTheKnownWidthIsTheRunway) {
+  const std::vector<GroundEdge> edges{edge(1.5, false), edge(-0.5, true)};
+  const auto found = findRunwayEdges(level(1e-4), edges, 2.0, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->centre, 0.5, 1e-9);
+  EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 3.0, std::nullopt)) << "of another width";
+}
+
+TEST(RunwayEdges, TwoRunwaysSideBySideAreNotDecided) {
+  std::vector<GroundEdge> edges = runway(-2);
+  for (const GroundEdge& other : runway(2)) edges.push_back(other);
+  // The symmetry of both together is that of neither.
+  const auto found = findRunwayEdges(level(1e-4), edges, 2.25, std::nullopt);
+  EXPECT_EQ(found ? Reason::kNone : found.error().reason, Reason::kNoRunway);
+}
+
+TEST(RunwayEdges, TheExpectedOneOfTwoRunwaysIsTaken) {
+  std::vector<GroundEdge> edges = runway(-2);
+  for (const GroundEdge& other : runway(2)) edges.push_back(other);
+  const auto found = findRunwayEdges(level(1e-4), edges, 0, ExpectedCentre{1.98, 0.1});
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->centre, 2, 1e-6);
+}
+
+TEST(RunwayEdges, AnUncertainRollMakesWideEdgesUncertain) {
+  const auto sure = findRunwayEdges(level(1e-5), runway(0), 0, std::nullopt);
+  const auto unsure = findRunwayEdges(level(1e-2), runway(0), 0, std::nullopt);
+  ASSERT_TRUE(sure && unsure);
+  // A roll by 0.01 rad moves the point below the camera's centre line by 0.01 of the height, and so does a
+  // yaw at 4 heights by 0.04: together at least 0.04.
+  EXPECT_GE(std::sqrt(unsure->variance), 0.04);
+  EXPECT_LT(std::sqrt(sure->variance), 0.005);
+}
+
+}  // namespace
+}  // namespace uav_landing

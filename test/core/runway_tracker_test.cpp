@@ -1,0 +1,200 @@
+#include "uav_landing/runway_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "support/ground_renderer.h"
+#include "uav_landing/runway_threshold.h"
+
+namespace uav_landing {
+namespace {
+
+using test::GroundRenderer;
+using test::kDegree;
+using test::Movement;
+using test::Pose;
+
+/// Two painted lines at y = +-1.1 m, seen from left of their middle on a path that goes down and to the
+/// right.
+struct Approach {
+  StereoRig rig = test::makeRig(480, 360, 0.65);
+  RigModel model = test::makeModel(rig);
+  GroundRenderer ground{61};
+  ApproachAngleParameters parameters;
+  RunwayTracker tracker{model, parameters};
+  int frame = 0;
+  std::optional<Pose> last;
+
+  Approach() {
+    ground.contrast = 2;
+    ground.line_offset = 1.1;
+    ground.line_width = 0.12;
+  }
+  Pose pose() const {
+    Pose now;
+    now.position = {0.1 * frame, 0.4 - 0.01 * frame, 1.7 - 0.01 * frame};
+    now.pitch = -6 * kDegree;
+    now.roll = (3 - 0.5 * frame) * kDegree;
+    now.yaw = (-4 + 0.3 * frame) * kDegree;
+    return now;
+  }
+  /// One pair. y_shift: by which the world was moved to the left without the motion knowing.
+  ApproachAngleResult::Runway next(double y_shift = 0, bool blank = false) {
+    const Pose now = pose();
+    Pose drawn = now;
+    drawn.position.y() -= y_shift;
+    cv::Mat left = ground.left(rig, drawn), right = ground.right(rig, drawn);
+    if (blank) {
+      left.setTo(100);
+      right.setTo(100);
+    }
+    Timings timings;
+    const Eigen::Vector3d n = now.down();
+    const RunwayDirection direction =
+        findRunwayDirection(rig, left, right, model.left_mask, model.right_mask, &n, parameters, timings);
+    ApproachAngleResult approach;
+    approach.left = direction.left;
+    approach.right = direction.right;
+    approach.n = n;
+    approach.n_covariance = Eigen::Matrix3d::Identity() * std::pow(0.02 * kDegree, 2);
+    approach.step.failure = {Reason::kNotYet, ""};
+    if (last) {
+      approach.step.failure = {};
+      approach.step.translation_over_height = Movement(*last, now).t / now.height();
+      approach.step.covariance = Matrix6d::Identity() * 1e-6;
+    }
+    last = now;
+    return tracker.process(0.05 * frame++, left, approach, direction, now.height());
+  }
+};
+
+TEST(RunwayTracker, TellsThePositionAfterThreePairsThatAgree) {
+  Approach approach;
+  EXPECT_EQ(approach.next().failure.reason, Reason::kNotYet);
+  EXPECT_EQ(approach.next().failure.reason, Reason::kNotYet);
+  for (int i = 0; i < 4; ++i) {
+    const Pose pose = approach.pose();
+    const auto runway = approach.next();
+    ASSERT_FALSE(runway.failure) << runway.failure.message();
+    const double error = runway.y * pose.height() - pose.position.y();
+    EXPECT_LT(std::abs(error), 0.02);
+    EXPECT_LT(std::abs(error), 3 * std::sqrt(runway.y_variance) * pose.height());
+    EXPECT_NEAR(runway.width * pose.height(), 2 * 1.1 + 0.12, 0.05);
+    EXPECT_TRUE(runway.threshold_failure) << "there is none";
+  }
+}
+
+TEST(RunwayTracker, DoesNotBelieveARunwayThatJumps) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  const auto jumped = approach.next(0.5);
+  EXPECT_TRUE(jumped.failure);
+  EXPECT_TRUE(std::isnan(jumped.y));
+  EXPECT_FALSE(approach.next().failure) << "back at its place";
+}
+
+TEST(RunwayTracker, TakesARunwayThatStaysElsewhereAfterASecond) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  int unknown = 0;
+  while (unknown < 40 && approach.next(0.5).failure) ++unknown;
+  EXPECT_GE(unknown, 20) << "1 s of pairs every 50 ms";
+  EXPECT_LT(unknown, 30);
+}
+
+TEST(RunwayTracker, FindsItAgainAtOnceAfterAPairWithoutEdges) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  EXPECT_TRUE(approach.next(0, true).failure);
+  EXPECT_FALSE(approach.next().failure);
+}
+
+TEST(RunwayTracker, ForgetsOnReset) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  approach.tracker.reset();
+  EXPECT_EQ(approach.next().failure.reason, Reason::kNotYet);
+}
+
+/// Bars across y = +-1 m from x = 6 m on, drawn by hand so that they are symmetric, with a line before them.
+struct Bars {
+  StereoRig rig = test::makeRig(640, 480, 0.65);
+  RigModel model = test::makeModel(rig);
+  Pose pose;
+  double line_from = 5.6, line_to = 5.7;
+  bool sparse = false;
+
+  Bars() {
+    pose.position = {1.5, 0.1, 1.5};
+    pose.pitch = -8 * kDegree;
+    pose.roll = 2 * kDegree;
+    pose.yaw = 3 * kDegree;
+  }
+  void fill(cv::Mat& image, double x0, double x1, double y0, double y1) const {
+    constexpr double kScale = 16;
+    std::vector<cv::Point> corners;
+    for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) {
+      const Eigen::Vector2d pixel = rig.project(pose.seen(Eigen::Vector3d(x, y, 0) - pose.position));
+      corners.emplace_back(cvRound(pixel.x() * kScale), cvRound(pixel.y() * kScale));
+    }
+    cv::fillConvexPoly(image, corners, 200, cv::LINE_AA, 4);
+  }
+  Expected<Threshold> find() const {
+    cv::Mat image(rig.size, CV_8U, cv::Scalar(70));
+    if (line_to > line_from) fill(image, line_from, line_to, -1, 1);
+    for (double y = 0.08; y < 0.95; y += 0.16) {
+      if (sparse && y < 0.6) continue;
+      fill(image, 6, 7.5, y, y + 0.08);
+      fill(image, 6, 7.5, -y - 0.08, -y);
+    }
+    const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * std::pow(0.02 * kDegree, 2);
+    const GroundAxes axes(pose.down(), covariance, pose.seen(Eigen::Vector3d::UnitX()), covariance);
+    const double h = pose.height();
+    return findThreshold(image, model.left_mask, rig, axes, {-0.1 / h, 1e-6, 2 / h, 1e-6});
+  }
+};
+
+TEST(RunwayThreshold, IsTheNearEdgeOfTheLineBeforeTheBars) {
+  const Bars bars;
+  const auto found = bars.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->distance * 1.5, 5.6 - 1.5, 0.04);
+  EXPECT_LT(std::abs(found->distance * 1.5 - (5.6 - 1.5)), 3 * 1.5 * std::sqrt(found->variance));
+}
+
+TEST(RunwayThreshold, IsWhereTheBarsBeginWhenThereIsNoLine) {
+  Bars bars;
+  bars.line_to = bars.line_from;
+  const auto found = bars.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->distance * 1.5, 6 - 1.5, 0.04);
+}
+
+TEST(RunwayThreshold, MarksOfTheTouchdownZoneAreNoThreshold) {
+  Bars bars;
+  bars.sparse = true;
+  EXPECT_EQ(bars.find().error().reason, Reason::kNoRunway);
+}
+
+TEST(RunwayThreshold, IsNotToldWhenWhatLiesBeforeTheBarsIsOutOfThePicture) {
+  Bars bars;
+  bars.pose.position.x() = 3.6;
+  EXPECT_FALSE(bars.find());
+}
+
+TEST(RunwayThreshold, TextureIsNone) {
+  const Bars bars;
+  GroundRenderer grass(5);
+  grass.contrast = 25;
+  grass.grain = 0.05;
+  const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * 1e-8;
+  const GroundAxes axes(bars.pose.down(), covariance, bars.pose.seen(Eigen::Vector3d::UnitX()), covariance);
+  EXPECT_FALSE(findThreshold(grass.left(bars.rig, bars.pose), bars.model.left_mask, bars.rig, axes,
+                             {0, 1e-6, 2 / 1.5, 1e-6}));
+}
+
+}  // namespace
+}  // namespace uav_landing
