@@ -67,13 +67,13 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
   const auto metric = [&](double ratio, double variance) {
     return variance * height * height + ratio * ratio * height_variance;
   };
-  if (std::isfinite(height) && !seen.failure && std::isfinite(seen.y)) {
+  if (std::isfinite(height) && !seen.failure && seen.y_variance > 0) {
     if (std::isfinite(seen.width)) {
       result.runway_width = width_ = seen.width * height;
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
     y_.update(seen.y * height, metric(seen.y, seen.y_variance), seconds);
-    if (!seen.threshold_failure && std::isfinite(seen.x))
+    if (!seen.threshold_failure && seen.x_variance > 0)
       x_.update(seen.x * height, metric(seen.x, seen.x_variance), seconds);
   }
   x_.forgetAbove(kWorthlessX * width_);
