@@ -4,6 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "uav_landing/window_template.h"
+
 namespace uav_landing {
 
 /// Gain and offset free correlation of one window with a neighbourhood of another image. The window's pixel
@@ -23,15 +25,14 @@ class PatchSearch {
   Best run(int u, int v, const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps);
 
  private:
-  bool loadTemplate(int u, int v);
   bool sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps);
   void score(int steps);
 
   const cv::Mat& reference_;
   const cv::Mat& other_;
   int radius_;
-  double template_energy_ = 0;
-  std::vector<float> template_, area_, scores_, cross_;
+  WindowTemplate template_;
+  std::vector<float> area_, scores_, cross_;
   std::vector<double> sums_, squares_;
 };
 

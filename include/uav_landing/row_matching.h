@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uav_landing/parameters.h"
+#include "uav_landing/window_template.h"
 
 namespace uav_landing {
 
@@ -38,7 +39,6 @@ class RowSearch {
   std::vector<RowCandidate> peaks(double min_score, int count) const;
 
  private:
-  bool loadTemplate(int u, int v);
   void scoreAll();
   double similarity(double cross, double sum, double squares) const;
   RowCandidate interpolated(int index) const;
@@ -49,9 +49,8 @@ class RowSearch {
   MatchingCost cost_;
   int steps_ = 0;
   double centre_ = 0, scale_ = 1;
-  double template_energy_ = 0, template_mean_ = 0;
-  std::vector<float> template_;  // minus its mean for ZNCC
-  std::vector<float> strip_;     // resampled rows of the other image, (2 steps + size) wide
+  WindowTemplate template_;
+  std::vector<float> strip_;  // resampled rows of the other image, (2 steps + size) wide
   std::vector<float> cross_, column_sums_, column_squares_;
   std::vector<float> scores_;
 };

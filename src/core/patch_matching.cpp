@@ -10,8 +10,6 @@
 namespace uav_landing {
 namespace {
 
-// Grey levels of contrast (RMS) below which a window holds nothing to match.
-constexpr double kMinContrast = 1.0;
 // Values behind each resampled row that may be read but do not count.
 constexpr int kPadding = 3;
 
@@ -90,28 +88,7 @@ bool windowInside(const cv::Mat& image, int u, int v, int radius) {
 }  // namespace
 
 PatchSearch::PatchSearch(const cv::Mat& reference, const cv::Mat& other, int radius)
-    : reference_(reference), other_(other), radius_(radius) {
-  const size_t size = 2 * static_cast<size_t>(radius) + 1;
-  template_.resize(size * size);
-}
-
-bool PatchSearch::loadTemplate(int u, int v) {
-  if (!windowInside(reference_, u, v, radius_)) return false;
-  const int size = 2 * radius_ + 1;
-  double sum = 0, squares = 0;
-  for (int dy = 0; dy < size; ++dy) {
-    const float* row = reference_.ptr<float>(v - radius_ + dy) + u - radius_;
-    for (int dx = 0; dx < size; ++dx) {
-      template_[static_cast<size_t>(dy) * size + dx] = row[dx];
-      sum += row[dx];
-      squares += double(row[dx]) * row[dx];
-    }
-  }
-  const double count = static_cast<double>(template_.size()), mean = sum / count;
-  template_energy_ = squares - sum * mean;
-  for (float& value : template_) value -= static_cast<float>(mean);
-  return template_energy_ > kMinContrast * kMinContrast * count;
-}
+    : reference_(reference), other_(other), radius_(radius) {}
 
 bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps) {
   const int reach = radius_ + steps, width = 2 * reach + 1;
@@ -146,7 +123,7 @@ void PatchSearch::score(int steps) {
         sums_[i] += row[i];
         squares_[i] += double(row[i]) * row[i];
       }
-      const float* wanted = template_.data() + static_cast<size_t>(dy) * size;
+      const float* wanted = template_.values.data() + static_cast<size_t>(dy) * size;
       for (int dx = 0; dx < size; ++dx) {
         const float weight = wanted[dx];
         const float* values = row + dx;
@@ -161,9 +138,9 @@ void PatchSearch::score(int steps) {
         squares += squares_[i + dx];
       }
       const double energy = squares - sum * sum / (double(size) * size);
-      if (energy < 1e-3 * template_energy_) continue;
+      if (energy < 1e-3 * template_.energy) continue;
       scores_[static_cast<size_t>(j) * count + i] =
-          static_cast<float>(cross_[i] / std::sqrt(energy * template_energy_));
+          static_cast<float>(cross_[i] / std::sqrt(energy * template_.energy));
     }
   }
 }
@@ -171,7 +148,7 @@ void PatchSearch::score(int steps) {
 PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp,
                                    int steps) {
   Best best;
-  if (!loadTemplate(u, v) || !sample(centre, warp, steps)) return best;
+  if (!template_.load(reference_, u, v, radius_) || !sample(centre, warp, steps)) return best;
   score(steps);
   const int count = 2 * steps + 1;
   const int index = static_cast<int>(std::max_element(scores_.begin(), scores_.end()) - scores_.begin());

@@ -13,41 +13,15 @@ namespace {
 
 constexpr float kNoScore = -1.f;
 constexpr int kPadding = 3;  // values behind each resampled row that may be read but do not count
-// Grey levels of contrast (RMS) below which a window holds nothing to match.
-constexpr double kMinContrast = 1.0;
 
 }  // namespace
 
 RowSearch::RowSearch(const cv::Mat& reference, const cv::Mat& other, int radius, MatchingCost cost)
-    : reference_(reference), other_(other), radius_(radius), cost_(cost) {
-  const int size = 2 * radius + 1;
-  template_.resize(static_cast<size_t>(size) * size);
-}
-
-bool RowSearch::loadTemplate(int u, int v) {
-  if (u < radius_ || v < radius_ || u + radius_ >= reference_.cols || v + radius_ >= reference_.rows) {
-    return false;
-  }
-  const int size = 2 * radius_ + 1;
-  double sum = 0, squares = 0;
-  for (int dy = 0; dy < size; ++dy) {
-    const float* row = reference_.ptr<float>(v - radius_ + dy) + u - radius_;
-    for (int dx = 0; dx < size; ++dx) {
-      template_[static_cast<size_t>(dy) * size + dx] = row[dx];
-      sum += row[dx];
-      squares += double(row[dx]) * row[dx];
-    }
-  }
-  const double count = double(size) * size;
-  template_mean_ = sum / count;
-  template_energy_ = squares - sum * template_mean_;
-  for (float& value : template_) value -= static_cast<float>(template_mean_);
-  return template_energy_ > kMinContrast * kMinContrast * count;
-}
+    : reference_(reference), other_(other), radius_(radius), cost_(cost) {}
 
 bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp) {
   scores_.clear();
-  if (!loadTemplate(u, v)) return false;
+  if (!template_.load(reference_, u, v, radius_)) return false;
   const int size = 2 * radius_ + 1, width = size + 2 * steps, stride = width + kPadding;
   steps_ = steps;
   centre_ = centre;
@@ -72,7 +46,7 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
 void RowSearch::scoreAll() {
   const int size = 2 * radius_ + 1, count = 2 * steps_ + 1, width = size + 2 * steps_;
   const int padded = (count + kPadding) / 4 * 4;
-  const float mean = static_cast<float>(template_mean_);
+  const float mean = static_cast<float>(template_.mean);
   cross_.assign(padded, 0.f);
   column_sums_.assign(width, 0.f);
   column_squares_.assign(width, 0.f);
@@ -83,7 +57,7 @@ void RowSearch::scoreAll() {
       column_sums_[i] += row[i];
       column_squares_[i] += row[i] * row[i];
     }
-    const float* wanted = template_.data() + static_cast<size_t>(dy) * size;
+    const float* wanted = template_.values.data() + static_cast<size_t>(dy) * size;
     for (int dx = 0; dx < size; ++dx) {
       const float weight = wanted[dx];
       const float* values = row + dx;
@@ -106,11 +80,11 @@ double RowSearch::similarity(double cross, double sum, double squares) const {
   if (std::isnan(sum)) return kNoScore;
   if (cost_ == MatchingCost::kSsd) {
     // Sum of squared differences over twice the template's own energy: 1 when equal, 0 when unrelated.
-    return 1.0 - (template_energy_ - 2.0 * cross + squares) / (2.0 * template_energy_);
+    return 1.0 - (template_.energy - 2.0 * cross + squares) / (2.0 * template_.energy);
   }
-  const double energy = squares - sum * sum / static_cast<double>(template_.size());
-  if (energy < 1e-3 * template_energy_) return kNoScore;
-  return cross / std::sqrt(energy * template_energy_);
+  const double energy = squares - sum * sum / static_cast<double>(template_.values.size());
+  if (energy < 1e-3 * template_.energy) return kNoScore;
+  return cross / std::sqrt(energy * template_.energy);
 }
 
 RowCandidate RowSearch::interpolated(int index) const {

@@ -11,6 +11,8 @@
 #include <numeric>
 #include <random>
 
+#include "vanishing_candidate.h"
+
 namespace uav_landing {
 
 namespace {
@@ -24,10 +26,6 @@ constexpr double kChance = 1;                    // accepted number of such coin
 constexpr double kStraightness = 1.0;            // px by which an edge may differ from a straight line
 constexpr double kRunwayShare = 0.25;            // of the lines, that are along the runway
 constexpr double kLikely = 0.05;                 // chance from which on a line that passes says nothing
-constexpr double kClearance = 4;                 // px between a line's end and the point where it vanishes
-constexpr double kMaxHorizonSlope = 0.577;       // 30 degrees of roll
-constexpr double kViewsDiffer = 1 * kDegree;     // with kViewsGate: left and right saw different things
-constexpr double kViewsGate = 25;                // squared, 2 degrees of freedom
 
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
@@ -36,56 +34,6 @@ Failure noVanishingPoint(const char* format, double a, double b = 0) {
   std::snprintf(text, sizeof(text), format, a, b);
   return {Reason::kNoVanishingPoint, text};
 }
-
-/// Two unit vectors that span the plane across a unit direction.
-Matrix32 tangents(const Eigen::Vector3d& direction) {
-  Matrix32 B;
-  B.col(0) = direction.unitOrthogonal();
-  B.col(1) = direction.cross(B.col(0));
-  return B;
-}
-
-/// A line as the consensus and the fit need it, pixels.
-struct Candidate {
-  Eigen::Vector3d line;           // as in LineSegment
-  Eigen::Vector2d middle, along;  // along: unit
-  Eigen::Vector2d top;            // the end that is higher in the image
-  double half;                    // length
-  double offset_variance, angle_variance;
-
-  explicit Candidate(const LineSegment& s)
-      : line(s.line),
-        middle(s.middle()),
-        along((s.b - s.a).normalized()),
-        top(s.a.y() < s.b.y() ? s.a : s.b),
-        half(0.5 * s.length()),
-        offset_variance(s.offset_stddev * s.offset_stddev),
-        angle_variance(s.angle_stddev * s.angle_stddev) {}
-
-  /// From the middle towards the homogeneous point V, scaled by V.z: finite however far V is.
-  Eigen::Vector2d towards(const Eigen::Vector3d& V) const { return V.head<2>() - V.z() * middle; }
-
-  /// Square of the distance by which the segment's ends miss the line from its middle to V, px^2; infinite
-  /// when V cannot be where this line vanishes: a line on the ground ends below the horizon and does not
-  /// reach V.
-  double endMiss2(const Eigen::Vector3d& V) const {
-    const Eigen::Vector2d e = towards(V);
-    const double ahead = std::abs(along.x() * e.x() + along.y() * e.y());
-    if (ahead < (half + kClearance) * V.z()) return std::numeric_limits<double>::infinity();
-    const double across = line.x() * e.x() + line.y() * e.y();
-    return half * half * across * across / (across * across + ahead * ahead);
-  }
-  /// Whether part of the line lies above any horizon through V that is not steeper than kMaxHorizonSlope.
-  bool isAboveHorizon(const Eigen::Vector3d& V) const {
-    const Eigen::Vector2d e = V.head<2>() - V.z() * top;
-    return e.y() > kMaxHorizonSlope * std::abs(e.x());
-  }
-  /// Variance of line.V when the line's offset and angle vary as they do.
-  double residualVariance(const Eigen::Vector3d& V) const {
-    return offset_variance * V.z() * V.z() + angle_variance * std::pow(along.dot(towards(V)), 2);
-  }
-  double endVariance() const { return offset_variance + half * half * angle_variance; }
-};
 
 class Search {
  public:
@@ -133,7 +81,7 @@ class Search {
   /// Probability that a line of random direction on the ground, seen where this one is, passes through V
   /// within the tolerance at its ends. Texture seen at a grazing angle looks like lines along the horizon, so
   /// these pass near every point of it and say next to nothing; lines that rise towards it say much.
-  double chance(const Candidate& line, const Eigen::Vector3d& V, double tolerance) const {
+  double chance(const VanishingCandidate& line, const Eigen::Vector3d& V, double tolerance) const {
     const double miss = tolerance * line.towards(V).norm() / (line.half * V.z());
     const double sine = std::abs(line.along.x() * horizon_.y() - line.along.y() * horizon_.x());
     // Along the horizon a pixel is less of an angle the farther it is to the side.
@@ -144,7 +92,7 @@ class Search {
 
   /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
   /// perfectly straight.
-  double toleranceOf(const Candidate& line) const {
+  double toleranceOf(const VanishingCandidate& line) const {
     return std::min(std::max(kStraightness, kGate * std::sqrt(line.endVariance())),
                     parameters_.ransac_tolerance);
   }
@@ -161,7 +109,7 @@ class Search {
     std::vector<double> agreeing(lines_.size(), 0.0);  // by edge
     double impossible = 0;
     for (size_t i = 0; i < lines_.size(); ++i) {
-      const Candidate& line = lines_[i];
+      const VanishingCandidate& line = lines_[i];
       if (line.isAboveHorizon(V)) {
         impossible += std::log1p(line.half / parameters_.ransac_tolerance);
         continue;
@@ -217,7 +165,7 @@ class Search {
     }
     std::vector<double> cumulative(lines_.size());
     std::transform(lines_.begin(), lines_.end(), cumulative.begin(),
-                   [](const Candidate& c) { return c.half; });
+                   [](const VanishingCandidate& c) { return c.half; });
     std::partial_sum(cumulative.begin(), cumulative.end(), cumulative.begin());
     // The generator is the same everywhere; the standard library's distributions are not.
     std::mt19937 random(1);
@@ -386,7 +334,7 @@ class Search {
     return point;
   }
 
-  std::vector<Candidate> lines_;
+  std::vector<VanishingCandidate> lines_;
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
@@ -395,65 +343,12 @@ class Search {
   double meetings_ = 0;       // pairs of lines that meet along the runway
 };
 
-Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
-  const Matrix32 B = tangents(left.direction);
-  const Eigen::Vector2d difference = B.transpose() * (right.direction - left.direction);
-  const Eigen::Matrix2d Cl = B.transpose() * left.covariance * B, Cr = B.transpose() * right.covariance * B;
-  const Eigen::Matrix2d Sinv = (Cl + Cr).inverse();
-  const double nis = difference.dot(Sinv * difference);
-  if (nis > kViewsGate && difference.norm() > kViewsDiffer)
-    return tl::unexpected(noVanishingPoint("left and right differ by %.1f deg", difference.norm() / kDegree));
-  const Eigen::Matrix2d gain = Cl * Sinv;
-  VanishingPoint mean;
-  mean.direction = (left.direction + B * (gain * difference)).normalized();
-  // Views that differ by more than they claim have claimed too much.
-  const Matrix32 T = tangents(mean.direction);
-  const Eigen::Matrix2d covariance = std::max(1.0, nis / 2) * gain * Cr;
-  const Eigen::Matrix2d turn = T.transpose() * B;
-  mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
-  mean.inlier_count = left.inlier_count + right.inlier_count;
-  return mean;
-}
-
 }  // namespace
 
 Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
                                             const ApproachAngleParameters& parameters,
                                             const Eigen::Vector3d* prior_normal) {
   return Search(lines, K, parameters, prior_normal).run();
-}
-
-Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& left,
-                                                const Expected<VanishingPoint>& right,
-                                                double runway_straightness) {
-  if (!left && !right)
-    return tl::unexpected(
-        Failure{left.error().reason, "left: " + left.error().detail + "; right: " + right.error().detail});
-  Expected<VanishingPoint> mean = left && right ? fuseViews(*left, *right) : left ? left : right;
-  if (!mean) return mean;
-  mean->inliers.clear();
-  const Eigen::Vector3d& p = mean->direction;
-  mean->covariance +=
-      runway_straightness * runway_straightness * (Eigen::Matrix3d::Identity() - p * p.transpose());
-  return mean;
-}
-
-GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev) {
-  // The horizon's direction w = (cos, -sin, 0) lies in the ground as p does, so n = p x w, and rollOf(n) is
-  // the roll exactly.
-  const Eigen::Vector3d& p = point.direction;
-  const Eigen::Vector3d w(std::cos(roll), -std::sin(roll), 0), dw(-std::sin(roll), -std::cos(roll), 0);
-  const Eigen::Vector3d m = p.cross(w);
-  GroundNormal normal;
-  normal.n = m.normalized();
-  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - normal.n * normal.n.transpose()) / m.norm();
-  Eigen::Matrix3d minus_w_cross;
-  minus_w_cross << 0, w.z(), -w.y(), -w.z(), 0, w.x(), w.y(), -w.x(), 0;
-  const Eigen::Matrix3d from_point = across * minus_w_cross;
-  const Eigen::Vector3d from_roll = across * p.cross(dw);
-  normal.covariance = from_point * point.covariance * from_point.transpose() +
-                      roll_stddev * roll_stddev * from_roll * from_roll.transpose();
-  return normal;
 }
 
 }  // namespace uav_landing

@@ -1,0 +1,26 @@
+#include "uav_landing/window_template.h"
+
+namespace uav_landing {
+
+bool WindowTemplate::load(const cv::Mat& image, int u, int v, int radius) {
+  constexpr double kMinContrast = 1.0;
+  if (u < radius || v < radius || u + radius >= image.cols || v + radius >= image.rows) return false;
+  const int size = 2 * radius + 1;
+  values.resize(static_cast<size_t>(size) * size);
+  double sum = 0, squares = 0;
+  for (int dy = 0; dy < size; ++dy) {
+    const float* row = image.ptr<float>(v - radius + dy) + u - radius;
+    for (int dx = 0; dx < size; ++dx) {
+      values[static_cast<size_t>(dy) * size + dx] = row[dx];
+      sum += row[dx];
+      squares += double(row[dx]) * row[dx];
+    }
+  }
+  const double count = static_cast<double>(values.size());
+  mean = sum / count;
+  energy = squares - sum * mean;
+  for (float& value : values) value -= static_cast<float>(mean);
+  return energy > kMinContrast * kMinContrast * count;
+}
+
+}  // namespace uav_landing
