@@ -76,6 +76,9 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
   loaded.visit(loader);
   const Failure failure = loader.finish();
   if (failure) return failure;
+  if (!loaded.config_file.empty()) {
+    if (const auto file = loadParameterFile(loaded.config_file); !file) return file.error();
+  }
   node_parameters = loaded;
   return loadSection(all, section, parameters);
 }

@@ -16,6 +16,7 @@ struct NodeParameters {
   std::string image_transport = "raw";
   bool drop_frames = true;
   int backlog = 1000;
+  std::string config_file;
   std::string base_frame;
   std::string runway_frame = "runway";
   bool publish_tf = true;
@@ -34,6 +35,10 @@ struct NodeParameters {
            "(rectify)");
     v.number("backlog", backlog, 1, 100000, "pairs", "most that wait when drop_frames is false (rectify)");
     v.text(
+        "config_file", config_file,
+        "file that the launch file loaded the parameters from; it is checked as a whole, because a section "
+        "that no nodelet has would go unnoticed");
+    v.text(
         "base_frame", base_frame,
         "frame of the aircraft that is estimated; empty: base_link if static tf knows it, else the rectified "
         "left camera (kalman_height)");
@@ -49,7 +54,8 @@ struct NodeParameters {
 };
 
 /// Reads a nodelet's private parameters: the keys of NodeParameters, and the section's own (see
-/// uav_landing/parameters.h). Defaults stay where nothing is given. The failure names the parameter.
+/// uav_landing/parameters.h). Defaults stay where nothing is given. The failure names the parameter,
+/// or what is wrong with the config_file.
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);

@@ -228,6 +228,12 @@ class LaunchTest(unittest.TestCase):
             self.assert_comes(lambda: self.logged(
                 "stereo_depth/windowradius: no such parameter; did you mean window_radius?"), launched)
 
+    def test_a_config_section_that_no_nodelet_has_is_named(self):
+        config = self.folder / "section.yaml"
+        config.write_text("stereodepth: {window_radius: 5}\n")
+        with launch(f"config:={config}") as launched:
+            self.assert_comes(lambda: self.logged("section.yaml: stereodepth"), launched)
+
 
 if __name__ == "__main__":
     import rostest
