@@ -141,12 +141,15 @@ struct ApproachAngleStage::Implementation {
   std::vector<TrackedCorner> groundCorners(const cv::Mat& left, const Eigen::Vector3d& normal) {
     // Nearer the horizon than this (as a tangent) the ground hardly moves.
     constexpr double kLeastSlope = 0.01;
+    // What is texture enough, matching decides; corners spread over the ground as for stereo.
+    constexpr double kQuality = 1e-7, kDistance = 4.0, kHarris = 0.04;
     ScopedTimer timer(timings, "harris_corners_motion");
     cv::Mat mask = left_mask.clone();
     const Eigen::Vector3d slope = model.rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
     keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope);
     std::vector<TrackedCorner> corners;
-    for (const cv::Point& point : findCorners(left, mask, parameters.corner_count, 1e-7, 4.0, 0.04)) {
+    for (const cv::Point& point :
+         findCorners(left, mask, parameters.corner_count, kQuality, kDistance, kHarris)) {
       corners.push_back({point.x, point.y, true, 0, 0});
     }
     return corners;

@@ -85,16 +85,13 @@ class ApproachAngleNodelet : public StageNodelet {
                const StereoDepthResult& stereo) {
     const double stamp = left->header.stamp.toSec();
     double compute_ms = 0;
-    ApproachAngleResult result = attempt<ApproachAngleResult>([&]() -> Expected<ApproachAngleResult> {
-      const Failure wrong_cameras = stage_.prepare(left_info, right_info, parameters_);
-      if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
-      const auto left_view = toMono8(left, stage_.cameras().left(), kLeftImage);
-      if (!left_view) return tl::make_unexpected(left_view.error());
-      const auto right_view = toMono8(right, stage_.cameras().right(), kRightImage);
-      if (!right_view) return tl::make_unexpected(right_view.error());
-      auto processed = stage_->process(stamp, (*left_view)->image, (*right_view)->image, stereo);
-      compute_ms = stage_->timings().total();
-      return processed;
+    ApproachAngleResult result = attempt<ApproachAngleResult>([&] {
+      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,
+                        [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
+                          auto processed = stage.process(stamp, left_view, right_view, stereo);
+                          compute_ms = stage.timings().total();
+                          return processed;
+                        });
     });
     result.stamp = stamp;
     warnOf(result.failure);

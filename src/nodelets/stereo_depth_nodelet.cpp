@@ -62,16 +62,13 @@ class StereoDepthNodelet : public StageNodelet {
     const double stamp = left->header.stamp.toSec();
     const double skew = (time.time_ref - left->header.stamp).toSec();
     double compute_ms = 0;
-    StereoDepthResult result = attempt<StereoDepthResult>([&]() -> Expected<StereoDepthResult> {
-      const Failure wrong_cameras = stage_.prepare(left_info, right_info, parameters_);
-      if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
-      const auto left_view = toMono8(left, stage_.cameras().left(), kLeftImage);
-      if (!left_view) return tl::make_unexpected(left_view.error());
-      const auto right_view = toMono8(right, stage_.cameras().right(), kRightImage);
-      if (!right_view) return tl::make_unexpected(right_view.error());
-      auto processed = stage_->process(stamp, (*left_view)->image, (*right_view)->image, skew);
-      compute_ms = stage_->timings().total();
-      return processed;
+    StereoDepthResult result = attempt<StereoDepthResult>([&] {
+      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,
+                        [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
+                          auto processed = stage.process(stamp, left_view, right_view, skew);
+                          compute_ms = stage.timings().total();
+                          return processed;
+                        });
     });
     result.stamp = stamp;
     result.skew = skew;

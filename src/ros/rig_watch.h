@@ -1,8 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "camera_info.h"
+#include "image_input.h"
 #include "uav_landing/rectification.h"
 
 namespace uav_landing {
@@ -30,7 +33,25 @@ class RigWatch {
 template <class Stage, class Parameters>
 class RigStage {
  public:
-  /// What is wrong with the cameras; without a failure there is a stage.
+  /// work(stage, left, right), with the images as mono8, or what is wrong with the cameras or the images. The
+  /// topics are for the message.
+  template <class Work>
+  auto run(const sensor_msgs::ImageConstPtr& left, const std::string& left_topic,
+           const sensor_msgs::CameraInfo& left_info, const sensor_msgs::ImageConstPtr& right,
+           const std::string& right_topic, const sensor_msgs::CameraInfo& right_info,
+           const Parameters& parameters, Work&& work)
+      -> Expected<decltype(work(std::declval<Stage&>(), cv::Mat(), cv::Mat()))> {
+    const Failure wrong_cameras = prepare(left_info, right_info, parameters);
+    if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
+    const auto left_view = toMono8(left, cameras_.left(), left_topic);
+    if (!left_view) return tl::make_unexpected(left_view.error());
+    const auto right_view = toMono8(right, cameras_.right(), right_topic);
+    if (!right_view) return tl::make_unexpected(right_view.error());
+    return work(*stage_, (*left_view)->image, (*right_view)->image);
+  }
+
+ private:
+  // What is wrong with the cameras; without a failure there is a stage.
   Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
                   const Parameters& parameters) {
     if (!cameras_.changed(left, right)) return failure_;
@@ -40,11 +61,7 @@ class RigStage {
     if (model) stage_.emplace(*model, parameters);
     return failure_;
   }
-  const RigWatch& cameras() const { return cameras_; }
-  Stage& operator*() { return *stage_; }
-  Stage* operator->() { return &*stage_; }
 
- private:
   RigWatch cameras_;
   Failure failure_;
   std::optional<Stage> stage_;
