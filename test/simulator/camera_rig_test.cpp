@@ -56,6 +56,23 @@ TEST(CameraRig, CalibrationMakesARigForTheChain) {
   EXPECT_NEAR(stereo->baseline, rig.right.offset_x, 1e-9);
 }
 
+TEST(CameraRig, RightCameraTurnsWithoutTheCalibrationKnowing) {
+  SimulatorParameters straight = realisticRig(), bent = straight;
+  bent.rig.bend_rx_deg = 0.2, bent.rig.bend_ry_deg = -0.3, bent.rig.bend_rz_deg = 0.25;
+  const CameraRig before = makeCameraRig(straight).value(), after = makeCameraRig(bent).value();
+  EXPECT_TRUE(after.right.calibration == before.right.calibration);
+  EXPECT_EQ(after.left.rays[100].x, before.left.rays[100].x);
+  // By hand, first order in the angles: the camera's pixel (x, y) looks along r + w x r afterwards.
+  const double wx = 0.2 * kDegree, wy = -0.3 * kDegree, wz = 0.25 * kDegree;
+  for (int i = 0; i < 320 * 240; i += 997) {
+    const PixelRay& was = before.right.rays[i];
+    const PixelRay& is = after.right.rays[i];
+    const double x = was.x, y = was.y;
+    EXPECT_NEAR(is.x - x, wy * (1 + x * x) - wx * x * y - wz * y, 8e-5) << i;
+    EXPECT_NEAR(is.y - y, -wx * (1 + y * y) + wy * x * y + wz * x, 8e-5) << i;
+  }
+}
+
 TEST(CameraRig, LensThatFoldsBackIsRefused) {
   SimulatorParameters parameters = realisticRig();
   parameters.right_camera.k1 = -1;

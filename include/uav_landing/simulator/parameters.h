@@ -58,6 +58,7 @@ struct SimulatedCameraParameters {
 struct SimulatedRigParameters {
   double x = 1.0, y = 0, z = 0;
   double rx_deg = 0, ry_deg = 0, rz_deg = 0;
+  double bend_rx_deg = 0, bend_ry_deg = 0, bend_rz_deg = 0;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -68,6 +69,12 @@ struct SimulatedRigParameters {
              "rotation vector of the right camera's axes against the left one's, component along x");
     v.number("ry_deg", ry_deg, -20.0, 20.0, "deg", "component along y");
     v.number("rz_deg", rz_deg, -20.0, 20.0, "deg", "component along z");
+    v.number(
+        "bend_rx_deg", bend_rx_deg, -2.0, 2.0, "deg",
+        "rotation vector by which the right camera has turned since the calibration, which does not know "
+        "of it; in rectified axes, component along x");
+    v.number("bend_ry_deg", bend_ry_deg, -2.0, 2.0, "deg", "component along y");
+    v.number("bend_rz_deg", bend_rz_deg, -2.0, 2.0, "deg", "component along z");
   }
 };
 

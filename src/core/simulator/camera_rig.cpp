@@ -1,5 +1,6 @@
 #include "uav_landing/simulator/camera_rig.h"
 
+#include <Eigen/Geometry>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -101,12 +102,23 @@ std::vector<PixelRay> raysFromCorners(const std::vector<cv::Point2d>& corners, c
   return rays;
 }
 
-Failure traceRays(const char* section, SimulatedCamera& camera) {
+/// Directions of a camera that has turned by a rotation vector (rectified axes, rad).
+void turn(std::vector<cv::Point2d>& directions, const Eigen::Vector3d& rotation) {
+  if (rotation.isZero()) return;
+  const Eigen::Matrix3d R(Eigen::AngleAxisd(rotation.norm(), rotation.normalized()));
+  for (cv::Point2d& direction : directions) {
+    const Eigen::Vector3d turned = R * Eigen::Vector3d(direction.x, direction.y, 1);
+    direction = {turned.x() / turned.z(), turned.y() / turned.z()};
+  }
+}
+
+Failure traceRays(const char* section, const Eigen::Vector3d& bend, SimulatedCamera& camera) {
   const std::vector<cv::Point2d> pixels = pixelCorners(camera.calibration);
-  const std::vector<cv::Point2d> directions = directionsOf(pixels, camera.calibration);
+  std::vector<cv::Point2d> directions = directionsOf(pixels, camera.calibration);
   if (!(worstReprojection(pixels, directions, camera.calibration) < 0.01))
     return {Reason::kInputInvalid,
             std::string(section) + "/k1: the lens's distortion folds back within the image"};
+  turn(directions, bend);
   camera.rays = raysFromCorners(directions, {camera.calibration.width, camera.calibration.height});
   return {};
 }
@@ -124,8 +136,12 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   if (!usable)
     return tl::make_unexpected(Failure{
         Reason::kInputInvalid, "rig: the cameras stand too far out of line to be rectified as a pair"});
-  if (Failure failure = traceRays("left_camera", rig.left)) return tl::make_unexpected(failure);
-  if (Failure failure = traceRays("right_camera", rig.right)) return tl::make_unexpected(failure);
+  if (Failure failure = traceRays("left_camera", Eigen::Vector3d::Zero(), rig.left))
+    return tl::make_unexpected(failure);
+  const SimulatedRigParameters& bent = parameters.rig;
+  const Eigen::Vector3d bend =
+      Eigen::Vector3d(bent.bend_rx_deg, bent.bend_ry_deg, bent.bend_rz_deg) * kRadiansPerDegree;
+  if (Failure failure = traceRays("right_camera", bend, rig.right)) return tl::make_unexpected(failure);
   return rig;
 }
 
