@@ -1,7 +1,7 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
   src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
-  src/tools/stereo_bag_writer.cpp)
+  src/tools/random_approach.cpp src/tools/stereo_bag_writer.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
@@ -19,11 +19,14 @@ add_executable(process_bag
   src/tools/report_data.cpp src/tools/stereo_bag_reader.cpp src/tools/timing_table.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
 
+add_executable(simulate_campaign src/tools/campaign_csv.cpp src/tools/simulate_campaign.cpp)
+target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
+
 # rosrun looks everywhere in the source folder but in its folder build/, which is where a plain cmake build puts the
 # programs: links in bin/ lead it there. In a catkin workspace there is nothing to do.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(MAKE_DIRECTORY ${PROJECT_SOURCE_DIR}/bin)
-  foreach(program dataset_to_bag process_bag simulate_approach)
+  foreach(program dataset_to_bag process_bag simulate_approach simulate_campaign)
     file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
   endforeach()
 endif()

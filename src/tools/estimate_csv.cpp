@@ -1,9 +1,9 @@
 #include "estimate_csv.h"
 
 #include <cmath>
-#include <iomanip>
 #include <stdexcept>
 
+#include "csv_row.h"
 #include "decimal_time.h"
 
 namespace uav_landing {
@@ -17,28 +17,6 @@ const char* const kHeader =
     "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason,x_stddev_m,y_stddev_m,"
     "runway_width_m";
 
-/// Writes the fields of one row.
-class Row {
- public:
-  explicit Row(std::ostream& out) : out_(out) { out_ << std::setprecision(12); }
-  Row& text(const std::string& value) {
-    out_ << (first_ ? "" : ",") << value;
-    first_ = false;
-    return *this;
-  }
-  Row& number(double value) {
-    text("");
-    if (std::isfinite(value)) out_ << value;
-    return *this;
-  }
-  Row& flag(bool value) { return text(value ? "1" : "0"); }
-  Row& blank() { return text(""); }
-
- private:
-  std::ostream& out_;
-  bool first_ = true;
-};
-
 }  // namespace
 
 EstimateCsv::EstimateCsv(const std::string& path) : pending_(path), file_(pending_.temporary()) {
@@ -48,7 +26,7 @@ EstimateCsv::EstimateCsv(const std::string& path) : pending_(path), file_(pendin
 
 void EstimateCsv::take(const ProcessedPair& pair) {
   const LandingResult& landing = pair.output.landing;
-  Row row(file_);
+  CsvRow row(file_);
   row.text(toDecimal(pair.stamp)).flag(landing.valid());
   row.number(landing.height).number(std::sqrt(landing.height_variance)).number(landing.raw_height);
   row.number(landing.vertical_speed);

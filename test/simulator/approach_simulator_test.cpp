@@ -66,6 +66,20 @@ TEST(ApproachSimulator, NoiseDiffersFromFrameToFrameAndBetweenTheCameras) {
   EXPECT_NEAR(deviation[0], std::sqrt(2 * (2.0 * 2.0 + 1.0 / 12)), 0.15);
 }
 
+TEST(ApproachSimulator, OneRenderingServesSeveralNoiseLevels) {
+  SimulatorParameters p = smallApproach();
+  const ApproachSimulator simulator = ApproachSimulator::create(p).value();
+  const ApproachSimulator::Light light = simulator.light(2);
+  for (const double noise : {5.0, 2.0}) {
+    p.image.noise = noise;
+    const ApproachSimulator::Frame frame = simulator.expose(light, noise);
+    const ApproachSimulator::Frame expected = ApproachSimulator::create(p)->frame(2);
+    EXPECT_TRUE(same(frame.left, expected.left)) << noise;
+    EXPECT_TRUE(same(frame.right, expected.right)) << noise;
+    EXPECT_EQ(frame.truth.approach_angle, expected.truth.approach_angle);
+  }
+}
+
 TEST(ApproachSimulator, TruthOfTheStepIsThatFromThePreviousFrame) {
   const ApproachSimulator simulator = ApproachSimulator::create(smallApproach()).value();
   EXPECT_TRUE(std::isnan(simulator.frame(0).truth.approach_angle));

@@ -73,6 +73,15 @@ TEST(CameraRig, RightCameraTurnsWithoutTheCalibrationKnowing) {
   }
 }
 
+TEST(CameraRig, BaselineStretchesWithoutTheCalibrationKnowing) {
+  SimulatorParameters parameters = realisticRig();
+  const CameraRig before = makeCameraRig(parameters).value();
+  parameters.rig.stretch = 0.02;
+  const CameraRig after = makeCameraRig(parameters).value();
+  EXPECT_TRUE(after.right.calibration == before.right.calibration);
+  EXPECT_NEAR(after.right.offset_x, 1.02 * before.right.offset_x, 1e-12);
+}
+
 TEST(CameraRig, LensThatFoldsBackIsRefused) {
   SimulatorParameters parameters = realisticRig();
   parameters.right_camera.k1 = -1;

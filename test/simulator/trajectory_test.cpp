@@ -52,7 +52,7 @@ TEST(Trajectory, GlidesStraightAtTheAngleAndSpeedAsked) {
   SimulatedPathParameters path;
   path.start_height = 40, path.start_x = -300, path.start_y = 2, path.flare_height = 0;
   path.speed = 20, path.glide_angle_deg = 3, path.track_deg = 2;
-  const Eigen::Vector3d position = Trajectory(path, still(), 1).pose(5).position;
+  const Eigen::Vector3d position = Trajectory(path, still(), {}, 1).pose(5).position;
   const double level = 100 * std::cos(3 * kDegree);
   EXPECT_NEAR(position.x(), -300 + level * std::cos(2 * kDegree), 1e-9);
   EXPECT_NEAR(position.y(), 2 + level * std::sin(2 * kDegree), 1e-9);
@@ -64,7 +64,7 @@ TEST(Trajectory, FlareChangesTheAngleSteadilyFromItsHeightOn) {
   path.start_height = 15, path.speed = 20, path.glide_angle_deg = 5;
   path.flare_height = 6, path.flare_duration = 4, path.flare_angle_deg = 1, path.flare_pitch_deg = 3;
   path.pitch_deg = -5;
-  const Trajectory trajectory(path, still(), 1);
+  const Trajectory trajectory(path, still(), {}, 1);
   const double begin = 9 / (20 * std::sin(5 * kDegree));
   EXPECT_NEAR(trajectory.pose(begin).position.z(), 6, 1e-9);
   EXPECT_NEAR(pathAngle(trajectory, begin - 0.5), 5 * kDegree, 1e-6);
@@ -77,10 +77,28 @@ TEST(Trajectory, FlareChangesTheAngleSteadilyFromItsHeightOn) {
   EXPECT_NEAR(step.norm(), 20 * 0.002, 1e-7) << "the speed stays";
 }
 
+TEST(Trajectory, GustAddsItsSpeedAtThePeakAndLeavesTheAircraftLower) {
+  SimulatedPathParameters path;
+  path.start_height = 40, path.speed = 20, path.glide_angle_deg = 3, path.flare_height = 0;
+  SimulatedGustParameters gust;
+  gust.speed = 2, gust.start = 1, gust.duration = 3;
+  const Trajectory with(path, still(), gust, 1), without(path, still(), {}, 1);
+  const auto sinkSpeed = [](const Trajectory& trajectory, double t) {
+    return (trajectory.pose(t - 1e-4).position.z() - trajectory.pose(t + 1e-4).position.z()) / 2e-4;
+  };
+  const double glide = 20 * std::sin(3 * kDegree);
+  EXPECT_NEAR(sinkSpeed(with, 0.9), glide, 1e-6);
+  EXPECT_NEAR(sinkSpeed(with, 1.75), glide + 1, 1e-6) << "half way up";
+  EXPECT_NEAR(sinkSpeed(with, 2.5), glide + 2, 1e-6) << "peak";
+  EXPECT_NEAR(sinkSpeed(with, 4.1), glide, 1e-6);
+  // The mean of (1 - cos) / 2 is a half: 2 m/s / 2 x 3 s.
+  EXPECT_NEAR(without.pose(5).position.z() - with.pose(5).position.z(), 3, 1e-9);
+}
+
 TEST(Trajectory, WobbleStaysWithinItsAmplitudeAndComesCloseToIt) {
   SimulatedWobbleParameters wobble = still();
   wobble.roll_deg = 3, wobble.roll_period = 4;
-  const Trajectory trajectory({}, wobble, 1);
+  const Trajectory trajectory({}, wobble, {}, 1);
   double largest = 0;
   for (double t = 0; t < 200; t += 0.05)
     largest = std::max(largest, std::abs(trajectory.pose(t).attitude.roll) / kDegree);
@@ -89,7 +107,7 @@ TEST(Trajectory, WobbleStaysWithinItsAmplitudeAndComesCloseToIt) {
 }
 
 TEST(Trajectory, SeedChoosesThePhases) {
-  const Trajectory one({}, {}, 1), again({}, {}, 1), other({}, {}, 2);
+  const Trajectory one({}, {}, {}, 1), again({}, {}, {}, 1), other({}, {}, {}, 2);
   EXPECT_EQ(one.pose(3).attitude.roll, again.pose(3).attitude.roll);
   EXPECT_NE(one.pose(3).attitude.roll, other.pose(3).attitude.roll);
 }

@@ -24,6 +24,15 @@ class ApproachSimulator {
   int frames() const { return frames_; }
   Frame frame(int index) const;
 
+  /// What falls on the two sensors of one frame: rendering it is the costly part of the frame.
+  struct Light {
+    int index = 0;
+    cv::Mat left, right;  ///< grey levels before lens blur, gain and noise; 32-bit float
+  };
+  Light light(int index) const;
+  /// The frame that sensors of this noise (1 sigma, grey levels) make of it.
+  Frame expose(const Light& light, double noise) const;
+
   double timeOf(int index) const { return index / parameters_.path.rate; }
   CameraPose pose(double time) const { return trajectory_.pose(time); }
   const CameraRig& rig() const { return rig_; }
@@ -31,8 +40,9 @@ class ApproachSimulator {
  private:
   ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig);
   Failure checkHeights() const;
-  cv::Mat picture(const SimulatedCamera& camera, const SimulatedCameraParameters& sensor, int index,
-                  int camera_number) const;
+  cv::Mat lightIn(const SimulatedCamera& camera, int index) const;
+  cv::Mat picture(const cv::Mat& light, const SimulatedCameraParameters& sensor, int index, int camera_number,
+                  double noise) const;
 
   SimulatorParameters parameters_;
   CameraRig rig_;

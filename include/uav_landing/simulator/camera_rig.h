@@ -19,13 +19,14 @@ struct PixelRay {
 
 /// One camera of the simulated rig.
 struct SimulatedCamera {
-  CameraCalibration calibration;
-  double offset_x = 0;         ///< centre to the right of the left camera's, m; rectified axes
-  std::vector<PixelRay> rays;  ///< row by row
+  CameraCalibration calibration;  ///< what camera_info says
+  double offset_x = 0;            ///< true centre to the right of the left camera's, m; rectified axes
+  std::vector<PixelRay> rays;     ///< true ones, row by row
 };
 
 /// The two cameras with lenses, and the rectification of the pair (Bouguet's, by cv::stereoRectify) that
-/// gives R and P. Both rectified cameras have the same axes and the right one is offset_x along their x.
+/// gives R and P. Both rectified cameras have the same axes and the right one is offset_x along their x, but
+/// for the calibration error: the real right camera's.
 struct CameraRig {
   SimulatedCamera left, right;
 };

@@ -59,6 +59,7 @@ struct SimulatedRigParameters {
   double x = 1.0, y = 0, z = 0;
   double rx_deg = 0, ry_deg = 0, rz_deg = 0;
   double bend_rx_deg = 0, bend_ry_deg = 0, bend_rz_deg = 0;
+  double stretch = 0;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -75,6 +76,8 @@ struct SimulatedRigParameters {
         "of it; in rectified axes, component along x");
     v.number("bend_ry_deg", bend_ry_deg, -2.0, 2.0, "deg", "component along y");
     v.number("bend_rz_deg", bend_rz_deg, -2.0, 2.0, "deg", "component along z");
+    v.number("stretch", stretch, -0.5, 0.5, "of the baseline",
+             "by which the real baseline is longer than the calibration says");
   }
 };
 
@@ -231,6 +234,19 @@ struct SimulatedWobbleParameters {
   }
 };
 
+/// One vertical gust in the shape 1 - cos, as certification rules have it (section gust).
+struct SimulatedGustParameters {
+  double speed = 0, start = 0, duration = 1;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("speed", speed, -50.0, 50.0, "m/s",
+             "by which the aircraft sinks faster at the gust's peak; negative: slower");
+    v.number("start", start, 0.0, 3600.0, "s", "since the start of the sequence");
+    v.number("duration", duration, 0.05, 600.0, "s", "from nothing to the peak and back");
+  }
+};
+
 /// What makes one run different from the next (section random).
 struct SimulatedRandomParameters {
   int seed = 1;
@@ -251,6 +267,7 @@ struct SimulatorParameters {
   SimulatedObjectsParameters objects;
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
+  SimulatedGustParameters gust;
   SimulatedRandomParameters random;
 
   /// Calls v(section name, parameter struct) for every section.
@@ -265,6 +282,7 @@ struct SimulatorParameters {
     v("objects", objects);
     v("path", path);
     v("wobble", wobble);
+    v("gust", gust);
     v("random", random);
   }
 };

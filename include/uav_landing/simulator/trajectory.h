@@ -14,10 +14,11 @@ struct CameraPose {
   Attitude attitude;
 };
 
-/// Straight glide, flare at a steady rate of the path's angle, straight again; on it the wobble.
+/// Straight glide, flare at a steady rate of the path's angle, straight again; on it the wobble and a gust.
 class Trajectory {
  public:
-  Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble, uint64_t seed);
+  Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble,
+             const SimulatedGustParameters& gust, uint64_t seed);
 
   /// t: seconds since the start.
   CameraPose pose(double t) const;
@@ -32,8 +33,11 @@ class Trajectory {
   };
   /// Distance gone forward and down after t seconds without wobble, m.
   Eigen::Vector2d advance(double t) const;
+  /// Height lost to the gust after t seconds, m.
+  double lostToGust(double t) const;
 
   SimulatedPathParameters path_;
+  SimulatedGustParameters gust_;
   double flare_start_;
   Wobble roll_, pitch_, yaw_, sway_, heave_;
 };

@@ -18,7 +18,7 @@ Expected<ApproachSimulator> ApproachSimulator::create(const SimulatorParameters&
 ApproachSimulator::ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig)
     : parameters_(parameters),
       rig_(std::move(rig)),
-      trajectory_(parameters.path, parameters.wobble, parameters.random.seed),
+      trajectory_(parameters.path, parameters.wobble, parameters.gust, parameters.random.seed),
       renderer_(Scene(parameters.runway, parameters.surface, parameters.random.seed),
                 placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed),
                 parameters.image.supersampling),
@@ -38,8 +38,7 @@ Failure ApproachSimulator::checkHeights() const {
   return {};
 }
 
-cv::Mat ApproachSimulator::picture(const SimulatedCamera& camera, const SimulatedCameraParameters& sensor,
-                                   int index, int camera_number) const {
+cv::Mat ApproachSimulator::lightIn(const SimulatedCamera& camera, int index) const {
   const SimulatedImageParameters& image = parameters_.image;
   const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
   cv::Mat grey, sum;
@@ -52,23 +51,38 @@ cv::Mat ApproachSimulator::picture(const SimulatedCamera& camera, const Simulate
       sum += grey;
   }
   if (samples > 1) sum /= samples;
+  return sum;
+}
+
+cv::Mat ApproachSimulator::picture(const cv::Mat& light, const SimulatedCameraParameters& sensor, int index,
+                                   int camera_number, double noise) const {
   const uint64_t picture_number = 2 * static_cast<uint64_t>(index) + camera_number;
   const uint64_t seed = (static_cast<uint64_t>(parameters_.random.seed) << 32) + picture_number + 1;
-  cv::Mat mono8;
-  expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, sum, mono8);
+  SimulatedImageParameters image = parameters_.image;
+  image.noise = noise;
+  cv::Mat grey = light.clone(), mono8;
+  uav_landing::expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, grey, mono8);
   return mono8;
 }
 
-ApproachSimulator::Frame ApproachSimulator::frame(int index) const {
+ApproachSimulator::Light ApproachSimulator::light(int index) const {
+  return {index, lightIn(rig_.left, index), lightIn(rig_.right, index)};
+}
+
+ApproachSimulator::Frame ApproachSimulator::expose(const Light& light, double noise) const {
   Frame frame;
-  frame.time = timeOf(index);
-  frame.left = picture(rig_.left, parameters_.left_camera, index, 0);
-  frame.right = picture(rig_.right, parameters_.right_camera, index, 1);
-  const CameraPose now = trajectory_.pose(timeOf(index));
-  const CameraPose before = trajectory_.pose(timeOf(index - 1));
-  frame.truth = truthOf(now, index > 0 ? &before : nullptr, 1.0 / parameters_.path.rate,
+  frame.time = timeOf(light.index);
+  frame.left = picture(light.left, parameters_.left_camera, light.index, 0, noise);
+  frame.right = picture(light.right, parameters_.right_camera, light.index, 1, noise);
+  const CameraPose now = trajectory_.pose(timeOf(light.index));
+  const CameraPose before = trajectory_.pose(timeOf(light.index - 1));
+  frame.truth = truthOf(now, light.index > 0 ? &before : nullptr, 1.0 / parameters_.path.rate,
                         rig_.left.calibration.P.leftCols<3>());
   return frame;
+}
+
+ApproachSimulator::Frame ApproachSimulator::frame(int index) const {
+  return expose(light(index), parameters_.image.noise);
 }
 
 }  // namespace uav_landing

@@ -142,6 +142,7 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   const Eigen::Vector3d bend =
       Eigen::Vector3d(bent.bend_rx_deg, bent.bend_ry_deg, bent.bend_rz_deg) * kRadiansPerDegree;
   if (Failure failure = traceRays("right_camera", bend, rig.right)) return tl::make_unexpected(failure);
+  rig.right.offset_x *= 1 + bent.stretch;
   return rig;
 }
 

@@ -23,8 +23,8 @@ Eigen::Vector2d arc(double a, double b, double duration) {
 }  // namespace
 
 Trajectory::Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble,
-                       uint64_t seed)
-    : path_(path), flare_start_(std::numeric_limits<double>::infinity()) {
+                       const SimulatedGustParameters& gust, uint64_t seed)
+    : path_(path), gust_(gust), flare_start_(std::numeric_limits<double>::infinity()) {
   const double sink = path.speed * std::sin(path.glide_angle_deg * kRadiansPerDegree);
   if (path.flare_height > 0 && sink > 0)
     flare_start_ = std::max(0.0, (path.start_height - path.flare_height) / sink);
@@ -58,6 +58,13 @@ Eigen::Vector2d Trajectory::advance(double t) const {
   return path_.speed * way;
 }
 
+double Trajectory::lostToGust(double t) const {
+  // Integral of speed (1 - cos(2 pi t / duration)) / 2.
+  const double in_gust = std::clamp(t - gust_.start, 0.0, gust_.duration);
+  const double period = gust_.duration / kTwoPi;
+  return 0.5 * gust_.speed * (in_gust - period * std::sin(in_gust / period));
+}
+
 CameraPose Trajectory::pose(double t) const {
   const Eigen::Vector2d way = advance(t);
   const double track = path_.track_deg * kRadiansPerDegree;
@@ -65,7 +72,7 @@ CameraPose Trajectory::pose(double t) const {
   CameraPose pose;
   pose.position = {path_.start_x + way.x() * std::cos(track),
                    path_.start_y + way.x() * std::sin(track) + sway_.at(t),
-                   path_.start_height - way.y() + heave_.at(t)};
+                   path_.start_height - way.y() + heave_.at(t) - lostToGust(t)};
   pose.attitude.roll = path_.roll_deg * kRadiansPerDegree + roll_.at(t);
   pose.attitude.pitch = (path_.pitch_deg + flared * path_.flare_pitch_deg) * kRadiansPerDegree + pitch_.at(t);
   pose.attitude.yaw = path_.yaw_deg * kRadiansPerDegree + yaw_.at(t);

@@ -1,0 +1,51 @@
+"""simulate_campaign: rows of truth beside estimates, the same for a seed whatever is flown besides."""
+
+import csv
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+from project import BUILD_DIR, run
+
+PROGRAM = BUILD_DIR / "devel/lib/uav_landing/simulate_campaign"
+
+
+class SimulateCampaignTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="uav_landing_simulate_campaign_"))
+        self.addCleanup(shutil.rmtree, str(self.folder))
+
+    def fly(self, *options):
+        rows = self.folder / "rows.csv"
+        result = run([PROGRAM, "snippets", "--csv", rows, "--frames", 5, *options])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with rows.open() as file:
+            return [{name: value for name, value in row.items() if name != "compute_ms"} for row in csv.DictReader(file)]
+
+    def test_a_row_for_every_seed_height_and_noise_with_an_estimate_near_the_truth(self):
+        rows = self.fly("--first", 4, "--count", 2, "--heights", 3, 10, "--noise", 1, 2)
+        self.assertEqual([(row["seed"], row["cell_height_m"], row["noise"], row["frame"]) for row in rows],
+                         [(seed, height, noise, "4") for seed in "45" for height in ("3", "10") for noise in "12"])
+        for row in rows:
+            self.assertAlmostEqual(float(row["height_true_m"]), float(row["cell_height_m"]), delta=0.11)
+            self.assertAlmostEqual(float(row["height_m"]) / float(row["height_true_m"]), 1, delta=0.02)
+            self.assertAlmostEqual(float(row["roll_deg"]), float(row["roll_true_deg"]), delta=0.3)
+            self.assertGreater(float(row["height_stddev_m"]), 0)
+
+    def test_a_seed_flies_the_same_whatever_is_flown_besides(self):
+        together = self.fly("--first", 4, "--count", 2, "--heights", 3, "--noise", 1, 2)
+        self.assertEqual(self.fly("--first", 5, "--count", 1, "--heights", 3, "--noise", 2), together[3:])
+
+    def test_calibration_errors_follow_the_config(self):
+        config = self.folder / "exact.yaml"
+        config.write_text("stereo_depth: {disparity_bias_stddev: 0}\n")
+        options = ("--first", 4, "--count", 1, "--heights", 3, "--noise", 1)
+        self.assertNotEqual(float(self.fly(*options)[0]["bend_ry_deg"]), 0)
+        self.assertEqual(float(self.fly(*options, "--config", config)[0]["bend_ry_deg"]), 0)
+
+    def test_bad_config_is_refused_with_its_name(self):
+        result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("none.yaml", result.stderr)
+        self.assertFalse((self.folder / "rows.csv").exists())
