@@ -1,0 +1,103 @@
+import csv
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+from project import SOURCE_DIR, run
+from stereo_bag import noise_frames, write_bag
+
+PROCESS_BAGS = SOURCE_DIR / "scripts/process_bags"
+
+
+class ProcessBagsTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.bags, self.output = Path(folder.name) / "in", Path(folder.name) / "out"
+        self.bags.mkdir()
+
+    def bag(self, name, frames=3):
+        path = self.bags / name
+        path.parent.mkdir(exist_ok=True)
+        write_bag(path, noise_frames(frames))
+        return path
+
+    def process(self, *inputs, options=()):
+        return run([PROCESS_BAGS, *inputs, "--output", self.output, *options])
+
+    def rows(self):
+        with open(self.output / "summary.csv", newline="") as file:
+            return {row["bag"]: row for row in csv.DictReader(file)}
+
+    def test_every_bag_of_a_folder_gets_estimates_and_a_row(self):
+        self.bag("first.bag", 3)
+        self.bag("rainy day/it's second.bag", 5)
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = self.rows()
+        self.assertEqual({name: row["pairs"] for name, row in rows.items()}, {"first": "3", "rainy day/it's second": "5"})
+        self.assertEqual(rows["first"]["valid_share"], "0.000")
+        self.assertIn("never valid: ", rows["first"]["reason"])
+        self.assertTrue((self.output / "rainy day/it's second.csv").exists())
+        self.assertIn("2 bags, 0 failed", (self.output / "report.html").read_text())
+
+    def test_a_bag_that_fails_is_named_with_its_reason_and_the_others_are_done(self):
+        self.bag("good.bag")
+        (self.bags / "broken.bag").write_bytes(b"no bag at all")
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("failed: broken: process_bag: ", result.stderr)
+        self.assertIn("broken.bag", result.stderr)
+        rows = self.rows()
+        self.assertEqual((rows["broken"]["result"], rows["good"]["result"]), ("failed", "done"))
+        self.assertIn("2 bags, 1 failed", (self.output / "report.html").read_text())
+
+    def test_what_is_done_is_not_done_again(self):
+        self.bag("first.bag")
+        self.assertEqual(self.process(self.bags).returncode, 0)
+        before = (self.output / "first.csv").stat().st_mtime_ns
+        self.bag("second.bag")
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 of 2 bags are done already", result.stdout)
+        self.assertEqual((self.output / "first.csv").stat().st_mtime_ns, before)
+        self.assertEqual(set(self.rows()), {"first", "second"})
+
+    def test_a_bag_that_changed_is_done_again_and_leaves_no_old_estimates(self):
+        bag = self.bag("first.bag")
+        self.assertEqual(self.process(self.bags).returncode, 0)
+        bag.write_bytes(b"now broken")
+        later = (self.output / "first.csv").stat().st_mtime + 10
+        os.utime(bag, (later, later))
+        self.assertEqual(self.process(self.bags).returncode, 1)
+        self.assertFalse((self.output / "first.csv").exists())
+
+    def test_truth_beside_the_bag_gives_errors(self):
+        self.bag("first.bag")
+        (self.bags / "first.frames.csv").write_text("stamp_s,left,right,pitch\n10,a,b,0\n")
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("first.frames.csv", result.stderr)
+        (self.bags / "first.frames.csv").write_text("stamp_s,left,right,height_m\n10,a,b,5\n")
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_hosts_are_those_of_the_list(self):
+        self.bag("first.bag")
+        hosts = self.bags / "hosts"
+        hosts.write_text("1/:\n")
+        result = self.process(self.bags, options=["--hosts", hosts])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("\t:\t", (self.output / "jobs.log").read_text())
+
+    def test_bad_inputs_are_named(self):
+        for inputs, complaint in (([self.bags / "none.bag"], "none.bag: no such file or folder"),
+                                  ([self.bags], "no *.bag in this folder")):
+            result = self.process(*inputs)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(complaint, result.stderr)
+        one, two = self.bag("a/x.bag"), self.bag("b/x.bag")
+        self.assertIn("would both be x.csv", self.process(one, two).stderr)
+        self.assertIn("missing.yaml: no such file", self.process(one, options=["--config", "missing.yaml"]).stderr)
+        self.assertEqual(run([PROCESS_BAGS]).returncode, 2)
