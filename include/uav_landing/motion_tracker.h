@@ -46,7 +46,8 @@ class MotionTracker {
   };
 
   using Corners = std::vector<TrackedCorner>;
-  TemporalMatchOptions matchOptions(bool wide) const;
+  int wideSteps() const;  // of the coarse level, to both sides
+  TemporalMatchOptions matchOptions(int coarse_steps) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                     const Corners& corners, Result& result);

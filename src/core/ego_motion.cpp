@@ -46,7 +46,7 @@ struct State {
 struct Linearised {
   bool usable = false;
   Eigen::Vector2d residual;
-  Eigen::Matrix<double, 2, 9> jacobian;
+  Eigen::Matrix<double, 2, 9, Eigen::RowMajor> jacobian;
   Eigen::Matrix2d covariance;
 };
 
@@ -101,13 +101,30 @@ class Problem {
   std::vector<Eigen::Vector3d> rays_;
 };
 
-double consensus(const Problem& problem, const State& state) {
+// How well a motion is supported: votes weighted by closeness, and how many matches it fits well.
+struct Support {
   double votes = 0;
+  int close = 0;
+};
+
+Support support(const Problem& problem, const State& state) {
+  constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance
+  Support result;
   for (size_t i = 0; i < problem.size(); ++i) {
     const double ratio = problem.squaredError(state, i) / (kTolerance * kTolerance);
-    if (ratio < 1) votes += 1 - ratio;
+    if (ratio >= 1) continue;
+    result.votes += 1 - ratio;
+    if (ratio < kClose) ++result.close;
   }
-  return votes;
+  return result;
+}
+
+// Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
+// the matches is right.
+double triplesNeeded(double share) {
+  constexpr double kMissed = 1e-3;
+  const double all_right = std::min(share * share * share, 1 - kMissed);
+  return all_right > 0 ? std::log(kMissed) / std::log1p(-all_right) : kRansacIterations;
 }
 
 // Rotation and translation that carry three matches exactly, by two Newton steps with the normal held.
@@ -132,31 +149,27 @@ bool solveTriple(const Problem& problem, const std::array<size_t, 3>& chosen, St
 
 State bestByConsensus(const Problem& problem, const State& start) {
   State best = start;
-  double votes = consensus(problem, start);
+  Support most = support(problem, start);
   std::mt19937 random(20100602u);
-  for (int iteration = 0; iteration < kRansacIterations; ++iteration) {
+  double needed = triplesNeeded(double(most.close) / problem.size());
+  for (int iteration = 0; iteration < std::min<double>(needed, kRansacIterations); ++iteration) {
     const std::array<size_t, 3> chosen = {random() % problem.size(), random() % problem.size(),
                                           random() % problem.size()};
     if (chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2]) continue;
     State candidate = best;
     if (!solveTriple(problem, chosen, candidate)) continue;
-    const double candidate_votes = consensus(problem, candidate);
-    if (candidate_votes > votes) {
-      votes = candidate_votes;
+    const Support found = support(problem, candidate);
+    if (found.votes > most.votes) {
+      most = found;
       best = candidate;
+      needed = triplesNeeded(double(most.close) / problem.size());
     }
   }
   return best;
 }
 
-// Robust size of the whitened residuals, at least 1.
-double residualScale(const Problem& problem, const State& state) {
-  std::vector<double> ratios;
-  for (size_t i = 0; i < problem.size(); ++i) {
-    const Linearised row = problem.linearise(state, i);
-    if (!row.usable || row.residual.norm() > 2 * kTolerance) continue;
-    ratios.push_back(row.residual.dot(row.covariance.inverse() * row.residual));
-  }
+// Robust size of the whitened residuals, at least 1. ratios: squared whitened residuals, reordered.
+double residualScale(std::vector<double>& ratios) {
   if (ratios.empty()) return 1;
   const auto middle = ratios.begin() + ratios.size() / 2;
   std::nth_element(ratios.begin(), middle, ratios.end());
@@ -164,29 +177,70 @@ double residualScale(const Problem& problem, const State& state) {
   return std::max(1.0, std::sqrt(*middle / (2 * std::log(2.0))));
 }
 
+// Sums of the normal equations. Only the lower triangle of the information is filled.
 struct Normal {
-  Matrix9d information;
-  Vector9d right;
+  Matrix9d information = Matrix9d::Zero();
+  Vector9d right = Vector9d::Zero();
   int count = 0;
+
+  // Adds weight J' J and weight J' r of one whitened residual.
+  void add(const Eigen::Matrix<double, 1, 9>& jacobian, double residual, double weight) {
+    for (int j = 0; j < 9; ++j) {
+      const double scaled = weight * jacobian[j];
+      right[j] += scaled * residual;
+      for (int i = j; i < 9; ++i) information(i, j) += scaled * jacobian[i];
+    }
+  }
 };
 
-Normal accumulate(const Problem& problem, const State& state, double scale, std::vector<char>& inliers) {
-  Normal sums{Matrix9d::Zero(), Vector9d::Zero(), 0};
-  for (size_t i = 0; i < problem.size(); ++i) {
-    inliers[i] = 0;
-    const Linearised row = problem.linearise(state, i);
-    if (!row.usable) continue;
-    const Eigen::Matrix2d information = row.covariance.inverse() / (scale * scale);
-    const double ratio = row.residual.dot(information * row.residual) / (kTukey * kTukey);
-    if (ratio >= 1) continue;
-    const double weight = (1 - ratio) * (1 - ratio);
-    sums.information += weight * row.jacobian.transpose() * information * row.jacobian;
-    sums.right += weight * row.jacobian.transpose() * information * row.residual;
-    inliers[i] = 1;
-    ++sums.count;
+// The problem linearised at a state, with all rows whitened by their covariances. Keeps its memory.
+class WhitenedRows {
+ public:
+  void assign(const Problem& problem, const State& state) {
+    rows_.resize(problem.size());
+    ratios_.clear();
+    for (size_t i = 0; i < problem.size(); ++i) {
+      Linearised& row = rows_[i] = problem.linearise(state, i);
+      if (!row.usable) continue;
+      const bool near = row.residual.squaredNorm() <= 4 * kTolerance * kTolerance;
+      whiten(row);
+      if (near) ratios_.push_back(row.residual.squaredNorm());
+    }
+    scale_ = residualScale(ratios_);
   }
-  return sums;
-}
+
+  Normal accumulate(std::vector<char>& inliers) const {
+    Normal sums;
+    const double unit = 1 / (scale_ * scale_);
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      const Linearised& row = rows_[i];
+      inliers[i] = 0;
+      if (!row.usable) continue;
+      const double ratio = unit * row.residual.squaredNorm() / (kTukey * kTukey);
+      if (ratio >= 1) continue;
+      const double weight = unit * (1 - ratio) * (1 - ratio);
+      for (int k = 0; k < 2; ++k) sums.add(row.jacobian.row(k), row.residual[k], weight);
+      inliers[i] = 1;
+      ++sums.count;
+    }
+    return sums;
+  }
+
+ private:
+  // Multiplies by the inverse of the covariance's Cholesky factor.
+  static void whiten(Linearised& row) {
+    const double a = std::sqrt(row.covariance(0, 0)), b = row.covariance(1, 0) / a;
+    const double c = std::sqrt(std::max(1e-12, row.covariance(1, 1) - b * b));
+    row.residual[0] /= a;
+    row.residual[1] = (row.residual[1] - b * row.residual[0]) / c;
+    row.jacobian.row(0) /= a;
+    row.jacobian.row(1) = (row.jacobian.row(1) - b * row.jacobian.row(0)) / c;
+  }
+
+  std::vector<Linearised> rows_;
+  std::vector<double> ratios_;
+  double scale_ = 1;
+};
 
 // The prior's covariance has rank 2; along the normal itself nothing may change, because it sets the scale.
 Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) {
@@ -202,6 +256,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches) {
   constexpr int kIterations = 8;
+  constexpr double kConverged = 1e-6;  // rad and shares of the height: a thousandth of a pixel
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
                                                                    " corners followed, at least " +
@@ -213,8 +268,10 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
+  WhitenedRows rows;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Normal sums = accumulate(problem, state, residualScale(problem, state), result.inliers);
+    rows.assign(problem, state);
+    Normal sums = rows.accumulate(result.inliers);
     result.inlier_count = sums.count;
     if (sums.count < min_matches) {
       return tl::make_unexpected(Failure{
@@ -224,10 +281,10 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     }
     sums.information.bottomRightCorner<3, 3>() += prior;
     sums.right.tail<3>() += prior * (normal - state.n);
-    information = sums.information;
+    information = sums.information.selfadjointView<Eigen::Lower>();
     const Vector9d step = information.ldlt().solve(sums.right);
     state = state.apply(step);
-    if (step.norm() < 1e-9) break;
+    if (step.norm() < kConverged) break;
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {

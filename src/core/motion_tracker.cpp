@@ -70,12 +70,10 @@ void MotionTracker::reset() {
   filter_.reset();
 }
 
-TemporalMatchOptions MotionTracker::matchOptions(bool wide) const {
-  TemporalMatchOptions options;
-  options.window_radius = parameters_.window_radius;
-  options.min_zncc = parameters_.min_zncc;
-  options.coarse_steps = wide ? static_cast<int>(std::ceil(parameters_.search_radius)) : 0;
-  return options;
+int MotionTracker::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
+
+TemporalMatchOptions MotionTracker::matchOptions(int coarse_steps) const {
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -141,17 +139,24 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
                                                    const Eigen::Vector3d& normal,
                                                    const Eigen::Matrix3d& covariance, const Corners& corners,
                                                    Result& result) {
-  // A wide search for some corners makes the prediction good enough for a narrow one for all.
+  // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
+  // moves on as it did, so a small one comes first.
   constexpr size_t kScouts = 60;
+  constexpr int kSmallSteps = 3;
+  constexpr double kEnough = 0.5;  // share of the scouts
   const MatchImage& then = past_.back().image;
+  const Corners scouts = thinned(corners, kScouts);
   CameraMotion start = predicted;
-  const std::vector<TemporalMatch> scouts = matchOverTime(
-      rig_, now.image, then, mask_, thinned(corners, kScouts), normal, predicted, matchOptions(true));
-  const Expected<MotionEstimate> scouted =
-      estimateMotion(rig_, scouts, normal, covariance, predicted, kFewestScouts);
-  if (scouted) start = scouted->motion;
-  result.step_matches =
-      matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(false));
+  const int wide = wideSteps();
+  for (const int steps : {std::min(kSmallSteps, wide), wide}) {
+    const std::vector<TemporalMatch> matches =
+        matchOverTime(rig_, now.image, then, mask_, scouts, normal, predicted, matchOptions(steps));
+    const Expected<MotionEstimate> scouted =
+        estimateMotion(rig_, matches, normal, covariance, predicted, kFewestScouts);
+    if (scouted) start = scouted->motion;
+    if (scouted && scouted->inlier_count >= kEnough * scouts.size()) break;
+  }
+  result.step_matches = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0));
   return estimateMotion(rig_, result.step_matches, normal, covariance, start, parameters_.min_matches);
 }
 
@@ -168,8 +173,8 @@ CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d&
   for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1}) {
     CameraMotion guess;
     guess.t = share * ahead;
-    const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, past_.back().image, mask_, some, normal, guess, matchOptions(true));
+    const std::vector<TemporalMatch> matches = matchOverTime(rig_, now.image, past_.back().image, mask_, some,
+                                                             normal, guess, matchOptions(wideSteps()));
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, matches, normal, loose, guess, kFewestScouts);
     if (estimate && estimate->inlier_count > most) {
@@ -202,7 +207,7 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, matchOptions(false));
+        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, matchOptions(0));
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, matches, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "cubic_window.h"
 #include "interpolation.h"
 
 namespace uav_landing {
@@ -13,72 +14,132 @@ namespace {
 // Values behind each resampled row that may be read but do not count.
 constexpr int kPadding = 3;
 
-// Normal equations of: reference + gradient.shift = gain other + offset, for (shift, gain, offset).
-struct GainShiftProblem {
-  Eigen::Matrix4d information;
-  Eigen::Vector4d right;
+// Sums over a window of the other image with the reference's value and gradient, all about their means.
+struct WindowSums {
+  Eigen::Vector2d gradient;   // other times gradient
+  double squares, reference;  // other times itself, times the reference
 };
 
-// A window of the reference with its gradient, and all sums of it that do not depend on the other image.
+// Shift and gain of: reference + gradient.shift = gain other + offset, by least squares.
+struct GainShift {
+  bool solved = false;
+  Eigen::Vector2d shift;
+  double gain = 0;
+  double residual = 0;              // sum of squares
+  Eigen::Matrix2d unit_covariance;  // of the shift, for residuals of variance 1
+};
+
+// A window of the reference with its gradient about their means, and all sums of it that do not depend on the
+// other image. Rows are filled up to a multiple of four with zeros.
 class ReferenceWindow {
  public:
-  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : radius_(radius) {
-    for (int dy = -radius; dy <= radius; ++dy) {
-      const float* above = reference.ptr<float>(v + dy - 1) + u;
-      const float* row = reference.ptr<float>(v + dy) + u;
-      const float* below = reference.ptr<float>(v + dy + 1) + u;
-      for (int dx = -radius; dx <= radius; ++dx) {
-        const Pixel pixel{row[dx], -0.5f * (row[dx + 1] - row[dx - 1]), -0.5f * (below[dx] - above[dx])};
-        pixels_[size_++] = pixel;
-        const Eigen::Vector3d x(pixel.gx, pixel.gy, 1);
-        fixed_ += x * x.transpose();
-        right_ += x * pixel.value;
-        squares_ += double(pixel.value) * pixel.value;
+  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius)
+      : radius_(radius), size_(2 * radius + 1), stride_((size_ + 3) / 4 * 4) {
+    float* out = values_.data();
+    float sums[3] = {0, 0, 0};
+    for (int dy = -radius; dy <= radius; ++dy, out += stride_) {
+      const float* above = reference.ptr<float>(v + dy - 1) + u - radius;
+      const float* row = reference.ptr<float>(v + dy) + u - radius;
+      const float* below = reference.ptr<float>(v + dy + 1) + u - radius;
+      float *gx = out + kPlane, *gy = gx + kPlane;
+      for (int i = 0; i < size_; ++i) {
+        out[i] = row[i];
+        gx[i] = -0.5f * (row[i + 1] - row[i - 1]);
+        gy[i] = -0.5f * (below[i] - above[i]);
+        sums[0] += out[i];
+        sums[1] += gx[i];
+        sums[2] += gy[i];
       }
     }
+    for (int k = 0; k < 3; ++k) subtract(values_.data() + k * kPlane, means_[k] = sums[k] / count());
+    const float *a = values_.data(), *gx = a + kPlane, *gy = gx + kPlane;
+    G_ << product(gx, gx), product(gx, gy), product(gx, gy), product(gy, gy);
+    right_ << product(gx, a), product(gy, a);
+    energy_ = product(a, a);
+    const double determinant = G_.determinant();
+    usable_ = determinant > 1e-9 * G_.trace() * G_.trace();
+    if (usable_) inverse_ = G_.inverse();
   }
 
-  double count() const { return size_; }
-  double squares() const { return squares_; }
-  double energy() const { return squares_ - right_[2] * right_[2] / size_; }  // about the mean
+  bool usable() const { return usable_; }
+  int count() const { return size_ * size_; }
+  double energy() const { return energy_; }
 
-  // kExact: cubic interpolation of the other image, else linear.
-  template <bool kExact>
-  GainShiftProblem compare(const cv::Mat& other, const Eigen::Vector2d& at,
-                           const Eigen::Matrix2d& warp) const {
-    double bx = 0, by = 0, bb = 0, b1 = 0, ba = 0;
-    const Pixel* pixel = pixels_.data();
-    for (int dy = -radius_; dy <= radius_; ++dy) {
-      const double x0 = at.x() + warp(0, 1) * dy, y0 = at.y() + warp(1, 1) * dy;
-      for (int dx = -radius_; dx <= radius_; ++dx, ++pixel) {
-        const double x = x0 + warp(0, 0) * dx, y = y0 + warp(1, 0) * dx;
-        const float b = kExact ? cubicAt(other, x, y) : linearAt(other, x, y);
-        bx += b * pixel->gx;
-        by += b * pixel->gy;
-        bb += b * b;
-        b1 += b;
-        ba += b * pixel->value;
-      }
-    }
-    GainShiftProblem problem;
-    problem.information << fixed_(0, 0), fixed_(0, 1), bx, fixed_(0, 2),  //
-        fixed_(1, 0), fixed_(1, 1), by, fixed_(1, 2),                     //
-        bx, by, bb, b1,                                                   //
-        fixed_(2, 0), fixed_(2, 1), b1, fixed_(2, 2);
-    problem.right << right_[0], right_[1], ba, right_[2];
-    return problem;
+  // Best shift when the other image is looked at from `at`. The window must be inside by two pixels and
+  // paddedReach().
+  GainShift compare(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
+    return solve(sums(other, at, warp));
   }
+  // Places to the right of the centre that are looked at, those filled up included.
+  int paddedReach() const { return stride_ - radius_ - 1; }
 
  private:
-  struct Pixel {
-    float value, gx, gy;
-  };
-  static constexpr int kLargestRadius = 15;
-  std::array<Pixel, (2 * kLargestRadius + 1) * (2 * kLargestRadius + 1)> pixels_;
-  int radius_, size_ = 0;
-  Eigen::Matrix3d fixed_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
-  double squares_ = 0;
+  static constexpr int kLargestRadius = 15, kLargestStride = 32;
+  static constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
+
+  void subtract(float* values, float mean) const {
+    for (int j = 0; j < size_; ++j, values += stride_) {
+      for (int i = 0; i < size_; ++i) values[i] -= mean;
+      for (int i = size_; i < stride_; ++i) values[i] = 0;
+    }
+  }
+
+  double product(const float* a, const float* b) const {
+    cv::v_float32x4 sum = cv::v_setzero_f32();
+    for (int i = 0; i < size_ * stride_; i += 4)
+      sum = cv::v_muladd(cv::v_load(a + i), cv::v_load(b + i), sum);
+    return cv::v_reduce_sum(sum);
+  }
+
+  WindowSums sums(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
+    using cv::v_float32x4;
+    alignas(16) float row[kLargestStride];
+    alignas(16) float counts[kLargestStride];
+    for (int i = 0; i < stride_; ++i) counts[i] = i < size_ ? 1.f : 0.f;
+    const v_float32x4 mean = cv::v_setall_f32(means_[0]);
+    v_float32x4 bx = cv::v_setzero_f32(), by = bx, bb = bx, b1 = bx, ba = bx;
+    const float* a = values_.data();
+    const std::int32_t step_x = CubicTable::fixed(warp(0, 0)), step_y = CubicTable::fixed(warp(1, 0));
+    for (int dy = -radius_; dy <= radius_; ++dy) {
+      const Eigen::Vector2d start = at + warp * Eigen::Vector2d(-radius_, dy);
+      sampleCubicLine(other, CubicTable::fixed(start.x()), CubicTable::fixed(start.y()), step_x, step_y,
+                      stride_, row);
+      for (int i = 0; i < stride_; i += 4, a += 4) {
+        const v_float32x4 b = (cv::v_load_aligned(row + i) - mean) * cv::v_load_aligned(counts + i);
+        bx = cv::v_muladd(b, cv::v_load(a + kPlane), bx);
+        by = cv::v_muladd(b, cv::v_load(a + 2 * kPlane), by);
+        bb = cv::v_muladd(b, b, bb);
+        b1 = b1 + b;
+        ba = cv::v_muladd(b, cv::v_load(a), ba);
+      }
+    }
+    // Reference and gradient have no mean, so that of the other image matters to its own square only.
+    const double sum = cv::v_reduce_sum(b1);
+    return {{cv::v_reduce_sum(bx), cv::v_reduce_sum(by)},
+            cv::v_reduce_sum(bb) - sum * sum / count(),
+            cv::v_reduce_sum(ba)};
+  }
+
+  GainShift solve(const WindowSums& sums) const {
+    GainShift result;
+    const Eigen::Vector2d projected = inverse_ * sums.gradient;
+    const double left_over = sums.squares - sums.gradient.dot(projected);
+    if (!(left_over > 1e-9 * sums.squares)) return result;
+    result.gain = (sums.reference - projected.dot(right_)) / left_over;
+    result.shift = inverse_ * (right_ - sums.gradient * result.gain);
+    result.residual = std::max(0.0, energy_ - result.shift.dot(right_) - result.gain * sums.reference);
+    result.unit_covariance = inverse_ + projected * projected.transpose() / left_over;
+    result.solved = result.gain > 0.1;
+    return result;
+  }
+
+  int radius_, size_, stride_;
+  bool usable_ = false;
+  alignas(16) std::array<float, 3 * kPlane> values_;  // reference, gradient along u, along v
+  float means_[3];
+  Eigen::Matrix2d G_, inverse_;
+  Eigen::Vector2d right_;
+  double energy_ = 0;
 };
 
 bool windowInside(const cv::Mat& image, int u, int v, int radius) {
@@ -167,46 +228,37 @@ PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, 
 
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
-  constexpr int kIterations = 10;
-  constexpr double kConverged = 0.005, kMaxDrift = 2.0;
-  // Shift, in pixels, from which on linear interpolation is no longer good enough.
-  constexpr double kNearlyThere = 0.15;
+  constexpr int kIterations = 8;
+  // A step leaves about a tenth of itself, so after one this long the place is good to a few 0.001 px.
+  constexpr double kConverged = 0.03, kMaxDrift = 2.0;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
   constexpr double kIndependent = 0.25;
   PatchRefinement result;
   if (!windowInside(reference, u, v, radius + 1)) return result;
   const ReferenceWindow window(reference, u, v, radius);
-  const double reach_x = (std::abs(warp(0, 0)) + std::abs(warp(0, 1))) * radius;
-  const double reach_y = (std::abs(warp(1, 0)) + std::abs(warp(1, 1))) * radius;
+  if (!window.usable()) return result;
+  const double reach_x = std::abs(warp(0, 0)) * window.paddedReach() + std::abs(warp(0, 1)) * radius;
+  const double reach_y = std::abs(warp(1, 0)) * window.paddedReach() + std::abs(warp(1, 1)) * radius;
+  const double max_drift = kMaxDrift * std::sqrt(std::abs(warp.determinant()));
   Eigen::Vector2d at = position;
-  bool exact = false;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    if (!(at.x() - reach_x >= 1 && at.y() - reach_y >= 1 && at.x() + reach_x < other.cols - 3 &&
+    if (!(at.x() - reach_x >= 2 && at.y() - reach_y >= 2 && at.x() + reach_x < other.cols - 3 &&
           at.y() + reach_y < other.rows - 3)) {
       return result;
     }
-    const GainShiftProblem problem =
-        exact ? window.compare<true>(other, at, warp) : window.compare<false>(other, at, warp);
-    const Eigen::FullPivLU<Eigen::Matrix4d> lu(problem.information);
-    if (!lu.isInvertible()) return result;
-    const Eigen::Vector4d solution = lu.solve(problem.right);
-    if (!(solution[2] > 0.1)) return result;
-    Eigen::Vector2d shift = solution.head<2>();
-    const double length = shift.norm();
-    if (length > 1) shift /= length;
-    at -= warp * shift;
-    if ((at - position).norm() > kMaxDrift * std::sqrt(std::abs(warp.determinant()))) return result;
-    if (exact && length < kConverged) {
-      const double residual = std::max(0.0, window.squares() - problem.right.dot(solution));
-      const double noise = residual / (window.count() - 4) / kIndependent;
-      const Eigen::Matrix4d inverse = lu.inverse();
-      result.covariance = noise * warp * inverse.topLeftCorner<2, 2>() * warp.transpose();
-      result.score = std::sqrt(std::max(0.0, 1 - residual / std::max(1e-9, window.energy())));
+    const GainShift found = window.compare(other, at, warp);
+    if (!found.solved) return result;
+    const double length = found.shift.norm();
+    at -= warp * found.shift / std::max(1.0, length);
+    if ((at - position).norm() > max_drift) return result;
+    if (length < kConverged) {
+      const double noise = found.residual / (window.count() - 4) / kIndependent;
+      result.covariance = noise * warp * found.unit_covariance * warp.transpose();
+      result.score = std::sqrt(std::max(0.0, 1 - found.residual / std::max(1e-9, window.energy())));
       result.position = at;
       result.converged = true;
       return result;
     }
-    exact |= length < kNearlyThere;
   }
   return result;
 }
