@@ -90,6 +90,20 @@ TEST(ApproachSimulator, TruthOfTheStepIsThatFromThePreviousFrame) {
   EXPECT_EQ(truth.height, simulator.pose(0.5).position.z());
 }
 
+TEST(ApproachSimulator, TrueHeightIsThatAboveTheGroundBelowTheCamera) {
+  SimulatorParameters p = smallApproach();
+  const double flat = ApproachSimulator::create(p)->frame(5).truth.height;
+  p.profile.slope_before_deg = 1;
+  // The slope ends 50 m before the threshold; the camera is farther out: path.start_x is -330.
+  p.profile.change_start = -150;
+  p.profile.change_length = 100;
+  const ApproachSimulator simulator = ApproachSimulator::create(p).value();
+  const double x = simulator.pose(0.5).position.x();
+  // The ground rises by half the slope over the change of slope, and by all of it before.
+  const double below = std::tan(M_PI / 180) * (0.5 * 100 + (-150 - x));
+  EXPECT_NEAR(simulator.frame(5).truth.height, flat + below, 1e-9);
+}
+
 TEST(ApproachSimulator, MotionBlurIsTheAverageOverTheExposureAroundTheStamp) {
   SimulatorParameters p = smallApproach();
   p.image.noise = 0;

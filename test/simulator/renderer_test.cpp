@@ -51,7 +51,7 @@ struct Pair {
 Pair renderPair(const SimulatorParameters& p, const CameraPose& pose) {
   Pair pair{makeCameraRig(p).value(), {}, {}};
   const Renderer renderer(Scene(p.runway, p.surface, 1), placeObjects(p.objects, p.runway.width, 1),
-                          p.image.supersampling);
+                          p.image.supersampling, GroundProfile(p.profile));
   renderer.render(pair.rig.left, pose, pair.left);
   renderer.render(pair.rig.right, pose, pair.right);
   return pair;
@@ -172,45 +172,111 @@ double shiftOf(const cv::Mat& image, const cv::Mat& moved, const cv::Mat& gradie
   return solution.at<float>(0);
 }
 
-TEST(Renderer, DisparityOfTheGroundIsThatOfThePlaneAfterRectification) {
-  const SimulatorParameters p = texturedGround();
-  const Pair pair = renderPair(p, kPose);
+/// Rectified views of the pose, and where in the right one each left pixel's ground is seen if the ground's
+/// points have these distances along the rays (x, y, 1).
+struct GroundShift {
+  cv::Mat left, moved, columns;
+};
+template <class Range>
+GroundShift moveByGround(const Pair& pair, Range&& rangeOf) {
   const StereoRig rig = makeStereoRig(pair.rig.left.calibration, pair.rig.right.calibration).value();
   cv::Mat raw_left, raw_right, left, right;
   pair.left.convertTo(raw_left, CV_8U);
   pair.right.convertTo(raw_right, CV_8U);
-  ASSERT_FALSE(Rectifier::create(pair.rig.left.calibration)->rectify(raw_left, left));
-  ASSERT_FALSE(Rectifier::create(pair.rig.right.calibration)->rectify(raw_right, right));
-
-  const Attitude& a = kPose.attitude;
-  const Eigen::Vector3d normal = axesOf(a.roll, a.pitch, a.yaw).transpose() * -Eigen::Vector3d::UnitZ();
-  cv::Mat columns(left.size(), CV_32F), rows(left.size(), CV_32F);
+  EXPECT_FALSE(Rectifier::create(pair.rig.left.calibration)->rectify(raw_left, left));
+  EXPECT_FALSE(Rectifier::create(pair.rig.right.calibration)->rectify(raw_right, right));
+  cv::Mat rows(left.size(), CV_32F), shifted;
+  GroundShift result;
+  result.columns.create(left.size(), CV_32F);
   for (int v = 0; v < left.rows; ++v) {
     for (int u = 0; u < left.cols; ++u) {
-      const double disparity = rig.fx * rig.baseline * normal.dot(rig.ray(u, v)) / kPose.position.z();
-      columns.at<float>(v, u) = static_cast<float>(u - disparity - rig.principalOffset());
+      const double disparity = rig.fx * rig.baseline / rangeOf(rig.ray(u, v));
+      result.columns.at<float>(v, u) = static_cast<float>(u - disparity - rig.principalOffset());
       rows.at<float>(v, u) = static_cast<float>(v);
     }
   }
-  cv::Mat moved, gradient, l, r;
-  cv::remap(right, moved, columns, rows, cv::INTER_CUBIC);
-  left.convertTo(l, CV_32F);
-  moved.convertTo(r, CV_32F);
-  cv::GaussianBlur(l, l, {}, 1.0);
-  cv::GaussianBlur(r, r, {}, 1.0);
-  cv::Sobel(0.5 * (l + r), gradient, CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::remap(right, shifted, result.columns, rows, cv::INTER_CUBIC);
+  left.convertTo(result.left, CV_32F);
+  shifted.convertTo(result.moved, CV_32F);
+  cv::GaussianBlur(result.left, result.left, {}, 1.0);
+  cv::GaussianBlur(result.moved, result.moved, {}, 1.0);
+  return result;
+}
+
+/// Checks that left and moved view show the same, block by block from this row on, to a part of a pixel.
+void expectSame(const GroundShift& shift, int first_row, int least) {
+  cv::Mat gradient;
+  cv::Sobel(0.5 * (shift.left + shift.moved), gradient, CV_32F, 1, 0, 3, 1.0 / 8);
   int checked = 0;
-  for (int v = 100; v + 30 <= 230; v += 30) {
+  for (int v = first_row; v + 30 <= 230; v += 30) {
     for (int u = 10; u + 50 <= 310; u += 50) {
       const cv::Rect block(u, v, 50, 30);
       double leftmost;
-      cv::minMaxLoc(columns(block), &leftmost);
+      cv::minMaxLoc(shift.columns(block), &leftmost);
       if (leftmost < 10) continue;
-      EXPECT_NEAR(shiftOf(l(block), r(block), gradient(block)), 0, 0.05) << block;
+      EXPECT_NEAR(shiftOf(shift.left(block), shift.moved(block), gradient(block)), 0, 0.05) << block;
       ++checked;
     }
   }
-  EXPECT_GE(checked, 8);
+  EXPECT_GE(checked, least);
+}
+
+TEST(Renderer, DisparityOfTheGroundIsThatOfThePlaneAfterRectification) {
+  const Pair pair = renderPair(texturedGround(), kPose);
+  const Attitude& a = kPose.attitude;
+  const Eigen::Vector3d normal = axesOf(a.roll, a.pitch, a.yaw).transpose() * -Eigen::Vector3d::UnitZ();
+  expectSame(
+      moveByGround(pair, [&](const Eigen::Vector3d& ray) { return kPose.position.z() / normal.dot(ray); }),
+      100, 8);
+}
+
+TEST(Renderer, DisparityOfCurvedGroundIsThatOfItsHeightField) {
+  // Level up to 2 m before the threshold, then steeper and steeper, from 1 m behind it on rising by 4
+  // degrees.
+  SimulatorParameters p = texturedGround();
+  p.profile.slope_after_deg = 4;
+  p.profile.change_start = -2;
+  p.profile.change_length = 3;
+  const double rise = std::tan(4 * kDegree);
+  const auto height = [&](double x) {
+    const double z = x < -2 ? 0 : x < 1 ? rise / 6 * (x + 2) * (x + 2) : 1.5 * rise + rise * (x - 1);
+    return z - rise / 6 * 4;  // 0 at the threshold
+  };
+  const Pair pair = renderPair(p, kPose);
+  const Eigen::Matrix3d axes = axesOf(kPose.attitude.roll, kPose.attitude.pitch, kPose.attitude.yaw);
+  expectSame(moveByGround(pair,
+                          [&](const Eigen::Vector3d& ray) {
+                            // Where the ray goes below the ground, by halving.
+                            const Eigen::Vector3d direction = axes * ray;
+                            double near = 0, far = 40;
+                            for (int i = 0; i < 50; ++i) {
+                              const double middle = 0.5 * (near + far);
+                              const Eigen::Vector3d point = kPose.position + middle * direction;
+                              (point.z() > height(point.x()) ? near : far) = middle;
+                            }
+                            return near;
+                          }),
+             70, 10);
+}
+
+TEST(Renderer, ACrestHidesTheGroundBehindIt) {
+  // Rising by 2 degrees towards the camera's height and falling behind the crest: the ground ends at the
+  // crest.
+  SimulatorParameters p = plainBoard();
+  p.runway.width = 0.01;
+  p.runway.length = 0.1;
+  p.surface.sky_horizon = p.surface.sky_zenith = 100;
+  p.surface.cloud_contrast = 0;
+  p.profile.slope_before_deg = 2;
+  p.profile.slope_after_deg = -3;
+  const CameraPose pose{{-30, 0, 0.5}, {0, 0, 0}};
+  const Pair pair = renderPair(p, pose);
+  const Eigen::Vector2d crest = imageOf(p, pose, pair.rig.left.calibration.R, false, {0, 0, 0});
+  const int start = static_cast<int>(std::lround(crest.y())) - 4;
+  double above = 0;
+  for (const float grey : columnProfile(pair.left, static_cast<int>(std::lround(crest.x())), start, 9))
+    above += (200.0 - grey) / 100.0;
+  EXPECT_NEAR(start - 0.5 + above, crest.y(), 0.5) << "a crest is not smoothed within the pixel";
 }
 
 /// The pose's picture by ideal lenses, the picture enlarged this many times and averaged back.

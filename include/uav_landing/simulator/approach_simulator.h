@@ -47,6 +47,7 @@ class ApproachSimulator {
   SimulatorParameters parameters_;
   CameraRig rig_;
   Trajectory trajectory_;
+  GroundProfile profile_;
   Renderer renderer_;
   int frames_;
 };

@@ -152,6 +152,23 @@ struct SimulatedSurfaceParameters {
   }
 };
 
+/// The ground's height along the runway, z(x): a straight slope, a parabola that leads over to another slope,
+/// and that slope; the same all across. 0 at the threshold (section profile).
+struct SimulatedProfileParameters {
+  double slope_before_deg = 0, slope_after_deg = 0;
+  double change_start = 0, change_length = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("slope_before_deg", slope_before_deg, -5.0, 5.0, "deg",
+             "rise of the ground in the landing direction before the change of slope");
+    v.number("slope_after_deg", slope_after_deg, -5.0, 5.0, "deg", "and after it");
+    v.number("change_start", change_start, -1e5, 1e5, "m",
+             "along the runway from the threshold; negative: before it");
+    v.number("change_length", change_length, 0.0, 1e5, "m", "over which the slope changes at a steady rate");
+  }
+};
+
 /// Boxes and poles that stand above the ground beside the runway (section objects).
 struct SimulatedObjectsParameters {
   int boxes = 0;
@@ -264,6 +281,7 @@ struct SimulatorParameters {
   SimulatedRigParameters rig;
   SimulatedRunwayParameters runway;
   SimulatedSurfaceParameters surface;
+  SimulatedProfileParameters profile;
   SimulatedObjectsParameters objects;
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
@@ -279,6 +297,7 @@ struct SimulatorParameters {
     v("rig", rig);
     v("runway", runway);
     v("surface", surface);
+    v("profile", profile);
     v("objects", objects);
     v("path", path);
     v("wobble", wobble);

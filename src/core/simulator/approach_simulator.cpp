@@ -7,6 +7,20 @@
 
 namespace uav_landing {
 
+namespace {
+
+/// Objects moved from z = 0 to the ground's height where they stand.
+std::vector<StandingObject> standOn(const GroundProfile& ground, std::vector<StandingObject> objects) {
+  for (StandingObject& object : objects) {
+    const auto lift = static_cast<float>(ground.height(0.5 * (object.low.x() + object.high.x())));
+    object.low.z() += lift;
+    object.high.z() += lift;
+  }
+  return objects;
+}
+
+}  // namespace
+
 Expected<ApproachSimulator> ApproachSimulator::create(const SimulatorParameters& parameters) {
   Expected<CameraRig> rig = makeCameraRig(parameters);
   if (!rig) return tl::make_unexpected(rig.error());
@@ -19,17 +33,19 @@ ApproachSimulator::ApproachSimulator(const SimulatorParameters& parameters, Came
     : parameters_(parameters),
       rig_(std::move(rig)),
       trajectory_(parameters.path, parameters.wobble, parameters.gust, parameters.random.seed),
+      profile_(parameters.profile),
       renderer_(Scene(parameters.runway, parameters.surface, parameters.random.seed),
-                placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed),
-                parameters.image.supersampling),
+                standOn(profile_,
+                        placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed)),
+                parameters.image.supersampling, profile_),
       frames_(1 + static_cast<int>(std::floor(parameters.path.duration * parameters.path.rate + 1e-6))) {}
 
 Failure ApproachSimulator::checkHeights() const {
   constexpr double kLowest = 0.01;
   for (int i = 0; i < frames_; ++i) {
-    const double left = trajectory_.pose(timeOf(i)).position.z();
-    const double right =
-        left + rig_.right.offset_x * runwayFromOptical(trajectory_.pose(timeOf(i)).attitude)(2, 0);
+    const CameraPose pose = trajectory_.pose(timeOf(i));
+    const double left = pose.position.z() - profile_.height(pose.position.x());
+    const double right = left + rig_.right.offset_x * runwayFromOptical(pose.attitude)(2, 0);
     if (std::min(left, right) >= kLowest) continue;
     std::ostringstream detail;
     detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
@@ -78,6 +94,7 @@ ApproachSimulator::Frame ApproachSimulator::expose(const Light& light, double no
   const CameraPose before = trajectory_.pose(timeOf(light.index - 1));
   frame.truth = truthOf(now, light.index > 0 ? &before : nullptr, 1.0 / parameters_.path.rate,
                         rig_.left.calibration.P.leftCols<3>());
+  frame.truth.height -= profile_.height(now.position.x());
   return frame;
 }
 

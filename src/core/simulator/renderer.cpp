@@ -15,7 +15,7 @@ struct Renderer::View {
 struct Renderer::Sample {
   Eigen::Vector3f direction;         ///< of its middle, not normalised
   Eigen::Vector3f along_u, along_v;  ///< change of the direction over its sides
-  float extent;  ///< height of its directions, the measure for its distance from the horizon
+  float extent;                      ///< see measure()
 
   /// The piece of this side around (du, dv) from the pixel's centre, in pixels.
   Sample(const View& view, const PixelRay& ray, float side, float du, float dv) {
@@ -25,7 +25,16 @@ struct Renderer::Sample {
                 du * along_u + dv * along_v;
     along_u *= side;
     along_v *= side;
-    extent = std::sqrt(along_u.z() * along_u.z() + along_v.z() * along_v.z());
+    measure();
+  }
+
+  /// Height of its directions, the measure for its distance from the horizon.
+  void measure() { extent = std::sqrt(along_u.z() * along_u.z() + along_v.z() * along_v.z()); }
+
+  /// Shears the directions so that ground of this slope along x becomes level.
+  void shear(float slope) {
+    for (Eigen::Vector3f* v : {&direction, &along_u, &along_v}) v->z() -= slope * v->x();
+    measure();
   }
 
   /// The ground it covers: a box of the same variance as the parallelogram that its corners make.
@@ -38,13 +47,33 @@ struct Renderer::Sample {
   }
 };
 
-Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, int supersampling)
-    : scene_(std::move(scene)), objects_(std::move(objects)), supersampling_(supersampling) {}
+/// A sample in axes sheared so that the ground it sees is level there.
+struct Renderer::OnGround {
+  Sample sample;
+  float height;  ///< of the camera above that ground
+};
 
-float Renderer::ground(const View& view, const Sample& sample) const {
+Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, int supersampling, GroundProfile profile)
+    : scene_(std::move(scene)),
+      objects_(std::move(objects)),
+      supersampling_(supersampling),
+      profile_(std::move(profile)) {}
+
+Renderer::OnGround Renderer::onGround(const View& view, const Sample& sample) const {
+  OnGround ground{sample, view.centre.z()};
+  if (profile_.flat()) return ground;
+  const GroundProfile::Line tangent =
+      profile_.seen(view.centre.cast<double>(), sample.direction.cast<double>());
+  ground.sample.shear(static_cast<float>(tangent.slope));
+  ground.height = static_cast<float>(view.centre.z() - tangent.at(view.centre.x()));
+  return ground;
+}
+
+float Renderer::ground(const View& view, const OnGround& on) const {
+  const Sample& sample = on.sample;
   // On the horizon itself: the ground as far as can be told apart from it.
   const float fall = std::max(-sample.direction.z(), 0.25f * sample.extent);
-  const float range = view.centre.z() / fall;  // along the direction, which is not normalised
+  const float range = on.height / fall;  // along the direction, which is not normalised
   const RunwaySurface::Patch patch = sample.patch(view.centre, range, fall);
   return scene_.ground(patch, scene_.cover(patch), range * sample.direction.norm());
 }
@@ -61,8 +90,9 @@ float Renderer::mixed(const View& view, const PixelRay& ray) const {
       const Sample sample(view, ray, side, (static_cast<float>(i) + 0.5f) * side - 0.5f,
                           (static_cast<float>(j) + 0.5f) * side - 0.5f);
       // The horizon passes through samples: both sides count by their area.
-      const float below = std::clamp(0.5f - sample.direction.z() / sample.extent, 0.0f, 1.0f);
-      if (below > 0) sum += below * ground(view, sample);
+      const OnGround on = onGround(view, sample);
+      const float below = std::clamp(0.5f - on.sample.direction.z() / on.sample.extent, 0.0f, 1.0f);
+      if (below > 0) sum += below * ground(view, on);
       if (below < 1) sum += (1 - below) * sky(sample);
     }
   }
@@ -74,11 +104,12 @@ float Renderer::pixel(const View& view, const PixelRay& ray) const {
   // perspective within a pixel moves its mean by less than 1 / (12 kFar) of the pixel.
   constexpr float kFar = 16.0f;
   const Sample whole(view, ray, 1.0f, 0.0f, 0.0f);
-  if (whole.direction.z() > whole.extent) return sky(whole);
-  const float fall = -whole.direction.z();
-  if (fall < kFar * whole.extent) return mixed(view, ray);
-  const float range = view.centre.z() / fall;
-  const RunwaySurface::Patch patch = whole.patch(view.centre, range, fall);
+  const OnGround on = onGround(view, whole);
+  if (on.sample.direction.z() > on.sample.extent) return sky(whole);
+  const float fall = -on.sample.direction.z();
+  if (fall < kFar * on.sample.extent) return mixed(view, ray);
+  const float range = on.height / fall;
+  const RunwaySurface::Patch patch = on.sample.patch(view.centre, range, fall);
   const RunwaySurface::Cover cover = scene_.cover(patch);
   if (!cover.pure()) return mixed(view, ray);
   return scene_.ground(patch, cover, range * whole.direction.norm());
