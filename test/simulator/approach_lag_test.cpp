@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "uav_landing/pipeline.h"
+#include "uav_landing/simulator/approach_simulator.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kRate = 20;  // Hz
+
+/// Low over the runway, with small pictures and noise.
+SimulatorParameters lowPass() {
+  SimulatorParameters p;
+  p.image.width = 320;
+  p.image.height = 240;
+  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
+    camera->fx = camera->fy = 277;
+    camera->cx = 159.5;
+    camera->cy = 119.5;
+  }
+  p.path.rate = kRate;
+  p.path.speed = 20;
+  p.path.start_x = -40;
+  p.path.flare_height = 0;
+  p.wobble.heave = 0;
+  return p;
+}
+
+/// 5 degrees, falling to 0.5 within 3 s from 1.5 s on, then level for a second.
+SimulatorParameters flare() {
+  SimulatorParameters p = lowPass();
+  p.path.start_height = 10;
+  p.path.glide_angle_deg = 5;
+  p.path.flare_height = 10 - 1.5 * 20 * std::sin(5 * M_PI / 180);
+  p.path.flare_duration = 3;
+  p.path.flare_angle_deg = 0.5;
+  p.path.duration = 5.5;
+  return p;
+}
+
+/// A gust of 2 s that takes the path from 4 degrees to 8.5 and back.
+SimulatorParameters gust() {
+  SimulatorParameters p = lowPass();
+  p.path.start_height = 14;
+  p.path.glide_angle_deg = 4;
+  p.path.duration = 5;
+  p.gust.speed = 1.6;
+  p.gust.start = 1.5;
+  p.gust.duration = 2;
+  return p;
+}
+
+/// Angles of all frames later than 1 s, true and published (invalid frames: none).
+struct Angles {
+  std::vector<double> truth, published;
+};
+Angles fly(const SimulatorParameters& p, AngleSmoothing smoothing) {
+  Parameters parameters;
+  parameters.approach_angle.angle_smoothing = smoothing;
+  const ApproachSimulator simulator = ApproachSimulator::create(p).value();
+  Pipeline pipeline =
+      Pipeline::create(simulator.rig().left.calibration, simulator.rig().right.calibration, parameters)
+          .value();
+  Angles angles;
+  for (int i = 0; i < simulator.frames(); ++i) {
+    const ApproachSimulator::Frame frame = simulator.frame(i);
+    const LandingResult& landing = pipeline.process(100 + frame.time, frame.left, frame.right).landing;
+    if (frame.time <= 1) continue;
+    EXPECT_TRUE(landing.angle_valid) << frame.time << " s: " << landing.failure.message();
+    angles.truth.push_back(frame.truth.approach_angle);
+    angles.published.push_back(landing.approach_angle);
+  }
+  return angles;
+}
+
+/// Delay of the truth that explains the published angles best (least squares), s. Negative: they are early.
+double lagOf(const Angles& angles) {
+  constexpr int kMost = 10;  // frames
+  const int count = static_cast<int>(angles.truth.size());
+  double best = 0, least = 1e300;
+  for (double frames = -kMost; frames <= kMost; frames += 0.1) {
+    double sum = 0;
+    for (int i = kMost; i + kMost + 1 < count; ++i) {
+      const double at = i - frames;
+      const int before = static_cast<int>(std::floor(at));
+      const double share = at - before;
+      const double delayed = (1 - share) * angles.truth[before] + share * angles.truth[before + 1];
+      sum += std::pow(angles.published[i] - delayed, 2);
+    }
+    if (sum >= least) continue;
+    least = sum;
+    best = frames;
+  }
+  return best / kRate;
+}
+
+class LagTest : public testing::TestWithParam<SimulatorParameters (*)()> {};
+
+// A quarter of a second is allowed. What a mean over half a second has, 0.225 s, is the yardstick for the
+// test itself: the adaptive filter must do much better, or it is of no use.
+TEST_P(LagTest, PublishedAngleIsThatOfNow) {
+  const double lag = lagOf(fly(GetParam()(), AngleSmoothing::kAdaptive));
+  EXPECT_LT(lag, 0.1) << "s";
+  EXPECT_GT(lag, -0.1) << "s";
+}
+
+TEST_P(LagTest, ChordIsHalfItsWindowLate) {
+  EXPECT_NEAR(lagOf(fly(GetParam()(), AngleSmoothing::kChord)), 0.225, 0.06) << "s";
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, LagTest, testing::Values(flare, gust),
+                         [](const auto& info) { return info.index == 0 ? "Flare" : "Gust"; });
+
+}  // namespace
+}  // namespace uav_landing
