@@ -40,6 +40,7 @@ struct StereoDepthParameters {
   double left_right_tolerance = 0.7;
   int min_points = 20;
   double plane_tolerance = 0.6;
+  bool vertical_disparities = true;
   double disparity_bias_stddev = 0.02;
   double max_roll_deg = 30.0;
   double max_pitch_deg = 30.0;
@@ -68,8 +69,11 @@ struct StereoDepthParameters {
     v.number("min_points", min_points, 6, 1000, "points", "fewest points that make a ground plane");
     v.number("plane_tolerance", plane_tolerance, 0.1, 10.0, "px",
              "disparity by which a point may be off the plane in the consensus step");
+    v.flag("vertical_disparities", vertical_disparities,
+           "measure by how many rows matches are off, which shows a bent rig, and make the rows level");
     v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
-             "1 sigma of an error common to all disparities (yaw between the cameras); widens the pitch");
+             "1 sigma, in the middle of the image, by which the right camera may have turned since a good "
+             "calibration: an error common to all disparities of all pairs");
     v.number("max_roll_deg", max_roll_deg, 1.0, 60.0, "deg", "largest roll that is believed");
     v.number("max_pitch_deg", max_pitch_deg, 1.0, 60.0, "deg", "largest pitch, up or down, that is believed");
   }

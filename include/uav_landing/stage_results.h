@@ -14,6 +14,15 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// Rotation of the right camera against its calibration, as a small rotation vector (see rig_rotation.h).
+struct RigRotation {
+  Eigen::Vector3d w = Eigen::Vector3d::Constant(kUnknown);           ///< rectified axes, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2
+  int count = 0;                                                     ///< corners it was measured by
+
+  bool known() const { return w.allFinite() && covariance.allFinite(); }
+};
+
 /// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
 struct StereoDepthResult {
   /// One matched corner. Coordinates in the rectified left image, pixels.
@@ -32,6 +41,10 @@ struct StereoDepthResult {
   double surface_stddev = kUnknown;   ///< by which the surface ahead rises and falls about the plane, m
   bool from_search = false;           ///< found without a plane from the previous pair
   double skew = 0;                    ///< stamp of right minus left image, seconds
+  /// What vertical disparities say of the rig, of this pair alone; random errors only.
+  RigRotation vertical_rotation;
+  /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
+  double disparity_bias_stddev = 0;
 };
 
 /// Result of the monocular branch (paper 2) for one pair. Mirrors ApproachAngle.msg.

@@ -6,6 +6,7 @@
 #include "uav_landing/match_image.h"
 #include "uav_landing/plane_fit.h"
 #include "uav_landing/stereo_matching.h"
+#include "uav_landing/vertical_disparity.h"
 
 namespace uav_landing {
 namespace {
@@ -24,6 +25,8 @@ struct StereoDepthStage::Implementation {
   PlaneLimits limits;
   StereoLevel fine, coarse;
   MatchImage left, right;
+  RowAlignment rows;
+  cv::Mat level_fine, level_coarse;  // right images with their rows made level
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
   bool has_last = false;
   double last_stamp = 0;
@@ -32,7 +35,8 @@ struct StereoDepthStage::Implementation {
   bool looks_swapped = false;
   Timings timings;
 
-  Implementation(const RigModel& rig, const StereoDepthParameters& p) : model(rig), parameters(p) {
+  Implementation(const RigModel& rig, const StereoDepthParameters& p)
+      : model(rig), parameters(p), rows(p.vertical_disparities, p.window_radius) {
     limits.max_roll = p.max_roll_deg * kDegree;
     limits.max_pitch = p.max_pitch_deg * kDegree;
     limits.min_points = p.min_points;
@@ -69,15 +73,20 @@ struct StereoDepthStage::Implementation {
       right.assign(right_image);
     }
     fine.left = left.fine;
-    fine.right = right.fine;
     coarse.left = left.coarse;
-    coarse.right = right.coarse;
+    levelRows();
     const Expected<Eigen::Vector3d> start = firstPlane(result);
     if (!start) {
       result.failure = start.error();
       return;
     }
     refine(*start, result);
+  }
+
+  void levelRows() {
+    ScopedTimer timer(timings, "vertical_disparities");
+    fine.right = rows.level(fine.rig, right.fine, level_fine);
+    coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
   // A plane good to about a pixel of disparity: followed from the previous pair, or searched.
@@ -113,16 +122,23 @@ struct StereoDepthStage::Implementation {
       corners = findGroundCorners(fine, start, parameters.corner_count, parameters);
     }
     result.corners = static_cast<int>(corners.size());
+    // A bent rig's rows must be level before anything is matched along them.
+    if (result.from_search && rows.search(fine, corners, start)) levelRows();
     std::vector<DisparitySample> samples;
     {
       ScopedTimer timer(timings, "feature_matching");
       samples = matchCorners(fine, corners, start, parameters);
     }
+    fitOrSayWhyNot(samples, result);
+    measureRows(samples, result);
+  }
+
+  void fitOrSayWhyNot(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
     if (static_cast<int>(samples.size()) < parameters.min_points) {
       const bool few_corners = result.corners < parameters.min_points;
       result.failure = {few_corners ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
-                        std::to_string(samples.size()) + " matches of " + std::to_string(corners.size()) +
+                        std::to_string(samples.size()) + " matches of " + std::to_string(result.corners) +
                             " corners, at least " + std::to_string(parameters.min_points) + " needed"};
     }
     fit(samples, result);
@@ -149,6 +165,12 @@ struct StereoDepthStage::Implementation {
     result.residual_stddev = plane->residual_stddev;
     result.surface_stddev = plane->surface_stddev;
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
+    result.disparity_bias_stddev = parameters.disparity_bias_stddev;
+  }
+
+  void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "vertical_disparities");
+    if (!result.failure) result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
   }
 };
 
@@ -166,6 +188,7 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 
 void StereoDepthStage::reset() {
   implementation_->has_last = false;
+  implementation_->rows.reset();
   implementation_->started = false;
 }
 

@@ -138,6 +138,10 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.covariance, message.plane_covariance);
   message.residual_stddev = result.residual_stddev;
   message.surface_stddev = result.surface_stddev;
+  message.disparity_bias_stddev = result.disparity_bias_stddev;
+  toArray(result.vertical_rotation.w, message.vertical_rotation);
+  toArray(result.vertical_rotation.covariance, message.vertical_rotation_covariance);
+  message.vertical_rotation_count = static_cast<uint32_t>(result.vertical_rotation.count);
   message.from_search = result.from_search;
   message.skew = result.skew;
   message.compute_ms = compute_ms;
@@ -157,6 +161,10 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane_covariance, result.plane.covariance);
   result.residual_stddev = message.residual_stddev;
   result.surface_stddev = message.surface_stddev;
+  result.disparity_bias_stddev = message.disparity_bias_stddev;
+  fromArray(message.vertical_rotation, result.vertical_rotation.w);
+  fromArray(message.vertical_rotation_covariance, result.vertical_rotation.covariance);
+  result.vertical_rotation.count = static_cast<int>(message.vertical_rotation_count);
   result.from_search = message.from_search;
   result.skew = message.skew;
   return result;

@@ -84,6 +84,10 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   result.surface_stddev = next();
   result.from_search = true;
   result.skew = next();
+  fill(result.vertical_rotation.w);
+  fill(result.vertical_rotation.covariance);
+  result.vertical_rotation.count = 99;
+  result.disparity_bias_stddev = next();
 
   const StereoDepth message = toMessage(result, header(), 2.5);
   const StereoDepthResult back = toResult(message);
@@ -108,6 +112,10 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.surface_stddev, result.surface_stddev);
   EXPECT_TRUE(back.from_search);
   EXPECT_EQ(back.skew, result.skew);
+  EXPECT_EQ(back.vertical_rotation.w, result.vertical_rotation.w);
+  EXPECT_EQ(back.vertical_rotation.covariance, result.vertical_rotation.covariance);
+  EXPECT_EQ(back.vertical_rotation.count, 99);
+  EXPECT_EQ(back.disparity_bias_stddev, result.disparity_bias_stddev);
 }
 
 TEST(Conversions, CovariancesAreRowMajorInMessages) {

@@ -96,9 +96,10 @@ bool GroundRenderer::boxLight(const Eigen::Vector3d& origin, const Eigen::Vector
 }
 
 cv::Mat GroundRenderer::draw(const StereoRig& rig, double cx, const Pose& pose, double offset,
-                             const Exposure& exposure) const {
-  const Eigen::Matrix3d R = pose.worldFromOptical();
-  const Eigen::Vector3d origin = pose.position + R * Eigen::Vector3d(offset, 0, 0);
+                             const Eigen::Vector3d& turn, const Exposure& exposure) const {
+  const Eigen::Vector3d origin = pose.position + pose.worldFromOptical() * Eigen::Vector3d(offset, 0, 0);
+  Eigen::Matrix3d R = pose.worldFromOptical();
+  if (!turn.isZero()) R = R * Eigen::AngleAxisd(turn.norm(), turn.normalized());
   // Noise of its own for every picture.
   const size_t which = std::hash<double>()(pose.position.x() * 1.37 + pose.position.z() + pose.yaw * 0.11 +
                                            pose.roll * 0.013 + offset * 977);

@@ -61,16 +61,17 @@ class GroundRenderer {
   double bar_period = 0;                           ///< m, zebra: bars along x repeated over y; 0: none
   double bar_from = 0, bar_to = 0, bar_reach = 0;  ///< m, where along x, and |y| up to
   std::vector<Box> boxes;
+  Eigen::Vector3d bend{0, 0, 0};  ///< rotation vector of the right camera against the rig, rad
 
   cv::Mat left(const StereoRig& rig, const Pose& pose, const Exposure& exposure = {}) const {
-    return draw(rig, rig.cx, pose, 0, exposure);
+    return draw(rig, rig.cx, pose, 0, Eigen::Vector3d::Zero(), exposure);
   }
   cv::Mat right(const StereoRig& rig, const Pose& pose, const Exposure& exposure = {}) const {
-    return draw(rig, rig.cx_right, pose, rig.baseline, exposure);
+    return draw(rig, rig.cx_right, pose, rig.baseline, bend, exposure);
   }
 
  private:
-  cv::Mat draw(const StereoRig& rig, double cx, const Pose& pose, double offset,
+  cv::Mat draw(const StereoRig& rig, double cx, const Pose& pose, double offset, const Eigen::Vector3d& turn,
                const Exposure& exposure) const;
   double groundLight(double x, double y, double depth, double f, double height) const;
   double paint(double x, double y, double across, double along) const;

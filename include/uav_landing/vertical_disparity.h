@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/plane_fit.h"
+#include "uav_landing/stage_results.h"
+#include "uav_landing/stereo_matching.h"
+
+namespace uav_landing {
+
+/// Rotation of the right camera as vertical disparities show it (see rig_rotation.h): rx and rz well, ry
+/// weakly. They do not depend on the ground: no plane, depth or height enters.
+///
+/// samples: matched corners with the disparity found in the level's right image. The right row of a few of
+/// them is measured to sub-pixel (gain and offset free, within 2 rows), then w fitted with redescending
+/// weights. g: plane that tells how windows are sheared, 1/m. Fails when fewer than 20 corners have a row.
+Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
+                                                 const std::vector<DisparitySample>& samples,
+                                                 const Eigen::Vector3d& g, int window_radius);
+
+/// The same with nothing matched yet: looks for corners around the places that a rough plane predicts, within
+/// 3 columns and 3 rows of whole pixels first.
+Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
+                                                const std::vector<cv::Point>& corners,
+                                                const Eigen::Vector3d& g, int window_radius);
+
+/// Largest vertical disparity in the image of a rotation w, pixels.
+double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w);
+
+/// Takes the vertical disparities of w out of the right image: its rows then match the left image's. Columns
+/// are not moved, so that disparities keep what w does to them. right: CV_32F, of the rig's size.
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out);
+
+/// Keeps the right image's rows level with the left image's from pair to pair, so that a bent rig still
+/// matches along rows, and measures what it bends by.
+class RowAlignment {
+ public:
+  /// enabled: false leaves the images as they are and measures nothing.
+  RowAlignment(bool enabled, int window_radius) : enabled_(enabled), window_radius_(window_radius) {}
+
+  /// The right image (CV_32F, at the rig's resolution) with its rows made level, in buffer, or itself when
+  /// they are.
+  cv::Mat level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const;
+  /// Looks for the rows of corners with a rough plane. True when level() now gives another image.
+  bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g);
+  /// Rotation by the rows of the matched corners; adapts level() for the next pair. The level is one whose
+  /// right image is from level().
+  RigRotation measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
+                      const Eigen::Vector3d& g);
+  void reset() { taken_out_.setZero(); }
+
+ private:
+  bool adapt(const StereoRig& rig, const RigRotation& residual);
+
+  bool enabled_;
+  int window_radius_;
+  Eigen::Vector3d taken_out_ = Eigen::Vector3d::Zero();  // w of which the rows are freed, rad
+};
+
+}  // namespace uav_landing

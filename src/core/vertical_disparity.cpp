@@ -1,0 +1,193 @@
+#include "uav_landing/vertical_disparity.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "interpolation.h"
+#include "uav_landing/patch_matching.h"
+#include "uav_landing/rig_rotation.h"
+
+namespace uav_landing {
+namespace {
+
+// Corners measured: enough, as the filter behind averages over frames.
+constexpr size_t kMeasured = 120, kSearched = 80;
+constexpr int kFewest = 20;
+// Error of a row that its residuals do not show, pixels.
+constexpr double kStddevFloor = 0.04;
+constexpr double kMinScore = 0.8;
+
+struct RowShift {
+  Eigen::RowVector3d by_rotation;
+  double shift, stddev;  // pixels
+};
+
+// How the ground's window appears in the right image.
+Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
+  Eigen::Matrix2d warp;
+  warp << 1 - rig.fb() * g.x() / rig.fx, -rig.fb() * g.y() / rig.fy, 0, 1;
+  return warp;
+}
+
+void addRow(const StereoLevel& level, int u, int v, const Eigen::Vector2d& start, const Eigen::Matrix2d& warp,
+            int radius, std::vector<RowShift>& rows) {
+  const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
+  if (!place.converged || place.score < kMinScore) return;
+  const double stddev = std::hypot(std::sqrt(place.covariance(1, 1)), kStddevFloor);
+  rows.push_back({verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
+                  place.position.y() - v, stddev});
+}
+
+// Robust size of the residuals as a multiple of the claimed stddevs.
+double residualScale(const std::vector<RowShift>& rows, const Eigen::Vector3d& w) {
+  std::vector<double> ratios;
+  for (const RowShift& row : rows)
+    ratios.push_back(std::abs(row.shift - row.by_rotation.dot(w)) / row.stddev);
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::max(1.0, 1.4826 * *middle);
+}
+
+Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
+  constexpr int kIterations = 6;
+  constexpr double kTukey = 4.0;
+  // Without corners on all sides a component is not determined; rad.
+  constexpr double kAnything = 0.1;
+  const auto few = [](int count) {
+    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(count) + " rows, at least " +
+                                                                   std::to_string(kFewest) + " needed"});
+  };
+  if (static_cast<int>(rows.size()) < kFewest) return few(static_cast<int>(rows.size()));
+  // The median row shift is a start from which outliers show.
+  std::vector<double> shifts;
+  for (const RowShift& row : rows) shifts.push_back(row.shift / row.by_rotation.x());
+  std::nth_element(shifts.begin(), shifts.begin() + shifts.size() / 2, shifts.end());
+  RigRotation rotation;
+  rotation.w = Eigen::Vector3d(shifts[shifts.size() / 2], 0, 0);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double scale = residualScale(rows, rotation.w);
+    Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kAnything * kAnything);
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    rotation.count = 0;
+    for (const RowShift& row : rows) {
+      const double stddev = scale * row.stddev;
+      const double ratio = (row.shift - row.by_rotation.dot(rotation.w)) / (kTukey * stddev);
+      if (std::abs(ratio) >= 1) continue;
+      const double tukey = (1 - ratio * ratio) * (1 - ratio * ratio), weight = tukey / (stddev * stddev);
+      information += weight * row.by_rotation.transpose() * row.by_rotation;
+      right += weight * row.by_rotation.transpose() * row.shift;
+      ++rotation.count;
+    }
+    if (rotation.count < kFewest) return few(rotation.count);
+    rotation.covariance = information.inverse();
+    rotation.w = rotation.covariance * right;
+  }
+  return rotation;
+}
+
+}  // namespace
+
+Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
+                                                 const std::vector<DisparitySample>& samples,
+                                                 const Eigen::Vector3d& g, int window_radius) {
+  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const size_t count = std::min(kMeasured, samples.size());
+  std::vector<RowShift> rows;
+  rows.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const DisparitySample& sample = samples[i * samples.size() / count];
+    const double column = sample.u - sample.disparities.front() - level.rig.principalOffset();
+    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), {column, sample.v}, warp,
+           window_radius, rows);
+  }
+  return fit(rows);
+}
+
+Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
+                                                const std::vector<cv::Point>& corners,
+                                                const Eigen::Vector3d& g, int window_radius) {
+  constexpr int kSteps = 4;  // a peak on the border does not count
+  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const size_t count = std::min(kSearched, corners.size());
+  PatchSearch search(level.left, level.right, window_radius);
+  std::vector<RowShift> rows;
+  rows.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const cv::Point corner = corners[i * corners.size() / count];
+    const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+    const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
+    const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
+    if (best.found) addRow(level, corner.x, corner.y, best.position, warp, window_radius, rows);
+  }
+  return fit(rows);
+}
+
+double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) {
+  double largest = 0;
+  for (const double column : {0.0, rig.cx_right, rig.size.width - 1.0})
+    for (const double v : {0.0, rig.cy, rig.size.height - 1.0})
+      largest = std::max(largest, std::abs(verticalDisparityByRotation(rig, column, v).dot(w)));
+  return largest;
+}
+
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
+  out.create(right.size(), CV_32F);
+  for (int v = 0; v < out.rows; ++v) {
+    // Linear in the column.
+    const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
+    const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
+    const double slope = (last - first) / (out.cols - 1);
+    float* to = out.ptr<float>(v);
+    for (int u = 0; u < out.cols; ++u) {
+      const double row = std::clamp(first + slope * u, 1.0, right.rows - 2.001);
+      const int i = static_cast<int>(row);
+      float weights[4];
+      cubicWeights(static_cast<float>(row - i), weights);
+      const float* from = right.ptr<float>(i - 1) + u;
+      const size_t stride = right.step1();
+      to[u] = weights[0] * from[0] + weights[1] * from[stride] + weights[2] * from[2 * stride] +
+              weights[3] * from[3 * stride];
+    }
+  }
+}
+
+cv::Mat RowAlignment::level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
+  if (taken_out_.isZero()) return right;
+  straightenRows(rig, taken_out_, right, buffer);
+  return buffer;
+}
+
+bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                          const Eigen::Vector3d& g) {
+  if (!enabled_) return false;
+  const Expected<RigRotation> found = searchVerticalDisparities(level, corners, g, window_radius_);
+  return found && adapt(level.rig, *found);
+}
+
+RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
+                                  const Eigen::Vector3d& g) {
+  if (!enabled_) return {};
+  const Expected<RigRotation> found = measureVerticalDisparities(level, samples, g, window_radius_);
+  if (!found) return {};
+  RigRotation rotation = *found;
+  rotation.w += taken_out_;
+  adapt(level.rig, *found);
+  return rotation;
+}
+
+bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
+  // Vertical disparities up to this, pixels, do not disturb the matching along rows, and straightening costs
+  // time.
+  constexpr double kStraightEnough = 0.15;
+  // Chi-square (3 degrees of freedom) from which a residual is not noise.
+  constexpr double kSignificant = 30;
+  if (largestVerticalDisparity(rig, residual.w) < kStraightEnough) return false;
+  if (residual.w.dot(residual.covariance.inverse() * residual.w) < kSignificant) return false;
+  taken_out_ += residual.w;
+  if (largestVerticalDisparity(rig, taken_out_) < kStraightEnough) taken_out_.setZero();
+  return true;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,171 @@
+#include "uav_landing/vertical_disparity.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "support/ground_renderer.h"
+#include "uav_landing/rig_rotation.h"
+#include "uav_landing/stereo_depth_stage.h"
+
+namespace uav_landing {
+namespace {
+
+using test::GroundRenderer;
+using test::kDegree;
+using test::Pose;
+
+constexpr double kBaseline = 1.0;
+
+/// A rig of two cameras that are not as calibrated, over a textured ground.
+struct BentScene {
+  StereoRig rig = test::makeRig(640, 480, kBaseline);
+  RigModel model = test::makeModel(rig);
+  GroundRenderer ground{31};
+  StereoDepthParameters parameters;
+  Pose pose;
+
+  explicit BentScene(const Eigen::Vector3d& bend_deg) {
+    ground.grain = 0.05;
+    ground.bend = kDegree * bend_deg;
+    pose.position = {0, 0, 10};
+    pose.pitch = -5 * kDegree;
+    pose.roll = 2 * kDegree;
+  }
+  StereoDepthResult see(StereoDepthStage& stage, double stamp, const test::Exposure& right = {}) const {
+    return stage.process(stamp, ground.left(rig, pose), ground.right(rig, pose, right));
+  }
+  StereoDepthResult first() const {
+    StereoDepthStage stage(model, parameters);
+    return see(stage, 1);
+  }
+};
+
+/// Pixel of a direction in the right camera after it turned by w: worked out with whole rotations.
+Eigen::Vector2d turnedPixel(const StereoRig& rig, double column, double v, const Eigen::Vector3d& w) {
+  const Eigen::Vector3d ray((column - rig.cx_right) / rig.fx, (v - rig.cy) / rig.fy, 1);
+  const Eigen::Matrix3d axes(Eigen::AngleAxisd(w.norm(), w.normalized()));
+  const Eigen::Vector3d seen = axes.transpose() * ray;
+  return {rig.fx * seen.x() / seen.z() + rig.cx_right, rig.fy * seen.y() / seen.z() + rig.cy};
+}
+
+TEST(RigRotation, MovesDisparitiesAsATurnedCameraDoes) {
+  const StereoRig rig = test::makeRig(640, 480, kBaseline);
+  constexpr double kSmall = 1e-5;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d w = kSmall * Eigen::Vector3d::Unit(i);
+    for (const double column : {3.0, 250.0, 620.0}) {
+      for (const double v : {10.0, 260.0, 470.0}) {
+        const Eigen::Vector2d moved = turnedPixel(rig, column, v, w) - Eigen::Vector2d(column, v);
+        EXPECT_NEAR(disparityByRotation(rig, column, v)[i], -moved.x() / kSmall, 0.02) << i;
+        EXPECT_NEAR(verticalDisparityByRotation(rig, column, v)[i], moved.y() / kSmall, 0.02) << i;
+      }
+    }
+  }
+}
+
+TEST(RigRotation, TurnsThePlaneAsAFitToTheDisturbedDisparitiesDoes) {
+  const StereoRig rig = test::makeRig(640, 480, kBaseline);
+  Pose pose;
+  pose.position = {0, 0, 12};
+  pose.pitch = -6 * kDegree;
+  const GroundPlane plane = test::exactPlane(pose, 0, 0);
+  const Eigen::Vector3d w(0.0007, -0.0004, 0.0009);
+  std::vector<StereoDepthResult::Point> points;
+  Eigen::MatrixXd rows(0, 3);
+  Eigen::VectorXd disturbed(0);
+  for (double u = 5; u < 640; u += 45) {
+    for (double v = 260; v < 480; v += 35) {
+      const double d = plane.disparity(rig, u, v), column = u - d - rig.principalOffset();
+      const double stddev = 0.05 + 0.1 * (u / 640);
+      points.push_back({u, v, d, stddev, true});
+      rows.conservativeResize(rows.rows() + 1, 3);
+      disturbed.conservativeResize(rows.rows());
+      rows.bottomRows(1) = rig.fb() * rig.ray(u, v).transpose() / stddev;
+      disturbed[rows.rows() - 1] = (d + column - turnedPixel(rig, column, v, w).x()) / stddev;
+    }
+  }
+  points.push_back({300, 400, 1, 1e-3, false});  // not on the plane: does not count
+  const Eigen::Vector3d fitted = (rows.transpose() * rows).inverse() * (rows.transpose() * disturbed);
+  const Eigen::Vector3d predicted = planeByRotation(rig, points) * w;
+  EXPECT_LT((fitted - plane.g - predicted).norm(), 0.005 * predicted.norm());
+  // Mostly a yaw turns the pitch and a roll changes the height, by h / b.
+  EXPECT_NEAR(planeByRotation(rig, points)(2, 1), 1 / kBaseline, 0.15);
+  EXPECT_NEAR(planeByRotation(rig, points)(1, 2), -1 / kBaseline, 0.15);
+}
+
+TEST(VerticalDisparity, MeasuresPitchAndRollBetweenTheCameras) {
+  // Up to two rows, which is 0.2 degrees here, and any mixture.
+  for (const Eigen::Vector3d& bend :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.02, 0, 0), Eigen::Vector3d(-0.1, 0, 0.1),
+        Eigen::Vector3d(0.2, 0, 0), Eigen::Vector3d(-0.2, 0, 0), Eigen::Vector3d(0, 0, 0.3),
+        Eigen::Vector3d(0.1, 0.1, -0.2)}) {
+    const BentScene scene(bend);
+    const StereoDepthResult result = scene.first();
+    ASSERT_FALSE(result.failure) << bend.transpose() << ": " << result.failure.message();
+    ASSERT_TRUE(result.vertical_rotation.known()) << bend.transpose();
+    const Eigen::Vector3d error = result.vertical_rotation.w - kDegree * bend;
+    const Eigen::Matrix3d& covariance = result.vertical_rotation.covariance;
+    // Chi-square with three degrees of freedom: 16.3 once in a thousand.
+    EXPECT_LT(error.dot(covariance.inverse() * error), 16.3) << bend.transpose() << "; " << error.transpose();
+    EXPECT_LT(std::sqrt(covariance(0, 0)), 0.001 * kDegree) << "a hundredth of a row";
+    EXPECT_LT(std::sqrt(covariance(2, 2)), 0.005 * kDegree);
+  }
+}
+
+TEST(VerticalDisparity, IsBlindToGainOffsetAndNoise) {
+  const BentScene scene({0.1, 0, 0.1});
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const StereoDepthResult result = scene.see(stage, 1, {0.85, 20, 4});
+  ASSERT_TRUE(result.vertical_rotation.known());
+  EXPECT_NEAR(result.vertical_rotation.w.x(), 0.1 * kDegree, 0.003 * kDegree);
+  EXPECT_NEAR(result.vertical_rotation.w.z(), 0.1 * kDegree, 0.015 * kDegree);
+}
+
+TEST(VerticalDisparity, MatchesABentRigAsWellAsAStraightOne) {
+  const size_t straight = BentScene({0, 0, 0}).first().points.size();
+  BentScene bent({0.2, 0, 0});
+  EXPECT_GT(bent.first().points.size(), 0.8 * straight);
+  bent.parameters.vertical_disparities = false;
+  EXPECT_LT(bent.first().points.size(), 0.7 * straight) << "the rows are not what is in the way";
+}
+
+TEST(VerticalDisparity, FollowsARigThatBendsMoreAndMore) {
+  BentScene scene({0, 0, 0});
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 5; ++i) {
+    scene.ground.bend.x() = 0.04 * i * kDegree;
+    const StereoDepthResult result = scene.see(stage, 1 + 0.1 * i);
+    EXPECT_EQ(result.from_search, i == 0);
+    ASSERT_TRUE(result.vertical_rotation.known()) << i;
+    EXPECT_NEAR(result.vertical_rotation.w.x(), 0.04 * i * kDegree, 0.003 * kDegree) << i;
+  }
+}
+
+TEST(VerticalDisparity, SaysNothingWhenSwitchedOffOrBlind) {
+  BentScene scene({0.05, 0, 0});
+  scene.parameters.vertical_disparities = false;
+  EXPECT_FALSE(scene.first().vertical_rotation.known());
+  const cv::Mat flat(scene.rig.size, CV_8UC1, cv::Scalar(128));
+  StereoDepthStage stage(scene.model, StereoDepthParameters());
+  EXPECT_FALSE(stage.process(1, flat, flat).vertical_rotation.known());
+}
+
+TEST(VerticalDisparity, StraightenedRowsAreThoseOfAStraightRig) {
+  const BentScene straight({0, 0, 0});
+  cv::Mat crooked, wanted, level;
+  straight.ground.right(straight.rig, straight.pose, {1, 0, 0}).convertTo(wanted, CV_32F);
+  // Columns stay, so that only rotations that move none can be compared: none but pitch near the middle.
+  BentScene pitched({0.15, 0, 0});
+  pitched.ground.right(pitched.rig, pitched.pose, {1, 0, 0}).convertTo(crooked, CV_32F);
+  straightenRows(pitched.rig, pitched.ground.bend, crooked, level);
+  const cv::Rect middle(pitched.rig.size.width / 2 - 20, 260, 40, 200);
+  const double before = cv::norm(crooked(middle), wanted(middle), cv::NORM_L1) / middle.area();
+  const double after = cv::norm(level(middle), wanted(middle), cv::NORM_L1) / middle.area();
+  EXPECT_LT(after, 0.25 * before);
+}
+
+}  // namespace
+}  // namespace uav_landing
