@@ -37,7 +37,8 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(result.stdout.split()[-1], str(self.prefix / "share/uav_landing/launch/stereo.launch"))
 
     def test_programs_start(self):
-        for program in ("process_bag", "dataset_to_bag", "simulate_approach", "simulate_campaign", "evaluate"):
+        for program in ("process_bag", "dataset_to_bag", "simulate_approach", "simulate_campaign", "evaluate",
+                        "convert_recording"):
             with self.subTest(program=program):
                 result = self.run_installed("rosrun", "uav_landing", program, "--help")
                 self.assertEqual(result.returncode, 0, result.stdout + result.stderr)

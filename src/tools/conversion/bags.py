@@ -1,0 +1,65 @@
+"""Bags with other topic names or compressed images."""
+
+import cv2
+import numpy as np
+import rosbag
+from sensor_msgs.msg import Image
+
+from .errors import InputError
+
+SIDES = ("left", "right")
+IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
+
+
+def to_image(message, topic):
+    """A raw image; a compressed one is decoded by OpenCV, grey, or colour as bgr8."""
+    if message._type == "sensor_msgs/Image":
+        return message
+    # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
+    pixels = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED)
+    if pixels is None or pixels.dtype != np.uint8 or pixels.ndim == 3 and pixels.shape[2] != 3:
+        raise InputError(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
+                         "cannot be decoded to 8 bits")
+    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1],
+                  encoding="mono8" if pixels.ndim == 2 else "bgr8", step=pixels.strides[0])
+    image.data = pixels.tobytes()
+    return image
+
+
+def check_topics(bag, path, topics):
+    """The topics of the images are there and are images; None where there is no camera_info to be taken."""
+    known = bag.get_type_and_topic_info().topics
+    images = [name for name, info in known.items() if info.msg_type in IMAGE_TYPES]
+    for side in SIDES:
+        topic = topics[f"{side}/image_raw"]
+        if topic not in known:
+            raise InputError(f"{path}: no topic {topic}; images are on: {', '.join(sorted(images)) or 'no topic'}")
+        if topic not in images:
+            raise InputError(f"{path}: {topic} is {known[topic].msg_type}, expected an image")
+        info = topics.get(f"{side}/camera_info")
+        if info and info not in known:
+            raise InputError(f"{path}: no topic {info}; give a calibration file (--{side}-calibration) instead")
+
+
+def convert_bag(path, output, camera, topics, calibrations):
+    """Copies a bag's images and calibrations to the names the launch file expects; counts messages by name.
+
+    topics: {"left/image_raw": name in the bag, ...}; calibrations: {"left": CameraInfo, ...} instead of those in the bag.
+    """
+    names = {topic: name for name, topic in topics.items()}
+    counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
+    with rosbag.Bag(str(path)) as bag:
+        check_topics(bag, path, topics)
+        with rosbag.Bag(str(output), "w") as result:
+            for topic, message, time in bag.read_messages(list(names)):
+                name = names[topic]
+                side = name.split("/")[0]
+                if name.endswith("image_raw"):
+                    message = to_image(message, topic)
+                    if side in calibrations:
+                        calibrations[side].header = message.header
+                        result.write(f"/{camera}/{side}/camera_info", calibrations[side], time)
+                        counts[f"{side}/camera_info"] += 1
+                result.write(f"/{camera}/{name}", message, time)
+                counts[name] += 1
+    return counts

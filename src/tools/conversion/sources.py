@@ -1,0 +1,137 @@
+"""Recordings of others as stereo frames.
+
+Each source yields (stamp in ns, left image, right image), mono8, with the cameras' CameraInfo in .cameras.
+"""
+
+import csv
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from . import cameras
+from .errors import InputError
+
+
+def read_image(path):
+    pixels = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    if pixels is None:
+        raise InputError(f"{path}: no such image, or damaged")
+    return pixels
+
+
+def read_rows(path, separator):
+    """Rows of a text table, without comments."""
+    try:
+        with open(str(path), newline="") as file:
+            return [row for row in csv.reader(file, delimiter=separator, skipinitialspace=True)
+                    if row and not row[0].startswith("#")]
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}")
+
+
+class Euroc:
+    """A folder in the ASL format of the EuRoC data: mav0/cam0, mav0/cam1 (Burri et al., IJRR 2016)."""
+
+    def __init__(self, folder):
+        folder = Path(folder)
+        self.base = folder / "mav0" if (folder / "mav0").is_dir() else folder
+        sensors = [self.base / camera / "sensor.yaml" for camera in ("cam0", "cam1")]
+        size, left, body_from_left = self.lens(sensors[0])
+        right_size, right, body_from_right = self.lens(sensors[1])
+        if size != right_size:
+            raise InputError(f"{sensors[1]}: resolution {right_size}, that of cam0 is {size}")
+        self.cameras = cameras.stereo_rectified(size, left, right, np.linalg.inv(body_from_right) @ body_from_left)
+
+    @staticmethod
+    def lens(path):
+        """Size, (K, D) and the transform body <- camera."""
+        content = cameras.load_yaml(path)
+        model = cameras.field(content, path, "distortion_model")
+        if model not in ("radial-tangential", "radtan", "plumb_bob"):
+            raise InputError(f"{path}: distortion_model {model}: only radial-tangential is known")
+        fx, fy, cx, cy = cameras.numbers(content, path, ("intrinsics",), 4)
+        width, height = cameras.numbers(content, path, ("resolution",), 2)
+        pose = cameras.numbers(content, path, ("T_BS", "data"), 16).reshape(4, 4)
+        distortion = cameras.numbers(content, path, ("distortion_coefficients",), 4)
+        return (int(width), int(height)), (np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]),
+                                           np.append(distortion, 0)), pose
+
+    def __iter__(self):
+        lists = []
+        for camera in ("cam0", "cam1"):
+            path = self.base / camera / "data.csv"
+            rows = read_rows(path, ",")
+            if any(len(row) < 2 or not row[0].strip().isdigit() for row in rows):
+                raise InputError(f"{path}: expected rows of timestamp [ns], filename")
+            lists.append({int(row[0]): self.base / camera / "data" / row[1].strip() for row in rows})
+        for stamp in sorted(set(lists[0]) & set(lists[1])):
+            yield stamp, read_image(lists[0][stamp]), read_image(lists[1][stamp])
+
+
+class KittiOdometry:
+    """A sequence of the KITTI odometry data: image_0, image_1, calib.txt, times.txt (Geiger et al., CVPR 2012)."""
+
+    def __init__(self, folder):
+        self.base = Path(folder)
+        path = self.base / "calib.txt"
+        found = {row[0].rstrip(":"): row[1:] for row in read_rows(path, " ")}
+        projections = []
+        for name in ("P0", "P1"):
+            values = [value for value in found.get(name, []) if value]
+            try:
+                projections.append(np.array(values, float).reshape(3, 4))
+            except ValueError:
+                raise InputError(f"{path}: {name}: expected 12 numbers")
+        self.files = sorted((self.base / "image_0").glob("*.png"))
+        if not self.files:
+            raise InputError(f"{self.base}: no image_0/*.png")
+        height, width = read_image(self.files[0]).shape
+        left, right = projections
+        baseline = (left[0, 3] - right[0, 3]) / left[0, 0]
+        self.cameras = cameras.rectified(left[:, :3], baseline, (width, height))
+
+    def __iter__(self):
+        path = self.base / "times.txt"
+        try:
+            times = [float(row[0]) for row in read_rows(path, " ")]
+        except ValueError:
+            raise InputError(f"{path}: expected one number of seconds a line")
+        if len(times) < len(self.files):
+            raise InputError(f"{path}: {len(times)} times for {len(self.files)} images")
+        for time, file in zip(times, self.files):
+            yield round(time * 1e9), read_image(file), read_image(self.base / "image_1" / file.name)
+
+
+class Videos:
+    """Two video files of synchronised cameras, and their calibration files."""
+
+    def __init__(self, left, right, left_calibration, right_calibration, skip_left=0, skip_right=0, rate=None):
+        self.paths, self.skips, self.rate = (left, right), (skip_left, skip_right), rate
+        self.cameras = cameras.from_ros_yaml(left_calibration), cameras.from_ros_yaml(right_calibration)
+
+    def frames(self, path, skip, size):
+        """Grey pictures of a video from the one after the first `skip` on."""
+        video = cv2.VideoCapture(str(path))
+        if not video.isOpened():
+            raise InputError(f"{path}: no such video, or in a format that cannot be decoded")
+        rate = self.rate or video.get(cv2.CAP_PROP_FPS)
+        if not 0 < rate < 10000:
+            raise InputError(f"{path}: has no frame rate: give --rate")
+        number = 0
+        while True:
+            good, picture = video.read()
+            if not good:
+                return
+            if picture.shape[1::-1] != size:
+                raise InputError(f"{path}: {picture.shape[1]}x{picture.shape[0]} pixels, its calibration is for "
+                                 f"{size[0]}x{size[1]}")
+            if number >= skip:
+                yield (number - skip) / rate, cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+            number += 1
+
+    def __iter__(self):
+        sizes = [(info.width, info.height) for info in self.cameras]
+        views = [self.frames(*view) for view in zip(self.paths, self.skips, sizes)]
+        for (seconds, left), (_, right) in zip(*views):
+            yield round(seconds * 1e9), left, right

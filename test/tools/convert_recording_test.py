@@ -1,0 +1,200 @@
+import tempfile
+import unittest
+from pathlib import Path
+
+import cv2
+import numpy as np
+import rosbag
+from sensor_msgs.msg import CompressedImage
+
+from project import rosrun
+from stereo_bag import HEIGHT, WIDTH, noise, noise_frames, write_bag
+
+SENSOR = """%YAML:1.0
+T_BS:
+  cols: 4
+  rows: 4
+  data: {pose}
+resolution: [160, 120]
+distortion_model: {model}
+intrinsics: [150.0, 151.0, 79.0, 60.5]
+distortion_coefficients: [-0.2, 0.05, 0.001, -0.0005]
+"""
+CALIBRATION = """image_width: 160
+image_height: 120
+camera_name: {side}
+camera_matrix: {{rows: 3, cols: 3, data: [150, 0, 80, 0, 150, 60, 0, 0, 1]}}
+distortion_model: plumb_bob
+distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}
+rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}
+projection_matrix: {{rows: 3, cols: 4, data: [150, 0, 80, {shift}, 0, 150, 60, 0, 0, 0, 1, 0]}}
+"""
+
+
+class ConvertRecordingTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.output = self.folder / "out.bag"
+
+    def convert(self, kind, *arguments):
+        return rosrun("convert_recording", kind, *arguments, "--output", self.output)
+
+    def converted(self, *arguments):
+        """Messages by topic."""
+        result = self.convert(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        messages = {}
+        with rosbag.Bag(str(self.output)) as bag:
+            for topic, message, _ in bag.read_messages():
+                messages.setdefault(topic, []).append(message)
+        return messages
+
+    def refused(self, complaint, *arguments):
+        result = self.convert(*arguments)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn(complaint, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertFalse(self.output.exists())
+        self.assertFalse(self.output.with_suffix(".bag.part").exists())
+
+    def calibrations(self):
+        files = [self.folder / "left.yaml", self.folder / "right.yaml"]
+        for file, shift in zip(files, (0, -75)):
+            file.write_text(CALIBRATION.format(side=file.stem, shift=shift))
+        return ["--left-calibration", files[0], "--right-calibration", files[1]]
+
+    def euroc(self, model="radial-tangential", baseline=0.4):
+        # Body axes as EuRoC's: the cameras look along the body's z, a quarter turn about it, right camera at +x of the left.
+        turn = np.array([[0, -1, 0, 0.1], [1, 0, 0, 0.2], [0, 0, 1, 0.3], [0, 0, 0, 1.0]])
+        shift = np.eye(4)
+        shift[0, 3] = baseline
+        for camera, pose in (("cam0", turn), ("cam1", turn @ shift)):
+            data = self.folder / "mav0" / camera / "data"
+            data.mkdir(parents=True)
+            (data.parent / "sensor.yaml").write_text(SENSOR.format(pose=pose.ravel().tolist(), model=model))
+            stamps = [1403636579763555584 + 50000000 * i for i in range(4)]
+            if camera == "cam1":
+                del stamps[1]
+            rows = ["#timestamp [ns],filename"]
+            for number, stamp in enumerate(stamps):
+                cv2.imwrite(str(data / f"{stamp}.png"), noise(number))
+                rows.append(f"{stamp},{stamp}.png")
+            (data.parent / "data.csv").write_text("\r\n".join(rows) + "\r\n")
+
+    def test_euroc_folder_becomes_a_rectifiable_pair_of_cameras(self):
+        self.euroc()
+        messages = self.converted("euroc", self.folder)
+        left, right = (messages[f"/stereo/{side}/image_raw"] for side in ("left", "right"))
+        self.assertEqual([m.header.stamp.to_nsec() for m in left],
+                         [1403636579763555584 + 50000000 * i for i in (0, 2, 3)])
+        self.assertEqual([m.header.stamp for m in left], [m.header.stamp for m in right])
+        info = messages["/stereo/right/camera_info"][0]
+        self.assertEqual(info.K[:6], (150.0, 0, 79.0, 0, 151.0, 60.5))
+        self.assertEqual(info.D, (-0.2, 0.05, 0.001, -0.0005, 0.0))
+        self.assertAlmostEqual(-info.P[3] / info.P[0], 0.4, places=9)
+        np.testing.assert_allclose(np.reshape(info.R, (3, 3)), np.eye(3), atol=1e-9)  # no turn between the cameras
+
+    def test_euroc_mistakes_are_named(self):
+        self.refused("sensor.yaml: cannot be read", "euroc", self.folder)
+        self.euroc(model="equidistant")
+        self.refused("distortion_model equidistant", "euroc", self.folder)
+
+    def test_euroc_cameras_in_the_wrong_order_are_refused(self):
+        self.euroc(baseline=-0.4)
+        self.refused("not to the right of the first", "euroc", self.folder)
+
+    def test_kitti_sequence_keeps_its_calibration(self):
+        for side in ("image_0", "image_1"):
+            (self.folder / side).mkdir()
+            for number in range(3):
+                cv2.imwrite(str(self.folder / side / f"{number:06d}.png"), noise(number))
+        (self.folder / "times.txt").write_text("0.000000e+00\n1.000000e-01\n2.000000e-01\n")
+        (self.folder / "calib.txt").write_text("P0: 700 0 80 0 0 700 60 0 0 0 1 0 \nP1: 700 0 80 -378 0 700 60 0 0 0 1 0 \n")
+        messages = self.converted("kitti", self.folder)
+        stamps = [m.header.stamp.to_sec() for m in messages["/stereo/right/image_raw"]]
+        self.assertEqual(stamps, [1.0, 1.1, 1.2])  # zero is no time in ROS
+        self.assertAlmostEqual(messages["/stereo/right/camera_info"][0].P[3], -378)
+        self.assertEqual(messages["/stereo/left/image_raw"][2].data, noise(2).tobytes())
+        (self.folder / "times.txt").write_text("0\n")
+        self.output.unlink()
+        self.refused("times.txt: 1 times for 3 images", "kitti", self.folder)
+
+    def video(self, name, count, size=(WIDTH, HEIGHT)):
+        path = self.folder / name
+        writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 20, size)
+        for number in range(count):
+            writer.write(np.full((size[1], size[0], 3), 20 * number + 20, np.uint8))
+        writer.release()
+        return path
+
+    def test_videos_are_paired_by_number_after_what_is_skipped(self):
+        left, right = self.video("l.avi", 6), self.video("r.avi", 5)
+        messages = self.converted("videos", left, right, *self.calibrations(), "--skip-left", 2)
+        grey = {side: [np.mean(np.frombuffer(m.data, np.uint8)) for m in messages[f"/stereo/{side}/image_raw"]]
+                for side in ("left", "right")}
+        np.testing.assert_allclose(grey["left"], [60, 80, 100, 120], atol=3)
+        np.testing.assert_allclose(grey["right"], [20, 40, 60, 80], atol=3)
+        stamps = [m.header.stamp.to_sec() for m in messages["/stereo/left/image_raw"]]
+        np.testing.assert_allclose(np.diff(stamps), 0.05, atol=1e-6)
+        self.assertEqual(messages["/stereo/right/camera_info"][0].P[3], -75)
+
+    def test_video_mistakes_are_named(self):
+        good, large = self.video("l.avi", 2), self.video("large.avi", 2, (320, 240))
+        self.refused("none.avi: no such video", "videos", good, self.folder / "none.avi", *self.calibrations())
+        self.refused("320x240 pixels, its calibration is for 160x120", "videos", good, large, *self.calibrations())
+
+    def renamed_bag(self, compressed):
+        """A bag of /cam0/image... and /cam1/image..."""
+        path = self.folder / "in.bag"
+        write_bag(self.folder / "plain.bag", noise_frames())
+        suffix = "/compressed" if compressed else ""
+        with rosbag.Bag(str(self.folder / "plain.bag")) as bag, rosbag.Bag(str(path), "w") as result:
+            for topic, message, time in bag.read_messages():
+                _, _, side, name = topic.split("/")
+                camera = {"left": "cam0", "right": "cam1"}[side]
+                if name == "image_raw":
+                    if compressed:
+                        pixels = np.frombuffer(message.data, np.uint8).reshape(HEIGHT, WIDTH)
+                        message = CompressedImage(header=message.header, format="mono8; png compressed",
+                                                  data=cv2.imencode(".png", pixels)[1].tobytes())
+                    result.write(f"/{camera}/image{suffix}", message, time)
+                else:
+                    result.write(f"/{camera}/camera_info", message, time)
+        return path
+
+    def test_bag_with_other_names_and_compressed_images_runs_through_the_chain(self):
+        for suffix in ("", "/compressed"):
+            bag = self.renamed_bag(bool(suffix))
+            messages = self.converted("bag", bag, "--left", "/cam0/image" + suffix, "--right", "/cam1/image" + suffix)
+            self.assertEqual({topic: len(found) for topic, found in messages.items()},
+                             {f"/stereo/{side}/{kind}": 3 for side in ("left", "right") for kind in ("image_raw", "camera_info")})
+            self.assertEqual(messages["/stereo/right/image_raw"][1].data, noise(3).tobytes())
+            result = rosrun("process_bag", "--input", self.output)
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_calibration_files_replace_those_of_the_bag(self):
+        messages = self.converted("bag", self.renamed_bag(False), "--left", "/cam0/image", "--right", "/cam1/image",
+                                  *self.calibrations())
+        infos = messages["/stereo/right/camera_info"]
+        self.assertEqual([info.header.stamp for info in infos],
+                         [m.header.stamp for m in messages["/stereo/right/image_raw"]])
+        self.assertEqual((len(infos), infos[0].K[2]), (3, 80))
+
+    def test_bag_mistakes_are_named(self):
+        bag = self.renamed_bag(True)
+        self.refused("no topic /cam2/image; images are on: /cam0/image/compressed, /cam1/image/compressed", "bag", bag,
+                     "--left", "/cam0/image/compressed", "--right", "/cam2/image")
+        self.refused("must be different topics", "bag", bag, "--left", "/cam0/image", "--right", "/cam0/image")
+        with rosbag.Bag(str(bag), "a") as result:
+            result.write("/cam3/image/compressed", CompressedImage(format="h264", data=b"no picture"))
+        self.refused("/cam3/image/compressed: an image with format 'h264'", "bag", bag, "--left",
+                     "/cam0/image/compressed", "--right", "/cam3/image/compressed", "--right-info", "/cam1/camera_info")
+        (self.folder / "text.bag").write_text("no bag")
+        self.refused("", "bag", self.folder / "text.bag", "--left", "/a", "--right", "/b")
+        self.assertEqual(rosrun("convert_recording", "bag").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
