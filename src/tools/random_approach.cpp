@@ -10,10 +10,19 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 constexpr double kRate = 20;  // Hz
 
+/// Seeds that differ by 1 become seeds that have nothing in common (the finaliser of SplitMix64, Steele et
+/// al. 2014): cv::RNG's first numbers after similar seeds are similar.
+uint64_t hashed(uint64_t seed) {
+  seed += 0x9E3779B97F4A7C15ULL;
+  seed = (seed ^ (seed >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  seed = (seed ^ (seed >> 27)) * 0x94D049BB133111EBULL;
+  return seed ^ (seed >> 31);
+}
+
 /// cv::RNG and not <random>: the same numbers with every standard library.
 class Draw {
  public:
-  explicit Draw(uint64_t seed) : random_(seed * 0x9E3779B97F4A7C15ULL + 11) { random_.next(); }
+  explicit Draw(uint64_t seed) : random_(hashed(seed)) {}
   double uniform(double from, double to) { return random_.uniform(from, to); }
   /// A size for which factors count: as often between 1 and 2 as between 2 and 4.
   double scale(double from, double to) { return from * std::exp(uniform(0, std::log(to / from))); }
@@ -135,8 +144,9 @@ SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters) {
   SimulatorParameters p = drawFlight(draw, parameters);
   constexpr double kStart = 60;  // m
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
-  p.path.flare_height = draw.uniform(4, 8);
   p.path.flare_duration = 3;
+  // In the flare it loses a little more than half of what it would lose without, and ends in a level flight.
+  p.path.flare_height = 0.6 * p.path.flare_duration * sink + draw.uniform(1.5, 4);
   p.path.flare_angle_deg = draw.uniform(0.3, 1.0);
   p.path.flare_pitch_deg = draw.uniform(0, 3);
   if (draw.chance(0.5)) {
@@ -146,7 +156,7 @@ SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters) {
     // The gust leaves the aircraft lower by this: it flares at the same true height.
     p.path.flare_height += 0.5 * p.gust.speed * p.gust.duration;
   }
-  p.path.duration = (kStart - p.path.flare_height) / sink + 1.5;
+  p.path.duration = (kStart - p.path.flare_height) / sink + p.path.flare_duration;
   place(kStart, draw.uniform(150, 400), draw.uniform(-0.2, 0.2) * p.runway.width, p.path);
   p.path.track_deg *= 0.2;
   return p;

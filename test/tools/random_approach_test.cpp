@@ -48,7 +48,16 @@ TEST(RandomApproach, CalibrationErrorsAreAsLargeAsTheEstimatorIsTold) {
   for (uint64_t seed = 0; seed < 1000; ++seed)
     yaw.push_back(drawSnippet(seed, 10, 13, parameters).rig.bend_ry_deg);
   // 0.3 px at 554.26 px; 1000 samples give the deviation to 2.2 %.
-  EXPECT_NEAR(spread(yaw), 0.3 / 554.26 / kDegree, 0.1 * 0.3 / 554.26 / kDegree);
+  const double asked = 0.3 / 554.26 / kDegree;
+  EXPECT_NEAR(spread(yaw), asked, 0.1 * asked);
+  // Without a mean and, seed after seed, without correlation: 3 sigma of 1000 samples.
+  double sum = 0, products = 0;
+  for (size_t i = 0; i + 1 < yaw.size(); ++i) {
+    sum += yaw[i] / asked;
+    products += yaw[i] * yaw[i + 1] / (asked * asked);
+  }
+  EXPECT_LT(std::abs(sum) / 1000, 0.1);
+  EXPECT_LT(std::abs(products) / 1000, 0.1);
 }
 
 TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround) {
@@ -59,8 +68,8 @@ TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround)
     ASSERT_GT(path.pose(0).position.z(), 59);
     double lowest = 1000;
     for (double t = 0; t <= p.path.duration; t += 0.05) lowest = std::min(lowest, path.pose(t).position.z());
-    ASSERT_GT(lowest, 1.0) << seed;
-    ASSERT_LT(lowest, 7.5) << seed;
+    ASSERT_GT(lowest, 0.9) << seed;
+    ASSERT_LT(lowest, 5) << seed;
     gusts += p.gust.speed != 0 ? 1 : 0;
   }
   EXPECT_NEAR(gusts, 100, 30);
