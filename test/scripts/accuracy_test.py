@@ -1,35 +1,140 @@
+"""scripts/accuracy: the tables of its sections, by numbers worked out here, and what it keeps."""
+
+import sys
+import tempfile
 import unittest
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
+from pathlib import Path
+from unittest import mock
 
 from project import SOURCE_DIR
 
-
-def load(name):
-    """A program of scripts/ as a module."""
-    loader = SourceFileLoader(name, str(SOURCE_DIR / "scripts" / name))
-    module = module_from_spec(spec_from_loader(name, loader))
-    loader.exec_module(module)
-    return module
+sys.path.insert(0, str(SOURCE_DIR / "scripts"))
+from measurement import ablation, approaches, consistency, kept, markdown, noise, sets  # noqa: E402
 
 
-class AccuracyTest(unittest.TestCase):
-    accuracy = load("accuracy")
+def cells(line):
+    return [cell.strip() for cell in line.strip("|").split("|")]
 
+
+class SetsTest(unittest.TestCase):
     def test_row_has_heights_in_centimetres_and_angles_in_degrees(self):
         scores = {"frames": 120, "coverage": 0.9917, "compute_ms": {"mean": 3.14159}, "quantities": {
             "height": {"mean": 0.0012, "median": 0.001, "percentile_95": 0.003, "worst": 0.0045, "within_claimed_95": 0.96},
             "approach_angle": {"mean": 0.05, "median": 0.04, "percentile_95": 0.12, "worst": 0.2, "signed_mean": -0.01,
-                               "within_claimed_95": 0.9}}}
-        self.assertEqual(self.accuracy.row("lab", scores),
+                               "within_claimed_95": 0.9},
+            "pitch": {"percentile_95": 0.0504}, "roll": {"percentile_95": 0.07}}}
+        self.assertEqual(markdown.line(*sets.row("lab", scores)),
                          "| lab | 120 | 99.2% | 0.12 | 0.10 | 0.30 | 0.45 | 96% "
-                         "| 0.050 | 0.040 | 0.120 | 0.200 | -0.010 | 90% | 3.1 |")
+                         "| 0.050 | 0.040 | 0.120 | 0.200 | -0.010 | 90% | 0.050 | 0.070 | 3.1 |")
 
     def test_row_has_dashes_for_what_has_no_truth(self):
-        line = self.accuracy.row("kitti_raw", {"frames": 30, "coverage": 0.5, "quantities": {
+        row = sets.row("kitti_raw", {"frames": 30, "coverage": 0.5, "quantities": {
             "height": {"mean": 0.02, "median": 0.02, "percentile_95": 0.03, "worst": 0.04, "within_claimed_95": None}}})
-        self.assertEqual(line, "| kitti_raw | 30 | 50.0% | 2.00 | 2.00 | 3.00 | 4.00 | – | – | – | – | – | – | – | – |")
+        self.assertEqual(row, ["kitti_raw", 30, "50.0%", "2.00", "2.00", "3.00", "4.00"] + 10 * ["–"])
+        self.assertEqual(len(row), len(sets.HEADER))
 
-    def test_header_and_rows_have_the_same_number_of_columns(self):
-        line = self.accuracy.row("x", {"frames": 0, "coverage": None, "quantities": {}})
-        self.assertTrue(all(part.count("|") == line.count("|") for part in self.accuracy.HEADER.strip().splitlines()))
+
+class MarkdownTest(unittest.TestCase):
+    def test_table_refuses_a_row_of_another_length(self):
+        with self.assertRaises(ValueError):
+            markdown.table(("a", "b"), [["1"]])
+
+    def test_table_has_a_line_for_the_header_the_rule_and_every_row(self):
+        self.assertEqual(markdown.table(("a", "b"), [[1, 2]]), "| a | b |\n|---|---|\n| 1 | 2 |\n")
+
+
+class AblationTest(unittest.TestCase):
+    def test_row_fits_the_header_also_when_nothing_is_valid(self):
+        self.assertEqual(ablation.row("x", {"coverage": 0.0, "quantities": {}}), ["x", "0.0%"] + 5 * ["–"])
+        self.assertEqual(len(ablation.HEADER), 7)
+
+    def test_every_variant_differs_from_the_default_in_its_own_file(self):
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
+                mock.patch.object(ablation, "WORK", Path(folder)):
+            path = ablation.config_of({"approach_angle": {"refine_lines": False}}, 3)
+            self.assertIn("refine_lines: false", path.read_text())
+
+
+def approach_row(time, height, error, **values):
+    row = {"seed": "1", "time_s": time, "valid": 1, "height_true_m": height, "height_m": height + error, "x_true_m": -100,
+           "y_true_m": 1, "y_m": 1, "approach_angle_deg": 3, "approach_angle_true_deg": 3, "pitch_deg": 0,
+           "pitch_true_deg": 0, "roll_deg": 0, "roll_true_deg": 0}
+    row.update(values)
+    return {name: str(value) for name, value in row.items()}
+
+
+class ApproachesTest(unittest.TestCase):
+    def test_heights_have_the_tolerance_of_their_band(self):
+        # Below 30 m: 5 cm up to 10 m, then 0.5 %; from 30 to 60 m: 1 %.
+        rows = [approach_row(2, 5, 0.049), approach_row(2, 5, 0.051), approach_row(2, 20, -0.099), approach_row(2, 20, 0.101),
+                approach_row(2, 40, 0.39), approach_row(2, 40, 0.39), approach_row(2, 40, 0.39), approach_row(2, 40, 0.41)]
+        scores = approaches.score(rows)
+        self.assertEqual((scores["low"], scores["high"]), (0.5, 0.75))
+
+    def test_lateral_offsets_have_a_tolerance_that_grows_with_the_distance(self):
+        rows = [approach_row(2, 5, 0, x_true_m=-100, y_m=1.9), approach_row(2, 5, 0, x_true_m=10, y_m=1.2),
+                approach_row(2, 5, 0, x_true_m=10, y_m=1.14), approach_row(2, 5, 0, y_m="")]
+        scores = approaches.score(rows)
+        self.assertAlmostEqual(scores["lateral"], 2 / 3)
+        self.assertAlmostEqual(scores["lateral_known"], 3 / 4)
+
+    def test_first_second_and_invalid_frames_are_not_scored(self):
+        rows = [approach_row(1, 5, 1), approach_row(2, 5, 1, valid=0), approach_row(3, 5, 0)]
+        scores = approaches.score(rows)
+        self.assertEqual((scores["low"], scores["coverage"], scores["frames"]), (1.0, 0.5, 3))
+
+    def test_row_fits_the_header(self):
+        self.assertEqual(len(approaches.line("1", approaches.score([approach_row(2, 5, 0)]))), len(approaches.HEADER))
+        self.assertEqual(len(approaches.TARGET), len(approaches.HEADER))
+
+
+class ConsistencyTest(unittest.TestCase):
+    def test_wilson_interval_is_that_of_the_literature(self):
+        # 81 of 263: 0.2553 to 0.3662 (Newcombe 1998, table I, score method).
+        low, high = consistency.wilson(81, 263)
+        self.assertAlmostEqual(low, 0.2553, 4)
+        self.assertAlmostEqual(high, 0.3662, 4)
+
+    def test_share_and_ratio_count_valid_rows_only(self):
+        rows = [{"height_valid": valid, "height_m": str(10 + error), "height_true_m": "10", "height_stddev_m": "0.1"}
+                for valid, error in (("1", 0.1), ("1", -0.19), ("1", 0.2), ("1", 0), ("0", 9))]
+        scores = consistency.score(rows, "height", "m", "height_valid")
+        self.assertEqual((scores["count"], scores["share"]), (4, 0.75))
+        self.assertAlmostEqual(scores["ratio"], ((1 + 1.9 ** 2 + 4) / 4) ** 0.5)
+
+    def test_nothing_valid_gives_no_score(self):
+        self.assertIsNone(consistency.score([], "height", "m", "height_valid"))
+
+    def test_page_has_a_row_for_every_cell_and_a_plot(self):
+        scores = {"count": 4, "share": 0.75, "interval": [0.3, 0.95], "ratio": 1.25}
+        cell = {"height": 3, "noise": 1, "quantities": {name: scores for name, _, _ in consistency.QUANTITIES}}
+        cell["quantities"]["y"] = None
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
+                mock.patch.object(consistency, "IMAGE", Path(folder) / "images" / "consistency.png"):
+            text = consistency.render({"count": 4, "frames": 13, "cells": [cell, cell]})
+            self.assertTrue(consistency.IMAGE.exists())
+        rows = [line for line in text.splitlines() if line.startswith("| 3 m")]
+        self.assertEqual(len(rows), 2)
+        self.assertEqual(cells(rows[0]), ["3 m", "1", "4"] + 4 * ["75.0 (30.0–95.0); 1.25"] + ["–", "–"])
+
+
+class NoiseTest(unittest.TestCase):
+    def test_ratio_is_error_over_bound(self):
+        row = {"height_m": 10.0, "noise": 2.0, "pairs": 48.0}
+        for name, _, _ in noise.QUANTITIES:
+            row.update({f"rms_{name}": 0.03, f"bound_{name}": 0.02, f"claimed_{name}": 0.025})
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
+                mock.patch.object(noise, "IMAGE", Path(folder) / "noise.png"):
+            text = noise.render([row])
+        self.assertEqual(cells(text.splitlines()[-1])[:7], ["10 m", "2", "48", "3", "2", "1.50", "2.5"])
+
+
+class KeptTest(unittest.TestCase):
+    def test_results_come_back_with_their_date(self):
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
+                mock.patch.object(kept, "WORK", Path(folder)):
+            self.assertIsNone(kept.recall("sets"))
+            kept.keep("sets", {"a": [1, None]})
+            date, results = kept.recall("sets")
+        self.assertRegex(date, r"^\d{4}-\d\d-\d\d \d\d:\d\d$")
+        self.assertEqual(results, {"a": [1, None]})

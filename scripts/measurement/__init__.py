@@ -1,0 +1,1 @@
+"""What scripts/accuracy is made of: one module for each section of docs/accuracy.md, and what they share."""

@@ -1,0 +1,99 @@
+"""Section `ablation`: each improvement over the paper switched off in turn."""
+
+import os
+
+import yaml
+
+from . import kept
+from .markdown import number, table
+from .programs import ROOT, WORK, run
+from .sets import find_sets, make_bag, quantity, score
+
+SETS = ("lab", "fg_noon", "kitti_road", "simulator/full_scale")
+# what is changed: title and values by section
+VARIANTS = (
+    ("all as by default", {}),
+    ("upright windows, parabola (`warp_window`)", {"stereo_depth": {"warp_window": False}}),
+    ("plain squared differences (`matching_cost: ssd`)", {"stereo_depth": {"matching_cost": "ssd"}}),
+    ("no photometric refinement of the plane (`direct_refinement`)", {"stereo_depth": {"direct_refinement": False}}),
+    ("flat surface ahead (`surface_curvature`)", {"stereo_depth": {"surface_curvature": False}}),
+    ("no watch on the rig (`rig_watch`)", {"kalman_height": {"rig_watch": False}}),
+    ("lines as Hough gives them (`refine_lines`)", {"approach_angle": {"refine_lines": False}}),
+    ("plane without the vanishing point (`fuse_vanishing_point`)", {"kalman_height": {"fuse_vanishing_point": False}}),
+    ("angle's normal from the vanishing points alone (`normal_source`)",
+     {"approach_angle": {"normal_source": "vanishing_line"}}),
+    ("focus of expansion by the paper's vote (`foe_method`)", {"approach_angle": {"foe_method": "sliding_window"}}),
+    ("the same with rotation in it (`remove_rotation`)",
+     {"approach_angle": {"foe_method": "sliding_window", "remove_rotation": False}}),
+    ("angle of one step (`angle_window: 0`)", {"approach_angle": {"angle_window": 0}}),
+    ("angle of the chord, late (`angle_smoothing: chord`)", {"approach_angle": {"angle_smoothing": "chord"}}),
+    ("height filter without the sink rate (`use_motion`)", {"kalman_height": {"use_motion": False}}),
+    ("height without the runway's width (`fuse_width_height`)", {"kalman_height": {"fuse_width_height": False}}),
+    ("height averaged over points (`height_source`)", {"kalman_height": {"height_source": "points"}}),
+    ("angle without stereo (`use_stereo`)", {"approach_angle": {"use_stereo": False}}),
+)
+PAPER = "the paper's choices, also on frames that are not valid"
+HEADER = ("changed", "coverage", "height, cm: 95 %", "angle, °: mean", "95 %", "pitch, °: 95 %", "roll, °: 95 %")
+TEXT = """One improvement over the paper is switched off at a time, by the parameter in brackets; scored as above, on the frames that
+are valid. What makes a number worse was worth having on that set; what changes nothing there earns its place elsewhere: the
+watch on the rig, for instance, on rigs that have turned. A variant with fewer valid frames shows easier ones.
+"""
+
+
+def known_parameters():
+    """Names of all parameters of the build, as section/name."""
+    names, section = set(), ""
+    for line in run("process_bag", "--list-parameters").splitlines():
+        if line.startswith("## "):
+            section = line.strip("# `").split()[0].strip("`")
+        elif line.startswith("| `"):
+            names.add(f"{section}/{line.split('`')[1]}")
+    return names
+
+
+def variants():
+    """Those whose parameters this build has."""
+    known = known_parameters()
+    for title, changes in VARIANTS:
+        missing = [f"{section}/{name}" for section, values in changes.items() for name in values
+                   if f"{section}/{name}" not in known]
+        if missing:
+            print(f"no parameter {', '.join(missing)}: '{title}' is left out")
+        else:
+            yield title, changes
+
+
+def config_of(changes, number_of_variant):
+    """A config file: the default preset with these changes."""
+    config = yaml.safe_load((ROOT / "config/stereo.yaml").read_text(encoding="utf-8")) or {}
+    for section, values in changes.items():
+        config[section] = {**(config.get(section) or {}), **values}
+    path = WORK / "ablation" / f"variant_{number_of_variant}.yaml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    return path
+
+
+def row(title, scores):
+    return [title, number(scores["coverage"], ".1%"), number(quantity(scores, "height", "percentile_95"), ".2f", 100),
+            number(quantity(scores, "approach_angle", "mean"), ".3f"),
+            *(number(quantity(scores, name, "percentile_95"), ".3f") for name in ("approach_angle", "pitch", "roll"))]
+
+
+def measure(options):
+    runs = [(title, config_of(changes, i), ()) for i, (title, changes) in enumerate(variants())]
+    runs.append((PAPER, ROOT / "config/paper.yaml", ("--invalid-too",)))
+    results = {}
+    for name, source in find_sets(options.data, SETS):
+        bag, truth = make_bag(name, source)
+        results[name] = []
+        for title, config, evaluate_options in runs:
+            results[name].append([title, score(name, bag, truth, config, evaluate_options)])
+            print(name, "|", " | ".join(map(str, row(*results[name][-1]))), flush=True)
+        os.remove(str(bag))
+    kept.keep("ablation", results)
+
+
+def render(results):
+    return TEXT + "".join(f"\n### `{name}`\n\n" + table(HEADER, [row(*entry) for entry in entries])
+                          for name, entries in results.items())

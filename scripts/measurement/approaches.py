@@ -1,0 +1,69 @@
+"""Section `approaches`: random simulated approaches at full scale, against what is asked of them."""
+
+import numpy as np
+
+from . import kept
+from .campaign import fly, number
+from .markdown import table
+from .markdown import number as cell
+
+NOISE = 2
+SETTLING_TIME = 1.0  # s
+HEADER = ("approach", "frames", "coverage", "height in max(5 cm, 0.5 %), below 30 m", "height in 1 %, 30 to 60 m",
+          "angle, °: 95 %", "pitch, °: 95 %", "roll, °: 95 %", "lateral in max(0.15 m, 1 % of distance)",
+          "lateral known")
+TARGET = ("asked", "", "", "95 %", "95 %", "0.2", "0.1", "0.1", "95 %", "")
+TEXT = """Approaches of `simulate_campaign approaches`: baseline 1 m, 640×480, noise of 2 grey levels, lens blur 0.4–0.9 px, gain and
+offset differing between the cameras, runways 18–60 m wide with all or few markings, glide 2.2–6° from 60 m to the flare,
+15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, gusts on half of them, and calibration errors as large as the
+parameters say they may be. Scored are valid frames later than 1 s after the first; *lateral known* is the share of them on
+which the lateral offset is known. The last rows are all frames together, and what is asked.
+"""
+
+
+def share(good):
+    return float(np.mean(good)) if good.size else None
+
+
+def percentile(error):
+    error = error[np.isfinite(error)]
+    return float(np.percentile(np.abs(error), 95)) if error.size else None
+
+
+def score(rows):
+    """Scores of the frames of one approach, or of many."""
+    columns = {name: np.array([number(row, name) for row in rows])
+               for name in ("time_s", "valid", "height_true_m", "height_m", "x_true_m", "y_true_m", "y_m")}
+    settled = columns["time_s"] > SETTLING_TIME + 1e-6
+    valid = settled & (columns["valid"] == 1)
+    height, truth = columns["height_m"][valid], columns["height_true_m"][valid]
+    error = np.abs(height - truth)
+    low, high = truth < 30, (truth >= 30) & (truth < 60)
+    lateral = np.abs(columns["y_m"] - columns["y_true_m"])[valid]
+    known = np.isfinite(lateral)
+    scores = {"frames": len(rows), "coverage": share(valid[settled]),
+              "low": share(error[low] <= np.maximum(0.05, 0.005 * truth[low])), "high": share(error[high] <= 0.01 * truth[high]),
+              "lateral": share(lateral[known] <= np.maximum(0.15, 0.01 * np.abs(columns["x_true_m"][valid][known]))),
+              "lateral_known": share(known)}
+    for name in ("approach_angle", "pitch", "roll"):
+        errors = np.array([number(row, f"{name}_deg") - number(row, f"{name}_true_deg") for row in rows])
+        scores[name] = percentile(errors[valid])
+    return scores
+
+
+def measure(options):
+    rows = fly("approaches", options.approaches, 1, options.jobs, "--noise", NOISE)
+    seeds = sorted({int(row["seed"]) for row in rows})
+    results = [[str(seed), score([row for row in rows if int(row["seed"]) == seed])] for seed in seeds]
+    results.append(["all", score(rows)])
+    kept.keep("approaches", results)
+
+
+def line(name, scores):
+    return [name, scores["frames"], cell(scores["coverage"], ".1%"), cell(scores["low"], ".1%"), cell(scores["high"], ".1%"),
+            *(cell(scores[key], ".3f") for key in ("approach_angle", "pitch", "roll")),
+            cell(scores["lateral"], ".1%"), cell(scores["lateral_known"], ".0%")]
+
+
+def render(results):
+    return TEXT + "\n" + table(HEADER, [line(*entry) for entry in results] + [TARGET])

@@ -1,0 +1,113 @@
+"""Section `consistency`: whether errors are as large as the claimed standard deviations say."""
+
+import math
+
+import numpy as np
+
+from . import kept
+from .campaign import fly, number
+from .markdown import DASH, table
+from .programs import ROOT
+
+SIGMAS_95 = 1.959964
+NOISE, HEIGHTS = (1, 2, 5), (3, 10, 30)
+# name, unit, the flag that must be set for the value to be used
+QUANTITIES = (("height", "m", "height_valid"), ("approach_angle", "deg", "angle_valid"), ("pitch", "deg", "height_valid"),
+              ("roll", "deg", "height_valid"), ("y", "m", "height_valid"))
+TITLES = {"height": "height", "approach_angle": "approach angle", "pitch": "pitch", "roll": "roll", "y": "lateral"}
+IMAGE = ROOT / "docs/images/consistency.png"
+TEXT = """{count} snippets for each noise and height, of {frames} frames at 20 Hz and drawn like the approaches above, one sample each: the last
+frame. Every snippet has another scene, path and another error of calibration, drawn from what the parameters say of it.
+The table shows which share of the errors is within the claimed 95 % interval, and in brackets the 95 % confidence interval
+(Wilson) of that share; then the ratio of errors to claimed standard deviations, root mean square: 1 when the claim is true,
+less when it is too cautious. Counted are the valid ones; *n* is the number of them for height and lateral.
+
+![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
+
+"""
+
+
+def wilson(good, count):
+    """95 % confidence interval of a share (Wilson 1927)."""
+    z2 = SIGMAS_95 ** 2
+    share = good / count
+    middle = (share + z2 / (2 * count)) / (1 + z2 / count)
+    half = SIGMAS_95 * math.sqrt(share * (1 - share) / count + z2 / (4 * count * count)) / (1 + z2 / count)
+    return middle - half, middle + half
+
+
+def score(rows, name, unit, flag):
+    """Count, share within 95 %, its interval, and root mean square of error over claim; None when nothing is valid."""
+    used = [row for row in rows if row[flag] == "1"]
+    error = np.array([number(row, f"{name}_{unit}") - number(row, f"{name}_true_{unit}") for row in used])
+    stddev = np.array([number(row, f"{name}_stddev_{unit}") for row in used])
+    known = np.isfinite(error) & np.isfinite(stddev)
+    if not np.any(known):
+        return None
+    ratio = np.abs(error[known]) / stddev[known]
+    good = int(np.sum(ratio <= SIGMAS_95))
+    return {"count": int(ratio.size), "share": good / ratio.size, "interval": wilson(good, ratio.size),
+            "ratio": float(np.sqrt(np.mean(ratio ** 2)))}
+
+
+def measure(options):
+    rows = fly("snippets", options.snippets, 10, options.jobs, "--noise", *NOISE, "--heights", *HEIGHTS)
+    frames = 1 + max(int(row["frame"]) for row in rows)
+    cells = []
+    for height in HEIGHTS:
+        for noise in NOISE:
+            inside = [row for row in rows if float(row["cell_height_m"]) == height and float(row["noise"]) == noise]
+            cells.append({"height": height, "noise": noise,
+                          "quantities": {name: score(inside, name, unit, flag) for name, unit, flag in QUANTITIES}})
+    kept.keep("consistency", {"count": options.snippets, "frames": frames, "cells": cells})
+
+
+def entry(scores):
+    if scores is None:
+        return DASH
+    low, high = scores["interval"]
+    return f"{100 * scores['share']:.1f} ({100 * low:.1f}–{100 * high:.1f}); {scores['ratio']:.2f}"
+
+
+def count(scores):
+    return DASH if scores is None else scores["count"]
+
+
+def plot(cells):
+    import matplotlib  # only here: it takes longer to load than everything else
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    figure, axes = plt.subplots(2, len(QUANTITIES), figsize=(15, 5.5), sharex=True, sharey="row")
+    labels = [f"{cell['height']} m, {cell['noise']}" for cell in cells]
+    for column, (name, _, _) in enumerate(QUANTITIES):
+        upper, lower = axes[0][column], axes[1][column]
+        upper.axhspan(93, 97, color="#cfe8cf")
+        upper.axhline(95, color="green", linewidth=0.8)
+        lower.axhline(1, color="green", linewidth=0.8)
+        for i, cell in enumerate(cells):
+            scores = cell["quantities"][name]
+            if scores is None:
+                continue
+            share, (low, high) = 100 * scores["share"], scores["interval"]
+            upper.errorbar(i, share, [[max(share - 100 * low, 0)], [max(100 * high - share, 0)]], fmt="o", color="C0", capsize=3)
+            lower.plot(i, scores["ratio"], "o", color="C1")
+        upper.set_title(TITLES[name])
+        lower.set_xticks(range(len(cells)))
+        lower.set_xticklabels(labels, rotation=90, fontsize=8)
+    axes[0][0].set_ylabel("within claimed 95 %, %")
+    axes[1][0].set_ylabel("rms error / claimed σ")
+    axes[1][0].set_ylim(bottom=0)
+    axes[1][len(QUANTITIES) // 2].set_xlabel("height, noise in grey levels")
+    figure.tight_layout()
+    IMAGE.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(str(IMAGE), dpi=80)
+    plt.close(figure)
+
+
+def render(results):
+    plot(results["cells"])
+    header = ["height", "noise", "n", *(TITLES[name] for name, _, _ in QUANTITIES), "n"]
+    rows = [[f"{cell['height']} m", cell["noise"], count(cell["quantities"]["height"]),
+             *(entry(cell["quantities"][name]) for name, _, _ in QUANTITIES), count(cell["quantities"]["y"])]
+            for cell in results["cells"]]
+    return TEXT.format(**results) + table(header, rows)

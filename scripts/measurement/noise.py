@@ -1,0 +1,68 @@
+"""Section `noise`: errors of the stereo plane against the Cramér–Rao bound."""
+
+import csv
+
+from . import kept
+from .campaign import number
+from .markdown import table
+from .programs import DEVEL, ROOT, WORK, run
+
+PROGRAM = "measure_noise_bound"
+IMAGE = ROOT / "docs/images/noise.png"
+QUANTITIES = (("height_m", "height, cm", 100), ("pitch_deg", "pitch, °", 1), ("roll_deg", "roll, °", 1))
+TEXT = """`measure_noise_bound` renders pairs without noise, adds it, and compares the errors of the plane of a single pair (root mean
+square over scenes and pairs) with the least that any unbiased estimator could have: the Cramér–Rao bound, from the
+gradients of the same pictures, with gain and offset between the cameras unknown. *Claimed* is the standard deviation that
+the estimate comes with. Asked is a ratio of at most 2 at noise of 2 grey levels and more.
+
+![Errors of the plane over noise, with the bound](images/noise.png)
+
+"""
+
+
+def measure(options):
+    if not (DEVEL / "lib/uav_landing" / PROGRAM).exists():
+        print(f"{PROGRAM} is not built: noise is left out")
+        return
+    path = WORK / "noise" / "bound.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    run(PROGRAM, "--output", path)
+    with path.open() as file:
+        kept.keep("noise", [{name: number(row, name) for name in row} for row in csv.DictReader(file)])
+
+
+def plot(rows):
+    import matplotlib  # only here: it takes longer to load than everything else
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    figure, axes = plt.subplots(1, len(QUANTITIES), figsize=(14, 4.5))
+    heights = sorted({row["height_m"] for row in rows})
+    for axis, (name, title, factor) in zip(axes, QUANTITIES):
+        for i, height in enumerate(heights):
+            cells = sorted((row for row in rows if row["height_m"] == height), key=lambda row: row["noise"])
+            noise = [row["noise"] for row in cells]
+            axis.loglog(noise, [factor * row[f"rms_{name}"] for row in cells], "o-", color=f"C{i}", label=f"{height:g} m")
+            axis.loglog(noise, [factor * row[f"bound_{name}"] for row in cells], "--", color=f"C{i}")
+        axis.set_title(title)
+        axis.set_xlabel("noise, grey levels")
+        axis.grid(True, which="both", linewidth=0.3)
+    axes[0].legend(title="height; dashed: bound")
+    figure.tight_layout()
+    IMAGE.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(str(IMAGE), dpi=80)
+    plt.close(figure)
+
+
+def render(results):
+    plot(results)
+    header = ["height", "noise", "pairs"]
+    for _, title, _ in QUANTITIES:
+        header += [f"{title}: error", "bound", "ratio", "claimed"]
+    rows = []
+    for row in sorted(results, key=lambda row: (row["height_m"], row["noise"])):
+        cells = [f"{row['height_m']:g} m", f"{row['noise']:g}", f"{row['pairs']:g}"]
+        for name, _, factor in QUANTITIES:
+            error, bound, claimed = (factor * row[f"{kind}_{name}"] for kind in ("rms", "bound", "claimed"))
+            cells += [f"{error:.3g}", f"{bound:.3g}", f"{error / bound:.2f}", f"{claimed:.3g}"]
+        rows.append(cells)
+    return TEXT + table(header, rows)

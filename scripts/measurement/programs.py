@@ -1,0 +1,28 @@
+"""Runs the package's programs, and says which version of them made a result."""
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+WORK = ROOT / "build" / "accuracy"
+DEVEL = ROOT / "build" / "devel"
+DEADLINE = 7200  # s, for one program
+
+
+def run(*command):
+    """Runs a program of the package in the development space; stops with its message when it fails."""
+    result = subprocess.run([str(ROOT / "build/catkin_generated/env_cached.sh"), "rosrun", "uav_landing", *map(str, command)],
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE)
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{result.stdout}")
+    return result.stdout
+
+
+def fingerprint(*files):
+    """Short name of the contents of the core library and these files: results of other contents are not reused."""
+    digest = hashlib.sha256()
+    for file in (DEVEL / "lib/libuav_landing_core.so", *files):
+        digest.update(Path(file).read_bytes())
+    return digest.hexdigest()[:12]
