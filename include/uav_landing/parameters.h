@@ -79,7 +79,7 @@ struct StereoDepthParameters {
   }
 };
 
-enum class HoughMethod { kProbabilistic, kStandard };
+enum class HoughMethod { kScanLines, kProbabilistic, kStandard };
 enum class NormalSource { kFused, kVanishingLine };
 enum class FoeMethod { kMotion, kSlidingWindow };
 enum class AngleFormula { kGeneral, kEq1 };
@@ -88,7 +88,7 @@ enum class AngleSmoothing { kAdaptive, kChord };
 /// Lines, vanishing points, focus of expansion, approach angle (nodelet approach_angle; paper 2, eq 1).
 struct ApproachAngleParameters {
   bool use_stereo = true;
-  HoughMethod hough_method = HoughMethod::kProbabilistic;
+  HoughMethod hough_method = HoughMethod::kScanLines;
   double canny_low = 40, canny_high = 110;
   int hough_threshold = 15;
   double min_line_length = 0.04;
@@ -120,8 +120,9 @@ struct ApproachAngleParameters {
     v.flag(
         "use_stereo", use_stereo,
         "ground normal and depth from stereo_depth; without: from the vanishing points alone, as the paper");
-    v.choice("hough_method", hough_method, {"probabilistic", "standard"},
-             "which Hough transform finds lines");
+    v.choice("hough_method", hough_method, {"scan_lines", "probabilistic", "standard"},
+             "scan_lines: edges are followed from scan lines across the image, many times faster than the "
+             "Hough transforms of all edge pixels, the paper's");
     v.number("canny_low", canny_low, 1.0, 1000.0, "grey/px", "weak edges, 3x3 Sobel scale");
     v.number("canny_high", canny_high, 1.0, 1000.0, "grey/px", "strong edges");
     v.number("hough_threshold", hough_threshold, 5, 1000, "votes", "fewest edge pixels on a line");

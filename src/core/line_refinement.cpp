@@ -247,12 +247,12 @@ Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const 
   return edgeSign(EdgeSampler(image, ground), axis, 0.5 * (b - a).norm()) * axis.across;
 }
 
-std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
-                                      const Eigen::Vector2d& b, double min_gradient) {
+std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const RoughSegment& rough,
+                                      double min_gradient) {
   const EdgeSampler sampler(image, ground);
-  Axis axis(0.5 * (a + b), b - a);
-  double from = -0.5 * (b - a).norm(), to = -from;
-  const EdgeKind kind{edgeSign(sampler, axis, to), min_gradient};
+  Axis axis(0.5 * (rough.a + rough.b), rough.b - rough.a);
+  double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
+  const EdgeKind kind{axis.across.dot(rough.brighter) >= 0 ? 1 : -1, min_gradient};
   for (const int reach : {2, 1}) {
     Collected found = collect(sampler, axis, from, to, kind, reach);
     std::vector<Peak>& peaks = found.peaks;

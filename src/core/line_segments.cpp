@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "line_refinement.h"
+#include "segment_scanner.h"
 
 namespace uav_landing {
 
@@ -21,7 +22,7 @@ constexpr double kUnrefinedStddev = 0.5;  // px, of a Hough line's ends
 constexpr double kSobelScale = 8;         // of a 3x3 Sobel response over the gradient in grey/px
 constexpr double kSameEdge = 1.0;         // px between segments of one edge
 
-using Segment = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
+using Ends = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 
 /// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not,
 /// and leaving it out makes the Hough transform both faster and cleaner.
@@ -63,7 +64,7 @@ cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,
 /// Stretches of an infinite line (rho, theta) along which there are edge pixels within 1 px, with gaps up
 /// to max_gap px.
 void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, double max_gap,
-             std::vector<Segment>& segments) {
+             std::vector<RoughSegment>& segments) {
   const Eigen::Vector2d normal(std::cos(theta), std::sin(theta)), along(-normal.y(), normal.x());
   const Eigen::Vector2d foot = rho * normal;
   const bool steep = std::abs(along.y()) > std::abs(along.x());
@@ -79,24 +80,25 @@ void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, do
     }
     return false;
   };
-  std::optional<Segment> open;
+  std::optional<Ends> open;
   const auto close = [&] {
-    if (open && (open->second - open->first).norm() >= min_length) segments.push_back(*open);
+    if (open && (open->second - open->first).norm() >= min_length)
+      segments.push_back({open->first, open->second});
     open.reset();
   };
   for (int i = 0; i < steps; ++i) {
     const Eigen::Vector2d p = point(i);
     if (!supported(p)) continue;
     if (open && (p - open->second).norm() > max_gap + 1) close();
-    if (!open) open = Segment(p, p);
+    if (!open) open = Ends(p, p);
     open->second = p;
   }
   close();
 }
 
-std::vector<Segment> houghSegments(const cv::Mat& edges, double min_length,
-                                   const ApproachAngleParameters& parameters) {
-  std::vector<Segment> segments;
+std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
+                                        const ApproachAngleParameters& parameters) {
+  std::vector<RoughSegment> segments;
   if (parameters.hough_method == HoughMethod::kStandard) {
     std::vector<cv::Vec2f> lines;
     cv::HoughLines(edges, lines, 1, kHoughAngle, parameters.hough_threshold);
@@ -108,15 +110,23 @@ std::vector<Segment> houghSegments(const cv::Mat& edges, double min_length,
     cv::HoughLinesP(edges, lines, 1, kHoughAngle, parameters.hough_threshold, min_length,
                     parameters.max_line_gap);
     for (const cv::Vec4i& l : lines)
-      segments.emplace_back(Eigen::Vector2d(l[0], l[1]), Eigen::Vector2d(l[2], l[3]));
+      segments.push_back({{double(l[0]), double(l[1])}, {double(l[2]), double(l[3])}});
   }
   return segments;
 }
 
+std::vector<RoughSegment> roughSegments(const cv::Mat& image, const cv::Mat& ground, double min_length,
+                                        const ApproachAngleParameters& parameters) {
+  if (parameters.hough_method != HoughMethod::kScanLines)
+    return houghSegments(straightEdges(image, ground, parameters), min_length, parameters);
+  return SegmentScanner().find(
+      image, ground, {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
+}
+
 /// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same
 /// on every machine.
-template <class T, class Ends>
-void keepLongest(std::vector<T>& items, size_t count, const Ends& ends) {
+template <class T, class EndsOf>
+void keepLongest(std::vector<T>& items, size_t count, const EndsOf& ends) {
   const auto key = [&](const T& item) {
     const auto [a, b] = ends(item);
     return std::make_tuple(-(b - a).squaredNorm(), a.x(), a.y(), b.x(), b.y());
@@ -149,32 +159,31 @@ void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
 }
 
 /// Whether this rough segment is a piece of a line already found: saves refining it again.
-bool isKnown(const std::vector<LineSegment>& lines, const Segment& segment,
-             const Eigen::Vector2d& brighter_side) {
+bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment) {
   return std::any_of(lines.begin(), lines.end(), [&](const LineSegment& line) {
-    return line.line.head<2>().dot(brighter_side) > 0 && overlaps(line, segment.first, segment.second);
+    return line.line.head<2>().dot(segment.brighter) > 0 && overlaps(line, segment.a, segment.b);
   });
 }
 
-std::vector<LineSegment> refined(const std::vector<Segment>& candidates, const cv::Mat& image,
+std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const cv::Mat& image,
                                  const cv::Mat& ground, double min_length, double min_gradient) {
   std::vector<LineSegment> lines;
-  for (const Segment& segment : candidates) {
-    const auto& [a, b] = segment;
-    if (isKnown(lines, segment, brighterSide(image, ground, a, b))) continue;
-    const auto line = refineLine(image, ground, a, b, min_gradient);
+  for (RoughSegment& segment : candidates) {
+    if (segment.brighter.isZero()) segment.brighter = brighterSide(image, ground, segment.a, segment.b);
+    if (isKnown(lines, segment)) continue;
+    const auto line = refineLine(image, ground, segment, min_gradient);
     if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }
   return lines;
 }
 
-std::vector<LineSegment> asFound(const std::vector<Segment>& candidates) {
+std::vector<LineSegment> asFound(const std::vector<RoughSegment>& candidates) {
   std::vector<LineSegment> lines;
-  for (const Segment& s : candidates)
+  for (const RoughSegment& s : candidates)
     if (std::none_of(lines.begin(), lines.end(),
-                     [&s](const LineSegment& line) { return overlaps(line, s.first, s.second); }))
-      lines.push_back(makeLineSegment(s.first, s.second, kUnrefinedStddev,
-                                      kUnrefinedStddev * std::sqrt(12.0) / (s.second - s.first).norm()));
+                     [&s](const LineSegment& line) { return overlaps(line, s.a, s.b); }))
+      lines.push_back(makeLineSegment(s.a, s.b, kUnrefinedStddev,
+                                      kUnrefinedStddev * std::sqrt(12.0) / (s.b - s.a).norm()));
   return lines;
 }
 
@@ -191,16 +200,15 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
   const cv::Rect part = cv::boundingRect(ground);
   if (part.width < 8 || part.height < 8) return {};
   const double min_length = parameters.min_line_length * image.rows;
-  const cv::Mat edges = straightEdges(image(part), ground(part), parameters);
-  std::vector<Segment> candidates = houghSegments(edges, min_length, parameters);
-  keepLongest(candidates, kMaxCandidates, [](const Segment& s) { return s; });
+  std::vector<RoughSegment> candidates = roughSegments(image(part), ground(part), min_length, parameters);
+  keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
 
   const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
   std::vector<LineSegment> lines =
       parameters.refine_lines ? refined(candidates, image(part), ground(part), min_length, min_gradient)
                               : asFound(candidates);
   for (LineSegment& line : lines) shift(line, {part.x, part.y});
-  keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Segment(l.a, l.b); });
+  keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Ends(l.a, l.b); });
   return lines;
 }
 

@@ -117,13 +117,15 @@ TEST(FindLines, AreAccurateAtAnyAngleAndPlace) {
   }
 }
 
-TEST(FindLines, StandardHoughFindsTheSameEdges) {
-  ApproachAngleParameters parameters;
-  parameters.hough_method = HoughMethod::kStandard;
-  const auto polygons = runway();
-  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
-  expectEdges(lines, polygons[0], 0.05);
-  EXPECT_EQ(lines.size(), 4U);
+TEST(FindLines, HoughTransformsFindTheSameEdges) {
+  for (const HoughMethod method : {HoughMethod::kProbabilistic, HoughMethod::kStandard}) {
+    ApproachAngleParameters parameters;
+    parameters.hough_method = method;
+    const auto polygons = runway();
+    const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), parameters);
+    expectEdges(lines, polygons[0], 0.05);
+    EXPECT_EQ(lines.size(), 4U);
+  }
 }
 
 TEST(FindLines, StandardHoughCutsALineWhereTheEdgeEnds) {

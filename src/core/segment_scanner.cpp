@@ -1,0 +1,219 @@
+#include "segment_scanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace uav_landing {
+
+namespace {
+
+constexpr double kScansPerLine = 3;  // scan lines that the shortest line along an image axis crosses
+constexpr double kSlopePrior = 10;   // stations that the gradient's direction at the start is worth
+constexpr double kMaxScatter = 0.6;  // px, RMS of the stations about the line; whole pixels scatter by 0.3
+constexpr double kMaxSlope = 1.1;    // px to the side a row; what is flatter belongs to the other axis
+constexpr int kFirstLook = 3;        // stations to each side after which texture is mostly told
+constexpr int kDense = 8;            // stations to each side after which every other row will do
+constexpr double kLeastShare = 0.8;  // of stations that show the edge
+
+/// Straight line u = u0 + slope v through the stations seen so far, by least squares; v from the start.
+class GrowingLine {
+ public:
+  explicit GrowingLine(double slope) : first_slope_(slope), slope_(slope) {}
+
+  void add(double v, double u) {
+    n_ += 1;
+    sv_ += v;
+    su_ += u;
+    svv_ += v * v;
+    svu_ += v * u;
+    suu_ += u * u;
+    const double svv = svv_ + kSlopePrior, svu = svu_ + kSlopePrior * first_slope_;
+    slope_ = (n_ * svu - sv_ * su_) / (n_ * svv - sv_ * sv_);
+    offset_ = (su_ - slope_ * sv_) / n_;
+  }
+  double at(double v) const { return offset_ + slope_ * v; }
+  double slope() const { return slope_; }
+  double count() const { return n_; }
+  double meanSquare() const {
+    const double squares = suu_ - 2 * (offset_ * su_ + slope_ * svu_) + n_ * offset_ * offset_ +
+                           2 * offset_ * slope_ * sv_ + slope_ * slope_ * svv_;
+    return squares / n_;
+  }
+
+ private:
+  double n_ = 0, sv_ = 0, su_ = 0, svv_ = 0, svu_ = 0, suu_ = 0;
+  double first_slope_, slope_, offset_ = 0;
+};
+
+/// Steep edges (nearer to the rows' normal than to the rows) of one image.
+class SteepEdges {
+ public:
+  SteepEdges(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits, cv::Mat& taken)
+      : image_(image),
+        ground_(ground),
+        limits_(limits),
+        taken_(taken),
+        spacing_(std::max(1, static_cast<int>(limits.min_length * M_SQRT1_2 / kScansPerLine))),
+        least_(static_cast<int>(std::ceil(limits.low / 2))) {
+    taken_.create(image.rows / spacing_ + 1, image.cols, CV_8UC1);
+    taken_.setTo(0);
+  }
+
+  /// Follows the edges that cross the scan rows. emit(u0, v0, u1, v1, sign): sign is that of the gradient
+  /// along the rows.
+  template <class Emit>
+  void scan(std::vector<short>& across, std::vector<short>& along, const Emit& emit) {
+    across.resize(image_.cols);
+    along.resize(image_.cols);
+    for (int row = 0, v = spacing_ / 2; v < image_.rows; ++row, v += spacing_) {
+      if (v < 1 || v + 1 >= image_.rows) continue;
+      sobel(v, across.data(), along.data());
+      const uchar* ground = ground_.ptr<uchar>(v);
+      const uchar* taken = taken_.ptr<uchar>(row);
+      for (int u = 2; u + 2 < image_.cols; ++u) {
+        const int gu = across[u], strength = std::abs(gu);
+        if (strength + std::abs(along[u]) < limits_.high || strength < std::abs(along[u])) continue;
+        if (std::abs(across[u - 1]) >= strength || std::abs(across[u + 1]) > strength) continue;
+        const int sign = gu > 0 ? 1 : -1;
+        if (ground[u] == 0 || (taken[u] & bit(sign)) != 0 || !isStraightAt(u, v, gu, along[u])) continue;
+        follow(u, v, sign, -static_cast<double>(along[u]) / gu, emit);
+      }
+    }
+  }
+
+ private:
+  static int bit(int sign) { return sign > 0 ? 1 : 2; }
+
+  void sobel(int v, short* across, short* along) const {
+    const uchar *a = image_.ptr<uchar>(v - 1), *b = image_.ptr<uchar>(v), *c = image_.ptr<uchar>(v + 1);
+    const int last = image_.cols - 1;
+    across[0] = along[0] = across[last] = along[last] = 0;
+    for (int u = 1; u < last; ++u) {
+      const short left = static_cast<short>(a[u - 1] + 2 * b[u - 1] + c[u - 1]);
+      const short right = static_cast<short>(a[u + 1] + 2 * b[u + 1] + c[u + 1]);
+      const short above = static_cast<short>(a[u - 1] + 2 * a[u] + a[u + 1]);
+      const short below = static_cast<short>(c[u - 1] + 2 * c[u] + c[u + 1]);
+      across[u] = static_cast<short>(right - left);
+      along[u] = static_cast<short>(below - above);
+    }
+  }
+
+  /// Whether the gradient keeps direction and strength for several pixels along the edge; texture does not.
+  bool isStraightAt(int u, int v, int gu, int gv) const {
+    constexpr int kStep = 3, kNeeded = 2;                     // rows; of two places to each side
+    constexpr float kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // within 25 degrees; 40 %
+    const float slope = -static_cast<float>(gv) / static_cast<float>(gu);
+    const float g2 = static_cast<float>(gu * gu + gv * gv);
+    int missing = 0;
+    for (const int rows : {kStep, -kStep, 2 * kStep, -2 * kStep}) {
+      const int x = u + cvRound(slope * static_cast<float>(rows)), y = v + rows;
+      bool agrees = x >= 1 && y >= 1 && x + 1 < image_.cols && y + 1 < image_.rows;
+      if (agrees) {
+        const uchar *a = image_.ptr<uchar>(y - 1) + x, *b = image_.ptr<uchar>(y) + x,
+                    *c = image_.ptr<uchar>(y + 1) + x;
+        const float hu = static_cast<float>(a[1] + 2 * b[1] + c[1] - a[-1] - 2 * b[-1] - c[-1]);
+        const float hv = static_cast<float>(c[-1] + 2 * c[0] + c[1] - a[-1] - 2 * a[0] - a[1]);
+        const float h2 = hu * hu + hv * hv,
+                    product = hu * static_cast<float>(gu) + hv * static_cast<float>(gv);
+        agrees = product > 0 && product * product >= kMinCos2 * g2 * h2 && h2 >= kMinStrength2 * g2;
+      }
+      if (!agrees && ++missing > 4 - kNeeded) return false;
+    }
+    return true;
+  }
+
+  /// Column of the strongest brightness step of this sign within a pixel of the expected place, or -1.
+  int edgeAt(int v, double expected, int sign) const {
+    const int middle = static_cast<int>(expected + 0.5);
+    if (!(expected >= 2) || middle + 2 >= image_.cols) return -1;
+    if (v < 1 || v + 1 >= image_.rows) return -1;
+    const uchar* row = image_.ptr<uchar>(v) + middle - 2;
+    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image_.step);
+    int sums[5];
+    for (int k = 0; k < 5; ++k) sums[k] = sign * (row[k - stride] + 2 * row[k] + row[k + stride]);
+    int best = -1, strongest = least_ - 1;
+    for (const int k : {1, 0, 2}) {
+      const int step = sums[k + 2] - sums[k];
+      if (step <= strongest) continue;
+      strongest = step;
+      best = middle - 1 + k;
+    }
+    return best >= 0 && ground_.at<uchar>(v, best) != 0 ? best : -1;
+  }
+
+  template <class Emit>
+  void follow(int u, int v, int sign, double slope, const Emit& emit) {
+    GrowingLine line(slope);
+    line.add(0, 0);
+    struct Side {
+      int step, end = 0, misses = 0;
+      bool open = true;
+    } sides[] = {{1}, {-1}};
+    int looked = 1;
+    for (int distance = 1, skip = 1; sides[0].open || sides[1].open; distance += skip) {
+      if (distance > kDense) skip = 2;
+      for (Side& side : sides) {
+        if (!side.open) continue;
+        const int station = side.step * distance;
+        ++looked;
+        const bool inside = v + station >= 0 && v + station < image_.rows;
+        const int found = inside ? edgeAt(v + station, u + line.at(station), sign) : -1;
+        if (found >= 0 && std::abs(found - u - line.at(station)) < 1.25) {
+          line.add(station, found - u);
+          side.end = station;
+          side.misses = 0;
+        } else if (!inside || ++side.misses * skip > limits_.max_gap) {
+          side.open = false;
+          looked -= side.misses;
+        }
+      }
+      if (distance == kFirstLook && line.count() < kLeastShare * looked) return;
+    }
+    const double length = (sides[0].end - sides[1].end) * std::hypot(1, line.slope());
+    if (length < limits_.min_length || std::abs(line.slope()) > kMaxSlope ||
+        line.count() < kLeastShare * looked || line.meanSquare() > kMaxScatter * kMaxScatter)
+      return;
+    take(u, v, sign, line, sides[1].end, sides[0].end);
+    emit(u + line.at(sides[1].end), v + sides[1].end, u + line.at(sides[0].end), v + sides[0].end, sign);
+  }
+
+  /// Keeps the scan rows from starting on this line again.
+  void take(int u, int v, int sign, const GrowingLine& line, int from, int to) {
+    const int first = spacing_ / 2;
+    for (int row = std::max(0, (v + from - first + spacing_ - 1) / spacing_); row < taken_.rows; ++row) {
+      const int station = first + row * spacing_ - v;
+      if (station > to) break;
+      const int middle = cvRound(u + line.at(station));
+      uchar* taken = taken_.ptr<uchar>(row);
+      for (int k = std::max(0, middle - 2); k <= std::min(taken_.cols - 1, middle + 2); ++k)
+        taken[k] |= static_cast<uchar>(bit(sign));
+    }
+  }
+
+  const cv::Mat &image_, &ground_;
+  const EdgeLimits& limits_;
+  cv::Mat& taken_;
+  int spacing_;  // of the scan rows
+  int least_;    // Sobel response across an edge: it may lie at 45 degrees
+};
+
+}  // namespace
+
+std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::Mat& ground,
+                                               const EdgeLimits& limits) {
+  std::vector<RoughSegment> segments;
+  SteepEdges(image, ground, limits, taken_)
+      .scan(across_, along_, [&](double u0, double v0, double u1, double v1, double sign) {
+        segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
+      });
+  cv::transpose(image, image_);
+  cv::transpose(ground, ground_);
+  SteepEdges(image_, ground_, limits, taken_)
+      .scan(across_, along_, [&](double v0, double u0, double v1, double u1, double sign) {
+        segments.push_back({{u0, v0}, {u1, v1}, {0, sign}});
+      });
+  return segments;
+}
+
+}  // namespace uav_landing
