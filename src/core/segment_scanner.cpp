@@ -101,7 +101,7 @@ class SteepEdges {
 
   /// Whether the gradient keeps direction and strength for several pixels along the edge; texture does not.
   bool isStraightAt(int u, int v, int gu, int gv) const {
-    constexpr int kStep = 3, kNeeded = 2;                     // rows; of two places to each side
+    constexpr int kStep = 3, kNeeded = 3;                     // rows; of two places to each side
     constexpr float kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // within 25 degrees; 40 %
     const float slope = -static_cast<float>(gv) / static_cast<float>(gu);
     const float g2 = static_cast<float>(gu * gu + gv * gv);
