@@ -15,8 +15,8 @@ HEADER = ("approach", "frames", "coverage", "height in max(5 cm, 0.5 %), below 3
 TARGET = ("asked", "", "", "95 %", "95 %", "0.2", "0.1", "0.1", "95 %", "")
 TEXT = """Approaches of `simulate_campaign approaches`: baseline 1 m, 640×480, noise of 2 grey levels, lens blur 0.4–0.9 px, gain and
 offset differing between the cameras, runways 18–60 m wide with all or few markings, glide 2.2–6° from 60 m to the flare,
-15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, gusts on half of them, and calibration errors as large as the
-parameters say they may be. Scored are valid frames later than 1 s after the first; *lateral known* is the share of them on
+15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, a flare of 3 s, a gust on half of them; the calibration is exact.
+Scored are valid frames later than 1 s after the first; *lateral known* is the share of them on
 which the lateral offset is known. The last rows are all frames together, and what is asked.
 """
 

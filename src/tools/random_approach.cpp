@@ -95,11 +95,10 @@ void drawWobble(Draw& draw, SimulatedWobbleParameters& wobble) {
 }
 
 /// Everything but where the path begins and how long it is.
-SimulatorParameters drawFlight(Draw& draw, const Parameters& parameters) {
+SimulatorParameters drawFlight(Draw& draw) {
   SimulatorParameters p;
   p.random.seed = draw.seed();
   drawSensors(draw, p);
-  drawCalibration(draw, calibrationPrior(parameters, p.left_camera.fx), p);
   drawRunway(draw, p.runway);
   drawSurface(draw, p.surface);
   drawWobble(draw, p.wobble);
@@ -125,13 +124,16 @@ void place(double height, double touchdown, double y, SimulatedPathParameters& p
 
 CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_length) {
   CalibrationPrior prior;
-  prior.ry = parameters.stereo_depth.disparity_bias_stddev / focal_length;
+  // The simulator's ground is flat here: a baseline error stands for what the height may be wrong by in all.
+  prior.baseline = parameters.kalman_height.height_model_error;
+  prior.rx = prior.ry = prior.rz = parameters.stereo_depth.disparity_bias_stddev / focal_length;
   return prior;
 }
 
 SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters) {
   Draw draw(seed);
-  SimulatorParameters p = drawFlight(draw, parameters);
+  SimulatorParameters p = drawFlight(draw);
+  drawCalibration(draw, calibrationPrior(parameters, p.left_camera.fx), p);
   p.path.duration = (frames - 1) / kRate;
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   const double y = draw.uniform(-0.35, 0.35) * p.runway.width;
@@ -139,9 +141,9 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
   return p;
 }
 
-SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters) {
+SimulatorParameters drawApproach(uint64_t seed) {
   Draw draw(seed);
-  SimulatorParameters p = drawFlight(draw, parameters);
+  SimulatorParameters p = drawFlight(draw);
   constexpr double kStart = 60;  // m
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   p.path.flare_duration = 3;

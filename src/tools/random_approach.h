@@ -14,11 +14,13 @@ struct CalibrationPrior {
 };
 CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_length);
 
-/// A random full-scale flight: runway, marks, light, both sensors, path, attitude and wobble are drawn, and
-/// the calibration's errors from what the estimator is told of them. The seed decides everything. A snippet
-/// is a short piece of a glide that ends near this height, m; as many frames as asked for, at 20 Hz.
+// A random full-scale flight: runway, marks, light, both sensors, path, attitude and wobble are drawn. The
+// seed decides everything.
+
+/// A short piece of a glide that ends near this height, m; as many frames as asked for, at 20 Hz. The
+/// calibration's errors are drawn, too, from what the estimator is told of them.
 SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters);
-/// An approach from 60 m down to the flare, with gusts on some.
-SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters);
+/// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
+SimulatorParameters drawApproach(uint64_t seed);
 
 }  // namespace uav_landing

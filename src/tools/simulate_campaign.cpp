@@ -77,7 +77,7 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
 void flyApproaches(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
   ProgressBar progress(options.count);
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
-    const SimulatorParameters drawn = drawApproach(seed, parameters);
+    const SimulatorParameters drawn = drawApproach(seed);
     CampaignCsv::Sample sample;
     sample.seed = seed;
     fly(drawn, parameters, options.noise, sample,

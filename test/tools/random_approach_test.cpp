@@ -63,7 +63,7 @@ TEST(RandomApproach, CalibrationErrorsAreAsLargeAsTheEstimatorIsTold) {
 TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround) {
   int gusts = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
-    const SimulatorParameters p = drawApproach(seed, {});
+    const SimulatorParameters p = drawApproach(seed);
     const Trajectory path(p.path, p.wobble, p.gust, p.random.seed);
     ASSERT_GT(path.pose(0).position.z(), 59);
     double lowest = 1000;

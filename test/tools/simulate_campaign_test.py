@@ -39,10 +39,11 @@ class SimulateCampaignTest(unittest.TestCase):
 
     def test_calibration_errors_follow_the_config(self):
         config = self.folder / "exact.yaml"
-        config.write_text("stereo_depth: {disparity_bias_stddev: 0}\n")
+        config.write_text("stereo_depth: {disparity_bias_stddev: 0}\nkalman_height: {height_model_error: 0}\n")
         options = ("--first", 4, "--count", 1, "--heights", 3, "--noise", 1)
-        self.assertNotEqual(float(self.fly(*options)[0]["bend_ry_deg"]), 0)
-        self.assertEqual(float(self.fly(*options, "--config", config)[0]["bend_ry_deg"]), 0)
+        names = ("stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg")
+        self.assertNotIn(0, [float(self.fly(*options)[0][name]) for name in names])
+        self.assertEqual([float(self.fly(*options, "--config", config)[0][name]) for name in names], [0, 0, 0, 0])
 
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
