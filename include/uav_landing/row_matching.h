@@ -39,6 +39,8 @@ class RowSearch {
   std::vector<RowCandidate> peaks(double min_score, int count) const;
 
  private:
+  /// Values at start + i scale of a row, less the template's mean; NaN outside the image, 0 behind them.
+  void resample(const float* row, double start, int width, float* out) const;
   void scoreAll();
   double similarity(double cross, double sum, double squares) const;
   RowCandidate interpolated(int index) const;
@@ -50,8 +52,9 @@ class RowSearch {
   int steps_ = 0;
   double centre_ = 0, scale_ = 1;
   WindowTemplate template_;
-  std::vector<float> strip_;  // resampled rows of the other image, (2 steps + size) wide
-  std::vector<float> cross_, column_sums_, column_squares_;
+  int padded_ = 0, stride_ = 0;  // positions filled up to whole blocks; of the rows in the strip
+  std::vector<float> strip_;     // resampled rows of the other image
+  std::vector<float> column_sums_, column_squares_;
   std::vector<float> scores_;
 };
 
