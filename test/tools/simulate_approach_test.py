@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import rosbag
+import yaml
 
 from project import BUILD_DIR, SOURCE_DIR, run
 
@@ -34,6 +35,24 @@ class SimulateApproachTest(unittest.TestCase):
     def simulate_short(self, *options, output=None):
         result = self.simulate(LAB, "--duration", 0.2, *options, output=output)
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_every_scene_flies_to_its_end_and_is_listed(self):
+        scenes = sorted((SOURCE_DIR / "config/simulator/scenes").glob("*.yaml"))
+        listed = (SOURCE_DIR / "config/simulator/scenes/README.md").read_text()
+        self.assertGreater(len(scenes), 5)
+        for scene in scenes:
+            with self.subTest(scene=scene.name):
+                self.assertIn(f"`{scene.name}`", listed)
+                config = yaml.safe_load(scene.read_text())
+                config.setdefault("path", {})["rate"] = 0.25
+                seldom = self.folder / scene.name
+                seldom.write_text(yaml.safe_dump(config))
+                dataset = self.folder / scene.stem
+                result = self.simulate(seldom, "--dataset", dataset, output=self.folder / f"{scene.stem}.bag")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                with open(dataset / "frames.csv", newline="") as file:
+                    heights = [float(row["height_m"]) for row in csv.DictReader(file)]
+                self.assertGreater(heights[0], 3 * heights[-1])
 
     def assert_refused(self, result, *texts):
         """Exit status 1, a message with these texts, and nothing left behind."""
