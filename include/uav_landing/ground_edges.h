@@ -29,6 +29,13 @@ struct GroundAxes {
   static Eigen::Matrix<double, 2, 3> meetByRotation(const Eigen::Vector2d& point);
 };
 
+/// A straight piece of an edge on the ground, as one view sees it: lateral position at its middle and slope
+/// against the landing direction. Multiples of the left camera's height, forward and left of that camera.
+struct EdgePiece {
+  double forward = 0, lateral = 0, slope = 0;  ///< slope: to the left per forward
+  Eigen::Matrix2d covariance;                  ///< of (lateral, slope) in the image alone
+};
+
 /// An edge on the ground along the runway: all of it has the same lateral position.
 struct GroundEdge {
   double lateral = 0;           ///< left of the left camera, in multiples of its height
@@ -36,11 +43,18 @@ struct GroundEdge {
   Eigen::Vector3d by_rotation;  ///< derivatives by the rotations of the axes: common to all edges
   bool brighter_left = false;   ///< which side is
   double near = 0, far = 0;     ///< from where to where it is seen, forward of the camera
+  bool begins = false;          ///< within the picture: the near end is not where the picture ends
   double extent = 0;            ///< sum of log(far / near) of its pieces
+  std::vector<EdgePiece> pieces;
 };
 
+/// Which lines of one view run along the runway, as far as they and the axes can tell: 1 for those. cx:
+/// principal column of the view.
+std::vector<char> linesAlong(const StereoRig& rig, const GroundAxes& axes,
+                             const std::vector<LineSegment>& lines, double cx);
+
 /// The lines of one view that lie along the runway, pieces of one edge joined. lines: of that view, with
-/// along: 1 for those through the vanishing point. cx: principal column of the view. baseline: of the view's
+/// along: 1 for those along the runway. cx: principal column of the view. baseline: of the view's
 /// camera to the right of the left one, in multiples of the height; 0 for the left view. Longest first.
 std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes,
                                     const std::vector<LineSegment>& lines, const std::vector<char>& along,
@@ -50,5 +64,9 @@ std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes
 /// the ground, or is not one and the same thing, is seen at two places and left out.
 std::vector<GroundEdge> matchEdges(const GroundAxes& axes, const std::vector<GroundEdge>& left,
                                    const std::vector<GroundEdge>& right);
+
+/// Edges seen by at least one view: the matched ones, and each view's other ones.
+std::vector<GroundEdge> joinEdges(const GroundAxes& axes, const std::vector<GroundEdge>& left,
+                                  const std::vector<GroundEdge>& right);
 
 }  // namespace uav_landing

@@ -19,11 +19,13 @@ struct RunwayDirection {
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 
-/// Stages 3 and 4. normal: ground normal from stereo, or null; with it lines are looked for below the horizon
-/// only and the direction must lie near the ground. Masks: of the rectified views, eroded.
+/// Stages 3 and 4. plane: of the ground from stereo, or null; with it lines are looked for below the horizon
+/// only, the direction must lie near the ground, and where a view has too few lines for a vanishing point of
+/// its own, two long edges side by side that agree in both views are enough. Masks: of the rectified views,
+/// eroded.
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
+                                    const GroundPlane* plane, const ApproachAngleParameters& parameters,
                                     Timings& timings);
 
 }  // namespace uav_landing

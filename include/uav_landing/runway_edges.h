@@ -10,8 +10,13 @@ namespace uav_landing {
 
 /// Where the runway lies across. Multiples of the left camera's height; left of the camera is positive.
 struct RunwayCrossSection {
-  double centre = 0, variance = 0;       ///< centre line
+  double centre = 0, variance = 0;       ///< centre line where it passes the camera
   double width = 0, width_variance = 0;  ///< between the outermost long edges
+  double turn = 0;  ///< of the runway's direction against the axes' forward, to the left, rad
+  Eigen::Matrix2d own = Eigen::Matrix2d::Zero();  ///< covariance of (centre, turn) were the normal exact
+  /// Derivatives of (centre, turn) and of the width by rotations of the normal about forward and about left.
+  Eigen::Matrix2d by_normal = Eigen::Matrix2d::Zero();
+  Eigen::RowVector2d width_by_normal = Eigen::RowVector2d::Zero();
 };
 
 /// Where the centre line is expected, and by how much it may differ.
@@ -21,10 +26,11 @@ struct ExpectedCentre {
 
 /// The runway's edges. A runway is painted symmetrically, so that each edge on its left has a counterpart on
 /// the right whose brighter side is the other one; the centre line is where most length of edges agrees on
-/// that. The runway's own edges are the outermost long ones. edges: of the ground along the runway. width:
-/// what the runway is known to measure, multiples of the height; 0 when not known. expected: from frames
-/// before; without it, a symmetry is believed only if at least two pairs of edges (one, when the width is
-/// known) share it and no other one comes near it.
+/// that, and where long edges do: the runway's own edges are the outermost long ones. edges: of the ground
+/// along the runway. width: what the runway is known to measure, multiples of the height; 0 when not known.
+/// expected: from frames before; without it, a symmetry is believed only if no other one with long edges
+/// comes near it, and if at least two pairs of edges share it, or the only pair is a dark strip that begins
+/// within the picture or has the known width.
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
                                              double width, const std::optional<ExpectedCentre>& expected);
 

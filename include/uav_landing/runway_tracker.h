@@ -51,8 +51,11 @@ class RunwayTracker {
   };
 
   void predict(const GroundAxes* axes, const ApproachAngleResult::Motion& step);
-  std::vector<GroundEdge> edgesOf(const GroundAxes& axes, const RunwayDirection& direction,
-                                  double height) const;
+  /// Edges along the runway that both views see, and those that at least one does.
+  struct Edges {
+    std::vector<GroundEdge> both, either;
+  };
+  Edges edgesOf(const GroundAxes& axes, const RunwayDirection& direction, double height) const;
   void findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction, double height,
                   ApproachAngleResult::Runway& result);
   void findThresholdLine(double seconds, const cv::Mat& left, const GroundAxes& axes,

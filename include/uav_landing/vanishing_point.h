@@ -27,6 +27,13 @@ Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& line
                                             const ApproachAngleParameters& parameters,
                                             const Eigen::Vector3d* prior_normal = nullptr);
 
+/// The same fit to lines that are known to be along the runway (members: 1), at least two. Fails as above,
+/// but does not ask whether they could meet by chance.
+Expected<VanishingPoint> fitVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                           const ApproachAngleParameters& parameters,
+                                           const std::vector<char>& members,
+                                           const Eigen::Vector3d* prior_normal = nullptr);
+
 /// Both views see the same direction: their mean weighted by covariance. The runway's own slope and curve
 /// (runway_straightness, rad) is added once, as it is common to both. Either may be missing. Views that
 /// disagree enlarge the covariance, and beyond 1 degree (and 5 sigma) nothing is claimed. The inliers of the

@@ -67,9 +67,8 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
                                 ApproachAngleResult& result) {
-    const Eigen::Vector3d stereo_normal = plane ? plane->normal() : Eigen::Vector3d::UnitY();
-    RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask,
-                                                    plane ? &stereo_normal : nullptr, parameters, timings);
+    RunwayDirection direction =
+        findRunwayDirection(model.rig, left, right, left_mask, right_mask, plane, parameters, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;

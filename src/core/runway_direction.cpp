@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "uav_landing/ground_direction.h"
 #include "uav_landing/half_plane.h"
 
 namespace uav_landing {
@@ -27,39 +28,58 @@ cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::V
   return ground;
 }
 
-Expected<VanishingPoint> analyse(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
+std::vector<LineSegment> linesOf(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
                                  const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
-                                 Timings& timings, ApproachAngleResult::View& view,
-                                 std::vector<LineSegment>& lines) {
-  {
-    ScopedTimer timer(timings, "hough_transform");
-    lines = findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
-  }
-  ScopedTimer timer(timings, "ransac");
-  const Expected<VanishingPoint> point = findVanishingPoint(lines, K, parameters, normal);
-  for (size_t i = 0; i < lines.size(); ++i) {
+                                 Timings& timings) {
+  ScopedTimer timer(timings, "hough_transform");
+  return findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
+}
+
+void report(const Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
+            ApproachAngleResult::View& view) {
+  for (size_t i = 0; i < lines.size(); ++i)
     view.lines.push_back({lines[i].a, lines[i].b, point && point->inliers[i] != 0});
-  }
   if (point) {
     view.vanishing_direction = point->direction;
     view.vanishing_covariance = point->covariance;
   } else {
     view.failure = point.error();
   }
-  return point;
 }
 
 }  // namespace
 
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
+                                    const GroundPlane* plane, const ApproachAngleParameters& parameters,
                                     Timings& timings) {
+  const Eigen::Matrix3d K_left = viewK(rig, true), K_right = viewK(rig, false);
+  const Eigen::Vector3d plane_normal = plane ? plane->normal() : Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d* normal = plane ? &plane_normal : nullptr;
   RunwayDirection result;
-  const Expected<VanishingPoint> in_left =
-      analyse(left, left_mask, viewK(rig, true), normal, parameters, timings, result.left, result.left_lines);
-  const Expected<VanishingPoint> in_right = analyse(right, right_mask, viewK(rig, false), normal, parameters,
-                                                    timings, result.right, result.right_lines);
+  result.left_lines = linesOf(left, left_mask, K_left, normal, parameters, timings);
+  result.right_lines = linesOf(right, right_mask, K_right, normal, parameters, timings);
+
+  ScopedTimer timer(timings, "ransac");
+  Expected<VanishingPoint> in_left = findVanishingPoint(result.left_lines, K_left, parameters, normal);
+  Expected<VanishingPoint> in_right = findVanishingPoint(result.right_lines, K_right, parameters, normal);
+  if (plane && (!in_left || !in_right)) {
+    const auto along =
+        findLinesAlong({{result.left_lines, K_left}, {result.right_lines, K_right}}, plane_normal,
+                       plane->normalCovariance(), parameters.max_yaw_deg * kDegree);
+    const auto retry = [&](Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
+                           const Eigen::Matrix3d& K, const std::vector<char>& members) {
+      if (point) return;
+      Expected<VanishingPoint> fitted = fitVanishingPoint(lines, K, parameters, members, normal);
+      if (fitted) point = std::move(fitted);
+    };
+    if (along) {
+      retry(in_left, result.left_lines, K_left, along->front());
+      retry(in_right, result.right_lines, K_right, along->back());
+    }
+  }
+  report(in_left, result.left_lines, result.left);
+  report(in_right, result.right_lines, result.right);
   result.combined = combineVanishingPoints(in_left, in_right, parameters.runway_straightness_deg * kDegree);
   return result;
 }

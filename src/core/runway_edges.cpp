@@ -1,9 +1,9 @@
 #include "uav_landing/runway_edges.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "runway_fit.h"
 #include "text.h"
 
 namespace uav_landing {
@@ -13,10 +13,14 @@ constexpr size_t kMaxEdges = 30;      // longest ones
 constexpr double kGate = 3;           // sigma between two pairs' centres
 constexpr double kAsymmetry = 0.002;  // of the width: 1 sigma by which a pair of marks is painted off centre
 constexpr double kWidthTolerance = 0.05;  // of the width that is known
-constexpr double kLong = 0.4;         // of the longest wide pair's extent: long enough for a runway's edge
-constexpr double kLeastExtent = 0.3;  // log(far / near) of the runway's edges
-constexpr double kLeastMargin = 1.4;  // evidence over that of any other symmetry
-constexpr size_t kLeastPairs = 2;     // that make a symmetry
+constexpr double kLong = 0.4;             // of the longest pair's extent: long enough for a runway's edge
+constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edges
+constexpr double kLeastMargin = 1.4;      // evidence over that of any other symmetry
+constexpr double kLeastWidth = 0.3;       // heights: narrower is a stripe
+constexpr double kOtherWidth =
+    1.5;  // ratio between the widths of two pairs that are not the sides of one line
+constexpr double kSameExtent = 0.4;     // log of the ratio of their extents
+constexpr double kSameBeginning = 0.3;  // log of the ratio of the distances where two edges begin
 
 /// An edge and its counterpart on the other side.
 struct MirroredPair {
@@ -51,30 +55,40 @@ class Search {
     return found;
   }
 
-  /// Centre by least squares over all pairs, what is common to them by way of the axes taken in.
   RunwayCrossSection measure(const Symmetry& symmetry, const MirroredPair& outermost) const {
-    const auto n = static_cast<Eigen::Index>(symmetry.pairs.size());
-    Eigen::VectorXd centres(n);
-    Eigen::MatrixXd by_rotation(n, 3), covariance = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      centres[k] = symmetry.pairs[k]->centre;
-      by_rotation.row(k) = symmetry.pairs[k]->by_rotation.transpose();
-      covariance(k, k) = symmetry.pairs[k]->variance;
+    std::vector<MirroredEdges> pairs;
+    size_t widest = 0;
+    for (const MirroredPair* pair : symmetry.pairs) {
+      if (pair == &outermost) widest = pairs.size();
+      pairs.push_back({&edges_[pair->left], &edges_[pair->right]});
     }
-    covariance += by_rotation * axes_.covariance * by_rotation.transpose();
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
-    const Eigen::LLT<Eigen::MatrixXd> solver(covariance);
-    const Eigen::VectorXd weights = solver.solve(ones);
-    RunwayCrossSection section;
-    section.variance = 1 / weights.sum();
-    section.centre = weights.dot(centres) * section.variance;
-    const Eigen::VectorXd residuals = centres - section.centre * ones;
-    if (n > 1) section.variance *= std::max(1.0, residuals.dot(solver.solve(residuals)) / (n - 1));
-    const GroundEdge &l = edges_[outermost.left], &r = edges_[outermost.right];
-    const Eigen::Vector3d difference = l.by_rotation - r.by_rotation;
-    section.width = outermost.width;
-    section.width_variance = l.variance + r.variance + difference.dot(axes_.covariance * difference);
-    return section;
+    return fitRunway(axes_, pairs, widest);
+  }
+
+  /// Extent of the longest pair, wherever its middle is; stripes of paint are no runways.
+  double longest() const {
+    double longest = 0;
+    for (const MirroredPair& pair : pairs_)
+      if (pair.width > kLeastWidth) longest = std::max(longest, pair.extent);
+    return longest;
+  }
+
+  /// Whether the edges of the pair are as long as each other: those of a runway are, but its centre line is
+  /// not as long as they.
+  bool isEven(const MirroredPair& pair) const {
+    return std::abs(std::log(edges_[pair.left].extent / edges_[pair.right].extent)) < kSameExtent;
+  }
+  /// Whether this is a dark strip that begins within the picture, as at a threshold.
+  bool isStrip(const MirroredPair& pair) const {
+    const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
+    return isEven(pair) && l.begins && r.begins && l.brighter_left &&
+           std::abs(std::log(l.near / r.near)) < kSameBeginning;
+  }
+  /// Whether these are two lines alike, each with both its sides.
+  bool areTwoLines(const Symmetry& symmetry) const {
+    return symmetry.pairs.size() >= 2 &&
+           std::all_of(symmetry.pairs.begin(), symmetry.pairs.end(),
+                       [this](const MirroredPair* pair) { return isEven(*pair); });
   }
 
  private:
@@ -122,12 +136,10 @@ class Search {
 };
 
 /// The widest long pair; with a known width, the longest pair of that width.
-const MirroredPair* outermostPair(const Symmetry& symmetry, double width) {
-  double longest = 0;
-  for (const MirroredPair* pair : symmetry.pairs) longest = std::max(longest, pair->extent);
+const MirroredPair* outermostPair(const Symmetry& symmetry, double width, double longest) {
   const MirroredPair* best = nullptr;
   for (const MirroredPair* pair : symmetry.pairs) {
-    if (pair->extent < std::max(kLong * longest, kLeastExtent)) continue;
+    if (pair->extent < std::max(kLong * longest, kLeastExtent) || pair->width < kLeastWidth) continue;
     if (width > 0) {
       if (std::abs(pair->width - width) > kWidthTolerance * width) continue;
       if (best == nullptr || pair->extent > best->extent) best = pair;
@@ -138,6 +150,15 @@ const MirroredPair* outermostPair(const Symmetry& symmetry, double width) {
   return best;
 }
 
+/// Whether there are two independent pairs: any two lines are symmetric about their middle, by both their
+/// sides.
+bool hasTwoWidths(const Symmetry& symmetry) {
+  const auto [narrowest, widest] =
+      std::minmax_element(symmetry.pairs.begin(), symmetry.pairs.end(),
+                          [](const MirroredPair* l, const MirroredPair* r) { return l->width < r->width; });
+  return (*widest)->width > kOtherWidth * (*narrowest)->width;
+}
+
 Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}; }
 
 }  // namespace
@@ -145,24 +166,26 @@ Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
                                              double width, const std::optional<ExpectedCentre>& expected) {
   const Search search(axes, edges);
+  const double longest = search.longest();
   const std::vector<Symmetry> found = search.symmetries();
   const auto best = std::find_if(found.begin(), found.end(), [&](const Symmetry& s) {
     return (!expected || std::abs(s.centre - expected->centre) <= expected->tolerance) &&
-           outermostPair(s, width) != nullptr;
+           outermostPair(s, width, longest) != nullptr;
   });
   if (best == found.end())
     return tl::make_unexpected(noRunway(text("none of ", edges.size(), " edges are those of the runway")));
+  const MirroredPair& outermost = *outermostPair(*best, width, longest);
   if (!expected) {
-    if (width <= 0 && best->pairs.size() < kLeastPairs)
-      return tl::make_unexpected(noRunway("one pair of edges alone does not make a runway"));
+    if (width <= 0 && !hasTwoWidths(*best) && !search.areTwoLines(*best) && !search.isStrip(outermost))
+      return tl::make_unexpected(noRunway("one pair of lines alone does not make a runway"));
     for (const Symmetry& other : found) {
-      if (std::abs(other.centre - best->centre) <= other.tolerance + best->tolerance) continue;
-      if (other.score * kLeastMargin > best->score)
+      if (other.score * kLeastMargin <= best->score) break;
+      if (std::abs(other.centre - best->centre) > other.tolerance + best->tolerance &&
+          outermostPair(other, width, 0.5 * longest) != nullptr)
         return tl::make_unexpected(noRunway("the edges have more than one symmetry"));
-      break;
     }
   }
-  return search.measure(*best, *outermostPair(*best, width));
+  return search.measure(*best, outermost);
 }
 
 }  // namespace uav_landing

@@ -111,27 +111,24 @@ void RunwayTracker::predict(const GroundAxes* axes, const ApproachAngleResult::M
   threshold_.predict(scale, axes->forward.dot(t), variance(axes->forward));
 }
 
-std::vector<GroundEdge> RunwayTracker::edgesOf(const GroundAxes& axes, const RunwayDirection& direction,
-                                               double height) const {
-  const auto inliers = [](const ApproachAngleResult::View& view) {
-    std::vector<char> along;
-    for (const ApproachAngleResult::Line& line : view.lines) along.push_back(line.inlier ? 1 : 0);
-    return along;
+RunwayTracker::Edges RunwayTracker::edgesOf(const GroundAxes& axes, const RunwayDirection& direction,
+                                            double height) const {
+  const auto view = [&](const std::vector<LineSegment>& lines, double cx, double baseline) {
+    return groundEdges(model_.rig, axes, lines, linesAlong(model_.rig, axes, lines, cx), cx, baseline);
   };
-  std::vector<GroundEdge> edges =
-      groundEdges(model_.rig, axes, direction.left_lines, inliers(direction.left), model_.rig.cx, 0);
-  if (!std::isfinite(height)) return edges;
-  return matchEdges(axes, edges,
-                    groundEdges(model_.rig, axes, direction.right_lines, inliers(direction.right),
-                                model_.rig.cx_right, model_.rig.baseline / height));
+  const std::vector<GroundEdge> left = view(direction.left_lines, model_.rig.cx, 0);
+  if (!std::isfinite(height)) return {left, left};
+  const std::vector<GroundEdge> right =
+      view(direction.right_lines, model_.rig.cx_right, model_.rig.baseline / height);
+  return {matchEdges(axes, left, right), joinEdges(axes, left, right)};
 }
 
 void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction,
                                double height, ApproachAngleResult::Runway& result) {
-  const std::vector<GroundEdge> edges = edgesOf(axes, direction, height);
+  const Edges edges = edgesOf(axes, direction, height);
   const double width =
       std::isfinite(height) && parameters_.runway_width > 0 ? parameters_.runway_width / height : 0;
-  Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges, width, std::nullopt);
+  Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt);
   if (centre_.confirmations() >= kConfirmations) {
     const ExpectedCentre expected = *centre_.expected(kSlack * width_.value());
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;
@@ -140,7 +137,8 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
       centre_ = threshold_ = width_ = wider_ = Follower();
       contradicted_ = 0;
     } else if (!seen || contradicts) {
-      seen = findRunwayEdges(axes, edges, width, expected);
+      seen = findRunwayEdges(axes, edges.both, width, expected);
+      if (!seen) seen = findRunwayEdges(axes, edges.either, width, expected);
     }
   }
   if (!seen) {

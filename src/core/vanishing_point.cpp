@@ -60,6 +60,34 @@ class Search {
     return fit(direction);
   }
 
+  /// Of given lines.
+  Expected<VanishingPoint> fitTo(const std::vector<int>& used) const {
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    double widest = 0;
+    for (const int i : used) {
+      for (const int j : used) {
+        const double sine =
+            std::abs(lines_[i].along.x() * lines_[j].along.y() - lines_[i].along.y() * lines_[j].along.x());
+        Eigen::Vector3d candidate;
+        if (sine <= widest || !meeting(i, j, candidate)) continue;
+        widest = sine;
+        direction = candidate;
+      }
+    }
+    if (widest < std::sin(kMinSpread))
+      return tl::unexpected(noVanishingPoint("%.0f lines are parallel", static_cast<double>(used.size())));
+    Eigen::Matrix2d information;
+    Matrix32 B;
+    for (int iteration = 0; iteration < 5; ++iteration) {
+      const double scale = robustScale(normalised(direction, used));
+      step(direction, used, 2.385 * scale, information, B);
+      if (!direction.allFinite() || direction.z() <= 0 || !alongRunway(direction))
+        return tl::unexpected(
+            noVanishingPoint("%.0f lines meet, but not along the runway", static_cast<double>(used.size())));
+    }
+    return describe(direction, used, information, B);
+  }
+
  private:
   int count() const { return static_cast<int>(lines_.size()); }
 
@@ -349,6 +377,16 @@ Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& line
                                             const ApproachAngleParameters& parameters,
                                             const Eigen::Vector3d* prior_normal) {
   return Search(lines, K, parameters, prior_normal).run();
+}
+
+Expected<VanishingPoint> fitVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                           const ApproachAngleParameters& parameters,
+                                           const std::vector<char>& members,
+                                           const Eigen::Vector3d* prior_normal) {
+  std::vector<int> used;
+  for (size_t i = 0; i < members.size(); ++i)
+    if (members[i] != 0) used.push_back(static_cast<int>(i));
+  return Search(lines, K, parameters, prior_normal).fitTo(used);
 }
 
 }  // namespace uav_landing

@@ -37,9 +37,9 @@ struct Scene {
 
   RunwayDirection find(bool with_normal) {
     Timings timings;
-    const Eigen::Vector3d n = pose.down();
+    const GroundPlane plane{pose.down() / pose.height(), Eigen::Matrix3d::Identity() * 1e-8};
     return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
-                               with_normal ? &n : nullptr, parameters, timings);
+                               with_normal ? &plane : nullptr, parameters, timings);
   }
   /// The runway runs along x.
   double error(const Eigen::Vector3d& direction) const {

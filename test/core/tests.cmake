@@ -20,6 +20,8 @@ uav_landing_add_gtest(motion_tracker_test test/core/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(ground_direction_test test/core/ground_direction_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(ground_edges_test test/core/ground_edges_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(runway_edges_test test/core/runway_edges_test.cpp)
