@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
+#include <utility>
 
 namespace uav_landing {
 namespace {
@@ -198,28 +200,50 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
   return std::max(1.0, (information.inverse() * middle).trace() / 3.0);
 }
 
-// Height by which the surface near the camera rises and falls about the plane (robust), from what the
-// residuals have beyond the errors of the matches.
+// Height by which the surface near the camera rises and falls about the plane. Matches scatter, too, and not
+// only by what they claim: but an undulation is common to neighbours and the scatter is not. So it is what
+// the means of patches differ by, beyond what the scatter within the patches explains (one-way analysis of
+// variance).
 double surfaceStddev(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                      const Eigen::Vector3d& g, const std::vector<char>& agrees) {
   // Share of the largest disparity; farther away a pixel is too much height to say anything of the surface.
   constexpr double kNear = 0.4;
+  constexpr int kColumns = 10;  // patches along a row of the image; square
+  constexpr int kFewest = 3;    // points of a patch
+  struct Patch {
+    int count = 0;
+    double sum = 0, squares = 0;
+  };
   const Eigen::Vector3d row = rig.fb() * g;
   double largest = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
     if (agrees[i]) largest = std::max(largest, row.dot(rig.ray(samples[i].u, samples[i].v)));
   }
-  std::vector<double> heights, match_errors;
+  std::map<std::pair<int, int>, Patch> patches;
   for (size_t i = 0; i < samples.size(); ++i) {
     const double expected = row.dot(rig.ray(samples[i].u, samples[i].v));
     if (!agrees[i] || expected < kNear * largest) continue;
-    const double per_pixel = 1 / (g.norm() * expected);
-    heights.push_back(std::abs(samples[i].disparities.front() - expected) * per_pixel);
-    match_errors.push_back(samples[i].stddev * per_pixel);
+    const double height = (samples[i].disparities.front() - expected) / (g.norm() * expected);
+    const double side = static_cast<double>(rig.size.width) / kColumns;
+    Patch& patch = patches[{static_cast<int>(samples[i].u / side), static_cast<int>(samples[i].v / side)}];
+    ++patch.count;
+    patch.sum += height;
+    patch.squares += height * height;
   }
-  if (heights.empty()) return 0;
-  const double stddev = 1.4826 * medianOf(heights), match_stddev = medianOf(match_errors);
-  return std::sqrt(std::max(0.0, stddev * stddev - match_stddev * match_stddev));
+  double scatter = 0, means = 0, of_scatter = 0;
+  int points = 0, used = 0;
+  for (const auto& [place, patch] : patches) {
+    if (patch.count < kFewest) continue;
+    ++used;
+    points += patch.count;
+    const double mean = patch.sum / patch.count;
+    scatter += patch.squares - patch.count * mean * mean;
+    means += mean * mean;
+    of_scatter += 1.0 / patch.count;
+  }
+  if (used == 0) return 0;
+  const double within = scatter / (points - used);
+  return std::sqrt(std::max(0.0, (means - of_scatter * within) / used));
 }
 
 }  // namespace
