@@ -24,6 +24,7 @@ class Rectifier {
  private:
   CameraCalibration calibration_;
   cv::Mat map1_, map2_, mask_;
+  bool identity_ = false;  // nothing to do but copy
 };
 
 /// What the stages behind rectification know of the cameras: the rig and where the rectified images have

@@ -143,7 +143,7 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
   // moves on as it did, so a small one comes first.
   constexpr size_t kScouts = 60;
   constexpr int kSmallSteps = 3;
-  constexpr double kEnough = 0.5;  // share of the scouts
+  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // share of the scouts, and of those matched
   const MatchImage& then = past_.back().image;
   const Corners scouts = thinned(corners, kScouts);
   CameraMotion start = predicted;
@@ -154,7 +154,8 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
     const Expected<MotionEstimate> scouted =
         estimateMotion(rig_, matches, normal, covariance, predicted, kFewestScouts);
     if (scouted) start = scouted->motion;
-    if (scouted && scouted->inlier_count >= kEnough * scouts.size()) break;
+    if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * matches.size()))
+      break;
   }
   result.step_matches = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0));
   return estimateMotion(rig_, result.step_matches, normal, covariance, start, parameters_.min_matches);

@@ -72,6 +72,16 @@ cv::Mat sourceMask(const cv::Mat& map1, const cv::Mat& map2, cv::Size source) {
   return mask;
 }
 
+/// Whether the maps lead every pixel to itself, as those of an image that is rectified already.
+bool isIdentity(const cv::Mat& map1, const cv::Mat& map2) {
+  for (int v = 0; v < map1.rows; ++v)
+    for (int u = 0; u < map1.cols; ++u)
+      if (map1.at<cv::Vec2s>(v, u) != cv::Vec2s(static_cast<short>(u), static_cast<short>(v)) ||
+          map2.at<ushort>(v, u) != 0)
+        return false;
+  return true;
+}
+
 }  // namespace
 
 Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
@@ -89,6 +99,7 @@ Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
   Rectifier rectifier;
   rectifier.calibration_ = calibration;
   cv::convertMaps(x, y, rectifier.map1_, rectifier.map2_, CV_16SC2);
+  rectifier.identity_ = isIdentity(rectifier.map1_, rectifier.map2_);
   rectifier.mask_ = sourceMask(rectifier.map1_, rectifier.map2_, c.imageSize());
   return rectifier;
 }
@@ -99,7 +110,10 @@ Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
   if (raw.size() != mask_.size())
     return {Reason::kInputInvalid,
             "image is " + text(raw.size()) + ", its camera_info says " + text(mask_.size())};
-  cv::remap(raw, out, map1_, map2_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  if (identity_)
+    raw.copyTo(out);
+  else
+    cv::remap(raw, out, map1_, map2_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
   return {};
 }
 
