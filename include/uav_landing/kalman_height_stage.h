@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "uav_landing/attitude_filter.h"
 #include "uav_landing/height_filter.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/position_filter.h"
@@ -34,11 +35,16 @@ class KalmanHeightStage {
   struct Reconstruction {
     Failure failure;  ///< set when there is no height
     GroundPlane plane;
+    Eigen::Matrix3d common =
+        Eigen::Matrix3d::Zero();                    ///< share of the plane's covariance common to all pairs
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
     double points_height = kUnknown;                ///< m
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
-  GroundPlane groundPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach) const;
+  void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                 Reconstruction& reconstruction) const;
+  void reportPlane(double stamp, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                   LandingResult& result);
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
@@ -60,6 +66,7 @@ class KalmanHeightStage {
   StereoRig rig_;
   KalmanHeightParameters parameters_;
   HeightFilter filter_;
+  AttitudeFilter attitude_;
   PositionFilter position_;
   Timings timings_;
 

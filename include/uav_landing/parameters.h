@@ -180,6 +180,7 @@ struct KalmanHeightParameters {
   bool fuse_vanishing_point = true;
   double vanishing_point_gate = 3.0;
   bool use_motion = true;
+  bool average_attitude = true;
   double acceleration_stddev = 1.5;
   double initial_speed_stddev = 5.0;
   double height_model_error = 0.001;
@@ -201,6 +202,9 @@ struct KalmanHeightParameters {
     v.number("vanishing_point_gate", vanishing_point_gate, 1.0, 20.0, "sigma",
              "a vanishing point that disagrees more with the stereo plane is left out");
     v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
+    v.flag(
+        "average_attitude", average_attitude,
+        "pitch and roll of the last second's pairs along the rotation between them; else of each pair alone");
     v.number("acceleration_stddev", acceleration_stddev, 0.01, 50.0, "m/s^2",
              "1 sigma of the random vertical acceleration, eq (7)");
     v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",

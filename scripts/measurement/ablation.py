@@ -28,6 +28,7 @@ VARIANTS = (
     ("angle of one step (`angle_window: 0`)", {"approach_angle": {"angle_window": 0}}),
     ("angle of the chord, late (`angle_smoothing: chord`)", {"approach_angle": {"angle_smoothing": "chord"}}),
     ("height filter without the sink rate (`use_motion`)", {"kalman_height": {"use_motion": False}}),
+    ("pitch and roll of each pair alone (`average_attitude`)", {"kalman_height": {"average_attitude": False}}),
     ("height without the runway's width (`fuse_width_height`)", {"kalman_height": {"fuse_width_height": False}}),
     ("height averaged over points (`height_source`)", {"kalman_height": {"height_source": "points"}}),
     ("angle without stereo (`use_stereo`)", {"approach_angle": {"use_stereo": False}}),

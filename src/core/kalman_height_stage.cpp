@@ -68,13 +68,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
     reportHeight(result);
   }
   reportAngle(approach, parameters_.max_angle_stddev_deg * kDegree, result);
-  if (reconstruction.plane.valid()) {
-    reportAttitude(reconstruction.plane.normal(), reconstruction.plane.normalCovariance(),
-                   approach.vanishing_direction, approach.vanishing_covariance, result);
-  } else {
-    reportAttitude(approach.n, approach.n_covariance, approach.vanishing_direction,
-                   approach.vanishing_covariance, result);
-  }
+  reportPlane(stereo.stamp, reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
   {
@@ -97,6 +91,7 @@ LandingResult KalmanHeightStage::timeout(double stamp) {
 
 void KalmanHeightStage::reset() {
   position_.reset();
+  attitude_.reset();
   if (filter_.initialised()) loseTrack();
   last_stamp_.reset();
   lost_ = false;
@@ -121,7 +116,7 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   if (reconstruction.failure) return reconstruction;
 
   followSurface(stereo.surface_stddev);
-  reconstruction.plane = groundPlane(stereo, approach);
+  findPlane(stereo, approach, reconstruction);
   const Eigen::Vector3d n = reconstruction.plane.normal();
   reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;
   if (parameters_.height_source == HeightSource::kPlane) {
@@ -137,17 +132,46 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   return reconstruction;
 }
 
-GroundPlane KalmanHeightStage::groundPlane(const StereoDepthResult& stereo,
-                                           const ApproachAngleResult& approach) const {
+void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                  Reconstruction& reconstruction) const {
+  GroundPlane& plane = reconstruction.plane;
+  Eigen::Matrix3d& common = reconstruction.common;
+  plane = withSkew(rig_, stereo, approach.step);
+  common(2, 2) = std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
   // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
   // contains the plane already.
-  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
-                    approach.vanishing_covariance.allFinite();
-  const GroundPlane plane = withSkew(rig_, stereo, approach.step);
-  if (!fuse) return plane;
+  const Eigen::Vector3d& p = approach.vanishing_direction;
+  if (!parameters_.fuse_vanishing_point || !p.allFinite() || !approach.vanishing_covariance.allFinite())
+    return;
+  const GroundPlane alone = plane;
   double nis = 0;
-  return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
-                            std::pow(parameters_.vanishing_point_gate, 2), &nis);
+  plane = fuseVanishingPoint(alone, p, approach.vanishing_covariance,
+                             std::pow(parameters_.vanishing_point_gate, 2), &nis);
+  if (plane.g == alone.g) return;
+  // What the vanishing point is wrong by is mostly the runway's own slope: the next pairs have the same.
+  const double variance = alone.g.dot(approach.vanishing_covariance * alone.g);
+  const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
+  common = kept * common * kept.transpose() + variance * gain * gain.transpose();
+}
+
+void KalmanHeightStage::reportPlane(double stamp, const Reconstruction& reconstruction,
+                                    const ApproachAngleResult& approach, LandingResult& result) {
+  const GroundPlane& plane = reconstruction.plane;
+  Eigen::Vector3d normal = approach.n;
+  Eigen::Matrix3d covariance = approach.n_covariance;
+  if (plane.valid()) {
+    normal = plane.normal();
+    covariance = plane.normalCovariance();
+    if (parameters_.average_attitude) {
+      const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
+      const AttitudeFilter::Estimate average =
+          attitude_.update(stamp, normal, covariance - common, approach.step);
+      normal = average.normal;
+      covariance = average.covariance + common;
+    }
+  }
+  reportAttitude(normal, covariance, approach.vanishing_direction, approach.vanishing_covariance, result);
 }
 
 void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "uav_landing/stage_results.h"
+
+namespace uav_landing {
+
+/// Ground normal over the frames: the normals of single pairs, averaged along the rotation between them.
+///
+/// n' = R n with the step's rotation R, then a Kalman update with the pair's normal, in the tangent plane of
+/// n. Memory fades with one second, because the ground ahead is another one by then. Only what differs from
+/// pair to pair averages out; what is common to all (the rig's rotation) has to be added to the result by the
+/// caller.
+class AttitudeFilter {
+ public:
+  struct Estimate {
+    Eigen::Vector3d normal;
+    Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
+  };
+
+  /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair. step:
+  /// from the previous pair; without one, or when the normals contradict each other, the filter starts anew.
+  Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                  const ApproachAngleResult::Motion& step);
+  void reset() { estimate_.reset(); }
+
+ private:
+  bool predict(double stamp, const ApproachAngleResult::Motion& step);
+
+  std::optional<Estimate> estimate_;
+  double stamp_ = 0;
+};
+
+}  // namespace uav_landing

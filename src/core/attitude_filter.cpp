@@ -1,0 +1,69 @@
+#include "uav_landing/attitude_filter.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kMemory = 1.0;          // s
+constexpr double kStampRounding = 1e-3;  // s
+constexpr double kGate = 25.0;           // squared sigmas of the two angles together
+
+/// Two unit vectors that span the plane across a unit vector.
+Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = n.unitOrthogonal();
+  basis.col(1) = n.cross(basis.col(0));
+  return basis;
+}
+
+Eigen::Matrix3d rotationOf(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  return angle > 0 ? Eigen::AngleAxisd(angle, w / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+}
+
+Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+}  // namespace
+
+bool AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
+  if (!estimate_ || step.failure || !step.rotation.allFinite() || !step.covariance.allFinite()) return false;
+  // A step that spans another time is not the way from the last normal to this one.
+  if (std::abs(stamp - stamp_ - step.duration) > kStampRounding) return false;
+  const Eigen::Matrix3d R = rotationOf(step.rotation);
+  estimate_->normal = R * estimate_->normal;
+  const Eigen::Matrix3d by_rotation = cross(estimate_->normal);
+  estimate_->covariance = std::exp(step.duration / kMemory) * R * estimate_->covariance * R.transpose() +
+                          by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+  return true;
+}
+
+AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
+                                                const Eigen::Matrix3d& covariance,
+                                                const ApproachAngleResult::Motion& step) {
+  const bool predicted = predict(stamp, step);
+  stamp_ = stamp;
+  if (predicted) {
+    const Eigen::Matrix<double, 3, 2> basis = across(estimate_->normal);
+    const Eigen::Matrix2d P = basis.transpose() * estimate_->covariance * basis;
+    const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
+    const Eigen::Matrix2d S = P + basis.transpose() * covariance * basis;
+    const Eigen::Matrix2d inverse = S.inverse();
+    if (innovation.dot(inverse * innovation) <= kGate) {
+      const Eigen::Matrix2d gain = P * inverse;
+      estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
+      estimate_->covariance = basis * (P - gain * S * gain.transpose()) * basis.transpose();
+      return *estimate_;
+    }
+  }
+  estimate_ = Estimate{normal, covariance};
+  return *estimate_;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,111 @@
+#include "uav_landing/attitude_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "uav_landing/ground_plane.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kStep = 0.05;  // s
+
+/// Camera that rolls and pitches, seen through noisy normals and noisy rotations between the frames.
+class Flight {
+ public:
+  Flight(unsigned seed, double normal_noise, double rotation_noise)
+      : random_(seed), normal_noise_(normal_noise), rotation_noise_(rotation_noise) {}
+
+  Eigen::Matrix3d attitude(int k) const {  // camera from world
+    const double t = k * kStep;
+    return (Eigen::AngleAxisd(6 * kDegree * std::sin(1.3 * t), Eigen::Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(2 * kDegree * std::sin(2.1 * t + 1), Eigen::Vector3d::UnitX()) *
+            Eigen::AngleAxisd(3 * kDegree * std::sin(0.9 * t), Eigen::Vector3d::UnitY()))
+        .toRotationMatrix();
+  }
+  Eigen::Vector3d truth(int k) const { return attitude(k) * Eigen::Vector3d::UnitY(); }
+  Eigen::Vector3d measured(int k) {
+    const Eigen::Vector3d n = truth(k);
+    return (n + normal_noise_ * noise().cross(n)).normalized();
+  }
+  Eigen::Matrix3d covariance(int k) const {
+    const Eigen::Vector3d n = truth(k);
+    return normal_noise_ * normal_noise_ * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  }
+  ApproachAngleResult::Motion step(int k) {
+    ApproachAngleResult::Motion motion;
+    motion.duration = kStep;
+    const Eigen::AngleAxisd turn(attitude(k) * attitude(k - 1).transpose());
+    motion.rotation = turn.angle() * turn.axis() + rotation_noise_ * noise();
+    motion.covariance = Matrix6d::Identity() * rotation_noise_ * rotation_noise_;
+    return motion;
+  }
+
+ private:
+  Eigen::Vector3d noise() { return {normal_(random_), normal_(random_), normal_(random_)}; }
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+  double normal_noise_, rotation_noise_;
+};
+
+TEST(AttitudeFilter, AveragesThroughRotationAndClaimsATrueVariance) {
+  constexpr double kNormal = 0.15 * kDegree, kRotation = 0.01 * kDegree;
+  double squares = 0, ratios = 0;
+  constexpr int kFlights = 200, kFrames = 60;
+  for (unsigned seed = 0; seed < kFlights; ++seed) {
+    Flight flight(seed, kNormal, kRotation);
+    AttitudeFilter filter;
+    AttitudeFilter::Estimate estimate;
+    for (int k = 1; k <= kFrames; ++k)
+      estimate = filter.update(k * kStep, flight.measured(k), flight.covariance(k), flight.step(k));
+    const double error = rollOf(estimate.normal) - rollOf(flight.truth(kFrames));
+    squares += error * error / kFlights;
+    ratios += error * error / rollVariance(estimate.normal, estimate.covariance) / kFlights;
+  }
+  // A memory of 20 frames averages 40 in the stationary state: 1 - exp(-1/20) = 1/20.5 of the variance.
+  EXPECT_LT(std::sqrt(squares), 0.3 * kNormal);
+  EXPECT_GT(std::sqrt(squares), 0.12 * kNormal);
+  EXPECT_NEAR(std::sqrt(ratios), 0.8, 0.2) << "fading makes the claim up to 1.4 times too large";
+}
+
+TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
+  Flight flight(1, 0.1 * kDegree, 0);
+  AttitudeFilter filter;
+  const Eigen::Vector3d n = flight.measured(1);
+  const AttitudeFilter::Estimate estimate = filter.update(1, n, flight.covariance(1), {});
+  EXPECT_EQ(estimate.normal, n);
+  EXPECT_EQ(estimate.covariance, flight.covariance(1));
+}
+
+TEST(AttitudeFilter, StartsAnewWithoutAStepOfTheRightDurationAndAfterAReset) {
+  Flight flight(1, 0.1 * kDegree, 0);
+  AttitudeFilter filter;
+  filter.update(0.05, flight.measured(1), flight.covariance(1), flight.step(1));
+  Eigen::Vector3d n = flight.measured(3);
+  EXPECT_EQ(filter.update(0.15, n, flight.covariance(3), flight.step(3)).normal, n) << "a frame is missing";
+  n = flight.measured(4);
+  ApproachAngleResult::Motion none;
+  none.failure = {Reason::kNoMotion, ""};
+  EXPECT_EQ(filter.update(0.20, n, flight.covariance(4), none).normal, n);
+  filter.reset();
+  n = flight.measured(5);
+  EXPECT_EQ(filter.update(0.25, n, flight.covariance(5), flight.step(5)).normal, n);
+  n = flight.measured(6);
+  EXPECT_NE(filter.update(0.30, n, flight.covariance(6), flight.step(6)).normal, n);
+}
+
+TEST(AttitudeFilter, NormalsThatContradictEachOtherStartItAnew) {
+  Flight flight(1, 0.01 * kDegree, 0.001 * kDegree);
+  AttitudeFilter filter;
+  for (int k = 1; k < 10; ++k)
+    filter.update(k * kStep, flight.measured(k), flight.covariance(k), flight.step(k));
+  const Eigen::Vector3d other = Eigen::AngleAxisd(1 * kDegree, Eigen::Vector3d::UnitX()) * flight.truth(10);
+  EXPECT_EQ(filter.update(10 * kStep, other, flight.covariance(10), flight.step(10)).normal, other);
+}
+
+}  // namespace
+}  // namespace uav_landing
