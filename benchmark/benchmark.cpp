@@ -1,0 +1,230 @@
+// Measures the time of each stage and of the whole chain, with peers on the same frames in the same run.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <numeric>
+
+#include "command_line.h"
+#include "image_allocations.h"
+#include "paper_pipeline.h"
+#include "peers.h"
+#include "sequences.h"
+#include "uav_landing/parameter_file.h"
+#include "uav_landing/pipeline.h"
+
+namespace {
+
+using namespace uav_landing;
+using namespace uav_landing::benchmark;
+
+constexpr size_t kWarmUp = 3;  // pairs whose times do not count: first search, buffers
+
+/// CPU time of this process, ms: other processes do not count.
+double cpuMilliseconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+struct Times {
+  std::vector<double> ms;
+
+  double quantile(double share) const {
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[std::min(sorted.size() - 1,
+                           static_cast<size_t>(share * static_cast<double>(sorted.size())))];
+  }
+  double median() const { return quantile(0.5); }
+};
+
+/// What was measured on one sequence. Names in order of their first appearance.
+struct Measurement {
+  std::string sequence;
+  cv::Size size;
+  std::vector<std::pair<std::string, Times>> programs, stages;
+  double image_allocations = 0;  // a pair
+
+  static Times& of(std::vector<std::pair<std::string, Times>>& all, const std::string& name) {
+    for (auto& [known, times] : all)
+      if (known == name) return times;
+    return all.emplace_back(name, Times()).second;
+  }
+  const Times& program(const std::string& name) const {
+    return std::find_if(programs.begin(), programs.end(), [&](const auto& p) { return p.first == name; })
+        ->second;
+  }
+};
+
+Expected<Measurement> measure(const Sequence& sequence, const Parameters& parameters) {
+  Expected<Pipeline> chain = Pipeline::create(sequence.left, sequence.right, parameters);
+  if (!chain) return tl::make_unexpected(chain.error());
+  const Rectifier left = Rectifier::create(sequence.left).value();
+  const Rectifier right = Rectifier::create(sequence.right).value();
+  PaperPipeline paper(chain->rig().rig, left, right);
+  BlockMatchingPeer block(left, right, BlockMatchingPeer::blockMatcher());
+  BlockMatchingPeer semi_global(left, right, BlockMatchingPeer::semiGlobalMatcher());
+  ImageFloor floor(sequence.left, sequence.right);
+
+  Measurement result;
+  result.sequence = sequence.name;
+  result.size = sequence.left.imageSize();
+  double last = sequence.pairs.front().stamp;
+  for (size_t i = 0; i < sequence.pairs.size(); ++i) {
+    const Sequence::Pair& pair = sequence.pairs[i];
+    const auto run = [&](const char* name, const auto& work) {
+      const double start = cpuMilliseconds();
+      work();
+      const double ms = cpuMilliseconds() - start;
+      if (i >= kWarmUp) Measurement::of(result.programs, name).ms.push_back(ms);
+    };
+    {
+      const ImageAllocations allocations(static_cast<size_t>(result.size.area()) / 2);
+      run("uav_landing", [&] { chain->process(pair.stamp, pair.left, pair.right); });
+      if (i >= kWarmUp) result.image_allocations += allocations.count();
+    }
+    run("the paper, literally", [&] { paper.process(pair.left, pair.right, pair.stamp - last); });
+    run("rectify + StereoBM + plane", [&] { block.process(pair.left, pair.right); });
+    run("rectify + StereoSGBM + plane", [&] { semi_global.process(pair.left, pair.right); });
+    run("image floor", [&] { floor.process(pair.left, pair.right); });
+    last = pair.stamp;
+  }
+  // Stages in a run of their own, so that the peers do not empty the caches between them.
+  for (size_t i = 0; i < sequence.pairs.size(); ++i) {
+    const Sequence::Pair& pair = sequence.pairs[i];
+    const Pipeline::Output& output = chain->process(pair.stamp + 1e3, pair.left, pair.right);
+    if (i < kWarmUp) continue;
+    for (const auto& [part, ms] : output.parts.parts()) Measurement::of(result.stages, part).ms.push_back(ms);
+  }
+  result.image_allocations /= static_cast<double>(sequence.pairs.size() - kWarmUp);
+  return result;
+}
+
+/// Slope of log time over log pixels of the simulated sequences, by least squares.
+double growth(const std::vector<Measurement>& measurements) {
+  std::vector<double> x, y;
+  for (const Measurement& m : measurements) {
+    if (m.sequence.rfind("simulated", 0) != 0) continue;
+    x.push_back(std::log(m.size.area()));
+    y.push_back(std::log(m.program("uav_landing").median()));
+  }
+  if (x.size() < 2) return std::nan("");
+  const double n = static_cast<double>(x.size());
+  const double mx = std::accumulate(x.begin(), x.end(), 0.0) / n,
+               my = std::accumulate(y.begin(), y.end(), 0.0) / n;
+  double xy = 0, xx = 0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    xy += (x[i] - mx) * (y[i] - my);
+    xx += (x[i] - mx) * (x[i] - mx);
+  }
+  return xy / xx;
+}
+
+void printRow(const std::string& name, const Times& times, const char* unit) {
+  std::cout << "| " << name << " | " << std::fixed << std::setprecision(2) << times.median() << " | "
+            << times.quantile(0.99) << " | " << times.quantile(1) << " | " << unit << " |\n";
+}
+
+void print(const Measurement& m) {
+  std::cout << "\n### " << m.sequence
+            << "\n\n| CPU ms a pair | median | 99 % | worst | uav_landing over it |\n"
+            << "|---|---|---|---|---|\n";
+  const double own = m.program("uav_landing").median();
+  for (const auto& [name, times] : m.programs) {
+    std::ostringstream ratio;
+    ratio << std::fixed << std::setprecision(2) << own / times.median();
+    printRow(name, times, ratio.str().c_str());
+  }
+  std::cout << "\n| stage, ms | median | 99 % | worst | |\n|---|---|---|---|---|\n";
+  for (const auto& [name, times] : m.stages) printRow(name, times, "");
+  std::cout << "\nImage-sized allocations a pair: " << m.image_allocations << "\n" << std::flush;
+}
+
+void writeJson(const std::string& path, const std::vector<Measurement>& measurements) {
+  std::ofstream out(path);
+  const auto list = [&out](const std::vector<std::pair<std::string, Times>>& all) {
+    const char* separator = "";
+    for (const auto& [name, times] : all) {
+      out << separator << "\"" << name << "\": {\"median\": " << times.median()
+          << ", \"percentile_99\": " << times.quantile(0.99) << ", \"worst\": " << times.quantile(1) << "}";
+      separator = ", ";
+    }
+  };
+  const double slope = growth(measurements);
+  out << "{\"growth\": " << (std::isfinite(slope) ? std::to_string(slope) : "null") << ", \"sequences\": [";
+  for (size_t i = 0; i < measurements.size(); ++i) {
+    const Measurement& m = measurements[i];
+    out << (i > 0 ? ",\n" : "\n") << "{\"name\": \"" << m.sequence << "\", \"width\": " << m.size.width
+        << ", \"height\": " << m.size.height << ", \"image_allocations\": " << m.image_allocations
+        << ", \"programs\": {";
+    list(m.programs);
+    out << "}, \"stages\": {";
+    list(m.stages);
+    out << "}}";
+  }
+  out << "\n]}\n";
+}
+
+struct Options {
+  std::string config = UAV_LANDING_SOURCE_DIR "/config/simulator/full_scale.yaml", parameters, json;
+  std::vector<int> widths = {320, 640, 1280};
+  std::vector<std::string> datasets;
+  int pairs = 60;
+};
+
+Failure run(const Options& options) {
+  Parameters parameters;
+  if (!options.parameters.empty()) {
+    const Expected<Parameters> loaded = loadParameterFile(options.parameters);
+    if (!loaded) return loaded.error();
+    parameters = *loaded;
+  }
+  std::vector<Measurement> measurements;
+  const auto take = [&](const Expected<Sequence>& sequence) -> Failure {
+    if (!sequence) return sequence.error();
+    if (sequence->pairs.size() <= kWarmUp)
+      return {Reason::kInputInvalid, sequence->name + " has too few pairs"};
+    const Expected<Measurement> measured = measure(*sequence, parameters);
+    if (!measured) return measured.error();
+    print(*measured);
+    measurements.push_back(*measured);
+    return {};
+  };
+  for (const int width : options.widths)
+    if (const Failure failure = take(simulatedSequence(options.config, width, options.pairs))) return failure;
+  for (const std::string& folder : options.datasets)
+    if (const Failure failure = take(recordedSequence(folder, options.pairs))) return failure;
+  std::cout << "\nTime grows with pixels to the power of " << growth(measurements) << "\n";
+  if (!options.json.empty()) writeJson(options.json, measurements);
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Measures the CPU time of every stage and of the chain, with peers on the same frames.",
+               "benchmark");
+  Options options;
+  app.add_option("--simulate", options.config, "what the simulator shows")->capture_default_str();
+  app.add_option("--widths", options.widths, "of the simulated images, px")->capture_default_str();
+  app.add_option("--datasets", options.datasets, "dataset folders to measure on as well");
+  app.add_option("--pairs", options.pairs, "of each sequence")
+      ->capture_default_str()
+      ->check(CLI::Range(4, 10000));
+  app.add_option("--config", options.parameters, "parameters of the chain; else the defaults");
+  app.add_option("--json", options.json, "file to write the numbers to");
+  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  cv::setNumThreads(1);
+  try {
+    if (const Failure failure = run(options)) return inputUnusable(app, failure.detail);
+  } catch (const std::exception& error) {
+    return inputUnusable(app, error.what());
+  }
+  return kDone;
+}

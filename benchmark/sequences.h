@@ -1,0 +1,32 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "uav_landing/calibration.h"
+#include "uav_landing/failure.h"
+
+namespace uav_landing {
+namespace benchmark {
+
+/// Raw pairs in memory, so that only the work on them is measured.
+struct Sequence {
+  struct Pair {
+    double stamp;         ///< s
+    cv::Mat left, right;  ///< mono8
+  };
+  std::string name;
+  CameraCalibration left, right;
+  std::vector<Pair> pairs;
+};
+
+/// Successive pairs of a simulated approach, seen by cameras of this width with lenses that need
+/// rectification. config: file of the simulator; its focal lengths are scaled with the width.
+Expected<Sequence> simulatedSequence(const std::string& config, int width, int pairs);
+
+/// The first pairs of a dataset folder.
+Expected<Sequence> recordedSequence(const std::string& folder, int pairs);
+
+}  // namespace benchmark
+}  // namespace uav_landing

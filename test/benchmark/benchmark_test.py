@@ -1,0 +1,38 @@
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from project import SOURCE_DIR, rosrun
+
+PROGRAMS = {"uav_landing", "the paper, literally", "rectify + StereoBM + plane", "rectify + StereoSGBM + plane",
+            "image floor"}
+
+
+class BenchmarkTest(unittest.TestCase):
+    def test_measures_all_peers_on_every_sequence_and_the_picture_shows_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            numbers, picture = Path(folder) / "numbers.json", Path(folder) / "picture.png"
+            result = rosrun("benchmark", "--widths", "160", "320", "--pairs", "6", "--json", numbers)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            measured = json.loads(numbers.read_text(encoding="utf-8"))
+            self.assertEqual([(s["width"], s["height"]) for s in measured["sequences"]], [(160, 120), (320, 240)])
+            for sequence in measured["sequences"]:
+                self.assertEqual(set(sequence["programs"]), PROGRAMS)
+                for times in sequence["programs"].values():
+                    self.assertGreater(times["median"], 0)
+                    self.assertLessEqual(times["median"], times["worst"])
+                self.assertIn("rectify", sequence["stages"])
+            subprocess.run([sys.executable, str(SOURCE_DIR / "benchmark/plot"), str(numbers), str(picture)], check=True)
+            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_refuses_a_dataset_that_is_not_there(self):
+        result = rosrun("benchmark", "--widths", "160", "--pairs", "4", "--datasets", "/nowhere")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("/nowhere", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,5 @@
+if(UAV_LANDING_BENCHMARK)
+  uav_landing_add_python_test(test/benchmark/benchmark_test.py DEPENDENCIES benchmark)
+else()
+  uav_landing_test_sources(test/benchmark/benchmark_test.py)
+endif()
