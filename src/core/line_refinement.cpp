@@ -8,9 +8,8 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kRadius = 3;          // px to both sides, first pass
-constexpr int kFirstStations = 160;  // rows or columns looked at in the first pass, roughly
-constexpr int kMaxStations = 160;   // and in the last; a longer line skips some
+constexpr int kRadius = 3;         // px to both sides, first pass
+constexpr int kMaxStations = 160;  // rows or columns looked at, roughly; a longer line skips some
 constexpr int kMinStations = 6;
 constexpr double kMinSupport = 0.6;    // share of stations that must show the edge
 constexpr double kMaxScatter = 0.6;    // px, 1 sigma of the peaks; more is no straight edge
@@ -102,11 +101,11 @@ struct Collected {
 
 /// Peaks at the rows or columns between two distances along the line.
 Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, const EdgeKind& kind,
-                  int reach, int max_stations) {
+                  int reach) {
   Collected found;
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
-  const int step = std::max(1, (last - first) / max_stations);
+  const int step = std::max(1, (last - first) / kMaxStations);
   for (int station = first; station <= last; station += step) {
     ++found.stations;
     if (const auto peak = findPeak(sampler, axis, station, kind, reach)) found.peaks.push_back(*peak);
@@ -255,8 +254,7 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
   double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
   const EdgeKind kind{axis.across.dot(rough.brighter) >= 0 ? 1 : -1, min_gradient};
   for (const int reach : {2, 1}) {
-    Collected found =
-        collect(sampler, axis, from, to, kind, reach, reach > 1 ? kFirstStations : kMaxStations);
+    Collected found = collect(sampler, axis, from, to, kind, reach);
     std::vector<Peak>& peaks = found.peaks;
     if (static_cast<int>(peaks.size()) < kMinStations) return std::nullopt;
     double scale = 0;
