@@ -8,6 +8,7 @@
 #include "uav_landing/position_filter.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/timings.h"
+#include "uav_landing/width_height.h"
 
 namespace uav_landing {
 
@@ -47,6 +48,9 @@ class KalmanHeightStage {
                    LandingResult& result);
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
+  /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
+  void useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
+                LandingResult& result);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// and the unevenness that shows ahead.
   double modelVariance(double height) const;
@@ -68,10 +72,12 @@ class KalmanHeightStage {
   HeightFilter filter_;
   AttitudeFilter attitude_;
   PositionFilter position_;
+  WidthHeight width_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s
   double last_accepted_ = 0;          ///< stamp of the last measurement that was believed, s
+  double width_variance_ = 0;         ///< of the last height, common to all that are from the same width, m^2
   double surface_variance_ = 0;       ///< of the surface about its plane, recent mean, m^2
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;

@@ -122,6 +122,7 @@ struct LandingResult {
   double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
+  double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
   double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height

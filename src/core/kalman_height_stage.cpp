@@ -52,17 +52,19 @@ void reportAngle(const ApproachAngleResult& approach, double max_stddev, Landing
 KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
     : rig_(rig),
       parameters_(parameters),
-      filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate) {}
+      filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
+      width_(parameters.known_runway_width) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
                                          const ApproachAngleResult& approach) {
   timings_.clear();
   LandingResult result;
   result.stamp = stereo.stamp;
-  const Reconstruction reconstruction = reconstruct(stereo, approach);
+  Reconstruction reconstruction = reconstruct(stereo, approach);
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     result.failure = followTime(stereo.stamp);
+    useWidth(approach.runway, reconstruction, result);
     if (!result.failure) result.failure = reconstruction.failure;
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     reportHeight(result);
@@ -92,6 +94,8 @@ LandingResult KalmanHeightStage::timeout(double stamp) {
 void KalmanHeightStage::reset() {
   position_.reset();
   attitude_.reset();
+  width_.reset();
+  width_variance_ = 0;
   if (filter_.initialised()) loseTrack();
   last_stamp_.reset();
   lost_ = false;
@@ -99,6 +103,37 @@ void KalmanHeightStage::reset() {
 
 double KalmanHeightStage::modelVariance(double height) const {
   return std::pow(parameters_.height_model_error * height, 2) + surface_variance_;
+}
+
+void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
+                                 LandingResult& result) {
+  constexpr double kAgreement = 3;  // sigma
+  width_variance_ = 0;
+  if (runway.failure) return;
+  const std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
+  if (seen) {
+    result.width_height = seen->height;
+    result.width_height_variance = seen->variance + modelVariance(seen->height);
+  }
+  const bool by_stereo = !reconstruction.failure;
+  if (seen && parameters_.fuse_width_height) {
+    if (!by_stereo && confirmations_ >= kConfirmations) {
+      reconstruction.failure = {};
+      reconstruction.height = seen->height;
+      reconstruction.variance = result.width_height_variance;
+      width_variance_ = seen->common;
+    } else if (by_stereo && width_.independent()) {
+      const double difference = seen->height - reconstruction.height;
+      const double sum = seen->variance + reconstruction.variance;
+      if (difference * difference <= kAgreement * kAgreement * sum) {
+        const double model = modelVariance(reconstruction.height), own = reconstruction.variance - model;
+        reconstruction.height += own / (own + seen->variance) * difference;
+        reconstruction.variance = own * seen->variance / (own + seen->variance) + model;
+      }
+    }
+  }
+  if (by_stereo && confirmations_ >= kConfirmations)
+    width_.learn(runway.width, runway.width_variance, reconstruction.height, reconstruction.variance);
 }
 
 void KalmanHeightStage::followSurface(double surface_stddev) {
@@ -280,7 +315,7 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   result.innovation_variance = update.innovation_variance;
   if (update.accepted) {
     accept(stamp);
-    if (parameters_.use_motion) updateSpeed(reconstruction, step);
+    if (parameters_.use_motion && reconstruction.plane.valid()) updateSpeed(reconstruction, step);
     return;
   }
   result.rejected = true;
@@ -308,7 +343,7 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   const double h = filter_.state()[0];
   result.height = h;
   // The filter averages the model error as if it were noise, but the surface stays as it is.
-  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h);
+  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h) + width_variance_;
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 

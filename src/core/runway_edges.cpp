@@ -18,7 +18,8 @@ constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edg
 constexpr double kLeastMargin = 1.4;      // evidence over that of any other symmetry
 constexpr double kLeastWidth = 0.3;       // heights: narrower is a stripe
 constexpr double kOtherWidth =
-    1.5;  // ratio between the widths of two pairs that are not the sides of one line
+    1.5;                           // ratio between the widths of two pairs that are not the sides of one line
+constexpr double kUnbroken = 0.9;  // share of an edge's length that is seen
 constexpr double kSameExtent = 0.4;     // log of the ratio of their extents
 constexpr double kSameBeginning = 0.3;  // log of the ratio of the distances where two edges begin
 
@@ -84,11 +85,16 @@ class Search {
     return isEven(pair) && l.begins && r.begins && l.brighter_left &&
            std::abs(std::log(l.near / r.near)) < kSameBeginning;
   }
-  /// Whether these are two lines alike, each with both its sides.
+  /// A centre line is dashed.
+  static bool isUnbroken(const GroundEdge& edge) {
+    return edge.extent >= kUnbroken * std::log(edge.far / edge.near);
+  }
+  /// Whether these are two unbroken lines alike, each with both its sides.
   bool areTwoLines(const Symmetry& symmetry) const {
     return symmetry.pairs.size() >= 2 &&
-           std::all_of(symmetry.pairs.begin(), symmetry.pairs.end(),
-                       [this](const MirroredPair* pair) { return isEven(*pair); });
+           std::all_of(symmetry.pairs.begin(), symmetry.pairs.end(), [this](const MirroredPair* pair) {
+             return isEven(*pair) && isUnbroken(edges_[pair->left]) && isUnbroken(edges_[pair->right]);
+           });
   }
 
  private:

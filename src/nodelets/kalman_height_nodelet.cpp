@@ -13,6 +13,7 @@
 #include "conversions.h"
 #include "landing_markers.h"
 #include "pairing.h"
+#include "pose_covariance.h"
 #include "rig_frames.h"
 #include "rig_watch.h"
 #include "runway_path.h"
@@ -150,7 +151,8 @@ class KalmanHeightNodelet : public StageNodelet {
       Eigen::Isometry3d runway_from_child = Eigen::Isometry3d::Identity();
       runway_from_child.linear() = runway_from_camera * rectified_from_child.linear();
       runway_from_child.translation() = place->position + runway_from_camera * lever_arm;
-      publishPose(header, runway_from_child, place->variance, estimate);
+      const GroundPlane plane = toResult(stereo).plane;
+      publishPose(header, runway_from_child, poseCovariance(camera, plane, lever_arm, place->variance));
       if (child.may_broadcast) broadcast(header, child.frame, runway_from_child);
     }
     if (marker_publisher_.getNumSubscribers() > 0) {
@@ -173,15 +175,12 @@ class KalmanHeightNodelet : public StageNodelet {
   }
 
   void publishPose(const std_msgs::Header& header, const Eigen::Isometry3d& runway_from_child,
-                   const Eigen::Vector2d& xy_variance, const LandingResult& estimate) {
+                   const Matrix6d& covariance) {
     const auto pose = boost::make_shared<geometry_msgs::PoseWithCovarianceStamped>();
     pose->header = header;
     pose->pose.pose = tf2::toMsg(runway_from_child);
-    const double unknown_angle = M_PI * M_PI;  // rad^2
-    const double yaw_variance = std::isfinite(estimate.yaw_variance) ? estimate.yaw_variance : unknown_angle;
-    const double variances[] = {xy_variance.x(),        xy_variance.y(),         estimate.height_variance,
-                                estimate.roll_variance, estimate.pitch_variance, yaw_variance};
-    for (size_t i = 0; i < 6; ++i) pose->pose.covariance[7 * i] = variances[i];
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) pose->pose.covariance[6 * i + j] = covariance(i, j);
     pose_publisher_.publish(pose);
   }
 

@@ -254,6 +254,8 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.y_variance = result.y_variance;
   message.runway_width = result.runway_width;
   message.runway_width_variance = result.runway_width_variance;
+  message.width_height = result.width_height;
+  message.width_height_variance = result.width_height_variance;
   message.height_protection_level = kUnknown;
   message.skew = skew;
   message.compute_ms = compute_ms;
@@ -297,6 +299,8 @@ LandingResult toResult(const LandingEstimate& message) {
   result.y_variance = message.y_variance;
   result.runway_width = message.runway_width;
   result.runway_width_variance = message.runway_width_variance;
+  result.width_height = message.width_height;
+  result.width_height_variance = message.width_height_variance;
   return result;
 }
 

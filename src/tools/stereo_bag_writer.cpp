@@ -55,6 +55,7 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   message.y = truth.y;
   message.y_variance = varianceOf(truth.y);
   message.runway_width = message.runway_width_variance = kUnknown;
+  message.width_height = message.width_height_variance = kUnknown;
   message.height_protection_level = kUnknown;
   message.compute_ms = kUnknown;
   return message;

@@ -403,5 +403,56 @@ TEST(KalmanHeightStage, TimeoutIsLostAndNothingIsValid) {
   EXPECT_EQ(stage.timeout(stamp + 5).resets, 1);
 }
 
+/// Of a runway 45 m wide from this height.
+ApproachAngleResult runwayFrom(double stamp, double height) {
+  ApproachAngleResult approach = angleAt(stamp);
+  approach.runway.y = 0;
+  approach.runway.y_variance = 1e-6;
+  approach.runway.width = 45 / height;
+  approach.runway.width_variance = std::pow(0.001 * approach.runway.width, 2);
+  return approach;
+}
+
+TEST(KalmanHeightStage, CarriesOnByTheRunwaysWidthWithoutStereo) {
+  for (const bool fuse : {true, false}) {
+    KalmanHeightParameters parameters;
+    parameters.fuse_width_height = fuse;
+    KalmanHeightStage stage(makeRig(), parameters);
+    double stamp = 0;
+    for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+    LandingResult result;
+    for (int i = 1; i <= 20; ++i, stamp += kStep)
+      result = stage.process(noStereo(stamp), runwayFrom(stamp, 20 - 0.1 * i));
+    EXPECT_NEAR(result.width_height, 18, 0.02);
+    EXPECT_EQ(result.height_valid, fuse);
+    if (!fuse) continue;
+    EXPECT_EQ(result.status, Status::kTracking);
+    EXPECT_NEAR(result.height, 18, 0.1);
+    // The learned width is no better than the heights that it was learned from.
+    EXPECT_GE(std::sqrt(result.height_variance), 0.9 * 0.01);
+  }
+}
+
+TEST(KalmanHeightStage, DoesNotBelieveAWidthThatContradictsStereo) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 30;
+  KalmanHeightStage stage(makeRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 20; ++i) result = stage.process(stereoAt(i * kStep, 20), runwayFrom(i * kStep, 20));
+  EXPECT_NEAR(result.width_height, 20 * 30.0 / 45, 1e-6);
+  EXPECT_NEAR(result.raw_height, 20, 1e-6);
+}
+
+TEST(KalmanHeightStage, AKnownWidthThatAgreesImprovesTheHeight) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 45;
+  KalmanHeightStage stage(makeRig(), parameters);
+  const StereoDepthResult stereo = stereoAt(0, 20, -0.1, 0.05, 0.2);
+  const LandingResult alone = stage.process(stereo, angleAt(0));
+  const LandingResult both = stage.process(stereoAt(kStep, 20, -0.1, 0.05, 0.2), runwayFrom(kStep, 20.1));
+  EXPECT_GT(both.raw_height, alone.raw_height);
+  EXPECT_LT(both.raw_height_variance, 0.5 * alone.raw_height_variance);
+}
+
 }  // namespace
 }  // namespace uav_landing

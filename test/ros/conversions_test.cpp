@@ -204,7 +204,9 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
                          &result.y,
                          &result.y_variance,
                          &result.runway_width,
-                         &result.runway_width_variance})
+                         &result.runway_width_variance,
+                         &result.width_height,
+                         &result.width_height_variance})
     *number = next();
   fill(result.foe);
   fill(result.velocity);

@@ -1,0 +1,61 @@
+#include "uav_landing/width_height.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kWidth = 45;
+
+TEST(WidthHeight, OfAKnownWidthIsTheWidthOverWhatIsSeen) {
+  const WidthHeight width(kWidth);
+  EXPECT_TRUE(width.independent());
+  const auto estimate = width.height(3, 1e-4);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->height, 15, 1e-12);
+  // 1 % of 3 and 0.2 % of the width, as shares of the height of 15 m.
+  EXPECT_NEAR(std::sqrt(estimate->variance), 15 * std::hypot(0.01 / 3, 0.002), 1e-9);
+  EXPECT_NEAR(std::sqrt(estimate->common), 15 * 0.002, 1e-9);
+}
+
+TEST(WidthHeight, IsNotKnownBeforeTheWidthWasLearned) {
+  WidthHeight width(0);
+  EXPECT_FALSE(width.independent());
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(width.height(3, 1e-6));
+    width.learn(3, 1e-6, 15, 1e-4);
+  }
+  const auto estimate = width.height(4.5, 1e-6);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->height, 10, 1e-9);
+}
+
+TEST(WidthHeight, LearnedFromManyEqualHeightsIsNoBetterThanOneOfThem) {
+  WidthHeight width(0);
+  for (int i = 0; i < 500; ++i) width.learn(3, 1e-10, 15, 0.04);
+  const auto estimate = width.height(3, 1e-10);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(std::sqrt(estimate->variance), 0.2, 1e-3);
+}
+
+TEST(WidthHeight, OtherEdgesStartLearningAnew) {
+  WidthHeight width(0);
+  for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
+  width.learn(3.3, 1e-8, 15, 1e-4);
+  EXPECT_FALSE(width.height(3.3, 1e-8));
+  for (int i = 0; i < 5; ++i) width.learn(3.3, 1e-8, 15, 1e-4);
+  ASSERT_TRUE(width.height(3.3, 1e-8));
+  EXPECT_NEAR(width.height(3.3, 1e-8)->height, 15, 1e-9);
+}
+
+TEST(WidthHeight, NothingIsMadeOfNothing) {
+  const WidthHeight width(kWidth);
+  EXPECT_FALSE(width.height(std::nan(""), 1e-4));
+  EXPECT_FALSE(width.height(3, std::nan("")));
+  EXPECT_FALSE(width.height(0, 1e-4));
+}
+
+}  // namespace
+}  // namespace uav_landing
