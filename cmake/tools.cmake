@@ -14,6 +14,9 @@ target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)
 add_executable(simulate_approach src/tools/simulate_approach.cpp)
 target_link_libraries(simulate_approach PRIVATE uav_landing_tools)
 
+add_executable(measure_noise_bound src/tools/measure_noise_bound.cpp)
+target_link_libraries(measure_noise_bound PRIVATE uav_landing_tools)
+
 add_executable(process_bag
   src/tools/process_bag.cpp src/tools/estimate_bag.cpp src/tools/estimate_csv.cpp src/tools/offline_chain.cpp
   src/tools/report_data.cpp src/tools/stereo_bag_reader.cpp src/tools/timing_table.cpp)
@@ -26,7 +29,7 @@ target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
 # programs: links in bin/ lead it there. In a catkin workspace there is nothing to do.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(MAKE_DIRECTORY ${PROJECT_SOURCE_DIR}/bin)
-  foreach(program dataset_to_bag process_bag simulate_approach simulate_campaign)
+  foreach(program dataset_to_bag measure_noise_bound process_bag simulate_approach simulate_campaign)
     file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
   endforeach()
 endif()

@@ -41,6 +41,7 @@ struct StereoDepthParameters {
   int min_points = 20;
   double plane_tolerance = 0.6;
   bool vertical_disparities = true;
+  bool direct_refinement = true;
   double disparity_bias_stddev = 0.02;
   double max_roll_deg = 30.0;
   double max_pitch_deg = 30.0;
@@ -71,6 +72,8 @@ struct StereoDepthParameters {
              "disparity by which a point may be off the plane in the consensus step");
     v.flag("vertical_disparities", vertical_disparities,
            "measure by how many rows matches are off, which shows a bent rig, and make the rows level");
+    v.flag("direct_refinement", direct_refinement,
+           "refine the plane by aligning the grey levels of the two images over the ground");
     v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
              "1 sigma, in the middle of the image, by which the right camera may have turned since a good "
              "calibration: an error common to all disparities of all pairs");

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "uav_landing/direct_refinement.h"
 #include "uav_landing/image_check.h"
 #include "uav_landing/match_image.h"
 #include "uav_landing/plane_fit.h"
@@ -27,6 +28,8 @@ struct StereoDepthStage::Implementation {
   MatchImage left, right;
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images with their rows made level
+  std::unique_ptr<DirectRefinement> direct;
+  cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
   bool has_last = false;
   double last_stamp = 0;
@@ -45,6 +48,9 @@ struct StereoDepthStage::Implementation {
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
     coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
+    if (p.direct_refinement) {
+      direct = std::make_unique<DirectRefinement>(rig.rig, fine.left_mask, fine.right_mask);
+    }
   }
 
   StereoDepthResult process(double stamp, const cv::Mat& left_image, const cv::Mat& right_image) {
@@ -81,6 +87,7 @@ struct StereoDepthStage::Implementation {
       return;
     }
     refine(*start, result);
+    if (direct && !result.failure) refineDirectly(left_image, right_image, result);
   }
 
   void levelRows() {
@@ -171,6 +178,22 @@ struct StereoDepthStage::Implementation {
   void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     if (!result.failure) result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
+  }
+
+  // The right image as the camera saw it but with its rows made level, where they are not.
+  cv::Mat withLevelRows(const cv::Mat& right_image) {
+    if (fine.right.data == right.fine.data) return right_image;
+    right_image.convertTo(right_grey, CV_32F);
+    rows.level(fine.rig, right_grey, level_grey).convertTo(level_image, CV_8U);
+    return level_image;
+  }
+
+  // The plane of the corners stays when the images' alignment leads elsewhere.
+  void refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "direct_refinement");
+    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
+                                                  limits, parameters.disparity_bias_stddev);
+    if (fit && samePlane(fit->plane, result.plane)) result.plane = fit->plane;
   }
 };
 

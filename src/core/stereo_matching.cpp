@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "shift_model.h"
 #include "uav_landing/corners.h"
 #include "uav_landing/half_plane.h"
 #include "uav_landing/image_check.h"
@@ -18,19 +19,6 @@ constexpr int kFineSteps = 3;
 constexpr double kStddevFloor = 0.03;
 // 1 sigma of a match that is only as good as a parabola through three scores, pixels.
 constexpr double kParabolaStddev = 0.15;
-
-// Column shift u_l - u_r = a u + b v + c of a plane at one level.
-struct ShiftModel {
-  double a, b, c;
-  ShiftModel(const StereoRig& rig, const Eigen::Vector3d& g) {
-    a = rig.fb() * g.x() / rig.fx;
-    b = rig.fb() * g.y() / rig.fy;
-    c = rig.fb() * g.dot(rig.ray(0, 0)) + rig.principalOffset();
-  }
-  double at(double u, double v) const { return a * u + b * v + c; }
-  RowWarp forward() const { return {1 - a, -b}; }
-  RowWarp backward() const { return {1 / (1 - a), b / (1 - a)}; }
-};
 
 bool inside(const cv::Mat& mask, double u, double v) {
   const int x = cvRound(u), y = cvRound(v);

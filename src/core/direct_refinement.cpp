@@ -1,0 +1,144 @@
+#include "uav_landing/direct_refinement.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "photometric_blocks.h"
+
+namespace uav_landing {
+namespace {
+
+// Blocks compared: about 50 thousand pixels, which hold nearly all that a noisy image says.
+constexpr int kBlocks = 400;
+// Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them.
+constexpr int kSteps = 5;
+constexpr double kConverged = 0.003;
+// By how much disparities of the first plane may be off, pixels.
+constexpr double kStartStddev = 0.3;
+// The comparison is first order in the shift: farther than this (pixels) it means nothing.
+constexpr double kLargestShift = 1.5;
+
+// Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
+// where much of the picture stands on the ground, those that are on the plane by chance would have too much
+// to say.
+constexpr double kLeastShare = 0.5;
+// By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
+constexpr double kLargestFactor = 2.0;
+
+double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double robustStddev(std::vector<double>& magnitudes) { return 1.4826 * medianOf(magnitudes); }
+
+// Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
+// independent, and an error that all samples have besides, from the surface and the calibration. The factor
+// shows in the noisier half of the samples, the error in the other.
+void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
+  const auto middle = samples.begin() + samples.size() / 2;
+  std::nth_element(samples.begin(), middle, samples.end(),
+                   [](const DisparitySample& a, const DisparitySample& b) { return a.stddev < b.stddev; });
+  std::vector<double> residuals, ratios, magnitudes;
+  for (const DisparitySample& sample : samples) {
+    residuals.push_back(sample.disparities.front() - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
+  }
+  std::vector<double> sorted = residuals;
+  const double offset = medianOf(sorted);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double magnitude = std::abs(residuals[i] - offset);
+    if (i < samples.size() / 2) {
+      magnitudes.push_back(magnitude);
+    } else {
+      ratios.push_back(magnitude / samples[i].stddev);
+    }
+  }
+  const double factor = std::min(robustStddev(ratios), kLargestFactor), scatter = robustStddev(magnitudes);
+  const auto typical = samples.begin() + samples.size() / 4;
+  std::nth_element(samples.begin(), typical, middle,
+                   [](const DisparitySample& a, const DisparitySample& b) { return a.stddev < b.stddev; });
+  const double of_noise = factor * typical->stddev;
+  const double common = std::sqrt(std::max(0.0, scatter * scatter - of_noise * of_noise));
+  for (DisparitySample& sample : samples) sample.stddev = std::hypot(factor * sample.stddev, common);
+}
+
+}  // namespace
+
+struct DirectRefinement::Implementation {
+  StereoRig rig;
+  PhotometricBlocks blocks;
+  std::vector<PhotometricBlocks::Match> matches;
+  std::vector<DisparitySample> samples;
+  int informative = 0;  // blocks that show anything
+
+  Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
+      : rig(r), blocks(left_mask, right_mask) {}
+
+  // One disparity for each block, found with the right image warped by g.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g) {
+    const ShiftModel shift(rig, g);
+    informative = blocks.compare(right, shift, matches);
+    samples.clear();
+    for (const PhotometricBlocks::Match& match : matches) {
+      if (!(std::abs(match.shift) < kLargestShift)) continue;
+      // The right pixel that the warp puts on u belongs to the left pixel u + shift.
+      const double disparity = shift.at(match.u, match.v) + match.shift - rig.principalOffset();
+      samples.push_back({match.u + match.shift, match.v, match.stddev, {disparity}});
+    }
+  }
+
+  // Largest change of disparity at the bottom of the image, where disparities are largest.
+  double change(const Eigen::Vector3d& before, const Eigen::Vector3d& after) const {
+    const double bottom = rig.size.height - 1, right = rig.size.width - 1;
+    const Eigen::Vector3d step = rig.fb() * (after - before);
+    return std::max(std::abs(step.dot(rig.ray(0, bottom))), std::abs(step.dot(rig.ray(right, bottom))));
+  }
+};
+
+DirectRefinement::DirectRefinement(const StereoRig& rig, const cv::Mat& left_mask, const cv::Mat& right_mask)
+    : implementation_(std::make_unique<Implementation>(rig, left_mask, right_mask)) {}
+DirectRefinement::~DirectRefinement() = default;
+DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
+
+Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& right,
+                                            const Eigen::Vector3d& start, const PlaneLimits& limits,
+                                            double bias_stddev) {
+  Implementation& own = *implementation_;
+  own.blocks.choose(left, own.rig, ShiftModel(own.rig, start), kBlocks);
+  Eigen::Vector3d g = start;
+  for (int step = 0;; ++step) {
+    own.measure(right, g);
+    if (static_cast<int>(own.samples.size()) < limits.min_points) {
+      return tl::make_unexpected(
+          Failure{Reason::kTooFewMatches, std::to_string(own.samples.size()) + " blocks match, at least " +
+                                              std::to_string(limits.min_points) + " needed"});
+    }
+    calibrate(own.rig, g, own.samples);
+    if (step == 0) {
+      for (DisparitySample& sample : own.samples) sample.stddev = std::hypot(sample.stddev, kStartStddev);
+    }
+    Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
+    if (fit && fit->count < kLeastShare * own.informative) {
+      return tl::make_unexpected(
+          Failure{Reason::kNoPlane, std::to_string(fit->count) + " of " + std::to_string(own.informative) +
+                                        " blocks are on the plane: too few to tell which are ground"});
+    }
+    if (!fit || step + 1 == kSteps) return fit;
+    if (step > 0 && own.change(g, fit->plane.g) < kConverged) return fit;
+    g = fit->plane.g;
+  }
+}
+
+const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }
+
+bool samePlane(const GroundPlane& a, const GroundPlane& b) {
+  constexpr double kSigmas = 5.0;
+  const Eigen::Vector3d difference = a.g - b.g;
+  const Eigen::Matrix3d covariance = a.covariance + b.covariance;
+  return difference.dot(covariance.ldlt().solve(difference)) < kSigmas * kSigmas;
+}
+
+}  // namespace uav_landing

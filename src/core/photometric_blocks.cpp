@@ -1,0 +1,273 @@
+#include "photometric_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace uav_landing {
+namespace {
+
+constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
+constexpr int kPixels = PhotometricBlocks::kPixels;
+// Pixels to the left and right that interpolation and derivatives read.
+constexpr int kMargin = 2;
+// Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+constexpr double kLeastDisparity = 0.3;
+// Sobel's kernel is this many times a derivative; the sum of its squares over that squared.
+constexpr float kSobelScale = 8.f;
+constexpr double kSlopeNoise = 0.1875;
+// Squares of grey levels in a block below which it shows nothing.
+constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
+// Variance of the residuals over that of the noise in one image: the right one's loses some in interpolation
+// (0.64 of it is left half-way between two pixels).
+constexpr double kResidualPerNoise = 1.8;
+// Squared correlation, noise taken off, below which a block does not show what the other image has there.
+constexpr double kLeastCorrelation = 0.75;
+// Shares of a block's grey levels and derivatives that must be more than noise.
+constexpr double kLeastShareOfGrey = 0.25, kLeastShareOfSlope = 0.1;
+// Least gain of the right image over the left one.
+constexpr double kLeastGain = 0.2;
+// Variance of rounding to whole grey levels in two images.
+constexpr double kLeastVariance = 1.0 / 6.0;
+
+using Lane = std::array<float, kWidth>;
+
+float sum(const Lane& lane) {
+  float total = 0;
+  for (const float value : lane) total += value;
+  return total;
+}
+
+double lowerQuartileOf(std::vector<double>& values) {
+  const auto quartile = values.begin() + values.size() / 4;
+  std::nth_element(values.begin(), quartile, values.end());
+  return *quartile;
+}
+
+bool set(const cv::Mat& mask, double u, double v) {
+  const int x = cvRound(u), y = cvRound(v);
+  return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
+}
+
+// Grey levels of a row at x, x + step, ...: Catmull-Rom. The row must reach a pixel farther to the left and
+// two to the right. Two loops, because the second one becomes vector instructions.
+void sampleRow(const uchar* row, float x, float step, Lane& value) {
+  Lane a, b, c, d, t;
+  for (int i = 0; i < kWidth; ++i) {
+    const float place = x + step * static_cast<float>(i);
+    const int column = static_cast<int>(place);
+    t[i] = place - static_cast<float>(column);
+    const uchar* p = row + column;
+    a[i] = p[-1];
+    b[i] = p[0];
+    c[i] = p[1];
+    d[i] = p[2];
+  }
+  for (int i = 0; i < kWidth; ++i) {
+    const float c1 = 0.5f * (c[i] - a[i]);
+    const float c2 = a[i] - 2.5f * b[i] + 2.f * c[i] - 0.5f * d[i];
+    const float c3 = 0.5f * (d[i] - a[i]) + 1.5f * (b[i] - c[i]);
+    value[i] = b[i] + t[i] * (c1 + t[i] * (c2 + t[i] * c3));
+  }
+}
+
+}  // namespace
+
+PhotometricBlocks::PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask)
+    : left_mask_(std::move(left_mask)), right_mask_(std::move(right_mask)) {}
+
+bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, int u, int v) const {
+  for (const int y : {v, v + kHeight - 1}) {
+    for (const int x : {u, u + kWidth - 1}) {
+      const double column = x - shift.at(x, y);
+      if (shift.at(x, y) - rig.principalOffset() < kLeastDisparity) return false;
+      if (column < kMargin || column > right_mask_.cols - 2 - kMargin) return false;
+      if (!set(left_mask_, x, y) || !set(right_mask_, column, y)) return false;
+    }
+  }
+  return true;
+}
+
+void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift) {
+  candidates_.clear();
+  // The highest row that may be ground, at either side.
+  const double limit = kLeastDisparity + rig.principalOffset();
+  const auto horizon = [&](double u) { return (limit - shift.c - shift.a * u) / shift.b; };
+  const double highest = shift.b > 0 ? std::min(horizon(0), horizon(left.cols - 1)) : 0;
+  first_row_ = static_cast<int>(std::clamp<double>(std::ceil(highest), kMargin, left.rows - 1));
+  if (left.rows - first_row_ < kHeight + kMargin) return;
+  cv::Sobel(left.rowRange(first_row_, left.rows), gradient_, CV_16S, 1, 0);
+  for (int v = first_row_; v + kHeight + kMargin <= left.rows; v += kHeight) {
+    for (int u = kMargin; u + kWidth + kMargin <= left.cols; u += kWidth) {
+      if (!usable(rig, shift, u, v)) continue;
+      std::array<int, kWidth> sums{}, squares{};
+      for (int y = 0; y < kHeight; ++y) {
+        const short* row = gradient_.ptr<short>(v - first_row_ + y) + u;
+        for (int x = 0; x < kWidth; ++x) {
+          sums[x] += row[x];
+          squares[x] += row[x] * row[x];
+        }
+      }
+      int total = 0, energy = 0;
+      for (int x = 0; x < kWidth; ++x) {
+        total += sums[x];
+        energy += squares[x];
+      }
+      energy -= static_cast<int>(static_cast<int64_t>(total) * total / kPixels);
+      candidates_.push_back({u, v, energy, false});
+    }
+  }
+}
+
+// The strongest block of each cell of a coarse grid, so that every part of the ground has a say, and then the
+// strongest of all.
+void PhotometricBlocks::pick(int count) {
+  constexpr int kCell = 4;  // blocks to each side of a cell
+  if (static_cast<int>(candidates_.size()) <= count) {
+    for (Candidate& candidate : candidates_) candidate.chosen = true;
+    return;
+  }
+  const int columns = left_mask_.cols / (kCell * kWidth) + 1, rows = left_mask_.rows / (kCell * kHeight) + 1;
+  std::vector<Candidate*> strongest(static_cast<size_t>(columns) * rows, nullptr), order;
+  for (Candidate& candidate : candidates_) {
+    const size_t cell = static_cast<size_t>((candidate.v - first_row_) / (kCell * kHeight)) * columns +
+                        candidate.u / (kCell * kWidth);
+    if (strongest[cell] == nullptr || strongest[cell]->energy < candidate.energy)
+      strongest[cell] = &candidate;
+    order.push_back(&candidate);
+  }
+  for (Candidate* candidate : strongest) {
+    if (candidate == nullptr) continue;
+    candidate->chosen = true;
+    --count;
+  }
+  const auto stronger = [](const Candidate* a, const Candidate* b) { return a->energy > b->energy; };
+  const auto end = order.begin() + std::clamp<int>(count, 0, static_cast<int>(order.size()));
+  std::nth_element(order.begin(), end, order.end(), stronger);
+  std::for_each(order.begin(), end, [](Candidate* candidate) { candidate->chosen = true; });
+}
+
+bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const {
+  block.u = candidate.u;
+  block.v = candidate.v;
+  Lane grey_sum{}, slope_sum{};
+  for (int y = 0; y < kHeight; ++y) {
+    const uchar* grey = left.ptr<uchar>(candidate.v + y) + candidate.u;
+    const short* gradient = gradient_.ptr<short>(candidate.v - first_row_ + y) + candidate.u;
+    for (int x = 0; x < kWidth; ++x) {
+      block.grey[y * kWidth + x] = grey[x];
+      block.slope[y * kWidth + x] = gradient[x] / kSobelScale;
+      grey_sum[x] += grey[x];
+      slope_sum[x] += gradient[x] / kSobelScale;
+    }
+  }
+  const float grey_mean = sum(grey_sum) / kPixels, slope_mean = sum(slope_sum) / kPixels;
+  Lane grey_squares{}, squares{}, products{}, downs{};
+  for (int y = 0; y < kHeight; ++y) {
+    float* grey = &block.grey[y * kWidth];
+    float* slope = &block.slope[y * kWidth];
+    for (int x = 0; x < kWidth; ++x) {
+      grey[x] -= grey_mean;
+      slope[x] -= slope_mean;
+      grey_squares[x] += grey[x] * grey[x];
+      products[x] += grey[x] * slope[x];
+      squares[x] += slope[x] * slope[x];
+      downs[x] += slope[x] * slope[x] * static_cast<float>(y);
+    }
+  }
+  block.grey_energy = sum(grey_squares);
+  block.slope_energy = sum(squares);
+  block.both = sum(products);
+  float along = 0;
+  for (int x = 0; x < kWidth; ++x) along += squares[x] * static_cast<float>(x);
+  block.centre_u = static_cast<float>(block.u) + along / block.slope_energy;
+  block.centre_v = static_cast<float>(block.v) + sum(downs) / block.slope_energy;
+  return block.grey_energy > kLeastEnergy && block.slope_energy > 0;
+}
+
+void PhotometricBlocks::choose(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift,
+                               int count) {
+  findCandidates(left, rig, shift);
+  pick(count);
+  blocks_.clear();
+  blocks_.reserve(count);
+  for (const Candidate& candidate : candidates_) {
+    if (!candidate.chosen) continue;
+    blocks_.emplace_back();
+    if (!makeBlock(left, candidate, blocks_.back())) blocks_.pop_back();
+  }
+}
+
+void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) {
+  products_.clear();
+  const float step = static_cast<float>(1 - shift.a);
+  for (const Block& block : blocks_) {
+    const double begin = block.u - shift.at(block.u, block.v), end = begin + step * (kWidth - 1);
+    const double down = -shift.b * (kHeight - 1);
+    if (std::min({begin, end, begin + down, end + down}) < kMargin ||
+        std::max({begin, end, begin + down, end + down}) > right.cols - 1 - kMargin) {
+      continue;
+    }
+    // Counted from one of the grey levels, so that floats are exact enough for the differences of sums.
+    const float reference = right.at<uchar>(block.v, static_cast<int>(begin));
+    Lane values, sums{}, squares{}, greys{}, slopes{};
+    for (int y = 0; y < kHeight; ++y) {
+      const double first = block.u - shift.at(block.u, block.v + y);
+      sampleRow(right.ptr<uchar>(block.v + y), static_cast<float>(first), step, values);
+      const float* grey = &block.grey[y * kWidth];
+      const float* slope = &block.slope[y * kWidth];
+      for (int x = 0; x < kWidth; ++x) {
+        const float value = values[x] - reference;
+        sums[x] += value;
+        squares[x] += value * value;
+        greys[x] += value * grey[x];
+        slopes[x] += value * slope[x];
+      }
+    }
+    const double total = sum(sums), grey = sum(greys);
+    const double explained = total * total / kPixels + grey * grey / block.grey_energy;
+    products_.push_back({&block, grey, sum(slopes), (sum(squares) - explained) / (kPixels - 2)});
+  }
+}
+
+int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches) {
+  matches.clear();
+  multiply(right, shift);
+  if (products_.empty()) return 0;
+  std::vector<double> variances;
+  for (const Products& products : products_) variances.push_back(products.variance);
+  // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the noise.
+  const double noise = lowerQuartileOf(variances) / kResidualPerNoise;
+  // The noise of the left image makes its squares larger than what both images have in common.
+  const double grey_noise = noise * kPixels, slope_noise = noise * kPixels * kSlopeNoise;
+  double grey_products = 0, grey_squares = 0;
+  for (const Products& products : products_) {
+    grey_products += products.grey;
+    grey_squares += products.block->grey_energy - grey_noise;
+  }
+  const double gain = grey_products / grey_squares;
+  if (!(grey_squares > 0 && gain > kLeastGain)) return 0;
+  int informative = 0;
+  for (const Products& products : products_) {
+    const Block& block = *products.block;
+    const double common = block.grey_energy - grey_noise;
+    if (common < kLeastShareOfGrey * block.grey_energy) continue;
+    // The derivative less what of it looks like a gain: slope - mixed grey.
+    const double mixed = block.both / common;
+    const double energy = block.slope_energy - 2 * mixed * block.both + mixed * mixed * block.grey_energy;
+    const double response = gain * (block.slope_energy - slope_noise - mixed * block.both);
+    if (response < kLeastShareOfSlope * gain * energy) continue;
+    const double score = products.slope - mixed * products.grey;
+    const double variance = std::max(products.variance - score * score / energy / kPixels, kLeastVariance);
+    ++informative;
+    // What the right image has beside noise: the part that is like the block, and the rest.
+    const double alike = products.grey * products.grey / block.grey_energy * (common / block.grey_energy);
+    const double other = kPixels * std::max(0.0, variance - kResidualPerNoise * noise);
+    if (alike < kLeastCorrelation * (alike + other)) continue;
+    matches.push_back(
+        {block.centre_u, block.centre_v, score / response, std::sqrt(variance * energy) / response});
+  }
+  return informative;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,148 @@
+#include "uav_landing/direct_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "support/consistency.h"
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::Exposure;
+using test::GroundRenderer;
+using test::kDegree;
+using test::Pose;
+
+Pose makePose(double height, double pitch_deg, double roll_deg) {
+  Pose pose;
+  pose.position = {0, 0, height};
+  pose.pitch = pitch_deg * kDegree;
+  pose.roll = roll_deg * kDegree;
+  return pose;
+}
+
+PlaneLimits makeLimits() {
+  PlaneLimits limits;
+  limits.max_roll = limits.max_pitch = 30 * kDegree;
+  limits.min_points = 20;
+  return limits;
+}
+
+/// A rig over textured ground.
+struct Scene {
+  StereoRig rig = test::makeRig(320, 240, 0.65);
+  RigModel model = test::makeModel(rig);
+  GroundRenderer ground{5};
+  Pose pose = makePose(4, -8, 3);
+  Eigen::Vector3d truth = pose.down() / pose.height();
+  cv::Mat left, right;
+
+  void render(const Exposure& of_left = {}, const Exposure& of_right = {}) {
+    left = ground.left(rig, pose, of_left);
+    right = ground.right(rig, pose, of_right);
+  }
+  /// The true plane with its disparities off by some pixels and a share.
+  Eigen::Vector3d off(double pixels, double share) const {
+    return truth * (1 + share) + Eigen::Vector3d(0, 0, pixels / rig.fb());
+  }
+  Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
+    return DirectRefinement(rig, model.left_mask, model.right_mask)
+        .refine(left, right, start, makeLimits(), 0);
+  }
+  /// Largest error of the disparity over the ground's part of the image, pixels.
+  double error(const Eigen::Vector3d& g) const {
+    double largest = 0;
+    for (const int v : {120, 239}) {
+      for (const int u : {0, 319}) {
+        largest = std::max(largest, std::abs(rig.fb() * (g - truth).dot(rig.ray(u, v))));
+      }
+    }
+    return largest;
+  }
+};
+
+TEST(DirectRefinement, FindsThePlaneFromAFractionOfAPixelOff) {
+  Scene scene;
+  scene.render();
+  for (const double pixels : {-0.5, 0.0, 0.4}) {
+    for (const double share : {-0.005, 0.0, 0.005}) {
+      const Expected<PlaneFit> fit = scene.refine(scene.off(pixels, share));
+      ASSERT_TRUE(fit) << fit.error().message();
+      EXPECT_LT(scene.error(fit->plane.g), 0.05) << pixels << ' ' << share;
+    }
+  }
+  EXPECT_GT(scene.error(scene.off(0.4, 0.005)), 0.4);
+}
+
+TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
+  Scene scene;
+  scene.render();
+  const Expected<PlaneFit> plain = scene.refine(scene.off(0.2, 0));
+  scene.render({1.05, 3, 1}, {0.9, -6, 1});
+  for (int v = 0; v < scene.right.rows; ++v) {
+    for (int u = 0; u < scene.right.cols; ++u) {
+      // A quarter darker in the corners.
+      const double radius = std::hypot(u - 160, v - 120) / 200;
+      uchar& grey = scene.right.at<uchar>(v, u);
+      grey = cv::saturate_cast<uchar>(grey * (1 - 0.25 * radius * radius));
+    }
+  }
+  const Expected<PlaneFit> altered = scene.refine(scene.off(0.2, 0));
+  ASSERT_TRUE(plain && altered);
+  EXPECT_LT(scene.error(plain->plane.g), 0.05);
+  EXPECT_LT(scene.error(altered->plane.g), 0.05);
+}
+
+TEST(DirectRefinement, IsNotPulledByWhatStandsOnTheGround) {
+  Scene scene;
+  scene.ground.boxes = {
+      {{8, -3, 0}, {9, -1.5, 0.6}}, {{11, 1, 0}, {13, 3, 0.4}}, {{6, 1.5, 0}, {7, 2.5, 0.3}}};
+  scene.render();
+  const Expected<PlaneFit> fit = scene.refine(scene.off(0.1, 0));
+  ASSERT_TRUE(fit) << fit.error().message();
+  EXPECT_LT(scene.error(fit->plane.g), 0.08);
+}
+
+TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
+  constexpr int kPairs = 40;
+  double sum = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    Scene scene;
+    scene.ground = GroundRenderer(100 + i);
+    scene.pose = makePose(3 + 0.05 * i, -8, 0.2 * i - 4);
+    scene.truth = scene.pose.down() / scene.pose.height();
+    scene.render({1, 0, 4}, {1, 0, 4});
+    const Expected<PlaneFit> fit = scene.refine(scene.off(0.1, 0));
+    ASSERT_TRUE(fit) << fit.error().message();
+    const Eigen::Vector3d error = fit->plane.g - scene.truth;
+    sum += error.dot(fit->plane.covariance.ldlt().solve(error));
+  }
+  // The inflation for correlated errors is never below 1, so that the claim is on the careful side.
+  EXPECT_LT(sum / kPairs, 3 + test::chiSquareMeanTolerance(kPairs, 3));
+  EXPECT_GT(sum / kPairs, 1.0);
+}
+
+TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {
+  Scene scene;
+  scene.left = scene.right = cv::Mat(240, 320, CV_8U, cv::Scalar(90));
+  const Expected<PlaneFit> fit = scene.refine(scene.truth);
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().reason, Reason::kTooFewMatches);
+}
+
+TEST(SamePlane, AllowsFiveSigmasBetweenThePlanes) {
+  const Pose pose = makePose(10, -4, 0);
+  const GroundPlane plane = test::exactPlane(pose, 0.01, 0.001);
+  GroundPlane other = plane;
+  // 1 sigma of the difference is 1.41 % of the height.
+  other.g *= 1.06;
+  EXPECT_TRUE(samePlane(plane, other));
+  other.g *= 1.03;
+  EXPECT_FALSE(samePlane(plane, other));
+}
+
+}  // namespace
+}  // namespace uav_landing
