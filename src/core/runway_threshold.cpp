@@ -70,8 +70,10 @@ class TopView {
       row[c] = std::numeric_limits<float>::quiet_NaN();
       if (ray.z() <= 0) continue;
       const Eigen::Vector2d pixel = rig_.project(ray);
+      // Beside the camera pixels are farther out than an int can say.
+      if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image_.cols - 1 && pixel.y() < image_.rows - 1))
+        continue;
       const int i = static_cast<int>(pixel.y()), j = static_cast<int>(pixel.x());
-      if (!(pixel.x() >= 0 && pixel.y() >= 0 && j < image_.cols - 1 && i < image_.rows - 1)) continue;
       if (mask_.at<uchar>(i, j) == 0) continue;
       const double s = pixel.x() - j, t = pixel.y() - i;
       const uchar *above = image_.ptr<uchar>(i) + j, *below = image_.ptr<uchar>(i + 1) + j;

@@ -197,5 +197,16 @@ TEST(RunwayThreshold, TextureIsNone) {
                              {0, 1e-6, 2 / 1.5, 1e-6}));
 }
 
+TEST(RunwayThreshold, ARunwayBesideTheCameraIsOutsideThePicture) {
+  // The camera looks across the runway and stands a hair behind one of the places where it is sampled.
+  const Bars bars;
+  const cv::Mat image(bars.rig.size, CV_8U, cv::Scalar(70));
+  const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * 1e-8;
+  const GroundAxes axes(Eigen::Vector3d::UnitY(), covariance, Eigen::Vector3d::UnitX(), covariance);
+  const double step = 0.92 * 2 / 96;
+  EXPECT_FALSE(
+      findThreshold(image, bars.model.left_mask, bars.rig, axes, {0.5 * step + 1e-9, 1e-6, 2, 1e-6}));
+}
+
 }  // namespace
 }  // namespace uav_landing
