@@ -180,12 +180,14 @@ RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<Di
 bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
   // Vertical disparities up to this, pixels, do not disturb the matching along rows, and straightening costs
   // time.
-  constexpr double kStraightEnough = 0.15;
+  constexpr double kStraightEnough = 0.5;
   // Chi-square (3 degrees of freedom) from which a residual is not noise.
   constexpr double kSignificant = 30;
-  if (largestVerticalDisparity(rig, residual.w) < kStraightEnough) return false;
+  // What looks like ry is rather the residual of a lens, and no help where it is extrapolated to.
+  const Eigen::Vector3d w(residual.w.x(), 0, residual.w.z());
+  if (largestVerticalDisparity(rig, w) < kStraightEnough) return false;
   if (residual.w.dot(residual.covariance.inverse() * residual.w) < kSignificant) return false;
-  taken_out_ += residual.w;
+  taken_out_ += w;
   if (largestVerticalDisparity(rig, taken_out_) < kStraightEnough) taken_out_.setZero();
   return true;
 }
