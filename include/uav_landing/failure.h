@@ -25,6 +25,7 @@ enum class Reason {
   kTimeout,             ///< no measurement for too long
   kUncertain,           ///< there is a number, but its variance is too large to fly on
   kTransformMissing,    ///< the lever arm from tf is not known (yet)
+  kRigBent,             ///< the right camera has turned too far since the calibration
 };
 
 /// Name of a reason as it appears in messages, for example "too_few_matches"; "" for kNone.

@@ -6,6 +6,7 @@
 #include "uav_landing/height_filter.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/position_filter.h"
+#include "uav_landing/rig_rotation_filter.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/timings.h"
 #include "uav_landing/width_height.h"
@@ -43,9 +44,12 @@ class KalmanHeightStage {
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                 Reconstruction& reconstruction) const;
+                 Reconstruction& reconstruction);
   void reportPlane(double stamp, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                    LandingResult& result);
+  void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                Reconstruction& reconstruction);
+  void reportRig(LandingResult& result) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
   /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
@@ -72,12 +76,14 @@ class KalmanHeightStage {
   HeightFilter filter_;
   AttitudeFilter attitude_;
   PositionFilter position_;
+  RigRotationFilter rig_rotation_;
   WidthHeight width_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s
   double last_accepted_ = 0;          ///< stamp of the last measurement that was believed, s
   double width_variance_ = 0;         ///< of the last height, common to all that are from the same width, m^2
+  double rig_variance_ = 0;           ///< of the height, by the rig's rotation, m^2
   double surface_variance_ = 0;       ///< of the surface about its plane, recent mean, m^2
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;

@@ -195,6 +195,9 @@ struct KalmanHeightParameters {
   double max_angle_stddev_deg = 1.0;
   bool fuse_width_height = true;
   double known_runway_width = 0;
+  bool rig_watch = true;
+  double rig_memory = 60.0;
+  double max_rig_rotation_deg = 0.2;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -232,6 +235,13 @@ struct KalmanHeightParameters {
     v.number("known_runway_width", known_runway_width, 0.0, 200.0, "m",
              "between the outermost long edges of the runway, for the height; 0: learned while the stereo "
              "height is good");
+    v.flag(
+        "rig_watch", rig_watch,
+        "estimate how far the right camera has turned since the calibration, and correct the plane for it");
+    v.number("rig_memory", rig_memory, 1.0, 36000.0, "s",
+             "for how long what was seen of the rig's rotation counts; shorter follows a rig that moves");
+    v.number("max_rig_rotation_deg", max_rig_rotation_deg, 0.01, 5.0, "deg",
+             "a rotation of the right camera that is certainly beyond this is not valid");
   }
 };
 

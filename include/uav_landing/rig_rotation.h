@@ -22,8 +22,9 @@ Eigen::RowVector3d disparityByRotation(const StereoRig& rig, double column, doub
 /// The same of the vertical disparity, row in the right image minus row in the left one.
 Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double column, double v);
 
-/// How a plane fitted to these points' disparities follows w: dg = A dw, with the points on the plane
-/// weighted by their stddevs. 1/m per rad. Points that leave a plane undetermined give zero.
-Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points);
+/// How the plane g fitted to these points' disparities follows w: dg = A dw, with the points on the plane
+/// weighted as the fit does (plane_fit.h). 1/m per rad. Points that leave a plane undetermined give zero.
+Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                                const Eigen::Vector3d& g);
 
 }  // namespace uav_landing

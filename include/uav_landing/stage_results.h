@@ -128,7 +128,8 @@ struct LandingResult {
   double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
   bool rejected = false;                                           ///< the raw height failed the gate
   int consecutive_rejections = 0;
-  int resets = 0;  ///< filter resets since start
+  int resets = 0;            ///< filter resets since start
+  RigRotation rig_rotation;  ///< unknown when rig_watch is off
 };
 
 }  // namespace uav_landing

@@ -7,6 +7,7 @@
 #include "pair_skew.h"
 #include "text.h"
 #include "uav_landing/reconstruction.h"
+#include "uav_landing/rig_rotation.h"
 #include "vertical_speed.h"
 
 namespace uav_landing {
@@ -27,18 +28,34 @@ const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& ap
   return window_known ? approach.window : approach.step;
 }
 
-void reportAngle(const ApproachAngleResult& approach, double max_stddev, LandingResult& result) {
+/// Variance of an angle for the sake of the rig: approach_angle knows nothing of its rotation and took
+/// another normal than the plane's here. Its matches may have made up for that or not, so the turn of the
+/// normal along the direction of motion counts as 1 sigma.
+double rigAngleVariance(const GroundPlane& plane, const ApproachAngleResult& approach,
+                        const ApproachAngleResult::Motion& motion) {
+  const double turn =
+      (plane.normal() - approach.n).dot(motion.translation_over_height.normalized()) / std::cos(motion.angle);
+  return std::isfinite(turn) ? turn * turn : 0;
+}
+
+/// plane: of which the rig's rotation was taken out, or null.
+void reportAngle(const ApproachAngleResult& approach, const GroundPlane* plane, double max_stddev,
+                 LandingResult& result) {
   result.raw_approach_angle = approach.step.angle;
   result.raw_approach_angle_variance = approach.step.angle_variance;
   result.foe = approach.foe;
   const ApproachAngleResult::Motion& motion = publishedMotion(approach);
   result.approach_angle = motion.angle;
   result.approach_angle_variance = motion.angle_variance;
+  if (plane != nullptr) {
+    result.raw_approach_angle_variance += rigAngleVariance(*plane, approach, approach.step);
+    result.approach_angle_variance += rigAngleVariance(*plane, approach, motion);
+  }
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
   if (!failure && !std::isfinite(motion.angle))
     failure = {Reason::kNoMotion, "the approach angle is not finite"};
-  const double stddev = std::sqrt(motion.angle_variance);
+  const double stddev = std::sqrt(result.approach_angle_variance);
   if (!failure && !(stddev <= max_stddev)) {
     failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", stddev / kDegree,
                                         " deg, more than ", max_stddev / kDegree, " deg")};
@@ -53,6 +70,7 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
     : rig_(rig),
       parameters_(parameters),
       filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
+      rig_rotation_(rig, parameters.rig_memory),
       width_(parameters.known_runway_width) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
@@ -69,7 +87,9 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     reportHeight(result);
   }
-  reportAngle(approach, parameters_.max_angle_stddev_deg * kDegree, result);
+  const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
+  reportAngle(approach, corrected ? &reconstruction.plane : nullptr,
+              parameters_.max_angle_stddev_deg * kDegree, result);
   reportPlane(stereo.stamp, reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
@@ -78,6 +98,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
     position_.process(approach, reconstruction.plane.valid() ? reconstruction.plane.normal() : approach.n,
                       result.height_valid ? result.height : kUnknown, result.height_variance, result);
   }
+  reportRig(result);
   return result;
 }
 
@@ -96,6 +117,8 @@ void KalmanHeightStage::reset() {
   attitude_.reset();
   width_.reset();
   width_variance_ = 0;
+  rig_rotation_.reset();
+  rig_variance_ = 0;
   if (filter_.initialised()) loseTrack();
   last_stamp_.reset();
   lost_ = false;
@@ -168,11 +191,12 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
 }
 
 void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                                  Reconstruction& reconstruction) const {
+                                  Reconstruction& reconstruction) {
   GroundPlane& plane = reconstruction.plane;
   Eigen::Matrix3d& common = reconstruction.common;
   plane = withSkew(rig_, stereo, approach.step);
   common(2, 2) = std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
   // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
   // contains the plane already.
   const Eigen::Vector3d& p = approach.vanishing_direction;
@@ -207,6 +231,43 @@ void KalmanHeightStage::reportPlane(double stamp, const Reconstruction& reconstr
     }
   }
   reportAttitude(normal, covariance, approach.vanishing_direction, approach.vanishing_covariance, result);
+}
+
+void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                 Reconstruction& reconstruction) {
+  rig_rotation_.advance(stereo.stamp);
+  rig_rotation_.setPrior(stereo.disparity_bias_stddev);
+  rig_rotation_.updateVertical(stereo.vertical_rotation);
+  // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
+  GroundPlane without = reconstruction.plane;
+  without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  const Eigen::Vector3d direction =
+      parameters_.fuse_vanishing_point ? approach.vanishing_direction : Eigen::Vector3d::Constant(kUnknown);
+  const RigRotationFilter::Corrected corrected =
+      rig_rotation_.correct(without, planeByRotation(rig_, stereo.points, without.g), direction,
+                            approach.vanishing_covariance, parameters_.vanishing_point_gate);
+  rig_variance_ = GroundPlane{corrected.plane.g, corrected.common}.heightVariance();
+  reconstruction.plane = corrected.plane;
+  reconstruction.common = corrected.common;
+}
+
+void KalmanHeightStage::reportRig(LandingResult& result) const {
+  if (!parameters_.rig_watch) return;
+  constexpr double kSigmas = 3;
+  constexpr const char* kAxes[] = {"pitch", "yaw", "roll"};
+  result.rig_rotation = rig_rotation_.rotation();
+  if (!result.rig_rotation.known()) return;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = result.rig_rotation.w[i];
+    const double stddev = std::sqrt(result.rig_rotation.covariance(i, i));
+    if (std::abs(angle) - kSigmas * stddev <= parameters_.max_rig_rotation_deg * kDegree) continue;
+    result.height_valid = result.angle_valid = false;
+    result.failure = {Reason::kRigBent,
+                      text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
+                           " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
+                           parameters_.max_rig_rotation_deg, " deg allowed")};
+    return;
+  }
 }
 
 void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
@@ -342,8 +403,9 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   if (!filter_.initialised()) return;
   const double h = filter_.state()[0];
   result.height = h;
-  // The filter averages the model error as if it were noise, but the surface stays as it is.
-  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h) + width_variance_;
+  // The filter averages the model error as if it were noise, but the surface stays as it is, and so does the
+  // rig.
+  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h) + width_variance_ + rig_variance_;
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 

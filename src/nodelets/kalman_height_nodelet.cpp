@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <pluginlib/class_list_macros.hpp>
 
@@ -94,6 +95,16 @@ class KalmanHeightNodelet : public StageNodelet {
     last_reason_.clear();
   }
 
+  void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    constexpr const char* kNames[] = {"rig pitch (deg)", "rig yaw (deg)", "rig roll (deg)"};
+    constexpr double kDegrees = 180 / M_PI;
+    const std::lock_guard<std::mutex> lock(rig_mutex_);
+    if (!rig_rotation_.known()) return;
+    for (int i = 0; i < 3; ++i)
+      status.addf(kNames[i], "%.4f +- %.4f", rig_rotation_.w[i] * kDegrees,
+                  std::sqrt(rig_rotation_.covariance(i, i)) * kDegrees);
+  }
+
   void process(const StereoDepth& stereo, const ApproachAngle& approach,
                const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
     last_pair_ = ros::Time::now();
@@ -108,6 +119,10 @@ class KalmanHeightNodelet : public StageNodelet {
       return result;
     });
     camera.stamp = stereo.header.stamp.toSec();
+    {
+      const std::lock_guard<std::mutex> lock(rig_mutex_);
+      rig_rotation_ = camera.rig_rotation;
+    }
     report_.served(stereo.header.stamp, compute_ms, camera.failure.message());
     publish(stereo, compute_ms, camera, approach_result.step, left_info);
   }
@@ -246,6 +261,8 @@ class KalmanHeightNodelet : public StageNodelet {
   std::string left_frame_;
   ros::Time last_pair_, last_timeout_;  // by the ROS clock
   ros::Time last_stamp_;                // of the last pair
+  std::mutex rig_mutex_;
+  RigRotation rig_rotation_;  // of the last pair, for the diagnostics
   bool valid_lately_ = false;
   std::string last_reason_;
 };

@@ -25,6 +25,7 @@ void StageNodelet::onInit() {
       subscribed = subscribed_;
     }
     report_.write(status, inputs(), subscribed);
+    describe(status);
   });
   // Wall time: a clock that stands still is one of the things to report.
   ros::NodeHandle& handle = getNodeHandle();

@@ -45,6 +45,8 @@ class StageNodelet : public nodelet::Nodelet {
   virtual std::string complaint() = 0;
   /// More for the log, once per complaint_period.
   virtual void complainMore() {}
+  /// Values of its own for the diagnostics; called by a timer.
+  virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
   /// Reads the private parameters, also into node_. Throws with the parameter's name, so that the nodelet is
   /// not loaded.

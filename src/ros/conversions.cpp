@@ -109,7 +109,7 @@ Failure parseFailure(const std::string& reason) {
   const size_t colon = reason.find(':');
   const std::string name = reason.substr(0, colon);
   const size_t detail = colon == std::string::npos ? colon : reason.find_first_not_of(' ', colon + 1);
-  for (int i = 1; i <= static_cast<int>(Reason::kTransformMissing); ++i)
+  for (int i = 1; i <= static_cast<int>(Reason::kRigBent); ++i)
     if (name == toString(static_cast<Reason>(i)))
       return {static_cast<Reason>(i), detail == std::string::npos ? "" : reason.substr(detail)};
   return {Reason::kInputInvalid, reason};
@@ -256,6 +256,8 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.runway_width_variance = result.runway_width_variance;
   message.width_height = result.width_height;
   message.width_height_variance = result.width_height_variance;
+  toArray(result.rig_rotation.w, message.rig_rotation);
+  toArray(result.rig_rotation.covariance, message.rig_rotation_covariance);
   message.height_protection_level = kUnknown;
   message.skew = skew;
   message.compute_ms = compute_ms;
@@ -301,6 +303,8 @@ LandingResult toResult(const LandingEstimate& message) {
   result.runway_width_variance = message.runway_width_variance;
   result.width_height = message.width_height;
   result.width_height_variance = message.width_height_variance;
+  fromArray(message.rig_rotation, result.rig_rotation.w);
+  fromArray(message.rig_rotation_covariance, result.rig_rotation.covariance);
   return result;
 }
 

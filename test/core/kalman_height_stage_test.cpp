@@ -454,5 +454,42 @@ TEST(KalmanHeightStage, AKnownWidthThatAgreesImprovesTheHeight) {
   EXPECT_LT(both.raw_height_variance, 0.5 * alone.raw_height_variance);
 }
 
+StereoDepthResult bentRig(double stamp, double roll_deg) {
+  StereoDepthResult stereo = stereoAt(stamp, 10);
+  stereo.disparity_bias_stddev = 0.02;
+  stereo.vertical_rotation.w = {0, 0, roll_deg * kDegree};
+  stereo.vertical_rotation.covariance = std::pow(0.003 * kDegree, 2) * Eigen::Matrix3d::Identity();
+  return stereo;
+}
+
+TEST(KalmanHeightStage, IsNotValidWhenTheRigIsCertainlyBentBeyondTheLimit) {
+  for (const double roll_deg : {0.3, -0.3}) {
+    KalmanHeightStage stage(makeRig(), {});
+    LandingResult result;
+    for (int i = 0; i < 50; ++i) result = stage.process(bentRig(i * kStep, roll_deg), angleAt(i * kStep));
+    EXPECT_EQ(result.failure.reason, Reason::kRigBent);
+    EXPECT_NE(result.failure.detail.find("roll"), std::string::npos) << result.failure.detail;
+    EXPECT_NE(result.failure.detail.find("0.2 deg allowed"), std::string::npos) << result.failure.detail;
+    EXPECT_FALSE(result.height_valid || result.angle_valid);
+    EXPECT_NEAR(result.rig_rotation.w.z(), roll_deg * kDegree, 0.03 * kDegree);
+  }
+}
+
+TEST(KalmanHeightStage, ReportsABentRigWithinTheLimitAndNoneWhenNotWatching) {
+  KalmanHeightParameters parameters;
+  KalmanHeightStage watching(makeRig(), parameters);
+  parameters.rig_watch = false;
+  KalmanHeightStage blind(makeRig(), parameters);
+  LandingResult result, unwatched;
+  for (int i = 0; i < 50; ++i) {
+    result = watching.process(bentRig(i * kStep, 0.15), angleAt(i * kStep));
+    unwatched = blind.process(bentRig(i * kStep, 0.4), angleAt(i * kStep));
+  }
+  EXPECT_TRUE(result.valid()) << result.failure.message();
+  EXPECT_NEAR(result.rig_rotation.w.z(), 0.15 * kDegree, 0.03 * kDegree);
+  EXPECT_TRUE(unwatched.valid());
+  EXPECT_FALSE(unwatched.rig_rotation.known());
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -89,11 +89,11 @@ TEST(RigRotation, TurnsThePlaneAsAFitToTheDisturbedDisparitiesDoes) {
   }
   points.push_back({300, 400, 1, 1e-3, false});  // not on the plane: does not count
   const Eigen::Vector3d fitted = (rows.transpose() * rows).inverse() * (rows.transpose() * disturbed);
-  const Eigen::Vector3d predicted = planeByRotation(rig, points) * w;
+  const Eigen::Vector3d predicted = planeByRotation(rig, points, plane.g) * w;
   EXPECT_LT((fitted - plane.g - predicted).norm(), 0.005 * predicted.norm());
   // Mostly a yaw turns the pitch and a roll changes the height, by h / b.
-  EXPECT_NEAR(planeByRotation(rig, points)(2, 1), 1 / kBaseline, 0.15);
-  EXPECT_NEAR(planeByRotation(rig, points)(1, 2), -1 / kBaseline, 0.15);
+  EXPECT_NEAR(planeByRotation(rig, points, plane.g)(2, 1), 1 / kBaseline, 0.15);
+  EXPECT_NEAR(planeByRotation(rig, points, plane.g)(1, 2), -1 / kBaseline, 0.15);
 }
 
 TEST(VerticalDisparity, MeasuresPitchAndRollBetweenTheCameras) {

@@ -213,6 +213,8 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   result.rejected = true;
   result.consecutive_rejections = 3;
   result.resets = 2;
+  fill(result.rig_rotation.w);
+  fill(result.rig_rotation.covariance);
 
   const LandingEstimate message = toMessage(result, header(), "base_link", 0.002, 3.5);
   // The message of what comes back shows every field once more.
@@ -225,6 +227,8 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_EQ(message.height, result.height);
   EXPECT_EQ(message.yaw_variance, result.yaw_variance);
   EXPECT_EQ(message.innovation_variance, result.innovation_variance);
+  EXPECT_EQ(message.rig_rotation[2], result.rig_rotation.w.z());
+  EXPECT_EQ(message.rig_rotation_covariance[1], result.rig_rotation.covariance(0, 1));
   EXPECT_EQ(message.skew, 0.002);
   EXPECT_EQ(message.compute_ms, 3.5);
   EXPECT_TRUE(message.x_known);
@@ -240,7 +244,7 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
 }
 
 TEST(Conversions, EveryReasonIsFoundByItsName) {
-  for (int i = 0; i <= static_cast<int>(Reason::kTransformMissing); ++i) {
+  for (int i = 0; i <= static_cast<int>(Reason::kRigBent); ++i) {
     const auto reason = static_cast<Reason>(i);
     EXPECT_EQ(parseFailure(toString(reason)).reason, reason);
   }

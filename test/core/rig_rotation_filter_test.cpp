@@ -1,0 +1,162 @@
+#include "uav_landing/rig_rotation_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+
+constexpr double kStep = 0.05;                  // s between frames
+constexpr double kBias = 0.02;                  // px, of a good calibration
+constexpr double kStraight = 0.15 * kDegree;    // 1 sigma of the runway's slope
+constexpr double kPlaneError = 0.02 * kDegree;  // 1 sigma of pitch in a frame
+
+/// An approach over a plane, seen by a bent rig: as if a yaw turned the pitch and a roll changed the height
+/// by h / b, which is what they do to the disparities of the middle of the image.
+struct Approach {
+  StereoRig rig = test::makeRig(640, 480, 1.0);
+  Eigen::Vector3d w = Eigen::Vector3d::Zero();
+  double slope = 0;  // of the runway's direction against the plane
+  double pitch = -4 * kDegree;
+  std::mt19937 random{7};
+
+  Eigen::Matrix3d A() const {
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    A(2, 1) = 1 / rig.baseline;
+    A(1, 2) = -1 / rig.baseline;
+    return A;
+  }
+  double noise(double stddev) { return std::normal_distribution<double>(0, stddev)(random); }
+  GroundPlane truth(double height) const {
+    GroundPlane plane;
+    plane.g = normalFromPitchRoll(pitch, 0) / height;
+    return plane;
+  }
+  GroundPlane seen(double height) {
+    GroundPlane plane = truth(height);
+    plane.g += A() * w;
+    plane.g += Eigen::Vector3d(0, 0, noise(kPlaneError) / height);
+    plane.covariance = std::pow(kPlaneError / height, 2) * Eigen::Matrix3d::Identity();
+    return plane;
+  }
+  /// Straight ahead, below the ground plane by the slope: n.p = sin(slope).
+  Eigen::Vector3d direction() const { return {0, std::sin(pitch + slope), std::cos(pitch + slope)}; }
+  Eigen::Matrix3d directionCovariance() const {
+    return kStraight * kStraight * Eigen::DiagonalMatrix<double, 3>(1, 1, 0).toDenseMatrix();
+  }
+  RigRotation vertical(double stddev) {
+    RigRotation measured;
+    measured.w = w + Eigen::Vector3d(noise(stddev), 0, noise(stddev));
+    measured.covariance = Eigen::Vector3d(stddev * stddev, 0.01, stddev * stddev).asDiagonal();
+    return measured;
+  }
+  RigRotationFilter::Corrected frame(RigRotationFilter& filter, int i, double height) {
+    filter.advance(i * kStep);
+    filter.setPrior(kBias);
+    filter.updateVertical(vertical(0.003 * kDegree));
+    return filter.correct(seen(height), A(), direction(), directionCovariance(), 3);
+  }
+};
+
+double pitchError(const GroundPlane& plane, double pitch) { return pitchOf(plane.normal()) - pitch; }
+
+TEST(RigRotationFilter, LeavesAStraightRigAlone) {
+  Approach approach;
+  RigRotationFilter filter(approach.rig, 60);
+  for (int i = 0; i < 200; ++i) {
+    const double height = 30 - 0.1 * i;
+    const GroundPlane plane = approach.frame(filter, i, height).plane;
+    EXPECT_NEAR(pitchError(plane, approach.pitch), 0, 4 * kPlaneError) << i;
+    EXPECT_NEAR(plane.height(), height, 0.002 * height) << i;
+  }
+  const RigRotation rotation = filter.rotation();
+  EXPECT_LT(rotation.w.norm(), 0.02 / approach.rig.fx) << "less than the calibration's own error";
+  for (int i = 0; i < 3; ++i) EXPECT_LT(std::sqrt(rotation.covariance(i, i)), 1.1 * 0.02 / approach.rig.fx);
+}
+
+TEST(RigRotationFilter, FindsYawAndRollAndFreesPitchAndHeightOfThem) {
+  Approach approach;
+  approach.w = Eigen::Vector3d(0, 0.05, -0.1) * kDegree;
+  approach.slope = 0.1 * kDegree;
+  RigRotationFilter filter(approach.rig, 60);
+  GroundPlane plane;
+  const int frames = 400;
+  for (int i = 0; i < frames; ++i) plane = approach.frame(filter, i, 40 - 0.08 * i).plane;
+  const RigRotation rotation = filter.rotation();
+  for (const int i : {1, 2}) {
+    const double stddev = std::sqrt(rotation.covariance(i, i));
+    EXPECT_NEAR(rotation.w[i], approach.w[i], 3 * stddev) << i;
+    EXPECT_LT(stddev, 0.3 * std::abs(approach.w[i])) << i;
+  }
+  const double height = 40 - 0.08 * (frames - 1);
+  // Uncorrected: 0.4 degrees of pitch and 1.4 % of height.
+  EXPECT_NEAR(pitchError(plane, approach.pitch), 0, 0.1 * kDegree);
+  EXPECT_NEAR(plane.height(), height, 0.004 * height);
+  EXPECT_NEAR(plane.height(), height, 3 * std::sqrt(plane.heightVariance()));
+}
+
+TEST(RigRotationFilter, DoesNotTakeTheRunwaysSlopeForAYaw) {
+  Approach approach;
+  approach.slope = kStraight;
+  RigRotationFilter filter(approach.rig, 60);
+  for (int i = 0; i < 200; ++i) approach.frame(filter, i, 20);
+  const RigRotation rotation = filter.rotation();
+  EXPECT_LT(std::abs(rotation.w.y()), 2 * std::sqrt(rotation.covariance(1, 1)));
+  EXPECT_LT(std::abs(rotation.w.y()), 0.03 / approach.rig.fx);
+}
+
+TEST(RigRotationFilter, DoesNotAverageAwayWhatAllFramesOfASecondShare) {
+  Approach approach;
+  RigRotationFilter once(approach.rig, 1e9), often(approach.rig, 1e9);
+  for (RigRotationFilter* filter : {&once, &often}) filter->setPrior(1.0);
+  const double steps = 1000;
+  once.advance(0);
+  often.advance(0);
+  once.advance(1);
+  once.updateVertical(approach.vertical(0.1 * kDegree));
+  for (int i = 1; i <= steps; ++i) {
+    often.advance(i / steps);
+    often.updateVertical(approach.vertical(0.1 * kDegree));
+  }
+  EXPECT_NEAR(often.rotation().covariance(2, 2) / once.rotation().covariance(2, 2), 1, 0.2);
+  EXPECT_GT(std::sqrt(often.rotation().covariance(2, 2)), 0.03 * kDegree);
+}
+
+TEST(RigRotationFilter, VarianceOfThePlaneHasTheRigsShareInIt) {
+  Approach approach;
+  RigRotationFilter filter(approach.rig, 60);
+  filter.advance(0);
+  filter.setPrior(0.1);
+  const double height = 20;
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
+  const RigRotationFilter::Corrected corrected =
+      filter.correct(approach.seen(height), approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3);
+  // A roll by 0.1 px at the focal length turns 1 / b of g: sigma of h is h^2 cos(pitch) 0.1 / (f b).
+  const double expected = height * height * std::cos(approach.pitch) * 0.1 / approach.rig.fx;
+  const GroundPlane common{corrected.plane.g, corrected.common};
+  EXPECT_NEAR(std::sqrt(common.heightVariance()), expected, 0.01 * expected);
+  EXPECT_GT(corrected.plane.heightVariance(), common.heightVariance());
+}
+
+TEST(RigRotationFilter, ForgetsWhatIsOldAndAllOnReset) {
+  Approach approach;
+  approach.w.z() = 0.1 * kDegree;
+  RigRotationFilter filter(approach.rig, 10);
+  int i = 0;
+  for (; i < 400; ++i) approach.frame(filter, i, 20);
+  EXPECT_NEAR(filter.rotation().w.z(), 0.1 * kDegree, 0.03 * kDegree);
+  approach.w.z() = -0.1 * kDegree;
+  for (; i < 2000; ++i) approach.frame(filter, i, 20);
+  EXPECT_NEAR(filter.rotation().w.z(), -0.1 * kDegree, 0.03 * kDegree);
+  filter.reset();
+  EXPECT_EQ(filter.rotation().w.norm(), 0);
+}
+
+}  // namespace
+}  // namespace uav_landing
