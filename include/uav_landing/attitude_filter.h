@@ -18,10 +18,13 @@ class AttitudeFilter {
   struct Estimate {
     Eigen::Vector3d normal;
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
+    bool agrees = true;          ///< the pair's normal is one that the pairs before and the rotation allow
   };
 
   /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair. step:
-  /// from the previous pair; without one, or when the normals contradict each other, the filter starts anew.
+  /// from the previous pair; without one the filter starts anew. A normal that contradicts the ones before
+  /// (another surface was taken for the ground) is left out and agrees is false; when that goes on for half
+  /// a second, the filter starts anew from it.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step);
   void reset() { estimate_.reset(); }
@@ -30,7 +33,7 @@ class AttitudeFilter {
   bool predict(double stamp, const ApproachAngleResult::Motion& step);
 
   std::optional<Estimate> estimate_;
-  double stamp_ = 0;
+  double stamp_ = 0, agreed_ = 0;  // s
 };
 
 }  // namespace uav_landing

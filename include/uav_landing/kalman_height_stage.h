@@ -35,8 +35,13 @@ class KalmanHeightStage {
  private:
   /// What one pair alone says of height and attitude.
   struct Reconstruction {
+    struct Normal {
+      Eigen::Vector3d mean;
+      Eigen::Matrix3d covariance;  ///< rad^2
+    };
     Failure failure;  ///< set when there is no height
     GroundPlane plane;
+    Normal normal;  ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
         Eigen::Matrix3d::Zero();                    ///< share of the plane's covariance common to all pairs
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
@@ -45,8 +50,11 @@ class KalmanHeightStage {
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                  Reconstruction& reconstruction);
-  void reportPlane(double stamp, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                   LandingResult& result);
+  /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
+  void averageAttitude(double stamp, const ApproachAngleResult& approach, Reconstruction& reconstruction,
+                       LandingResult& result);
+  static void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                          LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   void reportRig(LandingResult& result) const;

@@ -9,7 +9,10 @@ namespace {
 
 constexpr double kMemory = 1.0;          // s
 constexpr double kStampRounding = 1e-3;  // s
+constexpr double kPatience = 0.5;        // s, with normals that contradict
 constexpr double kGate = 25.0;           // squared sigmas of the two angles together
+// 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
+constexpr double kUnevenness = 0.3 * M_PI / 180;
 
 /// Two unit vectors that span the plane across a unit vector.
 Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
@@ -54,14 +57,18 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     const Eigen::Matrix2d P = basis.transpose() * estimate_->covariance * basis;
     const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
     const Eigen::Matrix2d S = P + basis.transpose() * covariance * basis;
-    const Eigen::Matrix2d inverse = S.inverse();
-    if (innovation.dot(inverse * innovation) <= kGate) {
-      const Eigen::Matrix2d gain = P * inverse;
+    const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
+    estimate_->agrees = innovation.dot(allowed.inverse() * innovation) <= kGate;
+    if (estimate_->agrees) {
+      agreed_ = stamp;
+      const Eigen::Matrix2d gain = P * S.inverse();
       estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
       estimate_->covariance = basis * (P - gain * S * gain.transpose()) * basis.transpose();
       return *estimate_;
     }
+    if (stamp - agreed_ < kPatience) return *estimate_;
   }
+  agreed_ = stamp;
   estimate_ = Estimate{normal, covariance};
   return *estimate_;
 }

@@ -82,6 +82,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     result.failure = followTime(stereo.stamp);
+    averageAttitude(stereo.stamp, approach, reconstruction, result);
     useWidth(approach.runway, reconstruction, result);
     if (!result.failure) result.failure = reconstruction.failure;
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
@@ -90,7 +91,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
   reportAngle(approach, corrected ? &reconstruction.plane : nullptr,
               parameters_.max_angle_stddev_deg * kDegree, result);
-  reportPlane(stereo.stamp, reconstruction, approach, result);
+  reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
   {
@@ -214,23 +215,39 @@ void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const Approac
   common = kept * common * kept.transpose() + variance * gain * gain.transpose();
 }
 
-void KalmanHeightStage::reportPlane(double stamp, const Reconstruction& reconstruction,
-                                    const ApproachAngleResult& approach, LandingResult& result) {
+void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction, LandingResult& result) {
   const GroundPlane& plane = reconstruction.plane;
-  Eigen::Vector3d normal = approach.n;
-  Eigen::Matrix3d covariance = approach.n_covariance;
-  if (plane.valid()) {
-    normal = plane.normal();
-    covariance = plane.normalCovariance();
-    if (parameters_.average_attitude) {
-      const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
-      const AttitudeFilter::Estimate average =
-          attitude_.update(stamp, normal, covariance - common, approach.step);
-      normal = average.normal;
-      covariance = average.covariance + common;
-    }
+  if (!plane.valid()) return;
+  Reconstruction::Normal& average = reconstruction.normal;
+  average = {plane.normal(), plane.normalCovariance()};
+  if (!parameters_.average_attitude) return;
+  const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
+  const Eigen::Matrix3d own = average.covariance - common;
+  AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, approach.step);
+  if (!estimate.agrees && confirmations_ < kConfirmations) {
+    // Nothing yet that says which of the two normals is the ground's.
+    attitude_.reset();
+    estimate = attitude_.update(stamp, plane.normal(), own, approach.step);
   }
-  reportAttitude(normal, covariance, approach.vanishing_direction, approach.vanishing_covariance, result);
+  average = {estimate.normal, estimate.covariance + common};
+  if (estimate.agrees || reconstruction.failure) return;
+  const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
+  reconstruction.failure = {Reason::kRejected,
+                            text("the ground plane is tilted by ", off / kDegree,
+                                 " deg against the pairs before and the rotation since")};
+  result.raw_height = reconstruction.height;
+  result.raw_height_variance = reconstruction.variance;
+  result.rejected = true;
+  ++consecutive_rejections_;
+}
+
+void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                                    LandingResult& result) {
+  const bool known = reconstruction.plane.valid();
+  reportAttitude(known ? reconstruction.normal.mean : approach.n,
+                 known ? reconstruction.normal.covariance : approach.n_covariance, approach.vanishing_direction,
+                 approach.vanishing_covariance, result);
 }
 
 void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,

@@ -98,13 +98,48 @@ TEST(AttitudeFilter, StartsAnewWithoutAStepOfTheRightDurationAndAfterAReset) {
   EXPECT_NE(filter.update(0.30, n, flight.covariance(6), flight.step(6)).normal, n);
 }
 
-TEST(AttitudeFilter, NormalsThatContradictEachOtherStartItAnew) {
-  Flight flight(1, 0.01 * kDegree, 0.001 * kDegree);
-  AttitudeFilter filter;
-  for (int k = 1; k < 10; ++k)
-    filter.update(k * kStep, flight.measured(k), flight.covariance(k), flight.step(k));
-  const Eigen::Vector3d other = Eigen::AngleAxisd(1 * kDegree, Eigen::Vector3d::UnitX()) * flight.truth(10);
-  EXPECT_EQ(filter.update(10 * kStep, other, flight.covariance(10), flight.step(10)).normal, other);
+/// A second of agreeing pairs, and from then on normals of a surface that is tilted by so much.
+class TiltedSurface : public testing::Test {
+ protected:
+  TiltedSurface() {
+    for (; k_ <= 20; ++k_) update(0);
+  }
+  AttitudeFilter::Estimate update(double tilt) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    seen_ = turn * flight_.measured(k_);
+    return filter_.update(k_ * kStep, seen_, flight_.covariance(k_), flight_.step(k_));
+  }
+  double errorOf(const AttitudeFilter::Estimate& estimate) const {
+    return std::acos(std::min(1.0, estimate.normal.dot(flight_.truth(k_))));
+  }
+
+  Flight flight_{1, 0.05 * kDegree, 0.001 * kDegree};
+  AttitudeFilter filter_;
+  int k_ = 1;
+  Eigen::Vector3d seen_;
+};
+
+TEST_F(TiltedSurface, IsLeftOutAndSaidNotToAgree) {
+  for (; k_ <= 24; ++k_) {
+    const AttitudeFilter::Estimate estimate = update(3 * kDegree);
+    EXPECT_FALSE(estimate.agrees);
+    EXPECT_LT(errorOf(estimate), 0.05 * kDegree);
+  }
+  EXPECT_TRUE(update(0).agrees) << "the ground is seen again";
+}
+
+TEST_F(TiltedSurface, IsTheGroundWhenItStays) {
+  for (; k_ <= 29; ++k_) EXPECT_FALSE(update(3 * kDegree).agrees);
+  for (; k_ <= 32; ++k_) {
+    const AttitudeFilter::Estimate estimate = update(3 * kDegree);
+    if (estimate.agrees && estimate.normal == seen_) return;
+  }
+  FAIL() << "not believed after half a second and more";
+}
+
+TEST_F(TiltedSurface, IsFollowedWhenItIsOnlyUneven) {
+  const AttitudeFilter::Estimate estimate = update(0.5 * kDegree);
+  EXPECT_TRUE(estimate.agrees);
 }
 
 }  // namespace

@@ -254,6 +254,37 @@ TEST(KalmanHeightStage, RejectsAnOutlier) {
   EXPECT_EQ(result.resets, 0);
 }
 
+/// A straight flight in which nothing turns between the pairs, the rotation known to 0.05 degrees.
+ApproachAngleResult withoutTurning(double stamp) {
+  ApproachAngleResult approach = angleAt(stamp);
+  approach.step.failure = {};
+  approach.step.duration = kStep;
+  approach.step.rotation = Eigen::Vector3d::Zero();
+  approach.step.translation_over_height = {0, 0, 0.2};
+  approach.step.covariance = std::pow(0.05 * kDegree, 2) * Matrix6d::Identity();
+  return approach;
+}
+
+TEST(KalmanHeightStage, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBefore) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 0;
+  LandingResult result;
+  for (; stamp < 1; stamp += kStep) result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
+  ASSERT_EQ(result.status, Status::kTracking);
+  const double roll = result.roll;
+  // The height alone would pass the gate; the roll of 4 degrees within one pair does not.
+  result = stage.process(stereoAt(stamp, 10.02, -0.1, 0.05 + 4 * kDegree), withoutTurning(stamp));
+  EXPECT_EQ(result.status, Status::kCoasting);
+  EXPECT_TRUE(result.rejected);
+  EXPECT_EQ(result.failure.reason, Reason::kRejected);
+  // 4 degrees about an axis that is pitched by 0.1 rad: 4 cos(0.1).
+  EXPECT_NE(result.failure.detail.find("tilted by 3.98"), std::string::npos) << result.failure.detail;
+  EXPECT_NEAR(result.raw_height, 10.02, 1e-9);
+  EXPECT_NEAR(result.roll, roll, 0.1 * kDegree);
+  stamp += kStep;
+  EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
+}
+
 TEST(KalmanHeightStage, RecoversWithinTheTimeoutFromAWrongHeightItLockedOn) {
   KalmanHeightParameters parameters;
   parameters.gate = 2;  // narrow, so that coasting alone does not open it
