@@ -233,9 +233,8 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   average = {estimate.normal, estimate.covariance + common};
   if (estimate.agrees || reconstruction.failure) return;
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
-  reconstruction.failure = {Reason::kRejected,
-                            text("the ground plane is tilted by ", off / kDegree,
-                                 " deg against the pairs before and the rotation since")};
+  reconstruction.failure = {Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
+                                                    " deg against the pairs before and the rotation since")};
   result.raw_height = reconstruction.height;
   result.raw_height_variance = reconstruction.variance;
   result.rejected = true;
@@ -246,8 +245,8 @@ void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const 
                                     LandingResult& result) {
   const bool known = reconstruction.plane.valid();
   reportAttitude(known ? reconstruction.normal.mean : approach.n,
-                 known ? reconstruction.normal.covariance : approach.n_covariance, approach.vanishing_direction,
-                 approach.vanishing_covariance, result);
+                 known ? reconstruction.normal.covariance : approach.n_covariance,
+                 approach.vanishing_direction, approach.vanishing_covariance, result);
 }
 
 void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
