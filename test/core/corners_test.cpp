@@ -45,6 +45,27 @@ TEST(Corners, AreTheCornersOfASquare) {
                              [](const cv::Point& a, const cv::Point& b) { return a.y < b.y; }));
 }
 
+TEST(Corners, AreTheMaximaOfTheHarrisResponse) {
+  const cv::Mat image = fadingTexture(320, 240);
+  for (const double k : {0.04, 0.15}) {
+    // OpenCV's response; every maximum of at least a twentieth of the largest, in order of rows.
+    cv::Mat response;
+    cv::cornerHarris(image, response, 3, 3, k);
+    double strongest = 0;
+    cv::minMaxLoc(response, nullptr, &strongest);
+    cv::Mat neighbourhood;
+    cv::dilate(response, neighbourhood, cv::Mat::ones(3, 3, CV_8U));
+    std::vector<cv::Point> expected;
+    for (int v = 3; v + 3 < image.rows; ++v)
+      for (int u = 2; u + 2 < image.cols; ++u)
+        if (response.at<float>(v, u) > 0.05 * strongest &&
+            response.at<float>(v, u) == neighbourhood.at<float>(v, u))
+          expected.emplace_back(u, v);
+    ASSERT_GT(expected.size(), 50U);
+    EXPECT_EQ(findCorners(image, everywhere(image), 1000000, 0.05, 1, k), expected) << k;
+  }
+}
+
 TEST(Corners, SpreadOverTheImageThoughTheTextureIsStrongOnOneSideOnly) {
   const cv::Mat image = fadingTexture(320, 240);
   const std::vector<cv::Point> corners = find(image, everywhere(image), 200);

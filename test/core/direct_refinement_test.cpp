@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <string>
 
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
@@ -127,21 +128,59 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
 
 TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {
   Scene scene;
+  const auto expectTooFew = [&](const std::string& count) {
+    const Expected<PlaneFit> fit = scene.refine(scene.truth);
+    ASSERT_FALSE(fit);
+    EXPECT_EQ(fit.error().reason, Reason::kTooFewMatches);
+    EXPECT_EQ(fit.error().detail, count + " blocks match, at least 20 needed");
+  };
   scene.left = scene.right = cv::Mat(240, 320, CV_8U, cv::Scalar(90));
+  expectTooFew("0");
+  // Steps of one grey level every four columns have less contrast than a block must have.
+  scene.left.forEach<uchar>([](uchar& grey, const int* place) { grey += place[1] / 4 % 2; });
+  scene.right = scene.left.clone();
+  expectTooFew("0");
+}
+
+TEST(DirectRefinement, HasTooFewMatchesWithTextureInOnePlaceOnly) {
+  Scene scene;
+  scene.render();
+  // At most four by four blocks of 16 x 8 pixels see some of it.
+  const cv::Rect place(120, 180, 40, 20);
+  cv::Mat left(240, 320, CV_8U, cv::Scalar(90));
+  scene.left(place).copyTo(left(place));
+  scene.left = left;
   const Expected<PlaneFit> fit = scene.refine(scene.truth);
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().reason, Reason::kTooFewMatches);
+  EXPECT_NE(fit.error().detail.find(" blocks match, at least 20 needed"), std::string::npos);
+  EXPECT_GE(std::stoi(fit.error().detail), 1);
+  EXPECT_LE(std::stoi(fit.error().detail), 16);
+}
+
+TEST(DirectRefinement, FindsNoPlaneInNoiseAlone) {
+  Scene scene;
+  scene.ground.contrast = 0;
+  scene.render({1, 0, 6}, {1, 0, 6});
+  EXPECT_FALSE(scene.refine(scene.truth));
 }
 
 TEST(SamePlane, AllowsFiveSigmasBetweenThePlanes) {
   const Pose pose = makePose(10, -4, 0);
   const GroundPlane plane = test::exactPlane(pose, 0.01, 0.001);
-  GroundPlane other = plane;
-  // 1 sigma of the difference is 1.41 % of the height.
-  other.g *= 1.06;
-  EXPECT_TRUE(samePlane(plane, other));
-  other.g *= 1.03;
-  EXPECT_FALSE(samePlane(plane, other));
+  // Both planes have the same covariance: 1 sigma of the difference is 1.41 % of the height, 1.41 mrad of
+  // tilt.
+  const double sigma = std::sqrt(2.0);
+  const Eigen::Vector3d by_height = 0.01 * plane.g;
+  const Eigen::Vector3d by_tilt = 0.001 * plane.g.norm() * pose.seen(Eigen::Vector3d::UnitX());
+  for (const Eigen::Vector3d& change : {by_height, by_tilt})
+    for (const double side : {-1.0, 1.0}) {
+      GroundPlane other = plane;
+      other.g = plane.g + 4.9 * side * sigma * change;
+      EXPECT_TRUE(samePlane(plane, other));
+      other.g = plane.g + 5.1 * side * sigma * change;
+      EXPECT_FALSE(samePlane(plane, other));
+    }
 }
 
 }  // namespace

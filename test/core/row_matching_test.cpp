@@ -155,6 +155,56 @@ TEST(RowSearch, ScoresTheTruePlaceOneAndOthersLess) {
   }
 }
 
+/// Correlation or SSD score of a window at one place, written from the definition in double precision; -1
+/// when it leaves the image.
+double scoreAt(const Pair& pair, int u, int v, double column, const RowWarp& warp, int radius,
+               MatchingCost cost) {
+  std::vector<double> a, b;
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) {
+      const double x = column + warp.scale * dx + warp.shear * dy;
+      if (x < 0 || x >= kWidth - 1) return -1;
+      const float* row = pair.right.fine.ptr<float>(v + dy) + static_cast<int>(x);
+      a.push_back(pair.left.fine.at<float>(v + dy, u + dx));
+      b.push_back(row[0] + (x - std::floor(x)) * (row[1] - row[0]));
+    }
+  const double n = static_cast<double>(a.size());
+  double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0, differences = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    mean_a += a[i] / n;
+    mean_b += b[i] / n;
+    differences += std::pow(a[i] - b[i], 2);
+  }
+  for (size_t i = 0; i < a.size(); ++i) {
+    aa += std::pow(a[i] - mean_a, 2);
+    bb += std::pow(b[i] - mean_b, 2);
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+  }
+  return cost == MatchingCost::kSsd ? 1 - differences / (2 * aa) : ab / std::sqrt(aa * bb);
+}
+
+TEST(RowSearch, ScoresAreThoseOfTheDefinitionForAllSizesUpToTheImagesBorder) {
+  Pair::Look look = shifted(20.3);
+  look.gain = 0.9;
+  look.noise = 4;
+  const Pair pair(look);
+  for (const MatchingCost cost : {MatchingCost::kZncc, MatchingCost::kSsd})
+    for (const int radius : {1, 2, 5, 7})
+      for (const int steps : {0, 1, 3, 4, 6, 20})
+        for (const RowWarp& warp : {RowWarp{1, 0}, RowWarp{0.93, 0.31}, RowWarp{1.08, -0.4}})
+          for (const int u : {28, 120, 231}) {
+            RowSearch rows(pair.left.fine, pair.right.fine, radius, cost);
+            const double centre = u - 19.6;
+            ASSERT_TRUE(rows.run(u, 100, centre, steps, warp));
+            double expected = -1;
+            for (int k = -steps; k <= steps; ++k)
+              expected =
+                  std::max(expected, scoreAt(pair, u, 100, centre + k * warp.scale, warp, radius, cost));
+            EXPECT_NEAR(rows.best(nullptr).score, expected, 2e-3)
+                << u << ' ' << radius << ' ' << steps << ' ' << warp.scale;
+          }
+}
+
 TEST(Warp, IsNeededForAGroundPlaneAndWorks) {
   // Disparity that changes by 0.4 a row, as on low ground, and by 0.05 a column, as with roll.
   Pair::Look look;

@@ -1,0 +1,75 @@
+#include "cubic_window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace uav_landing {
+namespace {
+
+/// Catmull-Rom interpolation is exact for polynomials of the second degree.
+double polynomial(double x, double y) {
+  return 3 + 0.5 * x - 0.8 * y + 0.04 * x * x - 0.03 * x * y + 0.05 * y * y;
+}
+
+cv::Mat polynomialImage() {
+  cv::Mat image(40, 50, CV_32F);
+  for (int v = 0; v < image.rows; ++v)
+    for (int u = 0; u < image.cols; ++u) image.at<float>(v, u) = static_cast<float>(polynomial(u, v));
+  return image;
+}
+
+// The table rounds places to 1/256 pixel, so by up to 0.002; slopes are below 5 a pixel in either direction.
+constexpr double kTolerance = 2 * 5 * 0.5 / 256;
+
+TEST(CubicTable, HasTheWeightsOfKeysKernel) {
+  const auto expect = [](double fraction, const std::array<double, 4>& wanted) {
+    const float* weights = CubicTable::get().at(CubicTable::fixed(fraction));
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(weights[k], wanted[k], 1e-6) << fraction << ' ' << k;
+  };
+  expect(0, {0, 1, 0, 0});
+  expect(0.5, {-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16});
+  expect(0.25, {-9.0 / 128, 111.0 / 128, 29.0 / 128, -3.0 / 128});
+  // The nearest of the table's places, not the one before.
+  expect(0.25 - 0.4 / 256, {-9.0 / 128, 111.0 / 128, 29.0 / 128, -3.0 / 128});
+}
+
+TEST(SampleCubicLine, IsExactForParabolasInAnyDirection) {
+  const cv::Mat image = polynomialImage();
+  for (const double step_x : {-0.7, 0.6, 1.0, 1.37})
+    for (const double step_y : {-0.45, 0.0, 0.3}) {
+      const double x = step_x > 0 ? 10.31 : 30.31, y = 19.77;
+      std::vector<float> out(12, -1e9F);
+      sampleCubicLine(image, CubicTable::fixed(x), CubicTable::fixed(y), CubicTable::fixed(step_x),
+                      CubicTable::fixed(step_y), 12, out.data());
+      for (int i = 0; i < 12; ++i)
+        EXPECT_NEAR(out[i], polynomial(x + i * step_x, y + i * step_y), kTolerance) << step_x << ' ' << i;
+    }
+}
+
+TEST(SampleCubicRow, IsExactForParabolas) {
+  const cv::Mat image = polynomialImage();
+  for (const double step : {-0.7, 0.6, 1.0, 1.37}) {
+    const double x = step > 0 ? 10.31 : 30.31;
+    std::vector<float> out(12, -1e9F);
+    sampleCubicRow(image.ptr<float>(23), CubicTable::fixed(x), CubicTable::fixed(step), 12, out.data());
+    for (int i = 0; i < 12; ++i)
+      EXPECT_NEAR(out[i], polynomial(x + i * step, 23), kTolerance) << step << ' ' << i;
+  }
+}
+
+TEST(SampleCubic, WritesWholeBlocksOfFour) {
+  const cv::Mat image = polynomialImage();
+  std::vector<float> line(12, -1e9F), row(12, -1e9F);
+  const auto fixed = [](double x) { return CubicTable::fixed(x); };
+  sampleCubicLine(image, fixed(10), fixed(9), fixed(1), 0, 5, line.data());
+  sampleCubicRow(image.ptr<float>(9), fixed(10), fixed(1), 5, row.data());
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_FLOAT_EQ(line[i], i < 8 ? image.at<float>(9, 10 + i) : -1e9F);
+    EXPECT_FLOAT_EQ(row[i], i < 8 ? image.at<float>(9, 10 + i) : -1e9F);
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing
