@@ -1,5 +1,6 @@
 #include "uav_landing/rig_rotation_filter.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,10 @@ void RigRotationFilter::updateVertical(const RigRotation& measured) {
   Eigen::Matrix2d covariance;
   covariance << measured.covariance(0, 0), measured.covariance(0, 2), measured.covariance(2, 0),
       measured.covariance(2, 2);
-  const Eigen::Matrix2d weight = share_ * covariance.inverse();
+  // Without a definite covariance, as in a message whose field was never filled in, it would leave no state.
+  const Eigen::LLT<Eigen::Matrix2d> decomposed(covariance);
+  if (!(covariance.trace() > 0) || decomposed.info() != Eigen::Success) return;
+  const Eigen::Matrix2d weight = share_ * decomposed.solve(Eigen::Matrix2d::Identity());
   Eigen::Matrix<double, 2, 6> rows = Eigen::Matrix<double, 2, 6>::Zero();
   rows(0, 0) = rows(0, 4) = rows(1, 2) = rows(1, 5) = 1;
   information_ += rows.transpose() * weight * rows;

@@ -144,6 +144,25 @@ TEST(RigRotationFilter, VarianceOfThePlaneHasTheRigsShareInIt) {
   EXPECT_GT(corrected.plane.heightVariance(), common.heightVariance());
 }
 
+TEST(RigRotationFilter, LeavesOutAVerticalRotationWithoutADefiniteCovariance) {
+  Approach approach;
+  const double variance = 1e-10;
+  for (const Eigen::Vector3d& diagonal :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(variance, 0.01, -variance),
+        Eigen::Vector3d(0, 0.01, variance), Eigen::Vector3d(variance, 0.01, kUnknown)}) {
+    RigRotationFilter filter(approach.rig, 60);
+    filter.advance(0);
+    filter.setPrior(kBias);
+    RigRotation measured;
+    measured.w = Eigen::Vector3d::Constant(kDegree);
+    measured.covariance = diagonal.asDiagonal();
+    filter.updateVertical(measured);
+    EXPECT_EQ(filter.rotation().w.norm(), 0) << diagonal.transpose();
+    approach.frame(filter, 1, 20);
+    EXPECT_TRUE(filter.rotation().covariance.allFinite()) << diagonal.transpose();
+  }
+}
+
 TEST(RigRotationFilter, ForgetsWhatIsOldAndAllOnReset) {
   Approach approach;
   approach.w.z() = 0.1 * kDegree;

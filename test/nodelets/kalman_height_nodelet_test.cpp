@@ -47,6 +47,8 @@ class KalmanHeightNodeletTest : public NodeletTest {
     auto depth = boost::make_shared<StereoDepth>();
     depth->header.stamp = stamp;
     depth->header.frame_id = "left_optical";
+    depth->vertical_rotation.assign(kNan);
+    depth->vertical_rotation_covariance.assign(kNan);
     auto angle = boost::make_shared<ApproachAngle>();
     angle->header = depth->header;
     angle->vanishing_direction.assign(kNan);
