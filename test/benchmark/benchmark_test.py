@@ -26,11 +26,6 @@ class BenchmarkTest(unittest.TestCase):
                     self.assertGreater(times["median"], 0)
                     self.assertLessEqual(times["median"], times["percentile_99"])
                     self.assertLessEqual(times["percentile_99"], times["worst"])
-                # The peers do their work: dense matching of all pixels costs more than rectifying them, which the
-                # floor does and nothing after it.
-                medians = {name: times["median"] for name, times in sequence["programs"].items()}
-                self.assertLess(medians["image floor"], min(m for n, m in medians.items() if n != "image floor"))
-                self.assertLess(medians["rectify + StereoBM + plane"], medians["rectify + StereoSGBM + plane"])
                 self.assertIn("rectify", sequence["stages"])
             small, large = (s["programs"]["uav_landing"]["median"] for s in measured["sequences"])
             self.assertAlmostEqual(measured["growth"], math.log(large / small) / math.log(4), delta=1e-3)
