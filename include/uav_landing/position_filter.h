@@ -20,18 +20,24 @@ class PositionFilter {
 
  private:
   /// Position along one axis. Errors of the motion and of successive measurements are much the same from pair
-  /// to pair, so standard deviations are added, not variances.
+  /// to pair, so standard deviations are added, not variances. Measurements may have an error in common that
+  /// is always the same, as when only the threshold's bars are seen: value = position + systematic * offset
+  /// with an unknown offset of N(0, 1), which is a second state of the Kalman filter. It does not average out,
+  /// and one measurement without it tells it.
   class Axis {
    public:
     void predict(double movement, double stddev);
-    /// value, variance: measured, m, m^2.
-    void update(double value, double variance, double seconds);
+    /// value, variance: measured, m, m^2. systematic: part of the variance.
+    void update(double value, double variance, double systematic, double seconds);
     void forgetAbove(double stddev);
-    void report(double& value, double& variance) const;
+    void report(double& value, double& reported) const;
 
    private:
-    std::optional<double> value_;
-    double variance_ = 0;
+    double variance() const { return covariance_(0, 0) + common_; }
+
+    bool known_ = false;
+    Eigen::Vector2d state_ = Eigen::Vector2d::Zero();  // position, m; offset
+    Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
     double common_ = 0;    // variance that does not average out, of the last measurement
     double rejected_ = 0;  // s
   };

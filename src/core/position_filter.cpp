@@ -24,38 +24,44 @@ Eigen::Vector3d turned(const Eigen::Vector3d& rotation, const Eigen::Vector3d& v
 }  // namespace
 
 void PositionFilter::Axis::predict(double movement, double stddev) {
-  if (!value_) return;
-  value_ = *value_ + movement;
-  variance_ = std::pow(std::sqrt(variance_) + stddev, 2);
+  if (!known_) return;
+  state_(0) += movement;
+  const double by_offset = std::pow(covariance_(0, 1), 2) / covariance_(1, 1);
+  const double own = std::max(covariance_(0, 0) - by_offset, 0.0);
+  covariance_(0, 0) = by_offset + std::pow(std::sqrt(own) + stddev, 2);
 }
 
-void PositionFilter::Axis::update(double value, double variance, double seconds) {
-  if (value_ && std::pow(value - *value_, 2) > kGate * kGate * (variance_ + common_ + variance)) {
+void PositionFilter::Axis::update(double value, double variance, double systematic, double seconds) {
+  const Eigen::RowVector2d h(1, std::sqrt(systematic));
+  const double innovation = value - h * state_, random = variance - systematic;
+  const double predicted = h * covariance_ * h.transpose();
+  if (known_ && innovation * innovation > kGate * kGate * (predicted + common_ + random)) {
     rejected_ += seconds;
     if (rejected_ < kRestart) return;
-    value_.reset();
+    known_ = false;
   }
   rejected_ = 0;
-  common_ = kCommon * variance;
-  const double own = variance - common_;
-  if (!value_) {
-    value_ = value;
-    variance_ = own;
+  common_ = kCommon * random;
+  const double own = random - common_;
+  if (!known_) {
+    known_ = true;
+    state_ << value, 0;
+    covariance_ << own + systematic, -h(1), -h(1), 1;
     return;
   }
-  const double gain = variance_ / (variance_ + own);
-  value_ = *value_ + gain * (value - *value_);
-  variance_ *= 1 - gain;
+  const Eigen::Vector2d gain = covariance_ * h.transpose() / (predicted + own);
+  state_ += gain * innovation;
+  covariance_ -= gain * (predicted + own) * gain.transpose();
 }
 
 void PositionFilter::Axis::forgetAbove(double stddev) {
-  if (variance_ + common_ > stddev * stddev) *this = Axis();
+  if (variance() > stddev * stddev) *this = Axis();
 }
 
-void PositionFilter::Axis::report(double& value, double& variance) const {
-  if (!value_) return;
-  value = *value_;
-  variance = variance_ + common_;
+void PositionFilter::Axis::report(double& value, double& reported) const {
+  if (!known_) return;
+  value = state_(0);
+  reported = variance();
 }
 
 void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
@@ -72,9 +78,10 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
       result.runway_width = width_ = seen.width * height;
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
-    y_.update(seen.y * height, metric(seen.y, seen.y_variance), seconds);
+    y_.update(seen.y * height, metric(seen.y, seen.y_variance), 0, seconds);
     if (!seen.threshold_failure && seen.x_variance > 0)
-      x_.update(seen.x * height, metric(seen.x, seen.x_variance), seconds);
+      x_.update(seen.x * height, metric(seen.x, seen.x_variance),
+                seen.x_systematic_variance * height * height, seconds);
   }
   x_.forgetAbove(kWorthlessX * width_);
   y_.forgetAbove(kWorthlessY * width_);

@@ -28,6 +28,15 @@ constexpr double kSpanning = 0.8;       // share of the width that the threshold
 constexpr double kNothing = 0.25;       // share below which there is no line
 constexpr double kLineContrast = 0.35;  // of the bars' contrast: weakest step onto the line
 constexpr double kLocation = 0.5;       // px, 1 sigma of an edge across the runway
+// Bars begin 6 m behind the threshold and are 3.5 m apart (ICAO Annex 14; FAA AC 150/5340-1); on runways that
+// follow no standard they begin anywhere from the threshold on.
+constexpr double kFarthestBars = 1.9;  // pitches of the bars, behind the threshold
+constexpr double kSearched = 1.3;      // of the farthest: before the bars
+constexpr double kPitchError = 0.05;   // 1 sigma, of the pitch
+constexpr int kStretches = 8;          // across the runway, in which the pavement must begin alike
+constexpr double kLeastStep = 8;       // grey levels where the pavement begins
+constexpr double kClearStep = 5;       // the same, in standard errors over the stretches
+constexpr double kFirstStep = 0.5;     // of the clearest step: a nearer one that is taken instead
 
 /// The runway as seen from above, one row for each pixel of distance.
 class TopView {
@@ -141,6 +150,22 @@ double barContrast(const std::vector<float>& pattern) {
   return flips >= kLeastFlips && gap <= kLargestGap * kColumns ? contrast : 0;
 }
 
+/// From bar to bar, in columns.
+double pitchOf(const std::vector<float>& pattern) {
+  const double level = meanOf(pattern);
+  std::vector<double> pitches;
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (int c = 1; c < kColumns; ++c) {
+    if (!(pattern[c - 1] < level && pattern[c] >= level)) continue;
+    const double rise = c - (pattern[c] - level) / (pattern[c] - pattern[c - 1]);
+    if (std::isfinite(last)) pitches.push_back(rise - last);
+    last = rise;
+  }
+  if (pitches.empty()) return 0;
+  std::nth_element(pitches.begin(), pitches.begin() + pitches.size() / 2, pitches.end());
+  return pitches[pitches.size() / 2];
+}
+
 /// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.
 double share(const std::vector<float>& pattern, const std::vector<float>& row) {
   const double pattern_mean = meanOf(pattern), row_mean = meanOf(row);
@@ -169,6 +194,7 @@ double crossing(double k, double step, double inside, double outside) {
 struct Bars {
   double contrast = 0;
   double begin = 0, end = 0;
+  double pitch = 0;  // columns
 };
 
 /// Whether the bars are the same at both ends, and on both sides of the centre line. Texture is neither.
@@ -196,6 +222,7 @@ std::optional<Bars> findBars(const TopView& view) {
   }
   if (anchor < 0) return std::nullopt;
   const std::vector<float> pattern = blockAround(view, anchor);
+  bars.pitch = pitchOf(pattern);
   const auto follow = [&](int step, double& place) {
     double inside = 1;
     for (int k = anchor; k >= 0 && k < view.size(); k += step) {
@@ -253,6 +280,59 @@ Line findLine(const TopView& view, const Bars& bars, int first) {
   return line;
 }
 
+/// Step of the brightness around a station, alike all across the runway.
+struct Step {
+  double mean = 0;     // grey levels, towards the far side
+  bool clear = false;  // against what it varies across
+};
+
+Step stepAt(const TopView& view, int k) {
+  std::vector<double> steps;
+  for (int stretch = 0; stretch < kStretches; ++stretch) {
+    double sum = 0;
+    int known = 0;
+    for (int c = stretch * kColumns / kStretches; c < (stretch + 1) * kColumns / kStretches; ++c) {
+      const float step =
+          0.5F * (view.row(k + 1)[c] + view.row(k + 2)[c] - view.row(k - 1)[c] - view.row(k - 2)[c]);
+      if (!std::isfinite(step)) continue;
+      sum += step;
+      ++known;
+    }
+    if (known > 0) steps.push_back(sum / known);
+  }
+  Step step;
+  if (steps.size() < kLeastPicture * kStretches) return step;
+  const double count = static_cast<double>(steps.size());
+  for (const double s : steps) step.mean += s / count;
+  double square = 0;
+  for (const double s : steps) square += std::pow(s - step.mean, 2);
+  const double standard_error = std::sqrt(square / (count - 1) / count);
+  const bool one_way = std::all_of(steps.begin(), steps.end(), [&](double s) { return s * step.mean > 0; });
+  step.clear = one_way && std::abs(step.mean) >= std::max(kLeastStep, kClearStep * standard_error);
+  return step;
+}
+
+/// Station at which the pavement of the bars begins: a step of the brightness, either way, right across.
+std::optional<double> findPavement(const TopView& view, const Bars& bars, int first) {
+  const int begin = std::max(2, first), end = static_cast<int>(bars.begin) - 2;  // free of the bars
+  std::vector<Step> steps;
+  double clearest = 0;
+  for (int k = begin; k < end; ++k) {
+    steps.push_back(stepAt(view, k));
+    if (steps.back().clear) clearest = std::max(clearest, std::abs(steps.back().mean));
+  }
+  for (size_t i = 1; i + 1 < steps.size(); ++i) {
+    const double here = std::abs(steps[i].mean);
+    if (!steps[i].clear || here < kFirstStep * clearest) continue;
+    const double sign = steps[i].mean > 0 ? 1 : -1;
+    const double before = sign * steps[i - 1].mean, after = sign * steps[i + 1].mean;
+    if (before > here || after > here) continue;
+    const double curve = before - 2 * here + after;
+    return begin + static_cast<double>(i) + (curve < 0 ? 0.5 * (before - after) / curve : 0.0);
+  }
+  return std::nullopt;
+}
+
 template <class... Parts>
 tl::unexpected<Failure> noThreshold(const Parts&... parts) {
   return tl::make_unexpected(Failure{Reason::kNoRunway, text(parts...)});
@@ -269,20 +349,34 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   if (view.distance(bars->end) - begin < kShortestBars * runway.width)
     return noThreshold("bars of the threshold are too short");
   // The line before them must be in the picture if there is one: without it the bars tell nothing.
-  const double search = begin - kLineSearch * runway.width;
+  const double farthest = kFarthestBars * bars->pitch / kColumns * kAcross * runway.width;
+  const double search = begin - std::max(kLineSearch * runway.width, kSearched * farthest);
   int first = 0;
   while (first < view.size() && view.distance(first) < search) ++first;
   if (first == 0) return noThreshold("what lies before the threshold bars is not in the picture");
   const Line line = findLine(view, *bars, first);
-  if (line.spanning > kNothing && line.spanning < kSpanning)
+  std::optional<double> seen;
+  if (line.spanning >= kSpanning) {
+    seen = line.station;
+  } else {
+    while (view.distance(first) < begin - kSearched * farthest) ++first;
+    seen = findPavement(view, *bars, first);
+  }
+  if (!seen && line.spanning > kNothing)
     return noThreshold("a mark before the bars takes ", line.spanning, " of the width");
-  const double station = line.spanning >= kSpanning ? line.station : bars->begin;
+  const double station = seen.value_or(bars->begin);
   Threshold threshold;
   threshold.distance = view.distance(station);
   const Eigen::Vector3d by_rotation =
       GroundAxes::meetByRotation({threshold.distance, runway.centre}).row(0).transpose();
   threshold.variance =
       std::pow(kLocation * view.footprint(station), 2) + by_rotation.dot(axes.covariance * by_rotation);
+  if (!seen) {
+    // As well at the bars as at the farthest: the standard deviation takes in both.
+    threshold.distance -= 0.5 * farthest;
+    threshold.systematic_variance = std::pow(0.5 * farthest, 2);
+    threshold.variance += threshold.systematic_variance + std::pow(kPitchError * farthest, 2);
+  }
   return threshold;
 }
 

@@ -190,6 +190,7 @@ void RunwayTracker::findThresholdLine(double seconds, const cv::Mat& left, const
   }
   result.x = -seen->distance;
   result.x_variance = seen->variance;
+  result.x_systematic_variance = seen->systematic_variance;
 }
 
 }  // namespace uav_landing

@@ -86,6 +86,7 @@ RunwayPosition toMessage(const ApproachAngleResult::Runway& runway) {
   message.threshold_reason = runway.threshold_failure.message();
   message.x = runway.x;
   message.x_variance = runway.x_variance;
+  message.x_systematic_variance = runway.x_systematic_variance;
   return message;
 }
 
@@ -99,6 +100,7 @@ ApproachAngleResult::Runway toResult(const RunwayPosition& message) {
   runway.threshold_failure = parseFailure(message.threshold_reason);
   runway.x = message.x;
   runway.x_variance = message.x_variance;
+  runway.x_systematic_variance = message.x_systematic_variance;
   return runway;
 }
 

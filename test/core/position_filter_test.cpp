@@ -15,6 +15,7 @@ struct Flight {
   PositionFilter filter;
   int frame = 0;
   double x = -100, y = 3;
+  double x_error = 0, x_systematic = 0;  // of x as seen, and what is claimed of it, m
 
   /// x_seen, y_seen: whether the runway is seen. error: of y as seen, m.
   LandingResult next(bool x_seen, bool y_seen, double error = 0) {
@@ -35,8 +36,9 @@ struct Flight {
     }
     if (x_seen) {
       approach.runway.threshold_failure = {};
-      approach.runway.x = x / kHeight;
-      approach.runway.x_variance = std::pow(0.5 / kHeight, 2);
+      approach.runway.x = (x + x_error) / kHeight;
+      approach.runway.x_systematic_variance = std::pow(x_systematic / kHeight, 2);
+      approach.runway.x_variance = std::pow(0.5 / kHeight, 2) + approach.runway.x_systematic_variance;
     }
     LandingResult result;
     result.stamp = kPeriod * frame++;
@@ -78,6 +80,30 @@ TEST(PositionFilter, FollowsTheMotionWithGrowingVarianceWhileNothingIsSeen) {
     EXPECT_GT(result.y_variance, variance);
     variance = result.y_variance;
   }
+}
+
+TEST(PositionFilter, ASystematicErrorDoesNotAverageOut) {
+  Flight flight;
+  flight.x_error = flight.x_systematic = 3;
+  LandingResult result;
+  for (int i = 0; i < 100; ++i) result = flight.next(true, true);
+  EXPECT_NEAR(result.x, flight.x + 3, 0.1);
+  EXPECT_GT(std::sqrt(result.x_variance), 3);
+  EXPECT_LT(std::sqrt(result.x_variance), 3.2);
+}
+
+TEST(PositionFilter, OneSightWithoutTheSystematicErrorTellsItForThoseAfter) {
+  Flight flight;
+  flight.x_error = flight.x_systematic = 3;
+  for (int i = 0; i < 20; ++i) flight.next(true, true);
+  flight.x_error = flight.x_systematic = 0;
+  LandingResult result = flight.next(true, true);
+  EXPECT_NEAR(result.x, flight.x, 0.1);
+  EXPECT_LT(std::sqrt(result.x_variance), 0.6);
+  flight.x_error = flight.x_systematic = 3;
+  for (int i = 0; i < 20; ++i) result = flight.next(true, true);
+  EXPECT_NEAR(result.x, flight.x, 0.2);
+  EXPECT_LT(std::sqrt(result.x_variance), 0.8);
 }
 
 TEST(PositionFilter, IsGivenUpWhenItSaysLittle) {

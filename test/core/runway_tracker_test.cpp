@@ -126,6 +126,8 @@ struct Bars {
   RigModel model = test::makeModel(rig);
   Pose pose;
   double line_from = 5.6, line_to = 5.7;
+  double pavement_from = 6;   // m; as bright as what lies before it when it is the same
+  uchar pavement = 70, before = 70;
   bool sparse = false;
 
   Bars() {
@@ -134,17 +136,18 @@ struct Bars {
     pose.roll = 2 * kDegree;
     pose.yaw = 3 * kDegree;
   }
-  void fill(cv::Mat& image, double x0, double x1, double y0, double y1) const {
+  void fill(cv::Mat& image, double x0, double x1, double y0, double y1, uchar grey = 200) const {
     constexpr double kScale = 16;
     std::vector<cv::Point> corners;
     for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) {
       const Eigen::Vector2d pixel = rig.project(pose.seen(Eigen::Vector3d(x, y, 0) - pose.position));
       corners.emplace_back(cvRound(pixel.x() * kScale), cvRound(pixel.y() * kScale));
     }
-    cv::fillConvexPoly(image, corners, 200, cv::LINE_AA, 4);
+    cv::fillConvexPoly(image, corners, grey, cv::LINE_AA, 4);
   }
   Expected<Threshold> find() const {
-    cv::Mat image(rig.size, CV_8U, cv::Scalar(70));
+    cv::Mat image(rig.size, CV_8U, cv::Scalar(before));
+    if (pavement != before) fill(image, pavement_from, 30, -1.2, 1.2, pavement);
     if (line_to > line_from) fill(image, line_from, line_to, -1, 1);
     for (double y = 0.08; y < 0.95; y += 0.16) {
       if (sparse && y < 0.6) continue;
@@ -166,12 +169,41 @@ TEST(RunwayThreshold, IsTheNearEdgeOfTheLineBeforeTheBars) {
   EXPECT_LT(std::abs(found->distance * 1.5 - (5.6 - 1.5)), 3 * 1.5 * std::sqrt(found->variance));
 }
 
-TEST(RunwayThreshold, IsWhereTheBarsBeginWhenThereIsNoLine) {
+TEST(RunwayThreshold, ClaimsNeitherItsStandardPlaceNorTheBarsWhenOnlyTheyAreSeen) {
   Bars bars;
   bars.line_to = bars.line_from;
   const auto found = bars.find();
   ASSERT_TRUE(found) << found.error().message();
-  EXPECT_NEAR(found->distance * 1.5, 6 - 1.5, 0.04);
+  EXPECT_GT(found->systematic_variance, 0);
+  EXPECT_LT(found->systematic_variance, found->variance);
+  // Bars of the standard are 3.5 m apart and begin 6 m behind the threshold; these are 0.16 m apart.
+  const double stddev = 1.5 * std::sqrt(found->variance), distance = found->distance * 1.5;
+  for (const double offset : {0.0, 0.06, 6 / 3.5 * 0.16})
+    EXPECT_LT(std::abs(distance - (6 - offset - 1.5)), 1.2 * stddev) << offset;
+  EXPECT_LT(stddev, 0.2);
+}
+
+TEST(RunwayThreshold, IsWhereThePavementBeginsWhenThereIsNoLine) {
+  for (const int before : {40, 55, 90}) {
+    Bars bars;
+    bars.line_to = bars.line_from;
+    bars.before = static_cast<uchar>(before);
+    bars.pavement_from = 5.75;
+    const auto found = bars.find();
+    ASSERT_TRUE(found) << found.error().message();
+    EXPECT_NEAR(found->distance * 1.5, 5.75 - 1.5, 0.03) << before;
+    EXPECT_EQ(found->systematic_variance, 0);
+  }
+}
+
+TEST(RunwayThreshold, PavementThatBeginsFarBeforeTheBarsIsNotItsPlace) {
+  Bars bars;
+  bars.line_to = bars.line_from;
+  bars.before = 40;
+  bars.pavement_from = 5.2;
+  const auto found = bars.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_GT(found->systematic_variance, 0);
 }
 
 TEST(RunwayThreshold, MarksOfTheTouchdownZoneAreNoThreshold) {

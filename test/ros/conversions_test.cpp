@@ -145,7 +145,8 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   result.runway.failure = {Reason::kNotYet, "2 of 3"};
   result.runway.threshold_failure = {Reason::kNoRunway, "no bars"};
   for (double* number : {&result.runway.x, &result.runway.x_variance, &result.runway.y,
-                         &result.runway.y_variance, &result.runway.width, &result.runway.width_variance})
+                         &result.runway.y_variance, &result.runway.width, &result.runway.width_variance,
+                         &result.runway.x_systematic_variance})
     *number = next();
 
   const ApproachAngleResult back = toResult(toMessage(result, header(), 1));
@@ -168,6 +169,7 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   EXPECT_EQ(back.runway.threshold_failure.message(), result.runway.threshold_failure.message());
   EXPECT_EQ(back.runway.x, result.runway.x);
   EXPECT_EQ(back.runway.x_variance, result.runway.x_variance);
+  EXPECT_EQ(back.runway.x_systematic_variance, result.runway.x_systematic_variance);
   EXPECT_EQ(back.runway.y, result.runway.y);
   EXPECT_EQ(back.runway.y_variance, result.runway.y_variance);
   EXPECT_EQ(back.runway.width, result.runway.width);
