@@ -31,6 +31,8 @@ constexpr double kLocation = 0.5;       // px, 1 sigma of an edge across the run
 // Bars begin 6 m behind the threshold and are 3.5 m apart (ICAO Annex 14; FAA AC 150/5340-1); on runways that
 // follow no standard they begin anywhere from the threshold on.
 constexpr double kFarthestBars = 1.9;  // pitches of the bars, behind the threshold
+constexpr double kUnevenPitch = 0.25;  // of the pitch, between neighbouring bars
+constexpr double kLeastAlike = 0.6;    // share of the bars that are one pitch apart
 constexpr double kSearched = 1.3;      // of the farthest: before the bars
 constexpr double kPitchError = 0.05;   // 1 sigma, of the pitch
 constexpr int kStretches = 8;          // across the runway, in which the pavement must begin alike
@@ -150,7 +152,7 @@ double barContrast(const std::vector<float>& pattern) {
   return flips >= kLeastFlips && gap <= kLargestGap * kColumns ? contrast : 0;
 }
 
-/// From bar to bar, in columns.
+/// From bar to bar, in columns; 0 when most of them are not as far apart: a row of unlike marks is no zebra.
 double pitchOf(const std::vector<float>& pattern) {
   const double level = meanOf(pattern);
   std::vector<double> pitches;
@@ -163,7 +165,10 @@ double pitchOf(const std::vector<float>& pattern) {
   }
   if (pitches.empty()) return 0;
   std::nth_element(pitches.begin(), pitches.begin() + pitches.size() / 2, pitches.end());
-  return pitches[pitches.size() / 2];
+  const double pitch = pitches[pitches.size() / 2];
+  const auto alike = std::count_if(pitches.begin(), pitches.end(),
+                                   [&](double p) { return std::abs(p - pitch) <= kUnevenPitch * pitch; });
+  return alike >= kLeastAlike * pitches.size() ? pitch : 0;
 }
 
 /// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.
@@ -223,6 +228,7 @@ std::optional<Bars> findBars(const TopView& view) {
   if (anchor < 0) return std::nullopt;
   const std::vector<float> pattern = blockAround(view, anchor);
   bars.pitch = pitchOf(pattern);
+  if (bars.pitch == 0) return std::nullopt;
   const auto follow = [&](int step, double& place) {
     double inside = 1;
     for (int k = anchor; k >= 0 && k < view.size(); k += step) {
