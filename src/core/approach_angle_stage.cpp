@@ -10,6 +10,7 @@
 #include "uav_landing/half_plane.h"
 #include "uav_landing/image_check.h"
 #include "uav_landing/motion_tracker.h"
+#include "uav_landing/result_check.h"
 #include "uav_landing/runway_direction.h"
 #include "uav_landing/runway_tracker.h"
 
@@ -201,7 +202,7 @@ ApproachAngleStage::ApproachAngleStage(ApproachAngleStage&&) noexcept = default;
 
 ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                                 const StereoDepthResult& stereo) {
-  return implementation_->process(stamp, left, right, stereo);
+  return implementation_->process(stamp, left, right, checked(implementation_->model.rig, stereo));
 }
 
 void ApproachAngleStage::reset() {

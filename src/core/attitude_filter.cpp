@@ -38,7 +38,7 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
 bool AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
   if (!estimate_ || step.failure || !step.rotation.allFinite() || !step.covariance.allFinite()) return false;
   // A step that spans another time is not the way from the last normal to this one.
-  if (std::abs(stamp - stamp_ - step.duration) > kStampRounding) return false;
+  if (!(std::abs(stamp - stamp_ - step.duration) <= kStampRounding)) return false;
   const Eigen::Matrix3d R = rotationOf(step.rotation);
   estimate_->normal = R * estimate_->normal;
   const Eigen::Matrix3d by_rotation = cross(estimate_->normal);

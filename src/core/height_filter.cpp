@@ -1,5 +1,7 @@
 #include "uav_landing/height_filter.h"
 
+#include <cmath>
+
 namespace uav_landing {
 
 HeightFilter::HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate)
@@ -33,8 +35,9 @@ HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, d
   Update update;
   update.innovation = measured - observation * state_;
   update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
-  // Written so that a NaN is refused too.
-  update.accepted = update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
+  // Written so that a NaN is refused too; what is infinite or has a negative variance would leave no state.
+  update.accepted = variance >= 0 && std::isfinite(update.innovation_variance) &&
+                    update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
   if (!update.accepted) return update;
 
   const Eigen::Vector2d gain = covariance_ * observation.transpose() / update.innovation_variance;

@@ -7,6 +7,7 @@
 #include "pair_skew.h"
 #include "text.h"
 #include "uav_landing/reconstruction.h"
+#include "uav_landing/result_check.h"
 #include "uav_landing/rig_rotation.h"
 #include "vertical_speed.h"
 
@@ -73,9 +74,11 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       rig_rotation_(rig, parameters.rig_memory),
       width_(parameters.known_runway_width) {}
 
-LandingResult KalmanHeightStage::process(const StereoDepthResult& stereo,
-                                         const ApproachAngleResult& approach) {
+LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
+                                         const ApproachAngleResult& given_approach) {
   timings_.clear();
+  const StereoDepthResult stereo = checked(rig_, given_stereo);
+  const ApproachAngleResult approach = checked(given_approach);
   LandingResult result;
   result.stamp = stereo.stamp;
   Reconstruction reconstruction = reconstruct(stereo, approach);

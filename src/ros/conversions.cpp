@@ -155,10 +155,17 @@ StereoDepthResult toResult(const StereoDepth& message) {
   result.stamp = message.header.stamp.toSec();
   result.failure = parseFailure(message.reason);
   result.corners = static_cast<int>(message.corners);
-  result.points.resize(message.u.size());
-  for (size_t i = 0; i < message.u.size(); ++i)
-    result.points[i] = {message.u[i], message.v.at(i), message.disparity.at(i),
-                        message.disparity_stddev.at(i), message.on_plane.at(i) != 0};
+  const size_t count = message.u.size();
+  for (const size_t other : {message.v.size(), message.disparity.size(), message.disparity_stddev.size(),
+                             message.on_plane.size()}) {
+    if (other == count) continue;
+    result.failure = {Reason::kInputInvalid, "u, v, disparity, disparity_stddev, on_plane: lengths differ"};
+    return result;
+  }
+  result.points.resize(count);
+  for (size_t i = 0; i < count; ++i)
+    result.points[i] = {message.u[i], message.v[i], message.disparity[i], message.disparity_stddev[i],
+                        message.on_plane[i] != 0};
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
   result.residual_stddev = message.residual_stddev;

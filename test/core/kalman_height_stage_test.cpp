@@ -179,6 +179,7 @@ TEST(KalmanHeightStage, AveragesThePointsOnRequest) {
     point.u = 320;
     point.v = 240 + 500 * below / depth;
     point.disparity = 500 * 1.0 / depth;
+    point.disparity_stddev = 0.1;
     point.on_plane = true;
     stereo.points.push_back(point);
   }
@@ -391,6 +392,7 @@ TEST(KalmanHeightStage, NamesWhyThereIsNoAngleWhileTheHeightIsGood) {
 ApproachAngleResult withStep(ApproachAngleResult approach, double descent) {
   approach.step.failure = {};
   approach.step.duration = kStep;
+  approach.step.rotation.setZero();
   approach.step.translation_over_height = Eigen::Vector3d(0, descent, std::sqrt(4 - descent * descent)) / 10;
   approach.step.covariance = std::pow(0.001 / 10, 2) * Matrix6d::Identity();
   return approach;
