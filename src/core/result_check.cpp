@@ -84,8 +84,10 @@ void keepRunway(ApproachAngleResult::Runway& runway) {
   }
   if (!isLength(runway.width, runway.width_variance) || runway.width <= 0)
     runway.width = runway.width_variance = kUnknown;
-  if (!isLength(runway.x, runway.x_variance)) {
+  const bool is_part = runway.x_systematic_variance >= 0 && runway.x_systematic_variance <= runway.x_variance;
+  if (!isLength(runway.x, runway.x_variance) || !is_part) {
     runway.x = runway.x_variance = kUnknown;
+    runway.x_systematic_variance = 0;
     refuse("x", runway.threshold_failure);
   }
 }
