@@ -2,6 +2,7 @@
 
 #include <ros/param.h>
 
+#include "autopilot_messages.h"
 #include "uav_landing/section_loader.h"
 
 namespace uav_landing {
@@ -80,7 +81,12 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
     if (const auto file = loadParameterFile(loaded.config_file); !file) return file.error();
   }
   node_parameters = loaded;
-  return loadSection(all, section, parameters);
+  SectionLoader own(all, section);
+  Section loaded_section = parameters;
+  loaded_section.visit(own);
+  const Failure own_failure = own.finish();
+  if (!own_failure) parameters = loaded_section;
+  return own_failure;
 }
 
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, RectifyParameters&,
@@ -92,6 +98,8 @@ template Failure loadParameters(const ros::NodeHandle&, const std::string&, Appr
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, KalmanHeightParameters&,
                                 NodeParameters&);
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, OverlayParameters&,
+                                NodeParameters&);
+template Failure loadParameters(const ros::NodeHandle&, const std::string&, AutopilotParameters&,
                                 NodeParameters&);
 
 }  // namespace uav_landing

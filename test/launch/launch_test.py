@@ -87,7 +87,7 @@ def launch(*arguments):
 
 def chain_is_connected():
     """rectify listens to the cameras, and everything behind it to each other."""
-    _, subscribers, _ = rosgraph.Master("/launch_test").getSystemState()
+    _, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
     listened = {topic for topic, nodes in subscribers if "/uav_landing/manager" in nodes}
     return listened.issuperset([*INPUTS, "/uav_landing/left/image_rect", "/uav_landing/right/time_reference",
                                 "/uav_landing/stereo_depth", "/uav_landing/approach_angle"])

@@ -1,3 +1,5 @@
 # The launch file on bags of the simulator.
 uav_landing_add_rostest(test/launch/launch.test SOURCES test/launch/launch_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach process_bag)
+uav_landing_add_rostest(test/launch/autopilot.test SOURCES test/launch/autopilot_test.py
+  DEPENDENCIES uav_landing_nodelets simulate_approach)

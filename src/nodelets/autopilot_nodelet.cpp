@@ -1,0 +1,72 @@
+#include <pluginlib/class_list_macros.hpp>
+
+#include "autopilot_messages.h"
+#include "pairing.h"
+#include "stage_nodelet.h"
+
+namespace uav_landing {
+
+/// What an autopilot may fuse: silent whenever there is nothing valid to say.
+///
+/// Parameters: AutopilotParameters and the common ones of NodeParameters. Subscribes height (Range) and pose
+/// (PoseWithCovarianceStamped) of kalman_height. Publishes autopilot/range (Range, along the aircraft's down
+/// axis) and autopilot/pose (PoseWithCovarianceStamped, east-north-up), both with the image's stamp.
+class AutopilotNodelet : public StageNodelet {
+ public:
+  AutopilotNodelet() : StageNodelet("autopilot") {}
+  ~AutopilotNodelet() override { stop(); }
+
+ private:
+  using Inputs = Pairing<sensor_msgs::Range, geometry_msgs::PoseWithCovarianceStamped>;
+
+  void setUp() override {
+    parameters_ = loadParametersOrThrow<AutopilotParameters>();
+    pairing_ =
+        std::make_unique<Inputs>(exactPairing(), resolved({"height", "pose"}),
+                                 [this](const auto& height, const auto& pose) { work(*height, *pose); });
+    // Under the names of this nodelet's namespace, to be remapped as a whole.
+    range_publisher_ = getNodeHandle().advertise<sensor_msgs::Range>("autopilot/range", kStageQueue);
+    pose_publisher_ =
+        getNodeHandle().advertise<geometry_msgs::PoseWithCovarianceStamped>("autopilot/pose", kStageQueue);
+  }
+
+  bool wanted() const override { return true; }
+  void subscribe() override {
+    feed<0, sensor_msgs::Range>("height", *pairing_, subscribers_);
+    feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *pairing_, subscribers_);
+  }
+  void unsubscribe() override {
+    subscribers_.clear();
+    pairing_->reset();
+  }
+  std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
+  std::string complaint() override { return pairing_->complaint(); }
+
+  void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
+    const ros::Time& stamp = pose.header.stamp;
+    // Half a microsecond of slack: stamps are rounded.
+    const ros::Duration period(1 / parameters_.max_rate - 5e-7);
+    if (!last_stamp_.isZero() && stamp > last_stamp_ && stamp - last_stamp_ < period) return;
+    last_stamp_ = stamp;
+    const auto range = autopilotRange(height, pose, parameters_);
+    const auto enu_pose = autopilotPose(pose, parameters_);
+    if (range) range_publisher_.publish(*range);
+    if (enu_pose) pose_publisher_.publish(*enu_pose);
+    report_.served(stamp, 0, reason(range.has_value(), enu_pose.has_value()));
+  }
+
+  static std::string reason(bool range, bool pose) {
+    if (!range) return "no range: too high, or what is estimated is a camera, not the aircraft (base_frame)";
+    return pose ? "" : "no pose: the place along or across the runway is not known";
+  }
+
+  AutopilotParameters parameters_;
+  std::unique_ptr<Inputs> pairing_;
+  std::vector<ros::Subscriber> subscribers_;
+  ros::Publisher range_publisher_, pose_publisher_;
+  ros::Time last_stamp_;
+};
+
+}  // namespace uav_landing
+
+PLUGINLIB_EXPORT_CLASS(uav_landing::AutopilotNodelet, nodelet::Nodelet)

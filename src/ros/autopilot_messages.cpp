@@ -1,0 +1,63 @@
+#include "autopilot_messages.h"
+
+#include <tf2_eigen/tf2_eigen.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using CovarianceMap = Eigen::Map<const Covariance>;
+
+constexpr double kMinCosTilt = 0.5;
+
+bool positiveDefinite(const Covariance& covariance) {
+  return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
+}
+
+}  // namespace
+
+std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
+                                                 const geometry_msgs::PoseWithCovarianceStamped& pose,
+                                                 const AutopilotParameters& parameters) {
+  Eigen::Isometry3d runway_from_aircraft;
+  tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
+  const double cos_tilt = runway_from_aircraft.linear()(2, 2);
+  const double distance = height.range / cos_tilt;
+  if (!(cos_tilt >= kMinCosTilt) || !(distance >= 0) || !(distance <= parameters.max_range))
+    return std::nullopt;
+  sensor_msgs::Range range = height;
+  range.max_range = static_cast<float>(parameters.max_range);
+  range.range = static_cast<float>(distance);
+  return range;
+}
+
+std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
+    const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters) {
+  const CovarianceMap in_runway(pose.pose.covariance.data());
+  const double known = parameters.max_position_stddev * parameters.max_position_stddev;
+  if (!(in_runway(0, 0) <= known) || !(in_runway(1, 1) <= known)) return std::nullopt;
+
+  // Angles count from east to the left, headings from north to the right.
+  const double angle = M_PI / 2 - parameters.runway_heading_deg * M_PI / 180;
+  const Eigen::Isometry3d enu_from_runway(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  Eigen::Isometry3d runway_from_aircraft;
+  tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
+  const Eigen::Isometry3d enu_from_aircraft = enu_from_runway * runway_from_aircraft;
+  Covariance turn = Covariance::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = enu_from_runway.linear();
+  const Covariance covariance = turn * in_runway * turn.transpose();
+  if (!enu_from_aircraft.matrix().allFinite() || !positiveDefinite(covariance)) return std::nullopt;
+
+  geometry_msgs::PoseWithCovarianceStamped enu;
+  enu.header = pose.header;
+  enu.header.frame_id = parameters.enu_frame;
+  enu.pose.pose = tf2::toMsg(enu_from_aircraft);
+  std::copy_n(covariance.data(), covariance.size(), enu.pose.covariance.begin());
+  return enu;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <sensor_msgs/Range.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+namespace uav_landing {
+
+/// What the autopilot is given (nodelet autopilot). visit() as in uav_landing/parameters.h.
+struct AutopilotParameters {
+  double max_range = 655.0;
+  double max_rate = 50.0;
+  double max_position_stddev = 20.0;
+  double runway_heading_deg = 90.0;
+  std::string enu_frame = "map";
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("max_range", max_range, 1.0, 655.0, "m",
+             "no range above this; the autopilot's message holds 16 bit of centimetres");
+    v.number("max_rate", max_rate, 1.0, 1000.0, "Hz",
+             "pairs that follow faster are left out; autopilots lose what comes faster than they fuse");
+    v.number("max_position_stddev", max_position_stddev, 0.01, 10000.0, "m",
+             "no pose while 1 sigma of x or y is more: before the runway has been found its origin is "
+             "arbitrary");
+    v.number("runway_heading_deg", runway_heading_deg, 0.0, 360.0, "deg",
+             "landing direction clockwise from north, for the pose; 90 leaves the runway frame as it is");
+    v.text("enu_frame", enu_frame, "frame of the pose: x east, y north, z up, origin on the threshold");
+  }
+};
+
+/// The reading of a range finder that looks along the aircraft's down axis: height over the cosine of the
+/// tilt, which an autopilot multiplies by again. The pose is that of the aircraft, forward-left-up. None
+/// without a height, above max_range, below the ground or tilted by more than 60 degrees.
+std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
+                                                 const geometry_msgs::PoseWithCovarianceStamped& pose,
+                                                 const AutopilotParameters& parameters);
+
+/// The pose with east, north, up for axes, covariance included. None when a number is not finite, the
+/// covariance not positive definite, or the place not known well enough.
+std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
+    const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
+
+}  // namespace uav_landing

@@ -1,0 +1,85 @@
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <sensor_msgs/Range.h>
+
+#include "nodelets/nodelet_fixture.h"
+#include "nodelets/nodelet_test_main.h"
+
+using namespace uav_landing::test;
+using geometry_msgs::PoseWithCovarianceStamped;
+using sensor_msgs::Range;
+
+namespace {
+
+class AutopilotNodeletTest : public NodeletTest {
+ protected:
+  void start() {
+    load("autopilot");
+    ASSERT_TRUE(eventually([&] {
+      return height_.getNumSubscribers() > 0 && pose_.getNumSubscribers() > 0 && ranges_.connected() &&
+             poses_.connected();
+    }));
+  }
+
+  /// What kalman_height says at a time; without a pose when there is no height.
+  void publish(double t, double height, double position_variance = 1) {
+    Range range;
+    range.header.stamp = ros::Time(1000 + t);
+    range.header.frame_id = "base_link";
+    range.range = static_cast<float>(height);
+    height_.publish(range);
+    if (!std::isfinite(height)) return;
+    PoseWithCovarianceStamped pose;
+    pose.header.stamp = range.header.stamp;
+    pose.header.frame_id = "runway";
+    pose.pose.pose.position.z = height;
+    pose.pose.pose.orientation.w = 1;
+    for (int i = 0; i < 6; ++i) pose.pose.covariance[7 * i] = i < 2 ? position_variance : 1e-4;
+    pose_.publish(pose);
+  }
+
+  ros::Publisher height_ = handle_.advertise<Range>("/uav_landing/height", 1000);
+  ros::Publisher pose_ = handle_.advertise<PoseWithCovarianceStamped>("/uav_landing/pose", 1000);
+  Listener<Range> ranges_{"/uav_landing/autopilot/range"};
+  Listener<PoseWithCovarianceStamped> poses_{"/uav_landing/autopilot/pose"};
+};
+
+TEST_F(AutopilotNodeletTest, PassesOnOnlyPairsWithAHeight) {
+  start();
+  publish(0.0, std::numeric_limits<double>::quiet_NaN());
+  publish(0.1, 5);
+  publish(0.2, std::numeric_limits<double>::quiet_NaN());
+  publish(0.3, 4);
+  ASSERT_TRUE(ranges_.waitFor(2) && poses_.waitFor(2));
+  EXPECT_EQ(ranges_.messages()[0]->header.stamp, ros::Time(1000.1));
+  EXPECT_EQ(ranges_.messages()[1]->header.stamp, ros::Time(1000.3));
+  EXPECT_FLOAT_EQ(ranges_.messages()[1]->range, 4);
+  EXPECT_EQ(poses_.messages()[0]->header.frame_id, "map");
+}
+
+TEST_F(AutopilotNodeletTest, SendsNoMoreThanMaxRate) {
+  setParameter("autopilot", "max_rate", 30.0);
+  start();
+  // No more at once than the queues hold.
+  for (int i = 0; i <= 16; ++i) publish(i / 60.0, 5);
+  const ros::Time last(1000 + 16 / 60.0);
+  ASSERT_TRUE(ranges_.waitFor([&](const Range& range) { return range.header.stamp == last; }));
+  EXPECT_EQ(ranges_.messages().size(), 9u) << "every second one of 60 Hz";
+  EXPECT_TRUE(poses_.waitFor(9));
+}
+
+TEST_F(AutopilotNodeletTest, SendsTheRangeAloneBeforeTheRunwayIsFound) {
+  start();
+  publish(0, 5, 1e6);
+  publish(0.1, 5, 1);
+  ASSERT_TRUE(ranges_.waitFor(2) && poses_.waitFor(1));
+  EXPECT_EQ(poses_.messages()[0]->header.stamp, ros::Time(1000.1));
+}
+
+TEST_F(AutopilotNodeletTest, RefusesARangeThatTheMessageCannotHold) {
+  setParameter("autopilot", "max_range", 1000.0);
+  expectRefusal("autopilot", "autopilot/max_range: 1000 is out of range, expected 1 to 655 m");
+}
+
+}  // namespace
+
+UAV_LANDING_NODELET_TEST_MAIN("autopilot_nodelet_test")

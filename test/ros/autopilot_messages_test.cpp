@@ -1,0 +1,137 @@
+#include "ros/autopilot_messages.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+using namespace uav_landing;
+
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+sensor_msgs::Range heightOf(double metres) {
+  sensor_msgs::Range range;
+  range.header.frame_id = "base_link";
+  range.range = static_cast<float>(metres);
+  return range;
+}
+
+/// An aircraft 100 m before the threshold, 3 m left of the centre line, 10 m high, well known.
+geometry_msgs::PoseWithCovarianceStamped someWhere() {
+  geometry_msgs::PoseWithCovarianceStamped pose;
+  pose.header.stamp = ros::Time(12.5);
+  pose.header.frame_id = "runway";
+  pose.pose.pose.position.x = -100;
+  pose.pose.pose.position.y = 3;
+  pose.pose.pose.position.z = 10;
+  pose.pose.pose.orientation.w = 1;
+  const double variances[6] = {4, 0.25, 0.01, 1e-6, 2e-6, 3e-6};
+  for (int i = 0; i < 6; ++i) pose.pose.covariance[7 * i] = variances[i];
+  return pose;
+}
+
+/// Turned about an axis of the aircraft (0: forward, 1: left, 2: up).
+void turn(geometry_msgs::PoseWithCovarianceStamped& pose, int axis, double angle) {
+  double parts[3] = {0, 0, 0};
+  parts[axis] = std::sin(angle / 2);
+  pose.pose.pose.orientation.x = parts[0];
+  pose.pose.pose.orientation.y = parts[1];
+  pose.pose.pose.orientation.z = parts[2];
+  pose.pose.pose.orientation.w = std::cos(angle / 2);
+}
+
+TEST(AutopilotRange, IsTheHeightOfALevelAircraft) {
+  const auto range = autopilotRange(heightOf(10), someWhere(), AutopilotParameters());
+  ASSERT_TRUE(range);
+  EXPECT_FLOAT_EQ(range->range, 10);
+  EXPECT_FLOAT_EQ(range->max_range, 655);
+  EXPECT_EQ(range->header.frame_id, "base_link");
+}
+
+TEST(AutopilotRange, IsLongerAlongTheAxisOfATiltedAircraft) {
+  auto pose = someWhere();
+  turn(pose, 0, 60 * kDegree - 1e-6);
+  auto range = autopilotRange(heightOf(10), pose, AutopilotParameters());
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->range, 20, 1e-3) << "a right triangle with 60 degrees";
+  turn(pose, 1, -30 * kDegree);
+  range = autopilotRange(heightOf(10), pose, AutopilotParameters());
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->range, 20 / std::sqrt(3), 1e-4);
+}
+
+TEST(AutopilotRange, IsSilentRatherThanWrong) {
+  const AutopilotParameters parameters;
+  EXPECT_FALSE(autopilotRange(heightOf(std::numeric_limits<double>::quiet_NaN()), someWhere(), parameters));
+  EXPECT_FALSE(autopilotRange(heightOf(656), someWhere(), parameters)) << "would wrap in 16 bit";
+  EXPECT_FALSE(autopilotRange(heightOf(-0.1), someWhere(), parameters));
+  auto camera = someWhere();  // a camera's optical frame: z is forward
+  turn(camera, 1, 90 * kDegree);
+  EXPECT_FALSE(autopilotRange(heightOf(10), camera, parameters));
+}
+
+TEST(AutopilotPose, OfARunwayToTheEastIsAsItWas) {
+  const auto pose = autopilotPose(someWhere(), AutopilotParameters());
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->header.frame_id, "map");
+  EXPECT_EQ(pose->header.stamp, ros::Time(12.5));
+  EXPECT_NEAR(pose->pose.pose.position.x, -100, 1e-9);
+  EXPECT_NEAR(pose->pose.pose.position.y, 3, 1e-9);
+  EXPECT_NEAR(pose->pose.pose.position.z, 10, 1e-9);
+  EXPECT_NEAR(pose->pose.pose.orientation.w, 1, 1e-12);
+}
+
+TEST(AutopilotPose, OfARunwayToTheSouthHasEastOnItsLeft) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 180;
+  const auto pose = autopilotPose(someWhere(), parameters);
+  ASSERT_TRUE(pose);
+  // Landing southwards, 100 m before the threshold is 100 m north of it, and left is east.
+  EXPECT_NEAR(pose->pose.pose.position.x, 3, 1e-9);
+  EXPECT_NEAR(pose->pose.pose.position.y, 100, 1e-9);
+  EXPECT_NEAR(pose->pose.pose.position.z, 10, 1e-9);
+  // The nose points south: forward is -y.
+  const auto& q = pose->pose.pose.orientation;
+  const Eigen::Vector3d forward = Eigen::Quaterniond(q.w, q.x, q.y, q.z) * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR((forward - Eigen::Vector3d(0, -1, 0)).norm(), 0, 1e-9);
+  // The variance along the runway is now that of north, and likewise of the rotations.
+  EXPECT_NEAR(pose->pose.covariance[0], 0.25, 1e-9);
+  EXPECT_NEAR(pose->pose.covariance[7], 4, 1e-9);
+  EXPECT_NEAR(pose->pose.covariance[14], 0.01, 1e-9);
+  EXPECT_NEAR(pose->pose.covariance[21], 2e-6, 1e-12);
+  EXPECT_NEAR(pose->pose.covariance[28], 1e-6, 1e-12);
+}
+
+TEST(AutopilotPose, KeepsTheCorrelationsOfPositionAndRotation) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 0;  // to the north: runway x is y, runway y is -x
+  auto given = someWhere();
+  given.pose.covariance[4] = given.pose.covariance[24] = 1e-3;  // of x and the rotation about y
+  const auto pose = autopilotPose(given, parameters);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->pose.covariance[6 * 1 + 3], -1e-3, 1e-12);
+  EXPECT_NEAR(pose->pose.covariance[6 * 3 + 1], -1e-3, 1e-12);
+  EXPECT_NEAR(pose->pose.covariance[6 * 0 + 4], 0, 1e-12);
+}
+
+TEST(AutopilotPose, IsSilentRatherThanWrong) {
+  const AutopilotParameters parameters;
+  auto unknown_place = someWhere();
+  unknown_place.pose.covariance[0] = 1e6;
+  EXPECT_FALSE(autopilotPose(unknown_place, parameters));
+  auto indefinite = someWhere();
+  indefinite.pose.covariance[14] = -1;
+  EXPECT_FALSE(autopilotPose(indefinite, parameters));
+  auto unfinished = someWhere();
+  unfinished.pose.covariance[21] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(autopilotPose(unfinished, parameters));
+  auto nowhere = someWhere();
+  nowhere.pose.pose.position.z = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(autopilotPose(nowhere, parameters));
+}
+
+}  // namespace
