@@ -171,9 +171,13 @@ class KalmanHeightNodelet : public StageNodelet {
       if (child.may_broadcast) broadcast(header, child.frame, runway_from_child);
     }
     if (marker_publisher_.getNumSubscribers() > 0) {
-      std::optional<Eigen::Vector3d> position;
-      if (placed) position = place->position;
-      marker_publisher_.publish(drawLanding(header, node_, estimate, position,
+      std::optional<DrawnAircraft> aircraft;
+      if (placed)
+        aircraft = {place->position,
+                    {std::sqrt(place->variance.x()), std::sqrt(place->variance.y()),
+                     std::sqrt(camera.height_variance)},
+                    runway_from_camera};
+      marker_publisher_.publish(drawLanding(header, node_, estimate, aircraft,
                                             (runway_from_camera * camera.velocity).head<2>(), path_.track()));
     }
   }

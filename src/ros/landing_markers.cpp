@@ -68,7 +68,7 @@ void addRunway(const std_msgs::Header& header, const NodeParameters& parameters,
 /// Straight on along the approach angle, down to the ground.
 Marker glidePath(const std_msgs::Header& header, double line, const LandingResult& estimate,
                  const Eigen::Vector3d& position, const Eigen::Vector2d& direction) {
-  Marker glide = marker(header, 4, "glide_path", Marker::LINE_LIST, line, colour(1.0F, 0.8F, 0.1F));
+  Marker glide = marker(header, 4, "glide_path", Marker::LINE_LIST, line / 2, colour(1.0F, 0.8F, 0.1F));
   const double slope = std::tan(estimate.approach_angle);
   if (!estimate.angle_valid || !(slope > 0.001) || !(direction.norm() > 0)) {
     glide.action = Marker::DELETE;
@@ -77,6 +77,43 @@ Marker glidePath(const std_msgs::Header& header, double line, const LandingResul
   const Eigen::Vector2d ground = position.head<2>() + direction.normalized() * position.z() / slope;
   glide.points = {point(position), point({ground.x(), ground.y(), 0})};
   return glide;
+}
+
+/// A glider's outline, of the given wing span: nose along the camera's axis. It is a sign, not to scale.
+Marker silhouette(const std_msgs::Header& header, double span, const DrawnAircraft& aircraft) {
+  Marker shape = marker(header, 6, "aircraft", Marker::TRIANGLE_LIST, 1, colour(0.95F, 0.95F, 1.0F));
+  shape.scale.y = shape.scale.z = 1;
+  // Forward, left, up in wing spans, three corners each.
+  constexpr double kTriangles[][3] = {{0.45, 0, 0},     {0.1, 0.05, 0},  {0.1, -0.05, 0},  // nose
+                                      {0.1, 0.05, 0},   {-0.5, 0, 0},    {0.1, -0.05, 0},  // fuselage
+                                      {0.12, 0, 0.02},  {0, 0.5, 0.05},  {-0.08, 0, 0.02},
+                                      {0.12, 0, 0.02},                                      // wings
+                                      {-0.08, 0, 0.02}, {0, -0.5, 0.05},                    //
+                                      {-0.4, 0, 0.01},  {-0.5, 0.15, 0}, {-0.5, -0.15, 0},  // tail
+                                      {-0.35, 0, 0},    {-0.5, 0, 0.16}, {-0.5, 0, 0}};     // fin
+  for (const auto& [forward, left, up] : kTriangles) {
+    const Eigen::Vector3d optical(-left, -up, forward);
+    shape.points.push_back(point(aircraft.position + span * (aircraft.runway_from_camera * optical)));
+    // Colours of their own leave rviz's light out, in which flat wings are black.
+    const float shade = up > 0.1 || forward < -0.3 ? 0.7F : 1.0F;
+    shape.colors.push_back(colour(shade, shade, shade));
+  }
+  return shape;
+}
+
+/// Where the aircraft is with three sigma; as thick as a line at least.
+Marker ellipsoid(const std_msgs::Header& header, double line, const DrawnAircraft& aircraft, double largest) {
+  Marker shape = marker(header, 7, "uncertainty", Marker::SPHERE, 1, colour(1.0F, 0.6F, 0.2F, 0.45F));
+  if (!(aircraft.stddev.maxCoeff() < largest)) {
+    shape.action = Marker::DELETE;
+    return shape;
+  }
+  shape.pose.position = point(aircraft.position);
+  const Eigen::Vector3d size = (6 * aircraft.stddev).cwiseMax(line);
+  shape.scale.x = size.x();
+  shape.scale.y = size.y();
+  shape.scale.z = size.z();
+  return shape;
 }
 
 std::string number(const char* format, double value, const char* unknown) {
@@ -89,6 +126,8 @@ std::string number(const char* format, double value, const char* unknown) {
 std::string numbers(const LandingResult& estimate) {
   std::string text = std::string(toString(estimate.status)) + (estimate.valid() ? "" : ", not valid");
   text += "\nheight " + number("%.2f m", estimate.height_valid ? estimate.height : kUnknown, "-");
+  text +=
+      "   sink rate " + number("%.2f m/s", estimate.height_valid ? -estimate.vertical_speed : kUnknown, "-");
   text += "\napproach " +
           number("%.2f deg", estimate.angle_valid ? estimate.approach_angle / kDegree : kUnknown, "-");
   if (estimate.failure) text += "\n" + estimate.failure.message();
@@ -99,27 +138,31 @@ std::string numbers(const LandingResult& estimate) {
 
 visualization_msgs::MarkerArray drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
                                             const LandingResult& estimate,
-                                            const std::optional<Eigen::Vector3d>& position,
+                                            const std::optional<DrawnAircraft>& aircraft,
                                             const Eigen::Vector2d& direction,
                                             const std::deque<Eigen::Vector3d>& track) {
   visualization_msgs::MarkerArray array;
   const double line = parameters.runway_width / 50;
   addRunway(header, parameters, array.markers);
 
-  Marker path = marker(header, 3, "path", Marker::LINE_STRIP, line, colour(0.2F, 0.7F, 1.0F));
+  Marker path = marker(header, 3, "path", Marker::LINE_STRIP, line / 2, colour(0.2F, 0.7F, 1.0F));
   for (const Eigen::Vector3d& p : track) path.points.push_back(point(p));
   if (path.points.size() < 2) path.action = Marker::DELETE;
   array.markers.push_back(path);
 
-  if (position) array.markers.push_back(glidePath(header, line, estimate, *position, direction));
+  if (aircraft) {
+    array.markers.push_back(glidePath(header, line, estimate, aircraft->position, direction));
+    array.markers.push_back(silhouette(header, parameters.runway_width / 2.5, *aircraft));
+    array.markers.push_back(ellipsoid(header, line, *aircraft, parameters.runway_length / 6));
+  }
 
   Marker text = marker(header, 5, "numbers", Marker::TEXT_VIEW_FACING, 0,
                        estimate.valid() ? colour(0.3F, 1.0F, 0.3F) : colour(1.0F, 0.4F, 0.3F));
   text.text = numbers(estimate);
-  const Eigen::Vector3d anchor = position        ? *position
+  const Eigen::Vector3d anchor = aircraft        ? aircraft->position
                                  : track.empty() ? Eigen::Vector3d::Zero()
                                                  : track.back();
-  text.scale.z = std::max(parameters.runway_width / 12, 0.08 * anchor.z());
+  text.scale.z = std::max(parameters.runway_width / 14, 0.08 * anchor.z());
   text.pose.position = point(anchor + Eigen::Vector3d(0, 0, 3 * text.scale.z));
   array.markers.push_back(text);
   return array;
