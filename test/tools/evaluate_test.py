@@ -1,6 +1,8 @@
 """Scores of evaluate on tables whose errors are known by hand, its messages and its report."""
 
+import base64
 import json
+import re
 import shutil
 import tempfile
 import unittest
@@ -178,13 +180,30 @@ class ReportTest(EvaluateTest):
     def test_names_what_is_missing_without_report_data(self):
         self.write_example()
         folder, page = self.report()
-        for name in ("figure6.png", "figure7.png"):
-            self.assertTrue((folder / name).is_file())
-            self.assertIn(name, page)
+        for name in ("figure6.png", "figure7.png", "errors.png", "consistency.png", "timeline.png"):
+            # In the folder and, whole, in the page.
+            self.assertIn(base64.b64encode((folder / name).read_bytes()).decode(), page)
         self.assertFalse((folder / "figure4.png").exists())
         missing = page[page.index("Missing"):]
         for title in ("Figure 4", "Figure 5", "Table 1"):
             self.assertIn(title, missing)
+
+    def test_page_needs_no_other_file(self):
+        self.write_example()
+        _, page = self.report()
+        sources = re.findall(r"(?:src|href)='([^']{1,30})", page)
+        self.assertGreaterEqual(len(sources), 5)
+        for source in sources:
+            self.assertTrue(source.startswith("data:"), source)
+
+    def test_names_the_distributions_that_cannot_be_drawn(self):
+        self.write_example()
+        write_csv(self.estimates, ["stamp_s", "valid", "height_m", "approach_angle_deg"],
+                  [[stamp, 0, 1, 1] for stamp in STAMPS])
+        folder, page = self.report()
+        self.assertFalse((folder / "errors.png").exists())
+        self.assertIn("Errors of the scored frames: no valid frame has truth", page[page.index("Missing"):])
+        self.assertTrue((folder / "timeline.png").is_file())
 
     def test_names_the_files_missing_from_report_data(self):
         self.write_example()

@@ -1,5 +1,6 @@
-"""The paper's Figures 4 to 7 and Table 1 for one run, on one page."""
+"""The paper's Figures 4 to 7 and Table 1 for one run, and what the run says of its own uncertainty, on one page."""
 
+import base64
 import html
 import os
 import re
@@ -10,6 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
+from evaluation.distributions import Missing, draw_consistency, draw_histograms, draw_timeline  # noqa: E402
 from evaluation.scores import COLUMNS, summary  # noqa: E402
 from evaluation.tables import InputError, Table  # noqa: E402
 
@@ -20,12 +22,9 @@ PAPER_ROWS = (("Pre-process", 3.4, ("rectify",)), ("Hough transforms", 4.7, ("ho
               ("Kalman filter", 1.2, ("reconstruction", "kalman_filter")), ("Image show", 2.8, ("overlay",)))
 PAPER_TOTAL = 31.2
 
-STYLE = "body{font-family:sans-serif;max-width:60em;margin:2em auto}img{max-width:100%}" \
-        "td,th{padding:0.1em 0.8em;text-align:right}td:first-child,th:first-child{text-align:left}"
-
-
-class Missing(Exception):
-    """Why a part of the report cannot be made."""
+STYLE = "body{font-family:sans-serif;max-width:62em;margin:2em auto;padding:0 1em}img{max-width:100%}" \
+        "table{border-collapse:collapse}td,th{padding:0.15em 0.8em;text-align:right}" \
+        "tr+tr{border-top:1px solid #ddd}td:first-child,th:first-child{text-align:left}"
 
 
 def pictures(report_data, name):
@@ -116,7 +115,10 @@ def figure_7(path, truth, joined, _report_data):
 FIGURES = (("figure4.png", "Figure 4: edges by the Hough transform", figure_4),
            ("figure5.png", "Figure 5: Harris corners and their matches", figure_5),
            ("figure6.png", "Figure 6: approach angle", figure_6),
-           ("figure7.png", "Figure 7: height", figure_7))
+           ("figure7.png", "Figure 7: height", figure_7),
+           ("errors.png", "Errors of the scored frames", draw_histograms),
+           ("consistency.png", "Consistency: errors against the claimed uncertainty", draw_consistency),
+           ("timeline.png", "Coverage and status", draw_timeline))
 
 
 def cells(tag, values):
@@ -162,21 +164,30 @@ def parts_table(times):
 
 
 def score_table(scores):
-    rows = [cells("th", ("error", "unit") + tuple(title for title, _ in COLUMNS))]
+    rows = [cells("th", ("error", "unit") + tuple(title for title, _ in COLUMNS) + ("within claimed 95 %",))]
     for name, values in scores["quantities"].items():
-        rows.append(cells("td", [name.replace("_", " "), values["unit"]] + [f"{values[key]:.4f}" for _, key in COLUMNS]))
+        within = values.get("within_claimed_95")
+        rows.append(cells("td", [name.replace("_", " "), values["unit"]] + [f"{values[key]:.4f}" for _, key in COLUMNS]
+                          + ["" if within is None else f"{100 * within:.1f} %"]))
     return "<table>" + "".join(rows) + "</table>"
 
 
+def embedded(path, title):
+    """The picture in the page itself, so that the page can be sent as one file."""
+    with open(path, "rb") as file:
+        data = base64.b64encode(file.read()).decode()
+    return f"<img src='data:image/png;base64,{data}' alt='{html.escape(title)}'>"
+
+
 def write_report(folder, truth, joined, scores, report_data):
-    """Writes the figures and index.html; returns the path of the latter."""
+    """Writes the figures and index.html, which holds them, too; returns the path of the latter."""
     os.makedirs(folder, exist_ok=True)
     missing = [f"{name.replace('_', ' ')}: {why}" for name, why in scores["missing"].items()]
     parts = []
     for file, title, draw in FIGURES:
         try:
             draw(os.path.join(folder, file), truth, joined, report_data)
-            parts.append(f"<h2>{title}</h2><img src='{file}' alt='{title}'>")
+            parts.append(f"<h2>{title}</h2>" + embedded(os.path.join(folder, file), title))
         except Missing as why:
             missing.append(f"{title}: {why}")
     title = "Table 1: time per image pair, ms"
