@@ -9,7 +9,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import rosbag
+import rospy
 import yaml
+from cv_bridge import CvBridge
 from project import DEVEL_DIR, SOURCE_DIR, run
 from test_data import dataset
 
@@ -90,6 +93,57 @@ class LabCalibrationTest(unittest.TestCase):
     def test_baseline_is_that_of_the_rig(self):
         P = self.cameras["right"]["projection_matrix"]["data"]
         self.assertAlmostEqual(-P[3] / P[0], math.hypot(*self.exact["right"]["position_m"]), delta=0.002 * 0.65)
+
+    def rows_after_rectification(self, side, points):
+        """Rows, in the rectified image, of points (n, 3) in the left camera's frame seen by the exact camera; NaN where it
+        does not see them."""
+        exact, camera = self.exact[side], self.cameras[side]
+        fx, fy, cx, cy = exact["K"]
+        in_camera = (points - exact["position_m"]) @ cv2.Rodrigues(np.array(exact["rotvec"], float))[0]
+        K = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+        pixels = cv2.projectPoints(in_camera, np.zeros(3), np.zeros(3), K, np.array(exact["D"], float))[0]
+        rectified = cv2.undistortPointsIter(
+            pixels, np.reshape(camera["camera_matrix"]["data"], (3, 3)),
+            np.array(camera["distortion_coefficients"]["data"]),
+            np.reshape(camera["rectification_matrix"]["data"], (3, 3)),
+            np.reshape(camera["projection_matrix"]["data"], (3, 4)), (cv2.TERM_CRITERIA_COUNT, 100, 0))
+        seen = np.all((pixels[:, 0] > 0) & (pixels[:, 0] < (320, 240)), axis=1)
+        return np.where(seen, rectified[:, 0, 1], np.nan)
+
+    def test_rows_of_the_laboratory_agree_to_a_seventh_of_a_pixel(self):
+        # The floor as both cameras see it on the approach: from 0.6 and 2 m height, 12 degrees nose down.
+        for height in (0.6, 2.0):
+            along, across = np.meshgrid(np.linspace(1, 12, 40), np.linspace(-3, 3, 25))
+            tilt = math.radians(12)
+            down, forward = np.full(along.size, height), along.ravel()
+            points = np.stack([across.ravel() + 0.3, down * math.cos(tilt) - forward * math.sin(tilt),
+                               down * math.sin(tilt) + forward * math.cos(tilt)], axis=1)
+            off = self.rows_after_rectification("left", points) - self.rows_after_rectification("right", points)
+            off = off[np.isfinite(off)]
+            self.assertGreater(off.size, 100)
+            self.assertLess(math.sqrt(np.mean(off ** 2)), 0.15)
+
+    def test_shows_where_the_corners_were(self):
+        picture = cv2.imread(str(self.folder / "coverage.png"))
+        self.assertGreater(picture.shape[1], 1000)
+
+    def test_bag_gives_the_same_as_the_folder(self):
+        bag = self.folder / "board.bag"
+        with rosbag.Bag(str(bag), "w") as out:
+            for number, left in enumerate(sorted((self.images / "left").glob("*.png"))):
+                for side in ("left", "right"):
+                    message = CvBridge().cv2_to_imgmsg(cv2.imread(str(self.images / side / left.name), 0), "mono8")
+                    message.header.stamp = rospy.Time(100 + number)
+                    out.write(f"/rig/{side}/image_raw", message, message.header.stamp)
+        result = calibrate(bag, self.folder / "of_bag", "--baseline", "0.65", "--camera", "rig")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("27 of 30 pairs used", result.stdout)
+        for side in ("left", "right"):
+            self.assertEqual((self.folder / "of_bag" / f"{side}.yaml").read_text(),
+                             (self.folder / f"{side}.yaml").read_text())
+        missing = calibrate(bag, self.folder / "none")
+        self.assertEqual(missing.returncode, 1)
+        self.assertIn("no topic /stereo/left/image_raw, /stereo/right/image_raw", missing.stderr)
 
     def test_says_how_good_it_is_in_words(self):
         for words in ("27 of 30 pairs used; board not found whole in: 000003, 000016, 000018", "reprojection error",

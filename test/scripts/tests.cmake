@@ -4,3 +4,4 @@ uav_landing_add_python_test(test/scripts/calibrate_test.py DEPENDENCIES dataset_
 uav_landing_add_python_test(test/scripts/plot_estimates_test.py)
 uav_landing_add_python_test(test/scripts/process_bags_test.py DEPENDENCIES process_bag)
 uav_landing_add_rostest(test/scripts/record_estimates.test SOURCES test/scripts/record_estimates_test.py)
+uav_landing_add_python_test(test/scripts/print_board_test.py)

@@ -1,4 +1,4 @@
-"""Pairs of calibration images, from a folder or from a tar archive."""
+"""Pairs of calibration images, from a folder, a tar archive or a bag."""
 
 import re
 import tarfile
@@ -11,6 +11,9 @@ from .errors import InputError
 
 # left/000001.png, or left-0001.png as in the archives of camera_calibration: side and name of the view.
 IMAGE_FILE = re.compile(r"(?:^|/)(left|right)(?:[-_/]|(?=\d))([^/]+)\.(?:png|pgm|jpg)$")
+
+
+BAG_PAIRS = 60  # of a bag, at most
 
 
 class Image:
@@ -28,9 +31,11 @@ class Image:
         return pixels
 
 
-def list_images(path):
-    """{"left": {view name: Image}, "right": ...} of a folder or an archive."""
+def list_images(path, camera="stereo"):
+    """{"left": {view name: Image}, "right": ...} of a folder, an archive or a bag with /camera/{left,right}/image_raw."""
     path = Path(path)
+    if path.suffix == ".bag":
+        return bag_images(path, camera)
     if path.is_dir():
         files = [(file.relative_to(path).as_posix(), str(file), file.read_bytes)
                  for pattern in ("*", "*/*") for file in sorted(path.glob(pattern)) if file.is_file()]
@@ -58,6 +63,39 @@ def archive_files(path):
     except (tarfile.TarError, EOFError, OSError) as error:
         raise InputError(f"{path}: neither a folder nor a tar archive that can be read ({error})")
     return [(name, f"{path}: {name}", lambda data=data: data) for name, data in contents]
+
+
+def bag_images(path, camera):
+    """Evenly spaced pairs of equal stamp, at most BAG_PAIRS: neighbours at 20 Hz show the same board twice."""
+    # Only here: folders and archives need no ROS.
+    import rosbag
+    from cv_bridge import CvBridge
+    topics = {f"/{camera.strip('/')}/{side}/image_raw": side for side in ("left", "right")}
+    try:
+        with rosbag.Bag(str(path)) as bag:
+            present = bag.get_type_and_topic_info().topics
+            missing = [topic for topic in topics if topic not in present]
+            if missing:
+                raise InputError(f"{path}: no topic {', '.join(missing)} (there are: {', '.join(sorted(present))}); "
+                                 "--camera names another namespace")
+            stamps = {side: set() for side in topics.values()}
+            for topic, message, _ in bag.read_messages(list(topics)):
+                stamps[topics[topic]].add(message.header.stamp)
+            common = sorted(stamps["left"] & stamps["right"])
+            if not common:
+                raise InputError(f"{path}: no left and right image have the same stamp: calibrate with the cameras "
+                                 "triggered together, or at rest from single images")
+            chosen = {common[i] for i in np.linspace(0, len(common) - 1, min(BAG_PAIRS, len(common))).astype(int)}
+            images = {"left": {}, "right": {}}
+            for topic, message, _ in bag.read_messages(list(topics)):
+                if message.header.stamp in chosen:
+                    name = f"{message.header.stamp.to_sec():.3f}"
+                    pixels = CvBridge().imgmsg_to_cv2(message, "mono8")
+                    png = cv2.imencode(".png", pixels)[1].tobytes()
+                    images[topics[topic]][name] = Image(f"{path}: {topic} at {name} s", lambda data=png: data)
+    except rosbag.ROSBagException as error:
+        raise InputError(f"{path}: {error}")
+    return images
 
 
 def read_pairs(images):
