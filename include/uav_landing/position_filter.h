@@ -22,8 +22,8 @@ class PositionFilter {
   /// Position along one axis. Errors of the motion and of successive measurements are much the same from pair
   /// to pair, so standard deviations are added, not variances. Measurements may have an error in common that
   /// is always the same, as when only the threshold's bars are seen: value = position + systematic * offset
-  /// with an unknown offset of N(0, 1), which is a second state of the Kalman filter. It does not average out,
-  /// and one measurement without it tells it.
+  /// with an unknown offset of N(0, 1), which is a second state of the Kalman filter. It does not average
+  /// out, and one measurement without it tells it.
   class Axis {
    public:
     void predict(double movement, double stddev);

@@ -79,7 +79,7 @@ struct ApproachAngleResult {
     double width = kUnknown, width_variance = kUnknown;  ///< between the outermost edges, over h
     Failure threshold_failure;                           ///< set when the threshold is not seen
     double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
-    double x_systematic_variance = 0;  ///< part of x_variance that is the same error in every frame
+    double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
   };
   double stamp = 0;
   Failure failure;  ///< set when there is no approach angle

@@ -126,7 +126,7 @@ struct Bars {
   RigModel model = test::makeModel(rig);
   Pose pose;
   double line_from = 5.6, line_to = 5.7;
-  double pavement_from = 6;   // m; as bright as what lies before it when it is the same
+  double pavement_from = 6;  // m; as bright as what lies before it when it is the same
   uchar pavement = 70, before = 70;
   bool sparse = false;
 

@@ -144,9 +144,9 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   fill(result.foe_covariance);
   result.runway.failure = {Reason::kNotYet, "2 of 3"};
   result.runway.threshold_failure = {Reason::kNoRunway, "no bars"};
-  for (double* number : {&result.runway.x, &result.runway.x_variance, &result.runway.y,
-                         &result.runway.y_variance, &result.runway.width, &result.runway.width_variance,
-                         &result.runway.x_systematic_variance})
+  for (double* number :
+       {&result.runway.x, &result.runway.x_variance, &result.runway.y, &result.runway.y_variance,
+        &result.runway.width, &result.runway.width_variance, &result.runway.x_systematic_variance})
     *number = next();
 
   const ApproachAngleResult back = toResult(toMessage(result, header(), 1));
