@@ -1,7 +1,7 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
   src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
-  src/tools/random_approach.cpp src/tools/stereo_bag_writer.cpp)
+  src/tools/random_approach.cpp src/tools/stereo_bag_reader.cpp src/tools/stereo_bag_writer.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
@@ -19,7 +19,7 @@ target_link_libraries(measure_noise_bound PRIVATE uav_landing_tools)
 
 add_executable(process_bag
   src/tools/process_bag.cpp src/tools/estimate_bag.cpp src/tools/estimate_csv.cpp src/tools/offline_chain.cpp
-  src/tools/report_data.cpp src/tools/stereo_bag_reader.cpp src/tools/timing_table.cpp)
+  src/tools/report_data.cpp src/tools/timing_table.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
 
 add_executable(simulate_campaign src/tools/campaign_csv.cpp src/tools/simulate_campaign.cpp)

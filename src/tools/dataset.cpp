@@ -19,17 +19,6 @@ constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
 
 Failure invalid(const std::string& detail) { return {Reason::kInputInvalid, detail}; }
 
-Expected<sensor_msgs::CameraInfo> readCalibrationFile(const fs::path& path) {
-  if (!fs::is_regular_file(path)) return tl::make_unexpected(invalid(path.string() + ": no such file"));
-  sensor_msgs::CameraInfo info;
-  std::string name;
-  if (!camera_calibration_parsers::readCalibration(path.string(), name, info))
-    return tl::make_unexpected(invalid(path.string() + ": not a ROS camera calibration file"));
-  if (info.width == 0 || info.height == 0)
-    return tl::make_unexpected(invalid(path.string() + ": image_width and image_height must be positive"));
-  return info;
-}
-
 /// Fills one truth field from its column, scaled; returns the failure of a field that is not a number.
 Failure readTruthField(const CsvTable& table, size_t row, const std::string& column, double scale,
                        double& value) {
@@ -104,11 +93,22 @@ bool hasPngSignature(const std::vector<unsigned char>& bytes) {
 
 }  // namespace
 
+Expected<sensor_msgs::CameraInfo> readCalibrationFile(const std::string& path) {
+  if (!fs::is_regular_file(path)) return tl::make_unexpected(invalid(path + ": no such file"));
+  sensor_msgs::CameraInfo info;
+  std::string name;
+  if (!camera_calibration_parsers::readCalibration(path, name, info))
+    return tl::make_unexpected(invalid(path + ": not a ROS camera calibration file"));
+  if (info.width == 0 || info.height == 0)
+    return tl::make_unexpected(invalid(path + ": image_width and image_height must be positive"));
+  return info;
+}
+
 Expected<Dataset> readDataset(const std::string& folder) {
   if (!fs::is_directory(folder)) return tl::make_unexpected(invalid(folder + ": no such folder"));
   Dataset dataset;
   for (auto [name, info] : {std::pair("left.yaml", &dataset.left), std::pair("right.yaml", &dataset.right)}) {
-    Expected<sensor_msgs::CameraInfo> read = readCalibrationFile(fs::path(folder) / name);
+    Expected<sensor_msgs::CameraInfo> read = readCalibrationFile((fs::path(folder) / name).string());
     if (!read) return tl::make_unexpected(read.error());
     *info = *read;
   }

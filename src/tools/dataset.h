@@ -26,6 +26,9 @@ struct Dataset {
   std::vector<DatasetFrame> frames;     ///< stamps strictly increasing
 };
 
+/// Reads one camera's ROS calibration file; the failure names the file.
+Expected<sensor_msgs::CameraInfo> readCalibrationFile(const std::string& path);
+
 /// Reads calibrations and frames.csv; the failure names file, line and column. Images are read one by one
 /// with readImage().
 Expected<Dataset> readDataset(const std::string& folder);

@@ -1,0 +1,88 @@
+"""Inputs for the fuzzers to start from: make_corpus.py FOLDER writes FOLDER/<harness>/*."""
+import os
+import random
+import sys
+
+import cv2
+import numpy
+import rosbag
+import rospy
+from sensor_msgs.msg import CameraInfo, Image
+
+SOURCE_DIR = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+WIDTH, HEIGHT = 24, 16
+K = [20.0, 0.0, 12.0, 0.0, 20.0, 8.0, 0.0, 0.0, 1.0]
+
+
+def save(folder, harness, name, content):
+    path = os.path.join(folder, harness)
+    os.makedirs(path, exist_ok=True)
+    with open(os.path.join(path, name), "wb") as file:
+        file.write(content)
+
+
+def files_below(folder, ending):
+    for path, _, names in sorted(os.walk(os.path.join(SOURCE_DIR, folder))):
+        for name in sorted(names):
+            if name.endswith(ending):
+                yield os.path.join(path, name)
+
+
+def calibration(side):
+    projection = K[:3] + [-6.0 if side == "right" else 0.0] + K[3:6] + [0.0] + K[6:] + [0.0]
+    rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    matrix = "  rows: {}\n  cols: {}\n  data: {}\n"
+    return ("image_width: {}\nimage_height: {}\ncamera_name: {}\n".format(WIDTH, HEIGHT, side)
+            + "camera_matrix:\n" + matrix.format(3, 3, K)
+            + "distortion_model: plumb_bob\ndistortion_coefficients:\n" + matrix.format(1, 5, [-0.1, 0.01, 0, 0, 0])
+            + "rectification_matrix:\n" + matrix.format(3, 3, rotation)
+            + "projection_matrix:\n" + matrix.format(3, 4, projection)).encode()
+
+
+def camera_info(side):
+    info = CameraInfo(width=WIDTH, height=HEIGHT, distortion_model="plumb_bob", D=[0.0] * 5, K=K)
+    info.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+    info.P = K[:3] + [-6.0 if side == "right" else 0.0] + K[3:6] + [0.0] + K[6:] + [0.0]
+    return info
+
+
+def write_bag(path, compression):
+    with rosbag.Bag(path, "w", compression=compression, chunk_threshold=2000) as bag:
+        for frame in range(3):
+            stamp = rospy.Time(100 + frame)
+            for side in ("left", "right"):
+                info = camera_info(side)
+                image = Image(width=WIDTH, height=HEIGHT, step=WIDTH, encoding="mono8")
+                image.data = bytes((7 * i + frame) % 256 for i in range(WIDTH * HEIGHT))
+                info.header.stamp = image.header.stamp = stamp
+                bag.write("/stereo/{}/camera_info".format(side), info, stamp)
+                bag.write("/stereo/{}/image_raw".format(side), image, stamp)
+
+
+def main():
+    folder = sys.argv[1]
+    chance = random.Random(1)
+    for harness in ("camera_info", "image_message", "image_pair", "messages"):
+        for i in range(20):
+            size = chance.choice([0, 10, 100, 1000])
+            save(folder, harness, "random_{:02d}".format(i), bytes(chance.randrange(256) for _ in range(size)))
+    save(folder, "image_message", "mono8", bytes(5) + bytes(range(256)) + bytes(WIDTH * HEIGHT - 256))
+    for side in ("left", "right"):
+        save(folder, "calibration_file", side + ".yaml", calibration(side))
+    save(folder, "calibration_file", "camera.ini", b"# oST\n[image]\nwidth\n24\nheight\n16\n[narrow_stereo]\n"
+         b"camera matrix\n20 0 12\n0 20 8\n0 0 1\ndistortion\n0 0 0 0 0\nrectification\n1 0 0\n0 1 0\n0 0 1\n"
+         b"projection\n20 0 12 0\n0 20 8 0\n0 0 1 0\n")
+    for path in files_below("config", ".yaml"):
+        with open(path, "rb") as file:
+            save(folder, "config", os.path.relpath(path, SOURCE_DIR).replace("/", "_"), file.read())
+    for compression in ("none", "bz2", "lz4"):
+        path = os.path.join(folder, "bag", compression)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        write_bag(path, compression)
+    png = cv2.imencode(".png", numpy.arange(WIDTH * HEIGHT, dtype=numpy.uint8).reshape(HEIGHT, WIDTH))[1].tobytes()
+    frames = b"stamp_s,left,right,height_m,pitch_deg\n100.000000000,0.png,0.png,2.5,-3\n"
+    save(folder, "dataset", "good", b"\n---\n".join([calibration("left"), calibration("right"), frames, png]))
+
+
+if __name__ == "__main__":
+    main()

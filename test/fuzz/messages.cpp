@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include "body_pose.h"
+#include "fuzz/harnesses.h"
+#include "fuzz/input.h"
+#include "landing_markers.h"
+#include "pose_covariance.h"
+#include "ros/approach_messages.h"
+#include "ros/message_fields.h"
+#include "runway_path.h"
+#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/overlay.h"
+
+namespace uav_landing {
+namespace fuzz {
+namespace {
+
+/// Changes fields here and there.
+template <class Message>
+void spoil(Input& input, Message& message) {
+  FieldVisitor visitor;
+  const bool all = input.byte() > 250;
+  const double everywhere = input.number(0);
+  visitor.on_number = [&](double& number) { number = all ? everywhere : input.number(number); };
+  visitor.on_count = [&](uint32_t& count) { count = input.count(count); };
+  visitor.on_length = [&](size_t length) {
+    return input.byte() < 240 ? length : input.take<uint16_t>() % (2 * length + 2);
+  };
+  visitor.on_text = [&](std::string& text) {
+    if (input.byte() > 230) text = input.byte() < 128 ? "too_few_matches: " : input.text();
+  };
+  visitor.visit(message);
+}
+
+/// What the nodelet does with an estimate.
+void useResult(const ApproachMessages& messages, const LandingResult& camera) {
+  const StereoDepthResult stereo = toResult(messages.stereo);
+  const ApproachAngleResult approach = toResult(messages.approach);
+  const Eigen::Vector3d arm(0.1, -0.5, 2);
+  const LandingResult body = referTo(arm, camera, approach.step);
+  require(!body.height_valid || std::isfinite(body.height), "a valid height of the body is finite");
+  static RunwayPath path;
+  const auto place = path.update(camera);
+  if (place) {
+    const Matrix6d covariance = poseCovariance(camera, stereo.plane, arm, place->variance);
+    require(covariance.rows() == 6, "a place has a covariance");
+  }
+  std::optional<Eigen::Vector3d> position;
+  if (place) position = place->position;
+  drawLanding(messages.stereo.header, {}, body, position, Eigen::Vector2d(20, 0), path.track());
+  static const cv::Mat grey(messages.rig.size.height, messages.rig.size.width, CV_8UC1, cv::Scalar(100));
+  static int turn = 0;
+  if (++turn % 64 == 0) drawOverlay(messages.rig, grey, stereo, approach, camera, {});
+}
+
+void expectHonest(const LandingResult& result) {
+  require(!result.height_valid || (result.height > 0 && std::isfinite(result.height) &&
+                                   std::isfinite(result.height_variance) && result.height_variance > 0),
+          "a valid height is positive and has a variance");
+  require(!result.angle_valid ||
+              (std::isfinite(result.approach_angle) && std::isfinite(result.approach_angle_variance) &&
+               result.approach_angle_variance > 0),
+          "a valid angle is finite and has a variance");
+}
+
+}  // namespace
+
+void fuzzMessages(const uint8_t* data, size_t size) {
+  // A stage in flight; every input begins with a copy of it.
+  static const KalmanHeightStage settled = [] {
+    ApproachMessages messages;
+    KalmanHeightStage stage(messages.rig, {});
+    for (int pair = 0; pair < 40; ++pair) {
+      messages.make(pair);
+      stage.process(toResult(messages.stereo), toResult(messages.approach));
+    }
+    return stage;
+  }();
+  KalmanHeightStage stage = settled;
+  Input input(data, size);
+  ApproachMessages messages;
+  int pair = 40;
+  // Two bad pairs, not more: who publishes wrong planes for long is believed, like any ground.
+  for (; pair < 42; ++pair) {
+    messages.make(pair);
+    if (input.byte() < 200) spoil(input, messages.stereo);
+    if (input.byte() < 200) spoil(input, messages.approach);
+    const LandingResult result = stage.process(toResult(messages.stereo), toResult(messages.approach));
+    expectHonest(result);
+    useResult(messages, result);
+  }
+  LandingResult result;
+  for (; pair < 64; ++pair) {
+    messages.make(pair);
+    result = stage.process(toResult(messages.stereo), toResult(messages.approach));
+    expectHonest(result);
+  }
+  require(result.valid(), "a second of good messages makes the estimate valid again");
+  require(std::abs(result.height - messages.height(pair - 1)) < 0.5, "and right");
+}
+
+}  // namespace fuzz
+}  // namespace uav_landing

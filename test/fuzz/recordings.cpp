@@ -1,0 +1,85 @@
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "dataset.h"
+#include "fuzz/harnesses.h"
+#include "fuzz/memory_file.h"
+#include "image_input.h"
+#include "rig_watch.h"
+#include "stereo_bag_reader.h"
+
+namespace uav_landing {
+namespace fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+void writeFile(const fs::path& path, const std::string& content) { std::ofstream(path) << content; }
+
+/// A folder of this process, emptied at the end.
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("uav_landing_fuzz_" + std::to_string(getpid()));
+  Folder() {
+    fs::create_directories(path / "left");
+    fs::create_directories(path / "right");
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+/// The part of the input up to the next mark.
+std::string section(std::string& rest) {
+  const size_t end = rest.find("\n---\n");
+  const std::string part = rest.substr(0, end);
+  rest = end == std::string::npos ? "" : rest.substr(end + 5);
+  return part;
+}
+
+}  // namespace
+
+void fuzzBag(const uint8_t* data, size_t size) {
+  silenceLog();
+  const MemoryFile file(data, size);
+  if (!file.written()) return;
+  try {
+    const StereoBagReader reader(file.path(), "stereo");
+    if (const Failure failure = reader.checkTopics()) {
+      require(!failure.detail.empty(), "a bag that lacks a topic says which");
+      return;
+    }
+    StereoPairing pairing({}, {reader.topics().begin(), reader.topics().end()},
+                          [](const auto& left, const auto& left_info, const auto&, const auto&) {
+                            toMono8(left, toCalibration(*left_info), "left");
+                          });
+    reader.read(pairing, [] {});
+  } catch (const std::exception&) {
+    // What the programs say on stderr, with exit status 1.
+  }
+}
+
+void fuzzDataset(const uint8_t* data, size_t size) {
+  silenceLog();
+  static const Folder folder;
+  std::string rest(reinterpret_cast<const char*>(data), size);
+  const std::string left = section(rest), right = section(rest), frames = section(rest);
+  writeFile(folder.path / "left.yaml", left);
+  writeFile(folder.path / "right.yaml", right.empty() ? left : right);
+  writeFile(folder.path / "frames.csv", frames);
+  writeFile(folder.path / "left" / "0.png", rest);
+  writeFile(folder.path / "right" / "0.png", rest);
+  const Expected<Dataset> dataset = readDataset(folder.path.string());
+  if (!dataset) {
+    require(!dataset.error().detail.empty(), "a dataset that cannot be used says why");
+    return;
+  }
+  const cv::Size image_size(static_cast<int>(dataset->left.width), static_cast<int>(dataset->left.height));
+  const Expected<cv::Mat> image = readImage(dataset->frames.front().left, image_size);
+  require(!image || image->size() == image_size, "an image has the size of the calibration");
+}
+
+}  // namespace fuzz
+}  // namespace uav_landing
