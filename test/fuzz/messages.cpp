@@ -45,9 +45,13 @@ void useResult(const ApproachMessages& messages, const LandingResult& camera) {
     const Matrix6d covariance = poseCovariance(camera, stereo.plane, arm, place->variance);
     require(covariance.rows() == 6, "a place has a covariance");
   }
-  std::optional<Eigen::Vector3d> position;
-  if (place) position = place->position;
-  drawLanding(messages.stereo.header, {}, body, position, Eigen::Vector2d(20, 0), path.track());
+  std::optional<DrawnAircraft> aircraft;
+  if (place)
+    aircraft = {
+        place->position,
+        {std::sqrt(place->variance.x()), std::sqrt(place->variance.y()), std::sqrt(camera.height_variance)},
+        runwayFromCamera(camera)};
+  drawLanding(messages.stereo.header, {}, body, aircraft, Eigen::Vector2d(20, 0), path.track());
   static const cv::Mat grey(messages.rig.size.height, messages.rig.size.width, CV_8UC1, cv::Scalar(100));
   static int turn = 0;
   if (++turn % 64 == 0) drawOverlay(messages.rig, grey, stereo, approach, camera, {});
