@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "uav_landing/plane_fit.h"
+#include "uav_landing/stage_results.h"
 
 namespace uav_landing {
 
@@ -21,10 +22,11 @@ class DirectRefinement {
 
   /// left, right: rectified mono8. start: plane vector good to a fraction of a pixel of disparity, 1/m.
   /// bias_stddev: as for refinePlane, pixels. limits.tolerance: by how much blocks of
-  /// ground may be off the plane, pixels. Fails when the images show too little, or when most of what they
-  /// show is not on one plane.
+  /// ground may be off the plane, pixels. rows: rotation that the vertical disparities of the images have
+  /// (rig_rotation.h): along a row, slanted edges seem moved by them. Fails when the images show too little,
+  /// or when most of what they show is not on one plane.
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
-                            const PlaneLimits& limits, double bias_stddev);
+                            const PlaneLimits& limits, double bias_stddev, const RigRotation& rows);
   /// What the last refinement was fitted to: one disparity for each block.
   const std::vector<DisparitySample>& samples() const;
 

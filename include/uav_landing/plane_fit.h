@@ -49,7 +49,8 @@ struct PlaneFit {
   GroundPlane plane;
   std::vector<char> agrees;
   int count = 0;
-  double residual_stddev = 0;  ///< pixels, robust
+  Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();  ///< share of vertical disparities, 1/m^2
+  double residual_stddev = 0;                                ///< pixels, robust
   double surface_stddev =
       0;  ///< m, by which the surface rises and falls about the plane, match errors taken off
 };

@@ -37,6 +37,9 @@ struct StereoDepthResult {
   int corners = 0;   ///< corners looked for in the right image
   std::vector<Point> points;
   GroundPlane plane;
+  /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
+  /// 1/m^2.
+  Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
   double residual_stddev = kUnknown;  ///< of the points on the plane, pixels of disparity
   double surface_stddev = kUnknown;   ///< by which the surface ahead rises and falls about the plane, m
   bool from_search = false;           ///< found without a plane from the previous pair

@@ -49,14 +49,22 @@ class RowAlignment {
   /// right image is from level().
   RigRotation measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
                       const Eigen::Vector3d& g);
-  void reset() { taken_out_.setZero(); }
+  /// The rotation whose vertical disparities the pair measured last has after level(), averaged over the last
+  /// second or so. When none has been measured: none, with bias_stddev (pixels at the middle of the image).
+  RigRotation residual(const StereoRig& rig, double bias_stddev) const;
+  void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
   bool adapt(const StereoRig& rig, const RigRotation& residual);
+  void average(const StereoRig& rig, const RigRotation& measured);
 
   bool enabled_;
   int window_radius_;
   Eigen::Vector3d taken_out_ = Eigen::Vector3d::Zero();  // w of which the rows are freed, rad
+  // Of the sum of what is taken out and what is left, old pairs forgotten.
+  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  RigRotation residual_;
 };
 
 }  // namespace uav_landing

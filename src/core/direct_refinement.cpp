@@ -1,11 +1,14 @@
 #include "uav_landing/direct_refinement.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "photometric_blocks.h"
+#include "uav_landing/rig_rotation.h"
 
 namespace uav_landing {
 namespace {
@@ -39,28 +42,28 @@ double robustStddev(std::vector<double>& magnitudes) { return 1.4826 * medianOf(
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor
 // shows in the noisier half of the samples, the error in the other.
 void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
-  const auto middle = samples.begin() + samples.size() / 2;
-  std::nth_element(samples.begin(), middle, samples.end(),
-                   [](const DisparitySample& a, const DisparitySample& b) { return a.stddev < b.stddev; });
+  std::vector<size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto quieter = [&](size_t a, size_t b) { return samples[a].stddev < samples[b].stddev; };
+  const auto middle = order.begin() + order.size() / 2, typical = order.begin() + order.size() / 4;
+  std::nth_element(order.begin(), middle, order.end(), quieter);
+  std::nth_element(order.begin(), typical, middle, quieter);
   std::vector<double> residuals, ratios, magnitudes;
   for (const DisparitySample& sample : samples) {
     residuals.push_back(sample.disparities.front() - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
   }
   std::vector<double> sorted = residuals;
   const double offset = medianOf(sorted);
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const double magnitude = std::abs(residuals[i] - offset);
-    if (i < samples.size() / 2) {
+  for (auto i = order.begin(); i != order.end(); ++i) {
+    const double magnitude = std::abs(residuals[*i] - offset);
+    if (i < middle) {
       magnitudes.push_back(magnitude);
     } else {
-      ratios.push_back(magnitude / samples[i].stddev);
+      ratios.push_back(magnitude / samples[*i].stddev);
     }
   }
   const double factor = std::min(robustStddev(ratios), kLargestFactor), scatter = robustStddev(magnitudes);
-  const auto typical = samples.begin() + samples.size() / 4;
-  std::nth_element(samples.begin(), typical, middle,
-                   [](const DisparitySample& a, const DisparitySample& b) { return a.stddev < b.stddev; });
-  const double of_noise = factor * typical->stddev;
+  const double of_noise = factor * samples[*typical].stddev;
   const double common = std::sqrt(std::max(0.0, scatter * scatter - of_noise * of_noise));
   for (DisparitySample& sample : samples) sample.stddev = std::hypot(factor * sample.stddev, common);
 }
@@ -72,22 +75,38 @@ struct DirectRefinement::Implementation {
   PhotometricBlocks blocks;
   std::vector<PhotometricBlocks::Match> matches;
   std::vector<DisparitySample> samples;
-  int informative = 0;  // blocks that show anything
+  std::vector<Eigen::RowVector3d> leaks;  // of each sample: its disparity's derivative by the rows' rotation
+  int informative = 0;                    // blocks that show anything
 
   Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
       : rig(r), blocks(left_mask, right_mask) {}
 
   // One disparity for each block, found with the right image warped by g.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g) {
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const Eigen::Vector3d& rows) {
     const ShiftModel shift(rig, g);
     informative = blocks.compare(right, shift, matches);
     samples.clear();
+    leaks.clear();
     for (const PhotometricBlocks::Match& match : matches) {
       if (!(std::abs(match.shift) < kLargestShift)) continue;
       // The right pixel that the warp puts on u belongs to the left pixel u + shift.
       const double disparity = shift.at(match.u, match.v) + match.shift - rig.principalOffset();
-      samples.push_back({match.u + match.shift, match.v, match.stddev, {disparity}});
+      const double column = match.u - shift.at(match.u, match.v);
+      leaks.push_back(-match.lean * verticalDisparityByRotation(rig, column, match.v));
+      samples.push_back({match.u + match.shift, match.v, match.stddev, {disparity - leaks.back().dot(rows)}});
     }
+  }
+
+  // What an error of the rows' rotation does to the plane. 1/m per rad.
+  Eigen::Matrix3d planeByRows(const PlaneFit& fit) const {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+    for (size_t i = 0; i < samples.size(); ++i) {
+      if (!fit.agrees[i]) continue;
+      const Eigen::Vector3d by_plane = rig.fb() * rig.ray(samples[i].u, samples[i].v) / samples[i].stddev;
+      information += by_plane * by_plane.transpose();
+      right += by_plane * leaks[i] / samples[i].stddev;
+    }
+    return information.inverse() * right;
   }
 
   // Largest change of disparity at the bottom of the image, where disparities are largest.
@@ -105,12 +124,12 @@ DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
 
 Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& right,
                                             const Eigen::Vector3d& start, const PlaneLimits& limits,
-                                            double bias_stddev) {
+                                            double bias_stddev, const RigRotation& rows) {
   Implementation& own = *implementation_;
   own.blocks.choose(left, own.rig, ShiftModel(own.rig, start), kBlocks);
   Eigen::Vector3d g = start;
   for (int step = 0;; ++step) {
-    own.measure(right, g);
+    own.measure(right, g, rows.w);
     if (static_cast<int>(own.samples.size()) < limits.min_points) {
       return tl::make_unexpected(
           Failure{Reason::kTooFewMatches, std::to_string(own.samples.size()) + " blocks match, at least " +
@@ -126,8 +145,13 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
           Failure{Reason::kNoPlane, std::to_string(fit->count) + " of " + std::to_string(own.informative) +
                                         " blocks are on the plane: too few to tell which are ground"});
     }
-    if (!fit || step + 1 == kSteps) return fit;
-    if (step > 0 && own.change(g, fit->plane.g) < kConverged) return fit;
+    if (!fit) return fit;
+    if (step + 1 == kSteps || (step > 0 && own.change(g, fit->plane.g) < kConverged)) {
+      const Eigen::Matrix3d by_rows = own.planeByRows(*fit);
+      fit->row_covariance = by_rows * rows.covariance * by_rows.transpose();
+      fit->plane.covariance += fit->row_covariance;
+      return fit;
+    }
     g = fit->plane.g;
   }
 }

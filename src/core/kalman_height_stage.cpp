@@ -199,7 +199,8 @@ void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const Approac
   GroundPlane& plane = reconstruction.plane;
   Eigen::Matrix3d& common = reconstruction.common;
   plane = withSkew(rig_, stereo, approach.step);
-  common(2, 2) = std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  common = stereo.row_covariance;
+  common(2, 2) += std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
   // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
   // contains the plane already.
@@ -265,9 +266,9 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
   const RigRotationFilter::Corrected corrected =
       rig_rotation_.correct(without, planeByRotation(rig_, stereo.points, without.g), direction,
                             approach.vanishing_covariance, parameters_.vanishing_point_gate);
-  rig_variance_ = GroundPlane{corrected.plane.g, corrected.common}.heightVariance();
   reconstruction.plane = corrected.plane;
-  reconstruction.common = corrected.common;
+  reconstruction.common = corrected.common + stereo.row_covariance;
+  rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();
 }
 
 void KalmanHeightStage::reportRig(LandingResult& result) const {

@@ -162,22 +162,29 @@ bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidat
     }
   }
   const float grey_mean = sum(grey_sum) / kPixels, slope_mean = sum(slope_sum) / kPixels;
-  Lane grey_squares{}, squares{}, products{}, downs{};
+  Lane grey_squares{}, squares{}, products{}, downs{}, down_greys{}, down_slopes{};
   for (int y = 0; y < kHeight; ++y) {
     float* grey = &block.grey[y * kWidth];
     float* slope = &block.slope[y * kWidth];
+    const uchar* above = left.ptr<uchar>(candidate.v + y - 1) + candidate.u;
+    const uchar* below = left.ptr<uchar>(candidate.v + y + 1) + candidate.u;
     for (int x = 0; x < kWidth; ++x) {
+      const float down = 0.5f * static_cast<float>(below[x] - above[x]);
       grey[x] -= grey_mean;
       slope[x] -= slope_mean;
       grey_squares[x] += grey[x] * grey[x];
       products[x] += grey[x] * slope[x];
       squares[x] += slope[x] * slope[x];
       downs[x] += slope[x] * slope[x] * static_cast<float>(y);
+      down_greys[x] += down * grey[x];
+      down_slopes[x] += down * slope[x];
     }
   }
   block.grey_energy = sum(grey_squares);
   block.slope_energy = sum(squares);
   block.both = sum(products);
+  block.down_grey = sum(down_greys);
+  block.down_slope = sum(down_slopes);
   float along = 0;
   for (int x = 0; x < kWidth; ++x) along += squares[x] * static_cast<float>(x);
   block.centre_u = static_cast<float>(block.u) + along / block.slope_energy;
@@ -255,8 +262,8 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     // The derivative less what of it looks like a gain: slope - mixed grey.
     const double mixed = block.both / common;
     const double energy = block.slope_energy - 2 * mixed * block.both + mixed * mixed * block.grey_energy;
-    const double response = gain * (block.slope_energy - slope_noise - mixed * block.both);
-    if (response < kLeastShareOfSlope * gain * energy) continue;
+    const double signal = block.slope_energy - slope_noise - mixed * block.both, response = gain * signal;
+    if (signal < kLeastShareOfSlope * energy) continue;
     const double score = products.slope - mixed * products.grey;
     const double variance = std::max(products.variance - score * score / energy / kPixels, kLeastVariance);
     ++informative;
@@ -264,8 +271,9 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     const double alike = products.grey * products.grey / block.grey_energy * (common / block.grey_energy);
     const double other = kPixels * std::max(0.0, variance - kResidualPerNoise * noise);
     if (alike < kLeastCorrelation * (alike + other)) continue;
-    matches.push_back(
-        {block.centre_u, block.centre_v, score / response, std::sqrt(variance * energy) / response});
+    matches.push_back({block.centre_u, block.centre_v, score / response,
+                       std::sqrt(variance * energy) / response,
+                       (block.down_slope - mixed * block.down_grey) / signal});
   }
   return informative;
 }

@@ -29,6 +29,7 @@ class PhotometricBlocks {
     double u, v;    ///< where in the left image the block's gradients are, pixels
     double shift;   ///< left pixels by which the left image is to be shifted to fit the warped right one
     double stddev;  ///< of it if the residuals of the pixels are independent, pixels
+    double lean;    ///< by how much the shift grows where the right image lies a pixel higher: slanted edges
   };
   /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Returns
   /// how many show more than noise; matches are those of them that look like their places.
@@ -44,6 +45,7 @@ class PhotometricBlocks {
     int u, v;                               // first pixel
     float centre_u, centre_v;               // where its gradients are
     float grey_energy, slope_energy, both;  // sums of grey^2, slope^2, grey slope
+    float down_grey, down_slope;            // sums of (derivative down the column) times grey, slope
     std::array<float, kPixels> grey;        // without their mean
     std::array<float, kPixels> slope;       // derivative along the row without its mean
   };

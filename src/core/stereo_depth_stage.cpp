@@ -177,7 +177,20 @@ struct StereoDepthStage::Implementation {
 
   void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
-    if (!result.failure) result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
+    if (result.failure) return;
+    result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
+    result.row_covariance = rowLeak(rows.residual(fine.rig, parameters.disparity_bias_stddev));
+    result.plane.covariance += result.row_covariance;
+  }
+
+  // Where a row is off by dv, a slanted line seems moved along the row by dv times its slope; the two sides
+  // of a runway lean to opposite sides, which looks like roll. For the corners' plane by a rule of thumb.
+  Eigen::Matrix3d rowLeak(const RigRotation& residual) const {
+    constexpr double kLean = 2.5;  // rms over simulated runways
+    const double square = residual.w.x() * residual.w.x() + residual.covariance(0, 0);
+    Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
+    leak(0, 0) = square * std::pow(kLean / fine.rig.baseline, 2);
+    return leak;
   }
 
   // The right image as the camera saw it but with its rows made level, where they are not.
@@ -192,8 +205,11 @@ struct StereoDepthStage::Implementation {
   void refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
     const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
-                                                  limits, parameters.disparity_bias_stddev);
-    if (fit && samePlane(fit->plane, result.plane)) result.plane = fit->plane;
+                                                  limits, parameters.disparity_bias_stddev,
+                                                  rows.residual(fine.rig, parameters.disparity_bias_stddev));
+    if (!fit || !samePlane(fit->plane, result.plane)) return;
+    result.plane = fit->plane;
+    result.row_covariance = fit->row_covariance;
   }
 };
 

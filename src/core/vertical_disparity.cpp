@@ -13,7 +13,7 @@ namespace uav_landing {
 namespace {
 
 // Corners measured: enough, as the filter behind averages over frames.
-constexpr size_t kMeasured = 120, kSearched = 80;
+constexpr size_t kMeasured = 240, kSearched = 80;
 constexpr int kFewest = 20;
 // Error of a row that its residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
@@ -173,8 +173,29 @@ RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<Di
   if (!found) return {};
   RigRotation rotation = *found;
   rotation.w += taken_out_;
+  average(level.rig, rotation);
   adapt(level.rig, *found);
   return rotation;
+}
+
+RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
+  if (residual_.known()) return residual_;
+  RigRotation unknown;
+  unknown.w.setZero();
+  unknown.covariance = std::pow(bias_stddev / rig.fy, 2) * Eigen::Matrix3d::Identity();
+  return unknown;
+}
+
+void RowAlignment::average(const StereoRig& rig, const RigRotation& measured) {
+  constexpr double kKept = 0.95;  // of a pair's weight when the next comes
+  // Error that all pairs have, pixels: of lenses, which is no rotation, and of texture.
+  constexpr double kCommon = 0.003;
+  const Eigen::Matrix3d weight = measured.covariance.inverse();
+  information_ = kKept * information_ + weight;
+  right_ = kKept * right_ + weight * measured.w;
+  residual_.covariance = information_.inverse();
+  residual_.w = residual_.covariance * right_ - taken_out_;
+  residual_.covariance(0, 0) += std::pow(kCommon / rig.fy, 2);
 }
 
 bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {

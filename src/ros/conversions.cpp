@@ -138,6 +138,7 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   }
   toArray(result.plane.g, message.plane);
   toArray(result.plane.covariance, message.plane_covariance);
+  toArray(result.row_covariance, message.plane_row_covariance);
   message.residual_stddev = result.residual_stddev;
   message.surface_stddev = result.surface_stddev;
   message.disparity_bias_stddev = result.disparity_bias_stddev;
@@ -168,6 +169,7 @@ StereoDepthResult toResult(const StereoDepth& message) {
                         message.on_plane[i] != 0};
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
+  fromArray(message.plane_row_covariance, result.row_covariance);
   result.residual_stddev = message.residual_stddev;
   result.surface_stddev = message.surface_stddev;
   result.disparity_bias_stddev = message.disparity_bias_stddev;

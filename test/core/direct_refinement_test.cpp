@@ -40,7 +40,14 @@ struct Scene {
   Pose pose = makePose(4, -8, 3);
   Eigen::Vector3d truth = pose.down() / pose.height();
   cv::Mat left, right;
+  RigRotation rows = levelRows();
 
+  static RigRotation levelRows() {
+    RigRotation rows;
+    rows.w.setZero();
+    rows.covariance.setZero();
+    return rows;
+  }
   void render(const Exposure& of_left = {}, const Exposure& of_right = {}) {
     left = ground.left(rig, pose, of_left);
     right = ground.right(rig, pose, of_right);
@@ -51,7 +58,7 @@ struct Scene {
   }
   Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
     return DirectRefinement(rig, model.left_mask, model.right_mask)
-        .refine(left, right, start, makeLimits(), 0);
+        .refine(left, right, start, makeLimits(), 0, rows);
   }
   /// Largest error of the disparity over the ground's part of the image, pixels.
   double error(const Eigen::Vector3d& g) const {
@@ -124,6 +131,40 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
   // The inflation for correlated errors is never below 1, so that the claim is on the careful side.
   EXPECT_LT(sum / kPairs, 3 + test::chiSquareMeanTolerance(kPairs, 3));
   EXPECT_GT(sum / kPairs, 1.0);
+}
+
+/// Between two painted lines the camera sees one lean to the left and one to the right.
+TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesThatItIsTold) {
+  Scene scene;
+  scene.pose = makePose(4, -8, 0);
+  scene.truth = scene.pose.down() / scene.pose.height();
+  scene.ground.contrast = 4;
+  scene.ground.line_offset = 4;
+  scene.ground.line_width = 1;
+  scene.ground.bend.x() = 0.3 / scene.rig.fy;
+  scene.render();
+  const auto rollError = [&](const Expected<PlaneFit>& fit) {
+    return rollOf(fit->plane.normal()) - rollOf(scene.truth.normalized());
+  };
+  const Expected<PlaneFit> untold = scene.refine(scene.truth);
+  ASSERT_TRUE(untold);
+  scene.rows.w = scene.ground.bend;
+  const Expected<PlaneFit> told = scene.refine(scene.truth);
+  ASSERT_TRUE(told);
+  EXPECT_GT(std::abs(rollError(untold)), 0.1 * kDegree) << "this scene shows nothing";
+  EXPECT_LT(std::abs(rollError(told)), 0.2 * std::abs(rollError(untold)));
+
+  // One sigma more of rotation rolls the plane by one sigma of the rows' share.
+  const double sigma = 0.02 / scene.rig.fy;
+  scene.rows.covariance(0, 0) = sigma * sigma;
+  const Expected<PlaneFit> claimed = scene.refine(scene.truth);
+  scene.rows.w.x() += sigma;
+  const Expected<PlaneFit> off = scene.refine(scene.truth);
+  ASSERT_TRUE(claimed && off);
+  const GroundPlane share{claimed->plane.g, claimed->row_covariance};
+  const double stddev = std::sqrt(rollVariance(share.normal(), share.normalCovariance()));
+  EXPECT_NEAR(std::abs(rollError(off) - rollError(claimed)), stddev, 0.3 * stddev);
+  EXPECT_TRUE(claimed->plane.covariance.isApprox(told->plane.covariance + claimed->row_covariance));
 }
 
 TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {

@@ -80,6 +80,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   result.points = {{next(), next(), next(), next(), true}, {next(), next(), next(), next(), false}};
   fill(result.plane.g);
   fill(result.plane.covariance);
+  fill(result.row_covariance);
   result.residual_stddev = next();
   result.surface_stddev = next();
   result.from_search = true;
@@ -108,6 +109,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   }
   EXPECT_EQ(back.plane.g, result.plane.g);
   EXPECT_EQ(back.plane.covariance, result.plane.covariance);
+  EXPECT_EQ(back.row_covariance, result.row_covariance);
   EXPECT_EQ(back.residual_stddev, result.residual_stddev);
   EXPECT_EQ(back.surface_stddev, result.surface_stddev);
   EXPECT_TRUE(back.from_search);
