@@ -66,7 +66,7 @@ class KalmanHeightStage {
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// and the unevenness that shows ahead.
   double modelVariance(double height) const;
-  void followSurface(double surface_stddev);
+  void followSurface(double surface_variance);
 
   Failure followTime(double stamp);
   void filterHeight(double stamp, const Reconstruction& reconstruction,
@@ -93,6 +93,7 @@ class KalmanHeightStage {
   double width_variance_ = 0;         ///< of the last height, common to all that are from the same width, m^2
   double rig_variance_ = 0;           ///< of the height, by the rig's rotation, m^2
   double surface_variance_ = 0;       ///< of the surface about its plane, recent mean, m^2
+  int surface_pairs_ = 0;             ///< that the mean is of
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;
   int resets_ = 0;

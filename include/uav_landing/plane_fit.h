@@ -51,8 +51,9 @@ struct PlaneFit {
   int count = 0;
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();  ///< share of vertical disparities, 1/m^2
   double residual_stddev = 0;                                ///< pixels, robust
-  double surface_stddev =
-      0;  ///< m, by which the surface rises and falls about the plane, match errors taken off
+  /// m^2, by which the surface rises and falls about the plane, match errors taken off: so below zero by
+  /// chance.
+  double surface_variance = 0;
 };
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev);

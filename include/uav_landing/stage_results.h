@@ -40,10 +40,10 @@ struct StereoDepthResult {
   /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
   /// 1/m^2.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
-  double residual_stddev = kUnknown;  ///< of the points on the plane, pixels of disparity
-  double surface_stddev = kUnknown;   ///< by which the surface ahead rises and falls about the plane, m
-  bool from_search = false;           ///< found without a plane from the previous pair
-  double skew = 0;                    ///< stamp of right minus left image, seconds
+  double residual_stddev = kUnknown;   ///< of the points on the plane, pixels of disparity
+  double surface_variance = kUnknown;  ///< of the surface ahead about the plane, unbiased (may be < 0), m^2
+  bool from_search = false;            ///< found without a plane from the previous pair
+  double skew = 0;                     ///< stamp of right minus left image, seconds
   /// What vertical disparities say of the rig, of this pair alone; random errors only.
   RigRotation vertical_rotation;
   /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.

@@ -129,7 +129,7 @@ void KalmanHeightStage::reset() {
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
-  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_;
+  return std::pow(parameters_.height_model_error * height, 2) + std::max(0.0, surface_variance_);
 }
 
 void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
@@ -163,11 +163,11 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
     width_.learn(runway.width, runway.width_variance, reconstruction.height, reconstruction.variance);
 }
 
-void KalmanHeightStage::followSurface(double surface_stddev) {
-  constexpr double kShareOfNew = 0.2;
-  if (!std::isfinite(surface_stddev)) return;
-  const double share = filter_.initialised() ? kShareOfNew : 1.0;
-  surface_variance_ += share * (surface_stddev * surface_stddev - surface_variance_);
+void KalmanHeightStage::followSurface(double surface_variance) {
+  constexpr int kPairs = 20;
+  if (!std::isfinite(surface_variance)) return;
+  surface_pairs_ = filter_.initialised() ? std::min(surface_pairs_ + 1, kPairs) : 1;
+  surface_variance_ += (surface_variance - surface_variance_) / surface_pairs_;
 }
 
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
@@ -177,7 +177,7 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   reconstruction.failure = missingPlane(stereo);
   if (reconstruction.failure) return reconstruction;
 
-  followSurface(stereo.surface_stddev);
+  followSurface(stereo.surface_variance);
   findPlane(stereo, approach, reconstruction);
   const Eigen::Vector3d n = reconstruction.plane.normal();
   reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;

@@ -200,12 +200,12 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
   return std::max(1.0, (information.inverse() * middle).trace() / 3.0);
 }
 
-// Height by which the surface near the camera rises and falls about the plane. Matches scatter, too, and not
-// only by what they claim: but an undulation is common to neighbours and the scatter is not. So it is what
-// the means of patches differ by, beyond what the scatter within the patches explains (one-way analysis of
-// variance).
-double surfaceStddev(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                     const Eigen::Vector3d& g, const std::vector<char>& agrees) {
+// Square of the height by which the surface near the camera rises and falls about the plane. Matches scatter,
+// too, and not only by what they claim: but an undulation is common to neighbours and the scatter is not. So
+// it is what the means of patches differ by, beyond what the scatter within the patches explains (one-way
+// analysis of variance). Unbiased: below zero by chance on flat ground.
+double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                       const Eigen::Vector3d& g, const std::vector<char>& agrees) {
   // Share of the largest disparity; farther away a pixel is too much height to say anything of the surface.
   constexpr double kNear = 0.4;
   constexpr int kColumns = 10;  // patches along a row of the image; square
@@ -243,7 +243,7 @@ double surfaceStddev(const StereoRig& rig, const std::vector<DisparitySample>& s
   }
   if (used == 0) return 0;
   const double within = scatter / (points - used);
-  return std::sqrt(std::max(0.0, (means - of_scatter * within) / used));
+  return (means - of_scatter * within) / used;
 }
 
 }  // namespace
@@ -301,7 +301,7 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
   fit.plane.g = g;
-  fit.surface_stddev = surfaceStddev(rig, samples, g, fit.agrees);
+  fit.surface_variance = surfaceVariance(rig, samples, g, fit.agrees);
   const Eigen::Vector3d common = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
   const Eigen::Matrix3d information = sums.information / (scale * scale);
   const double inflation = clusterInflation(rig, samples, g, fit.agrees, scale, information);

@@ -34,6 +34,13 @@ bool isCovariance(const Eigen::Matrix<double, kSize, kSize>& matrix) {
   return solver.eigenvalues()[0] >= -kRounding * size;
 }
 
+/// A covariance, or none at all, that another one has in it.
+bool isShare(const Eigen::Matrix3d& share, const Eigen::Matrix3d& whole) {
+  if (share.isZero(0)) return true;
+  return isCovariance<3>(share) &&
+         (share.diagonal().array() <= (1 + kRounding) * whole.diagonal().array()).all();
+}
+
 /// A unit vector with its covariance.
 bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
   constexpr double kLength = 1e-3;
@@ -101,14 +108,15 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
   if (!isCovariance<3>(result.plane.covariance) ||
       !(result.plane.covariance.trace() >= std::pow(kLeastRelative * size, 2)))
     return "plane_covariance: not a covariance of this plane";
+  if (!isShare(result.row_covariance, result.plane.covariance))
+    return "plane_row_covariance: not a part of plane_covariance";
   const double bias = std::pow(result.disparity_bias_stddev / rig.fb(), 2);
   const double with_bias = result.plane.covariance(2, 2);
   if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))
     return text("disparity_bias_stddev: ", result.disparity_bias_stddev,
                 " px is not part of plane_covariance");
-  if (!std::isnan(result.surface_stddev) &&
-      !(result.surface_stddev >= 0 && result.surface_stddev * size <= 1))
-    return text("surface_stddev: ", result.surface_stddev, " m at a height of ", 1 / size, " m");
+  if (!std::isnan(result.surface_variance) && !within(result.surface_variance * size * size, 1))
+    return text("surface_variance: ", result.surface_variance, " m^2 at a height of ", 1 / size, " m");
   if (!std::isfinite(result.skew)) return "skew: not a number";
   if (result.points.size() > kMostPoints)
     return text("u: ", result.points.size(), " points, at most ", kMostPoints, " expected");

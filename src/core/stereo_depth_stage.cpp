@@ -170,7 +170,7 @@ struct StereoDepthStage::Implementation {
     }
     result.plane = plane->plane;
     result.residual_stddev = plane->residual_stddev;
-    result.surface_stddev = plane->surface_stddev;
+    result.surface_variance = plane->surface_variance;
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
   }

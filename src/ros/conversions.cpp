@@ -140,7 +140,7 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.covariance, message.plane_covariance);
   toArray(result.row_covariance, message.plane_row_covariance);
   message.residual_stddev = result.residual_stddev;
-  message.surface_stddev = result.surface_stddev;
+  message.surface_variance = result.surface_variance;
   message.disparity_bias_stddev = result.disparity_bias_stddev;
   toArray(result.vertical_rotation.w, message.vertical_rotation);
   toArray(result.vertical_rotation.covariance, message.vertical_rotation_covariance);
@@ -171,7 +171,7 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane_covariance, result.plane.covariance);
   fromArray(message.plane_row_covariance, result.row_covariance);
   result.residual_stddev = message.residual_stddev;
-  result.surface_stddev = message.surface_stddev;
+  result.surface_variance = message.surface_variance;
   result.disparity_bias_stddev = message.disparity_bias_stddev;
   fromArray(message.vertical_rotation, result.vertical_rotation.w);
   fromArray(message.vertical_rotation_covariance, result.vertical_rotation.covariance);

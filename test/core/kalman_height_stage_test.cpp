@@ -106,7 +106,7 @@ TEST(KalmanHeightStage, DoesNotAverageAwayTheUnevennessOfTheSurface) {
   LandingResult result;
   for (int i = 0; i < 300; ++i) {
     StereoDepthResult stereo = stereoAt(i * kStep, 10);
-    stereo.surface_stddev = 0.03;
+    stereo.surface_variance = 0.03 * 0.03;
     result = stage.process(stereo, angleAt(i * kStep));
   }
   EXPECT_GT(result.height_variance, 0.03 * 0.03);

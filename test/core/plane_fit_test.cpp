@@ -282,9 +282,9 @@ TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
   const Expected<PlaneFit> of_uneven = refinePlane(rig(), uneven, g, limits, 0);
   const Expected<PlaneFit> of_noisy = refinePlane(rig(), noisy, g, limits, 0);
   ASSERT_TRUE(of_flat && of_uneven && of_noisy);
-  EXPECT_LT(of_flat->surface_stddev, 0.25 * bumps);
-  EXPECT_LT(of_noisy->surface_stddev, 0.4 * bumps);
-  EXPECT_NEAR(of_uneven->surface_stddev, bumps, 0.4 * bumps);
+  EXPECT_NEAR(of_flat->surface_variance, 0, std::pow(0.25 * bumps, 2));
+  EXPECT_NEAR(of_noisy->surface_variance, 0, std::pow(0.4 * bumps, 2));
+  EXPECT_NEAR(std::sqrt(of_uneven->surface_variance), bumps, 0.4 * bumps);
 }
 
 TEST(RefinePlane, SaysWhyThereIsNone) {

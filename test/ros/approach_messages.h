@@ -56,7 +56,7 @@ struct ApproachMessages {
       for (int u = 20; u < 640; u += 60)
         result.points.push_back({1.0 * u, 1.0 * v, result.plane.disparity(rig, u, v), 0.1, true});
     result.residual_stddev = 0.1;
-    result.surface_stddev = 0.001 * h;
+    result.surface_variance = 1e-6 * h * h;
     result.vertical_rotation.w.setZero();
     result.vertical_rotation.covariance = Eigen::Vector3d(1e-8, 1e-4, 1e-8).asDiagonal();
     result.vertical_rotation.count = 50;

@@ -82,7 +82,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.plane.covariance);
   fill(result.row_covariance);
   result.residual_stddev = next();
-  result.surface_stddev = next();
+  result.surface_variance = next();
   result.from_search = true;
   result.skew = next();
   fill(result.vertical_rotation.w);
@@ -111,7 +111,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.plane.covariance, result.plane.covariance);
   EXPECT_EQ(back.row_covariance, result.row_covariance);
   EXPECT_EQ(back.residual_stddev, result.residual_stddev);
-  EXPECT_EQ(back.surface_stddev, result.surface_stddev);
+  EXPECT_EQ(back.surface_variance, result.surface_variance);
   EXPECT_TRUE(back.from_search);
   EXPECT_EQ(back.skew, result.skew);
   EXPECT_EQ(back.vertical_rotation.w, result.vertical_rotation.w);

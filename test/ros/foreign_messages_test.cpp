@@ -226,12 +226,15 @@ TEST_F(ForeignMessages, TheFieldThatIsWrongIsNamed) {
   stereo.plane_covariance[4] = -1;
   EXPECT_EQ(messageOf(stereo), "input_invalid: plane_covariance: not a covariance of this plane");
   stereo = messages_.stereo;
+  stereo.plane_row_covariance[0] = 1;
+  EXPECT_EQ(messageOf(stereo), "input_invalid: plane_row_covariance: not a part of plane_covariance");
+  stereo = messages_.stereo;
   stereo.disparity_bias_stddev = 1000;
   EXPECT_EQ(messageOf(stereo),
             "input_invalid: disparity_bias_stddev: 1000 px is not part of plane_covariance");
   stereo = messages_.stereo;
-  stereo.surface_stddev = 30;
-  EXPECT_EQ(messageOf(stereo), "input_invalid: surface_stddev: 30 m at a height of 17 m");
+  stereo.surface_variance = 900;
+  EXPECT_EQ(messageOf(stereo), "input_invalid: surface_variance: 900 m^2 at a height of 17 m");
   stereo = messages_.stereo;
   stereo.skew = nan;
   EXPECT_EQ(messageOf(stereo), "input_invalid: skew: not a number");
