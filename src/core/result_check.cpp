@@ -115,7 +115,10 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
   if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))
     return text("disparity_bias_stddev: ", result.disparity_bias_stddev,
                 " px is not part of plane_covariance");
-  if (!std::isnan(result.surface_variance) && !within(result.surface_variance * size * size, 1))
+  // The noise of an unbiased variance makes it negative, but not by much.
+  constexpr double kLeastSurface = -1e-3, kLargestSurface = 1;
+  const double surface = result.surface_variance * size * size;
+  if (!std::isnan(surface) && !(surface >= kLeastSurface && surface <= kLargestSurface))
     return text("surface_variance: ", result.surface_variance, " m^2 at a height of ", 1 / size, " m");
   if (!std::isfinite(result.skew)) return "skew: not a number";
   if (result.points.size() > kMostPoints)
