@@ -66,6 +66,7 @@ class ApproachAngleNodelet : public StageNodelet {
     if (without_stereo_) without_stereo_->reset();
     in_flight_.reset();
   }
+  void forget() override { stage_.reset(); }
   std::vector<InputWatch::Input> inputs() const override {
     return with_stereo_ ? with_stereo_->inputs() : without_stereo_->inputs();
   }

@@ -85,6 +85,11 @@ class KalmanHeightNodelet : public StageNodelet {
     subscribers_.clear();
     pairing_->reset();
   }
+  void forget() override {
+    cameras_ = RigWatch();
+    stage_.reset();
+    path_.reset();
+  }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
   void complainMore() override {

@@ -22,7 +22,7 @@ namespace uav_landing {
 /// Pairs and rectifies the images of two cameras.
 ///
 /// Parameters: RectifyParameters; camera, image_transport, drop_frames, backlog and the common ones of
-/// NodeParameters. Subscribes <camera>/{left,right}/{image_raw, camera_info}, while somebody wants the
+/// NodeParameters. Subscribes CAMERA/{left,right}/{image_raw, camera_info}, while somebody wants the
 /// output. Publishes {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the
 /// stamp of the left image and in the frames of the cameras; the time reference holds the stamp of the right
 /// image (the skew). A pair whose image or calibration cannot be used is left out, and the log says what is

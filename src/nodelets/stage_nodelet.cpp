@@ -33,6 +33,12 @@ void StageNodelet::onInit() {
                                             [this](const ros::WallTimerEvent&) { complain(); });
   diagnostic_timer_ = handle.createWallTimer(ros::WallDuration(node_.diagnostic_period),
                                              [this](const ros::WallTimerEvent&) { diagnose(); });
+  reset_service_ = getPrivateNodeHandle().advertiseService<std_srvs::EmptyRequest, std_srvs::EmptyResponse>(
+      "reset", [this](std_srvs::EmptyRequest&, std_srvs::EmptyResponse&) {
+        guard([this] { forget(); });
+        NODELET_INFO("%s: reset", getName().c_str());
+        return true;
+      });
   updateSubscription();
 }
 
@@ -71,6 +77,7 @@ void StageNodelet::warnOf(const Failure& failure) {
 }
 
 void StageNodelet::stop() {
+  reset_service_.shutdown();
   complaint_timer_.stop();
   diagnostic_timer_.stop();
   const std::lock_guard<std::mutex> lock(subscription_mutex_);

@@ -3,6 +3,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <nodelet/nodelet.h>
 #include <ros/ros.h>
+#include <std_srvs/Empty.h>
 
 #include <memory>
 #include <mutex>
@@ -45,6 +46,8 @@ class StageNodelet : public nodelet::Nodelet {
   virtual std::string complaint() = 0;
   /// More for the log, once per complaint_period.
   virtual void complainMore() {}
+  /// Service ~reset: what earlier pairs left behind is forgotten, as if just loaded. Runs like a callback.
+  virtual void forget() {}
   /// Values of its own for the diagnostics; called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
@@ -130,6 +133,7 @@ class StageNodelet : public nodelet::Nodelet {
   bool subscribed_ = false;
   std::unique_ptr<diagnostic_updater::Updater> updater_;
   ros::WallTimer complaint_timer_, diagnostic_timer_;
+  ros::ServiceServer reset_service_;
   std::string last_complaint_;
   ros::WallTime last_complaint_time_;
   std::mutex refusal_mutex_;

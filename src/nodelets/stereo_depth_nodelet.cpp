@@ -53,6 +53,7 @@ class StereoDepthNodelet : public StageNodelet {
     pairing_->reset();
     in_flight_.reset();
   }
+  void forget() override { stage_.reset(); }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
 

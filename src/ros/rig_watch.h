@@ -50,6 +50,12 @@ class RigStage {
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
 
+  /// The next pair is the first again.
+  void reset() {
+    cameras_ = RigWatch();
+    stage_.reset();
+  }
+
  private:
   // What is wrong with the cameras; without a failure there is a stage.
   Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,

@@ -19,12 +19,12 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
                              const std::string& left_frame);
 
 /// Writes image pairs with their truth to a bag, the way a stereo camera driver would be recorded:
-/// /<camera>/{left,right}/{image_raw,camera_info} and /truth/landing_estimate. Everything goes to
+/// /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate. Everything goes to
 /// "<path>.active" first; finish() gives it its name, without it the file is removed.
 class StereoBagWriter {
  public:
   /// Opens the bag; throws rosbag::BagException when that is not possible. camera: namespace, without slashes
-  /// at the ends; its slashes become underscores in the frame names "<camera>_left_optical_frame".
+  /// at the ends; its slashes become underscores in the frame names "CAMERA_left_optical_frame".
   StereoBagWriter(const std::string& path, const std::string& camera, const sensor_msgs::CameraInfo& left,
                   const sensor_msgs::CameraInfo& right);
   ~StereoBagWriter();

@@ -1,5 +1,6 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
+#include <std_srvs/Empty.h>
 #include <tf2_msgs/TFMessage.h>
 #include <uav_landing/ApproachAngle.h>
 #include <uav_landing/LandingEstimate.h>
@@ -282,6 +283,20 @@ TEST_F(KalmanHeightNodeletTest, ABadRigIsTheReasonOfEveryMessage) {
   EXPECT_EQ(estimateOf(0).reason.rfind("input_invalid: right P[3]", 0), 0u) << estimateOf(0).reason;
   EXPECT_FALSE(estimateOf(0).valid);
   EXPECT_TRUE(std::isnan(estimateOf(0).height));
+}
+
+TEST_F(KalmanHeightNodeletTest, TheServiceResetForgetsTheHeight) {
+  start();
+  publishSome(0, 5);
+  ASSERT_TRUE(estimateOf(0.4).valid);
+  std_srvs::Empty nothing;
+  ASSERT_TRUE(ros::service::call("/uav_landing/kalman_height/reset", nothing));
+  publish(0.5);
+  ASSERT_TRUE(waitFor(0.5));
+  EXPECT_FALSE(estimateOf(0.5).valid) << "confirmed by nothing yet, like a first height";
+  EXPECT_EQ(estimateOf(0.5).reason.rfind("not_yet", 0), 0u) << estimateOf(0.5).reason;
+  publishSome(0.6, 3);
+  EXPECT_TRUE(estimateOf(0.8).valid);
 }
 
 TEST_F(KalmanHeightNodeletTest, MarkersAreFinite) {
