@@ -33,6 +33,8 @@ constexpr double kLocation = 0.5;       // px, 1 sigma of an edge across the run
 constexpr double kFarthestBars = 1.9;  // pitches of the bars, behind the threshold
 constexpr double kUnevenPitch = 0.25;  // of the pitch, between neighbouring bars
 constexpr double kLeastAlike = 0.6;    // share of the bars that are one pitch apart
+constexpr double kUnevenBars = 0.35;   // of the width of a bar
+constexpr int kFewestBars = 4;         // that are equally wide
 constexpr double kSearched = 1.3;      // of the farthest: before the bars
 constexpr double kPitchError = 0.05;   // 1 sigma, of the pitch
 constexpr int kStretches = 8;          // across the runway, in which the pavement must begin alike
@@ -152,23 +154,34 @@ double barContrast(const std::vector<float>& pattern) {
   return flips >= kLeastFlips && gap <= kLargestGap * kColumns ? contrast : 0;
 }
 
-/// From bar to bar, in columns; 0 when most of them are not as far apart: a row of unlike marks is no zebra.
+/// The median when enough of the lengths are like it; 0 otherwise.
+double commonLength(std::vector<double>& lengths, double tolerance, int fewest) {
+  if (lengths.empty()) return 0;
+  std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
+  const double middle = lengths[lengths.size() / 2];
+  const auto alike = std::count_if(lengths.begin(), lengths.end(), [&](double length) {
+    return std::abs(length - middle) <= tolerance * middle;
+  });
+  return alike >= fewest && alike >= kLeastAlike * lengths.size() ? middle : 0;
+}
+
+/// From bar to bar, in columns; 0 when they are not evenly apart or not equally wide: the marks of the
+/// aiming point with the centre line between them are no zebra.
 double pitchOf(const std::vector<float>& pattern) {
   const double level = meanOf(pattern);
-  std::vector<double> pitches;
-  double last = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> pitches, widths;
+  double rise = std::numeric_limits<double>::quiet_NaN();
   for (int c = 1; c < kColumns; ++c) {
-    if (!(pattern[c - 1] < level && pattern[c] >= level)) continue;
-    const double rise = c - (pattern[c] - level) / (pattern[c] - pattern[c - 1]);
-    if (std::isfinite(last)) pitches.push_back(rise - last);
-    last = rise;
+    const double edge = c - (pattern[c] - level) / (pattern[c] - pattern[c - 1]);
+    if (pattern[c - 1] < level && pattern[c] >= level) {
+      if (std::isfinite(rise)) pitches.push_back(edge - rise);
+      rise = edge;
+    } else if (pattern[c - 1] >= level && pattern[c] < level && std::isfinite(rise)) {
+      widths.push_back(edge - rise);
+    }
   }
-  if (pitches.empty()) return 0;
-  std::nth_element(pitches.begin(), pitches.begin() + pitches.size() / 2, pitches.end());
-  const double pitch = pitches[pitches.size() / 2];
-  const auto alike = std::count_if(pitches.begin(), pitches.end(),
-                                   [&](double p) { return std::abs(p - pitch) <= kUnevenPitch * pitch; });
-  return alike >= kLeastAlike * pitches.size() ? pitch : 0;
+  if (commonLength(widths, kUnevenBars, kFewestBars) == 0) return 0;
+  return commonLength(pitches, kUnevenPitch, 1);
 }
 
 /// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.

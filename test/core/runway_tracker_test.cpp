@@ -129,6 +129,7 @@ struct Bars {
   double pavement_from = 6;  // m; as bright as what lies before it when it is the same
   uchar pavement = 70, before = 70;
   bool sparse = false;
+  bool aiming_point = false;  // instead of the bars: its two marks, the centre line and the edge lines
 
   Bars() {
     pose.position = {1.5, 0.1, 1.5};
@@ -149,7 +150,12 @@ struct Bars {
     cv::Mat image(rig.size, CV_8U, cv::Scalar(before));
     if (pavement != before) fill(image, pavement_from, 30, -1.2, 1.2, pavement);
     if (line_to > line_from) fill(image, line_from, line_to, -1, 1);
-    for (double y = 0.08; y < 0.95; y += 0.16) {
+    if (aiming_point) {
+      for (const double y : {-0.52, 0.52}) fill(image, 6, 7.5, y - 0.12, y + 0.12);
+      for (const double y : {-0.9, 0.9}) fill(image, 2, 30, y - 0.06, y + 0.06);
+      fill(image, 2, 30, -0.025, 0.025);
+    }
+    for (double y = 0.08; !aiming_point && y < 0.95; y += 0.16) {
       if (sparse && y < 0.6) continue;
       fill(image, 6, 7.5, y, y + 0.08);
       fill(image, 6, 7.5, -y - 0.08, -y);
@@ -210,6 +216,15 @@ TEST(RunwayThreshold, MarksOfTheTouchdownZoneAreNoThreshold) {
   Bars bars;
   bars.sparse = true;
   EXPECT_EQ(bars.find().error().reason, Reason::kNoRunway);
+}
+
+TEST(RunwayThreshold, TheAimingPointIsNone) {
+  Bars bars;
+  bars.aiming_point = true;
+  for (const double line : {0.0, 0.1}) {
+    bars.line_to = bars.line_from + line;
+    EXPECT_FALSE(bars.find()) << line;
+  }
 }
 
 TEST(RunwayThreshold, IsNotToldWhenWhatLiesBeforeTheBarsIsOutOfThePicture) {
