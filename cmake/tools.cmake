@@ -11,7 +11,7 @@ add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
 add_executable(dataset_to_bag src/tools/dataset_to_bag.cpp)
 target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)
 
-add_executable(simulate_approach src/tools/simulate_approach.cpp)
+add_executable(simulate_approach src/tools/live_cameras.cpp src/tools/simulate_approach.cpp)
 target_link_libraries(simulate_approach PRIVATE uav_landing_tools)
 
 add_executable(measure_noise_bound src/tools/measure_noise_bound.cpp)

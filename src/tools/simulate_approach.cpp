@@ -1,13 +1,16 @@
-// Renders an approach with ground truth into a bag and, if wanted, into a dataset folder.
+// Renders an approach with ground truth into a bag and, if wanted, into a dataset folder; or publishes it.
 
 #include <cmath>
 #include <exception>
 #include <iostream>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "camera_info.h"
 #include "command_line.h"
 #include "dataset_writer.h"
+#include "live_cameras.h"
 #include "progress_bar.h"
 #include "stereo_bag_writer.h"
 #include "uav_landing/simulator/approach_simulator.h"
@@ -19,6 +22,8 @@ using namespace uav_landing;
 
 struct Options {
   std::string config, output, dataset, camera = "stereo";
+  bool live = false, loop = false;
+  double speed = 1;
   std::optional<int> seed;
   std::optional<double> duration;
 };
@@ -27,6 +32,23 @@ struct Options {
 ros::Time stampOf(double time) {
   ros::Time stamp;
   return stamp.fromNSec(100000000000ULL + static_cast<uint64_t>(std::llround(time * 1e9)));
+}
+
+/// Publishes all frames as running cameras do, once or until ROS is shut down. A new round begins a
+/// minute of the clock later, so that it is another approach.
+void fly(const ApproachSimulator& simulator, LiveCameras& cameras, bool loop) {
+  if (!cameras.waitForSubscribers(stampOf(0))) return;
+  double start = 0;
+  do {
+    double time = start;
+    for (int i = 0; i < simulator.frames(); ++i) {
+      const ApproachSimulator::Frame frame = simulator.frame(i);
+      time = start + frame.time;
+      if (!cameras.publish(stampOf(time), frame.left, frame.right, frame.truth)) return;
+    }
+    start = time + 60;
+    cameras.setClock(stampOf(start));
+  } while (loop);
 }
 
 /// Renders all frames into the bag and the dataset (null: none).
@@ -52,6 +74,11 @@ Failure run(const Options& options) {
 
   const sensor_msgs::CameraInfo left = toCameraInfo(simulator->rig().left.calibration, {});
   const sensor_msgs::CameraInfo right = toCameraInfo(simulator->rig().right.calibration, {});
+  if (options.live) {
+    LiveCameras cameras(options.camera, left, right, options.speed);
+    fly(*simulator, cameras, options.loop);
+    return {};
+  }
   std::optional<DatasetWriter> dataset;
   if (!options.dataset.empty()) {
     dataset.emplace(options.dataset);
@@ -70,8 +97,16 @@ int main(int argc, char** argv) {
   CLI::App app("Renders the approach of a stereo rig to a runway, with ground truth.", "simulate_approach");
   Options options;
   app.add_option("--config", options.config, "what to simulate, see config/simulator/")->required();
-  app.add_option("--output", options.output, "bag to write")->required();
-  app.add_option("--dataset", options.dataset, "write this dataset folder, too");
+  auto* output = app.add_option_group("output", "one of them")->require_option(1);
+  output->add_option("--output", options.output, "bag to write");
+  auto* live = output->add_flag("--live", options.live,
+                                "publish as running cameras do, with a clock, once they have subscribers");
+  app.add_option("--dataset", options.dataset, "write this dataset folder, too")->excludes(live);
+  app.add_flag("--loop", options.loop, "with --live: fly the approach again and again")->needs(live);
+  app.add_option("--speed", options.speed, "with --live: seconds of the clock in a second, at most")
+      ->needs(live)
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 100.0));
   app.add_option("--camera", options.camera, "namespace of the camera topics")
       ->capture_default_str()
       ->check(isCameraName());
@@ -79,11 +114,17 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 1000000000));
   app.add_option("--duration", options.duration, "instead of the config's path/duration, s")
       ->check(CLI::Range(0.0, 3600.0));
-  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  // roslaunch appends its own arguments, such as __name:=cameras.
+  std::vector<std::string> arguments;
+  ros::removeROSArgs(argc, argv, arguments);
+  std::vector<char*> own;
+  for (std::string& argument : arguments) own.push_back(argument.data());
+  if (const auto status = parseCommandLine(app, static_cast<int>(own.size()), own.data())) return *status;
   try {
+    if (options.live) ros::init(argc, argv, "simulate_approach");
     if (const Failure failure = run(options)) return inputUnusable(app, failure.detail);
   } catch (const std::exception& error) {
-    return inputUnusable(app, options.output + ": " + error.what());
+    return inputUnusable(app, (options.live ? "" : options.output + ": ") + error.what());
   }
   return kDone;
 }

@@ -61,12 +61,15 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   return message;
 }
 
+std::string opticalFrame(const std::string& camera, const std::string& side) {
+  return boost::replace_all_copy(camera, "/", "_") + "_" + side + "_optical_frame";
+}
+
 StereoBagWriter::StereoBagWriter(const std::string& path, const std::string& camera,
                                  const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right)
     : path_(path), temporary_path_(path + ".active"), camera_(camera), left_(left), right_(right) {
-  const std::string prefix = boost::replace_all_copy(camera, "/", "_");
-  left_.header.frame_id = prefix + "_left_optical_frame";
-  right_.header.frame_id = prefix + "_right_optical_frame";
+  left_.header.frame_id = opticalFrame(camera, "left");
+  right_.header.frame_id = opticalFrame(camera, "right");
   bag_.open(temporary_path_, rosbag::bagmode::Write);
 }
 

@@ -18,13 +18,16 @@ namespace uav_landing {
 LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& left, const ros::Time& stamp,
                              const std::string& left_frame);
 
+/// frame_id of a simulated or converted camera: slashes of the namespace become underscores.
+std::string opticalFrame(const std::string& camera, const std::string& side);
+
 /// Writes image pairs with their truth to a bag, the way a stereo camera driver would be recorded:
 /// /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate. Everything goes to
 /// "<path>.active" first; finish() gives it its name, without it the file is removed.
 class StereoBagWriter {
  public:
   /// Opens the bag; throws rosbag::BagException when that is not possible. camera: namespace, without slashes
-  /// at the ends; its slashes become underscores in the frame names "CAMERA_left_optical_frame".
+  /// at the ends.
   StereoBagWriter(const std::string& path, const std::string& camera, const sensor_msgs::CameraInfo& left,
                   const sensor_msgs::CameraInfo& right);
   ~StereoBagWriter();

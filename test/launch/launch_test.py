@@ -81,8 +81,12 @@ class Listener:
         self.subscriber.unregister()
 
 
+def launch_file(name, *arguments):
+    return Process("roslaunch", "uav_landing", name, *arguments)
+
+
 def launch(*arguments):
-    return Process("roslaunch", "uav_landing", "stereo.launch", "complaint_period:=0.5", *arguments)
+    return launch_file("stereo.launch", "complaint_period:=0.5", *arguments)
 
 
 def chain_is_connected():

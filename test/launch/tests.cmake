@@ -4,3 +4,5 @@ uav_landing_add_rostest(test/launch/launch.test SOURCES test/launch/launch_test.
 uav_landing_add_rostest(test/launch/autopilot.test SOURCES test/launch/autopilot_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach)
 uav_landing_add_rostest(test/launch/diagnostics.test SOURCES test/launch/diagnostics_test.py DEPENDENCIES uav_landing_nodelets)
+uav_landing_add_rostest(test/launch/simulate.test SOURCES test/launch/simulate_test.py
+  DEPENDENCIES uav_landing_nodelets simulate_approach)

@@ -1,0 +1,81 @@
+#include "live_cameras.h"
+
+#include <cv_bridge/cv_bridge.h>
+#include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/Image.h>
+#include <sensor_msgs/image_encodings.h>
+
+#include <algorithm>
+
+#include "stereo_bag_writer.h"
+
+namespace uav_landing {
+namespace {
+
+const ros::Duration kTick(0.01);  // of the clock
+constexpr uint32_t kQueue = 10;
+
+}  // namespace
+
+LiveCameras::LiveCameras(const std::string& camera, const sensor_msgs::CameraInfo& left,
+                         const sensor_msgs::CameraInfo& right, double speed)
+    : speed_(speed),
+      left_(advertise("/" + camera + "/left", opticalFrame(camera, "left"), left)),
+      right_(advertise("/" + camera + "/right", opticalFrame(camera, "right"), right)),
+      truth_(handle_.advertise<LandingEstimate>("/truth/landing_estimate", kQueue)),
+      clock_(handle_.advertise<rosgraph_msgs::Clock>("/clock", kQueue)) {
+  handle_.setParam("/use_sim_time", true);
+}
+
+LiveCameras::Camera LiveCameras::advertise(const std::string& topic, const std::string& frame,
+                                           const sensor_msgs::CameraInfo& calibration) {
+  Camera camera{handle_.advertise<sensor_msgs::Image>(topic + "/image_raw", kQueue),
+                handle_.advertise<sensor_msgs::CameraInfo>(topic + "/camera_info", kQueue), calibration};
+  camera.calibration.header.frame_id = frame;
+  return camera;
+}
+
+bool LiveCameras::waitForSubscribers(const ros::Time& start) {
+  while (ros::ok()) {
+    const bool seen = left_.image.getNumSubscribers() > 0 && right_.image.getNumSubscribers() > 0 &&
+                      left_.info.getNumSubscribers() > 0 && right_.info.getNumSubscribers() > 0;
+    if (seen) return true;
+    setClock(start);
+    ros::WallDuration(kTick.toSec()).sleep();
+  }
+  return false;
+}
+
+bool LiveCameras::publish(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right,
+                          const Truth& truth) {
+  if (!runClock(stamp)) return false;
+  publish(left_, stamp, left);
+  publish(right_, stamp, right);
+  truth_.publish(truthMessage(truth, left_.calibration, stamp, left_.calibration.header.frame_id));
+  return true;
+}
+
+void LiveCameras::publish(Camera& camera, const ros::Time& stamp, const cv::Mat& image) {
+  camera.calibration.header.stamp = stamp;
+  camera.info.publish(camera.calibration);
+  camera.image.publish(
+      cv_bridge::CvImage(camera.calibration.header, sensor_msgs::image_encodings::MONO8, image).toImageMsg());
+}
+
+void LiveCameras::setClock(const ros::Time& now) {
+  rosgraph_msgs::Clock clock;
+  clock.clock = now_.emplace(now);
+  clock_.publish(clock);
+}
+
+bool LiveCameras::runClock(const ros::Time& until) {
+  if (!now_) setClock(until);
+  while (ros::ok() && *now_ < until) {
+    const ros::Duration step = std::min(kTick, until - *now_);
+    ros::WallDuration(step.toSec() / speed_).sleep();
+    setClock(*now_ + step);
+  }
+  return ros::ok();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,47 @@
+#!/usr/bin/python3
+"""simulate.launch: cameras that run, a clock that never goes ahead of them, and an estimate that agrees with the truth."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rospy
+import yaml
+from launch_test import SOURCE_DIR, Listener, eventually, launch_file
+from rosgraph_msgs.msg import Clock
+from uav_landing.msg import LandingEstimate
+
+
+class SimulateTest(unittest.TestCase):
+    def test_estimate_agrees_with_the_truth_and_the_clock_goes_on(self):
+        clock, truth = Listener("/clock", Clock), Listener("/truth/landing_estimate", LandingEstimate)
+        estimates = Listener("/uav_landing/landing_estimate", LandingEstimate)
+        with tempfile.TemporaryDirectory() as folder:
+            config = yaml.safe_load((SOURCE_DIR / "config/simulator/lab.yaml").read_text())
+            config["path"].update(duration=3)
+            file = Path(folder) / "approach.yaml"
+            file.write_text(yaml.safe_dump(config))
+            with launch_file("simulate.launch", f"simulation:={file}", "loop:=true") as launched:
+                # Into the second round, which goes on in time.
+                self.assertTrue(eventually(lambda: len(truth.all()) > 40), launched.text())
+                last = truth.all()[39].header.stamp
+                self.assertTrue(eventually(lambda: any(e.header.stamp >= last for e in estimates.all())), launched.text())
+        stamps = [message.header.stamp for message in truth.all()]
+        self.assertEqual(stamps, sorted(set(stamps)))
+        self.assertEqual(stamps[0], rospy.Time(100))
+        self.assertEqual((stamps[1] - stamps[0]).to_sec(), 0.1)
+        times = [message.clock for message in clock.all()]
+        self.assertEqual(times, sorted(times))
+        heights = {message.header.stamp: message.height for message in truth.all()}
+        valid = [e for e in estimates.all() if e.height_valid and e.header.stamp in heights]
+        self.assertGreater(len(valid), 15)
+        for estimate in valid:
+            self.assertAlmostEqual(estimate.height, heights[estimate.header.stamp], delta=0.02)
+
+
+if __name__ == "__main__":
+    import rostest
+
+    rospy.init_node("simulate_test", disable_rostime=True)
+    rostest.rosrun("uav_landing", "simulate", SimulateTest, sys.argv)
