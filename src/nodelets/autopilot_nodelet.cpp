@@ -2,13 +2,15 @@
 
 #include "autopilot_messages.h"
 #include "pairing.h"
+#include "reconfigure_server.h"
 #include "stage_nodelet.h"
 
 namespace uav_landing {
 
 /// What an autopilot may fuse: silent whenever there is nothing valid to say.
 ///
-/// Parameters: AutopilotParameters and the common ones of NodeParameters. Subscribes height (Range) and pose
+/// Parameters: AutopilotParameters, which dynamic_reconfigure may change in flight, and the common ones of
+/// NodeParameters. Subscribes height (Range) and pose
 /// (PoseWithCovarianceStamped) of kalman_height. Publishes autopilot/range (Range, along the aircraft's down
 /// axis) and autopilot/pose (PoseWithCovarianceStamped, east-north-up), both with the image's stamp.
 class AutopilotNodelet : public StageNodelet {
@@ -21,6 +23,9 @@ class AutopilotNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<AutopilotParameters>();
+    reconfigure_ = std::make_unique<ReconfigureServer<AutopilotParameters>>(
+        getPrivateNodeHandle(), parameters_,
+        [this](const AutopilotParameters& changed) { parameters_ = changed; });
     pairing_ =
         std::make_unique<Inputs>(exactPairing(), resolved({"height", "pose"}),
                                  [this](const auto& height, const auto& pose) { work(*height, *pose); });
@@ -61,6 +66,7 @@ class AutopilotNodelet : public StageNodelet {
   }
 
   AutopilotParameters parameters_;
+  std::unique_ptr<ReconfigureServer<AutopilotParameters>> reconfigure_;
   std::unique_ptr<Inputs> pairing_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher range_publisher_, pose_publisher_;

@@ -7,6 +7,7 @@
 #include "conversions.h"
 #include "image_input.h"
 #include "pairing.h"
+#include "reconfigure_server.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
 #include "uav_landing/overlay.h"
@@ -16,7 +17,8 @@ namespace uav_landing {
 
 /// Draws what the other nodelets found over the left image.
 ///
-/// Parameters: OverlayParameters and the common ones of NodeParameters.
+/// Parameters: OverlayParameters, which dynamic_reconfigure may change in flight, and the common ones of
+/// NodeParameters.
 /// Subscribes left/image_rect, {left,right}/camera_info, stereo_depth, approach_angle and landing_estimate,
 /// while somebody wants the output. Publishes overlay/image (bgr8) with the stamp of the left image.
 class OverlayNodelet : public StageNodelet {
@@ -30,6 +32,9 @@ class OverlayNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<OverlayParameters>();
+    reconfigure_ = std::make_unique<ReconfigureServer<OverlayParameters>>(
+        getPrivateNodeHandle(), parameters_,
+        [this](const OverlayParameters& changed) { parameters_ = changed; });
     transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
     const image_transport::SubscriberStatusCallback changed =
         [this](const image_transport::SingleSubscriberPublisher&) { updateSubscription(); };
@@ -79,6 +84,7 @@ class OverlayNodelet : public StageNodelet {
   }
 
   OverlayParameters parameters_;
+  std::unique_ptr<ReconfigureServer<OverlayParameters>> reconfigure_;
   std::unique_ptr<image_transport::ImageTransport> transport_;
   image_transport::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;

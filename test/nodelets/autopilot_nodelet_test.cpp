@@ -1,3 +1,6 @@
+#include <dynamic_reconfigure/Config.h>
+#include <dynamic_reconfigure/ConfigDescription.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
 
@@ -73,6 +76,38 @@ TEST_F(AutopilotNodeletTest, SendsTheRangeAloneBeforeTheRunwayIsFound) {
   publish(0.1, 5, 1);
   ASSERT_TRUE(ranges_.waitFor(2) && poses_.waitFor(1));
   EXPECT_EQ(poses_.messages()[0]->header.stamp, ros::Time(1000.1));
+}
+
+TEST_F(AutopilotNodeletTest, DynamicReconfigureChangesParametersInFlight) {
+  setParameter("autopilot", "max_rate", 20.0);
+  Listener<dynamic_reconfigure::ConfigDescription> descriptions(
+      "/uav_landing/autopilot/parameter_descriptions");
+  Listener<dynamic_reconfigure::Config> updates("/uav_landing/autopilot/parameter_updates");
+  start();
+  ASSERT_TRUE(descriptions.waitFor(1));
+  const auto& group = descriptions.messages()[0]->groups.at(0);
+  ASSERT_EQ(group.parameters.size(), 5u);
+  EXPECT_EQ(group.parameters[0].name, "max_range");
+  EXPECT_EQ(group.parameters[0].type, "double");
+  EXPECT_EQ(descriptions.messages()[0]->max.doubles.at(0).value, 655);
+  // What the parameter server gave is told at once.
+  ASSERT_TRUE(updates.waitFor(1));
+  EXPECT_EQ(updates.messages()[0]->doubles.at(1).value, 20);
+
+  dynamic_reconfigure::Reconfigure request;
+  request.request.config.doubles.resize(2);
+  request.request.config.doubles[0].name = "max_range";
+  request.request.config.doubles[0].value = 4.5;
+  request.request.config.doubles[1].name = "runway_heading_deg";
+  request.request.config.doubles[1].value = 400;
+  ASSERT_TRUE(ros::service::call("/uav_landing/autopilot/set_parameters", request));
+  EXPECT_EQ(request.response.config.doubles.at(0).value, 4.5);
+  EXPECT_EQ(request.response.config.doubles.at(1).value, 20) << "not asked for";
+  EXPECT_EQ(request.response.config.doubles.at(3).value, 360) << "the nearest that is in range";
+  publish(0, 5);
+  publish(0.1, 4);
+  ASSERT_TRUE(ranges_.waitFor(1));
+  EXPECT_FLOAT_EQ(ranges_.messages()[0]->range, 4) << "5 m is more than the new max_range";
 }
 
 TEST_F(AutopilotNodeletTest, RefusesARangeThatTheMessageCannotHold) {

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <dynamic_reconfigure/Config.h>
+#include <dynamic_reconfigure/ConfigDescription.h>
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace uav_landing {
+
+/// Names, ranges and meanings of a parameter struct (visit() as in uav_landing/parameters.h) as
+/// dynamic_reconfigure tells them to its clients; the values are its defaults.
+class ReconfigureDescription {
+ public:
+  void number(const char* name, double value, double min, double max, const char* unit, const char* meaning);
+  void number(const char* name, int value, int min, int max, const char* unit, const char* meaning);
+  void flag(const char* name, bool value, const char* meaning);
+  void text(const char* name, const std::string& value, const char* meaning);
+
+  const dynamic_reconfigure::ConfigDescription& message() const { return description_; }
+
+ private:
+  void add(const char* name, const char* type, const std::string& meaning);
+
+  dynamic_reconfigure::ConfigDescription description_;
+};
+
+/// Takes the values that a request gives; what it does not name stays.
+class ReconfigureRequestReader {
+ public:
+  explicit ReconfigureRequestReader(const dynamic_reconfigure::Config& request) : request_(request) {}
+  void number(const char* name, double& value, double min, double max, const char* unit, const char* meaning);
+  void number(const char* name, int& value, int min, int max, const char* unit, const char* meaning);
+  void flag(const char* name, bool& value, const char* meaning);
+  void text(const char* name, std::string& value, const char* meaning);
+
+ private:
+  const dynamic_reconfigure::Config& request_;
+};
+
+/// The server side of dynamic_reconfigure for a parameter struct, from the same visit() that reads and
+/// documents it; values out of range become the nearest that is not, as clients expect. Topics and service
+/// are private names of the handle. Callbacks run where those of the handle do.
+template <class Parameters>
+class ReconfigureServer {
+ public:
+  /// changed is called with every new set of parameters.
+  ReconfigureServer(const ros::NodeHandle& private_handle, const Parameters& parameters,
+                    std::function<void(const Parameters&)> changed)
+      : handle_(private_handle),
+        parameters_(parameters),
+        changed_(std::move(changed)),
+        descriptions_(
+            handle_.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true)),
+        updates_(handle_.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true)) {
+    ReconfigureDescription description;
+    Parameters().visit(description);
+    descriptions_.publish(description.message());
+    updates_.publish(current());
+    service_ = handle_.advertiseService("set_parameters", &ReconfigureServer::set, this);
+  }
+
+ private:
+  dynamic_reconfigure::Config current() {
+    ReconfigureDescription description;
+    parameters_.visit(description);
+    return description.message().dflt;
+  }
+
+  bool set(dynamic_reconfigure::ReconfigureRequest& request,
+           dynamic_reconfigure::ReconfigureResponse& response) {
+    parameters_.visit(ReconfigureRequestReader(request.config));
+    changed_(parameters_);
+    response.config = current();
+    updates_.publish(response.config);
+    return true;
+  }
+
+  ros::NodeHandle handle_;
+  Parameters parameters_;
+  const std::function<void(const Parameters&)> changed_;
+  ros::Publisher descriptions_, updates_;
+  ros::ServiceServer service_;
+};
+
+}  // namespace uav_landing
