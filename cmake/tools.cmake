@@ -25,11 +25,15 @@ target_link_libraries(process_bag PRIVATE uav_landing_tools)
 add_executable(simulate_campaign src/tools/campaign_csv.cpp src/tools/simulate_campaign.cpp)
 target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
 
+add_executable(inject_faults
+  src/tools/fault_effects.cpp src/tools/fault_score.cpp src/tools/faults.cpp src/tools/inject_faults.cpp)
+target_link_libraries(inject_faults PRIVATE uav_landing_tools)
+
 # rosrun looks everywhere in the source folder but in its folder build/, which is where a plain cmake build puts the
 # programs: links in bin/ lead it there. In a catkin workspace there is nothing to do.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(MAKE_DIRECTORY ${PROJECT_SOURCE_DIR}/bin)
-  foreach(program dataset_to_bag measure_noise_bound process_bag simulate_approach simulate_campaign)
+  foreach(program dataset_to_bag inject_faults measure_noise_bound process_bag simulate_approach simulate_campaign)
     file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
   endforeach()
 endif()

@@ -15,9 +15,12 @@ namespace uav_landing {
 /// caller.
 class AttitudeFilter {
  public:
+  static constexpr double kGate = 25.0;  ///< squared sigmas of the two angles together
+
   struct Estimate {
     Eigen::Vector3d normal;
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
+    double ratio = kUnknown;     ///< squared normalised difference to the pairs before
     bool agrees = true;          ///< the pair's normal is one that the pairs before and the rotation allow
   };
 

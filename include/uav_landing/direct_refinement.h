@@ -27,6 +27,9 @@ class DirectRefinement {
   /// or when most of what they show is not on one plane.
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
                             const PlaneLimits& limits, double bias_stddev, const RigRotation& rows);
+  /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
+  /// last refinement; NaN when it had fewer than 20 such blocks.
+  double agreement() const;
   /// What the last refinement was fitted to: one disparity for each block.
   const std::vector<DisparitySample>& samples() const;
 

@@ -3,10 +3,13 @@
 #include <optional>
 
 #include "uav_landing/attitude_filter.h"
+#include "uav_landing/consistency_tests.h"
 #include "uav_landing/height_filter.h"
+#include "uav_landing/height_memory.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/position_filter.h"
 #include "uav_landing/rig_rotation_filter.h"
+#include "uav_landing/solution_separation.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/timings.h"
 #include "uav_landing/width_height.h"
@@ -43,9 +46,13 @@ class KalmanHeightStage {
     GroundPlane plane;
     Normal normal;  ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
-        Eigen::Matrix3d::Zero();                    ///< share of the plane's covariance common to all pairs
+        Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
+    GroundPlane alone;            ///< by stereo alone: without the vanishing point
+    Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
     double points_height = kUnknown;                ///< m
+    bool by_width = false;                          ///< the height is from the runway's width
+    SolutionSeparation::Measurements without;       ///< the height with each source left out
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
@@ -58,6 +65,20 @@ class KalmanHeightStage {
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   void reportRig(LandingResult& result) const;
+  /// What the pair measures without each source.
+  void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                       Reconstruction& reconstruction) const;
+  void leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                       Reconstruction& reconstruction) const;
+  /// Tests of this pair's own sources. A failed one makes the pair give no height.
+  void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                Reconstruction& reconstruction, LandingResult& result);
+  void testRegions(const Reconstruction& reconstruction);
+  /// The published height against the one remembered.
+  void testMemory(double T, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                  LandingResult& result);
+  void reportProtection(LandingResult& result) const;
+  void refuse(LandingResult& result, const Failure& failure) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
   /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
@@ -86,6 +107,10 @@ class KalmanHeightStage {
   PositionFilter position_;
   RigRotationFilter rig_rotation_;
   WidthHeight width_;
+  SolutionSeparation separation_;
+  ConsistencyTests tests_;
+  RigChange rig_change_;
+  HeightMemory memory_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s

@@ -198,6 +198,13 @@ struct KalmanHeightParameters {
   bool rig_watch = true;
   double rig_memory = 60.0;
   double max_rig_rotation_deg = 0.2;
+  bool integrity_monitor = true;
+  double integrity_risk = 1e-5;
+  double fault_probability = 1e-3;
+  double false_alarm_rate = 1e-5;
+  double alert_limit = 0.15;
+  double alert_limit_relative = 0.05;
+  double unwatched_scale_error = 0.02;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -242,6 +249,22 @@ struct KalmanHeightParameters {
              "for how long what was seen of the rig's rotation counts; shorter follows a rig that moves");
     v.number("max_rig_rotation_deg", max_rig_rotation_deg, 0.01, 5.0, "deg",
              "a rotation of the right camera that is certainly beyond this is not valid");
+    v.flag("integrity_monitor", integrity_monitor,
+           "test the sources of the height against each other and compute the height's protection level");
+    v.number("integrity_risk", integrity_risk, 1e-12, 0.1, "per pair",
+             "probability that the error exceeds the protection level");
+    v.number("fault_probability", fault_probability, 1e-9, 1.0, "per pair",
+             "prior probability that one source is wrong and no test says so; 1: the protection level holds "
+             "with integrity_risk even then");
+    v.number("false_alarm_rate", false_alarm_rate, 1e-12, 0.1, "per test and pair",
+             "probability that a test fails without a fault, as far as the claimed variances are true");
+    v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
+             "the height is not valid when its protection level exceeds this and alert_limit_relative");
+    v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height", "see alert_limit");
+    v.number(
+        "unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
+        "largest error of a scale common to all heights, such as that of the baseline, which nothing can "
+        "see: in the protection level by assumption");
   }
 };
 

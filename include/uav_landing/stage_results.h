@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "uav_landing/consistency_test.h"
 #include "uav_landing/failure.h"
 #include "uav_landing/ground_plane.h"
 
@@ -48,6 +50,11 @@ struct StereoDepthResult {
   RigRotation vertical_rotation;
   /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
   double disparity_bias_stddev = 0;
+  /// Share of the image blocks over the ground that look alike in both images and lie on one plane; unknown
+  /// without direct refinement.
+  double photometric_agreement = kUnknown;
+  /// An image is the very one of the pair before, bit by bit: sensors have noise, a frozen driver has not.
+  bool left_repeated = false, right_repeated = false;
 };
 
 /// Result of the monocular branch (paper 2) for one pair. Mirrors ApproachAngle.msg.
@@ -132,8 +139,12 @@ struct LandingResult {
   double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
   bool rejected = false;                                           ///< the raw height failed the gate
   int consecutive_rejections = 0;
-  int resets = 0;            ///< filter resets since start
-  RigRotation rig_rotation;  ///< unknown when rig_watch is off
+  int resets = 0;                             ///< filter resets since start
+  RigRotation rig_rotation;                   ///< unknown when rig_watch is off
+  double height_protection_level = kUnknown;  ///< m, see solution_separation.h
+  double height_alert_limit = kUnknown;       ///< m, what the protection level may be
+  std::string protection_source;              ///< what the protection level is because of
+  std::vector<TestResult> tests;              ///< of the sources against each other; empty when switched off
 };
 
 }  // namespace uav_landing

@@ -10,7 +10,6 @@ namespace {
 constexpr double kMemory = 1.0;          // s
 constexpr double kStampRounding = 1e-3;  // s
 constexpr double kPatience = 0.5;        // s, with normals that contradict
-constexpr double kGate = 25.0;           // squared sigmas of the two angles together
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
@@ -58,7 +57,8 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
     const Eigen::Matrix2d S = P + basis.transpose() * covariance * basis;
     const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
-    estimate_->agrees = innovation.dot(allowed.inverse() * innovation) <= kGate;
+    estimate_->ratio = innovation.dot(allowed.inverse() * innovation);
+    estimate_->agrees = estimate_->ratio <= kGate;
     if (estimate_->agrees) {
       agreed_ = stamp;
       const Eigen::Matrix2d gain = P * S.inverse();
@@ -69,7 +69,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     if (stamp - agreed_ < kPatience) return *estimate_;
   }
   agreed_ = stamp;
-  estimate_ = Estimate{normal, covariance};
+  estimate_ = Estimate{normal, covariance, kUnknown, true};
   return *estimate_;
 }
 

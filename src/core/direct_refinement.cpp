@@ -9,6 +9,7 @@
 
 #include "photometric_blocks.h"
 #include "uav_landing/rig_rotation.h"
+#include "uav_landing/stage_results.h"
 
 namespace uav_landing {
 namespace {
@@ -77,6 +78,7 @@ struct DirectRefinement::Implementation {
   std::vector<DisparitySample> samples;
   std::vector<Eigen::RowVector3d> leaks;  // of each sample: its disparity's derivative by the rows' rotation
   int informative = 0;                    // blocks that show anything
+  int agreeing = 0;                       // of them, look alike and are on the plane
 
   Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
       : rig(r), blocks(left_mask, right_mask) {}
@@ -128,6 +130,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
   Implementation& own = *implementation_;
   own.blocks.choose(left, own.rig, ShiftModel(own.rig, start), kBlocks);
   Eigen::Vector3d g = start;
+  own.agreeing = 0;
   for (int step = 0;; ++step) {
     own.measure(right, g, rows.w);
     if (static_cast<int>(own.samples.size()) < limits.min_points) {
@@ -140,6 +143,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
       for (DisparitySample& sample : own.samples) sample.stddev = std::hypot(sample.stddev, kStartStddev);
     }
     Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
+    own.agreeing = fit ? fit->count : 0;
     if (fit && fit->count < kLeastShare * own.informative) {
       return tl::make_unexpected(
           Failure{Reason::kNoPlane, std::to_string(fit->count) + " of " + std::to_string(own.informative) +
@@ -154,6 +158,12 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     }
     g = fit->plane.g;
   }
+}
+
+double DirectRefinement::agreement() const {
+  constexpr int kFewest = 20;
+  const Implementation& own = *implementation_;
+  return own.informative < kFewest ? kUnknown : static_cast<double>(own.agreeing) / own.informative;
 }
 
 const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }

@@ -72,24 +72,32 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       parameters_(parameters),
       filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
       rig_rotation_(rig, parameters.rig_memory),
-      width_(parameters.known_runway_width) {}
+      width_(parameters.known_runway_width),
+      separation_(parameters),
+      tests_(parameters.false_alarm_rate) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
   timings_.clear();
   const StereoDepthResult stereo = checked(rig_, given_stereo);
   const ApproachAngleResult approach = checked(given_approach);
+  tests_.begin();
   LandingResult result;
   result.stamp = stereo.stamp;
+  const double T = last_stamp_ ? stereo.stamp - *last_stamp_ : 0;
   Reconstruction reconstruction = reconstruct(stereo, approach);
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     result.failure = followTime(stereo.stamp);
     averageAttitude(stereo.stamp, approach, reconstruction, result);
     useWidth(approach.runway, reconstruction, result);
+    leaveOutSources(stereo, approach, reconstruction);
+    testPair(T, stereo, approach, reconstruction, result);
     if (!result.failure) result.failure = reconstruction.failure;
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     reportHeight(result);
+    testMemory(T, reconstruction, approach, result);
+    reportProtection(result);
   }
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
   reportAngle(approach, corrected ? &reconstruction.plane : nullptr,
@@ -103,6 +111,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                       result.height_valid ? result.height : kUnknown, result.height_variance, result);
   }
   reportRig(result);
+  if (parameters_.integrity_monitor) result.tests = tests_.finish();
   return result;
 }
 
@@ -123,7 +132,9 @@ void KalmanHeightStage::reset() {
   width_variance_ = 0;
   rig_rotation_.reset();
   rig_variance_ = 0;
+  rig_change_.reset();
   if (filter_.initialised()) loseTrack();
+  memory_.reset();
   last_stamp_.reset();
   lost_ = false;
 }
@@ -149,6 +160,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
       reconstruction.height = seen->height;
       reconstruction.variance = result.width_height_variance;
       width_variance_ = seen->common;
+      reconstruction.by_width = true;
     } else if (by_stereo && width_.independent()) {
       const double difference = seen->height - reconstruction.height;
       const double sum = seen->variance + reconstruction.variance;
@@ -201,6 +213,8 @@ void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const Approac
   plane = withSkew(rig_, stereo, approach.step);
   common = stereo.row_covariance;
   common(2, 2) += std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  reconstruction.alone = plane;
+  reconstruction.alone_common = common;
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
   // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
   // contains the plane already.
@@ -235,8 +249,10 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
     estimate = attitude_.update(stamp, plane.normal(), own, approach.step);
   }
   average = {estimate.normal, estimate.covariance + common};
-  if (estimate.agrees || reconstruction.failure) return;
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
+  if (std::isfinite(estimate.ratio))
+    tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
+  if (estimate.agrees || reconstruction.failure) return;
   reconstruction.failure = {Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
                                                     " deg against the pairs before and the rotation since")};
   result.raw_height = reconstruction.height;
@@ -263,9 +279,15 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
   without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
   const Eigen::Vector3d direction =
       parameters_.fuse_vanishing_point ? approach.vanishing_direction : Eigen::Vector3d::Constant(kUnknown);
-  const RigRotationFilter::Corrected corrected =
-      rig_rotation_.correct(without, planeByRotation(rig_, stereo.points, without.g), direction,
-                            approach.vanishing_covariance, parameters_.vanishing_point_gate);
+  const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);
+  const RigRotation rotation = rig_rotation_.rotation();
+  if (rotation.known()) {
+    const Eigen::Matrix3d by_rotation = A * rotation.covariance * A.transpose();
+    reconstruction.alone_common = by_rotation + stereo.row_covariance;
+    reconstruction.alone = {without.g - A * rotation.w, without.covariance + by_rotation};
+  }
+  const RigRotationFilter::Corrected corrected = rig_rotation_.correct(
+      without, A, direction, approach.vanishing_covariance, parameters_.vanishing_point_gate);
   reconstruction.plane = corrected.plane;
   reconstruction.common = corrected.common + stereo.row_covariance;
   rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();
@@ -335,12 +357,16 @@ Failure KalmanHeightStage::followTime(double stamp) {
     return {Reason::kTimeJump, text("the stamp went ", T < 0 ? "back" : "ahead", " by ", std::abs(T), " s")};
   }
   last_stamp_ = stamp;
-  if (filter_.initialised()) filter_.predict(T);
+  if (filter_.initialised()) {
+    filter_.predict(T);
+    separation_.predict(T);
+  }
   return {};
 }
 
 void KalmanHeightStage::start(double stamp, const Reconstruction& reconstruction) {
   filter_.initialise(reconstruction.height, reconstruction.variance);
+  if (parameters_.integrity_monitor) separation_.start(reconstruction.without, reconstruction.height);
   confirmations_ = 0;
   accept(stamp);
 }
@@ -355,6 +381,7 @@ void KalmanHeightStage::accept(double stamp) {
 void KalmanHeightStage::loseTrack() {
   ++resets_;
   filter_.reset();
+  separation_.reset();
   confirmations_ = 0;
   consecutive_rejections_ = 0;
   lost_ = true;
@@ -394,8 +421,12 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   const HeightFilter::Update update = filter_.update(reconstruction.height, reconstruction.variance);
   result.innovation = update.innovation;
   result.innovation_variance = update.innovation_variance;
+  tests_.addRatio(Consistency::kInnovation, update.innovation,
+                  update.innovation * update.innovation / update.innovation_variance,
+                  parameters_.gate * parameters_.gate);
   if (update.accepted) {
     accept(stamp);
+    separation_.update(reconstruction.without);
     if (parameters_.use_motion && reconstruction.plane.valid()) updateSpeed(reconstruction, step);
     return;
   }
@@ -417,6 +448,7 @@ void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
       verticalSpeed(step, reconstruction.plane, reconstruction.height, reconstruction.variance,
                     parameters_.height_model_error, parameters_.acceleration_stddev);
   filter_.updateSpeed(measured.speed, measured.variance);
+  separation_.updateSpeed(measured.speed, measured.variance);
 }
 
 void KalmanHeightStage::reportHeight(LandingResult& result) const {

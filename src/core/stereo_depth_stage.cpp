@@ -34,6 +34,7 @@ struct StereoDepthStage::Implementation {
   bool has_last = false;
   double last_stamp = 0;
   bool started = false;
+  RepeatedImage left_repeated, right_repeated;
   int failures = 0, failed_searches = 0;
   bool looks_swapped = false;
   Timings timings;
@@ -61,6 +62,10 @@ struct StereoDepthStage::Implementation {
     started = true;
     last_stamp = stamp;
     result.failure = checkPair(model, left_image, right_image);
+    if (result.failure.reason != Reason::kInputInvalid) {
+      result.left_repeated = left_repeated.check(left_image);
+      result.right_repeated = right_repeated.check(right_image);
+    }
     if (!result.failure) estimate(left_image, right_image, result);
     failures = result.failure ? failures + 1 : 0;
     if (!result.failure) {
@@ -207,6 +212,7 @@ struct StereoDepthStage::Implementation {
     const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
                                                   limits, parameters.disparity_bias_stddev,
                                                   rows.residual(fine.rig, parameters.disparity_bias_stddev));
+    result.photometric_agreement = direct->agreement();
     if (!fit || !samePlane(fit->plane, result.plane)) return;
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
@@ -228,6 +234,8 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 void StereoDepthStage::reset() {
   implementation_->has_last = false;
   implementation_->rows.reset();
+  implementation_->left_repeated.reset();
+  implementation_->right_repeated.reset();
   implementation_->started = false;
 }
 

@@ -104,6 +104,14 @@ class KalmanHeightNodelet : public StageNodelet {
     constexpr const char* kNames[] = {"rig pitch (deg)", "rig yaw (deg)", "rig roll (deg)"};
     constexpr double kDegrees = 180 / M_PI;
     const std::lock_guard<std::mutex> lock(rig_mutex_);
+    status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
+                protection_source_.c_str());
+    status.add("filter resets", resets_);
+    for (const TestResult& test : test_results_) {
+      if (test.possible())
+        status.addf("test " + test.name, "%.3g of %.3g, %d failures in a row", test.ratio, test.limit,
+                    test.consecutive_failures);
+    }
     if (!rig_rotation_.known()) return;
     for (int i = 0; i < 3; ++i)
       status.addf(kNames[i], "%.4f +- %.4f", rig_rotation_.w[i] * kDegrees,
@@ -127,6 +135,11 @@ class KalmanHeightNodelet : public StageNodelet {
     {
       const std::lock_guard<std::mutex> lock(rig_mutex_);
       rig_rotation_ = camera.rig_rotation;
+      test_results_ = camera.tests;
+      protection_level_ = camera.height_protection_level;
+      alert_limit_ = camera.height_alert_limit;
+      protection_source_ = camera.protection_source;
+      resets_ = camera.resets;
     }
     report_.served(stereo.header.stamp, compute_ms, camera.failure.message());
     publish(stereo, compute_ms, camera, approach_result.step, left_info);
@@ -271,7 +284,12 @@ class KalmanHeightNodelet : public StageNodelet {
   ros::Time last_pair_, last_timeout_;  // by the ROS clock
   ros::Time last_stamp_;                // of the last pair
   std::mutex rig_mutex_;
-  RigRotation rig_rotation_;  // of the last pair, for the diagnostics
+  // Of the last pair, for the diagnostics.
+  RigRotation rig_rotation_;
+  std::vector<TestResult> test_results_;
+  double protection_level_ = kUnknown, alert_limit_ = kUnknown;
+  std::string protection_source_;
+  int resets_ = 0;
   bool valid_lately_ = false;
   std::string last_reason_;
 };

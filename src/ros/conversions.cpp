@@ -48,6 +48,29 @@ ApproachAngleResult::View toResult(const ImageLines& message) {
   return view;
 }
 
+ConsistencyTest toMessage(const TestResult& test) {
+  ConsistencyTest message;
+  message.name = test.name;
+  message.difference = test.difference;
+  message.variance = test.variance;
+  message.ratio = test.ratio;
+  message.limit = test.limit;
+  message.failed = test.failed();
+  message.consecutive_failures = static_cast<uint32_t>(test.consecutive_failures);
+  return message;
+}
+
+TestResult toResult(const ConsistencyTest& message) {
+  TestResult test;
+  test.name = message.name;
+  test.difference = message.difference;
+  test.variance = message.variance;
+  test.ratio = message.ratio;
+  test.limit = message.limit;
+  test.consecutive_failures = static_cast<int>(message.consecutive_failures);
+  return test;
+}
+
 Motion toMessage(const ApproachAngleResult::Motion& motion) {
   Motion message;
   message.reason = motion.failure.message();
@@ -145,6 +168,9 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.vertical_rotation.w, message.vertical_rotation);
   toArray(result.vertical_rotation.covariance, message.vertical_rotation_covariance);
   message.vertical_rotation_count = static_cast<uint32_t>(result.vertical_rotation.count);
+  message.photometric_agreement = result.photometric_agreement;
+  message.left_repeated = result.left_repeated;
+  message.right_repeated = result.right_repeated;
   message.from_search = result.from_search;
   message.skew = result.skew;
   message.compute_ms = compute_ms;
@@ -176,6 +202,9 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.vertical_rotation, result.vertical_rotation.w);
   fromArray(message.vertical_rotation_covariance, result.vertical_rotation.covariance);
   result.vertical_rotation.count = static_cast<int>(message.vertical_rotation_count);
+  result.photometric_agreement = message.photometric_agreement;
+  result.left_repeated = message.left_repeated;
+  result.right_repeated = message.right_repeated;
   result.from_search = message.from_search;
   result.skew = message.skew;
   return result;
@@ -269,7 +298,10 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.width_height_variance = result.width_height_variance;
   toArray(result.rig_rotation.w, message.rig_rotation);
   toArray(result.rig_rotation.covariance, message.rig_rotation_covariance);
-  message.height_protection_level = kUnknown;
+  message.height_protection_level = result.height_protection_level;
+  message.height_alert_limit = result.height_alert_limit;
+  message.protection_source = result.protection_source;
+  for (const TestResult& test : result.tests) message.tests.push_back(toMessage(test));
   message.skew = skew;
   message.compute_ms = compute_ms;
   return message;
@@ -316,6 +348,10 @@ LandingResult toResult(const LandingEstimate& message) {
   result.width_height_variance = message.width_height_variance;
   fromArray(message.rig_rotation, result.rig_rotation.w);
   fromArray(message.rig_rotation_covariance, result.rig_rotation.covariance);
+  result.height_protection_level = message.height_protection_level;
+  result.height_alert_limit = message.height_alert_limit;
+  result.protection_source = message.protection_source;
+  for (const ConsistencyTest& test : message.tests) result.tests.push_back(toResult(test));
   return result;
 }
 

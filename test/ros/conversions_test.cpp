@@ -89,6 +89,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.vertical_rotation.covariance);
   result.vertical_rotation.count = 99;
   result.disparity_bias_stddev = next();
+  result.photometric_agreement = next();
+  result.right_repeated = true;
 
   const StereoDepth message = toMessage(result, header(), 2.5);
   const StereoDepthResult back = toResult(message);
@@ -118,6 +120,9 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.vertical_rotation.covariance, result.vertical_rotation.covariance);
   EXPECT_EQ(back.vertical_rotation.count, 99);
   EXPECT_EQ(back.disparity_bias_stddev, result.disparity_bias_stddev);
+  EXPECT_EQ(back.photometric_agreement, result.photometric_agreement);
+  EXPECT_FALSE(back.left_repeated);
+  EXPECT_TRUE(back.right_repeated);
 }
 
 TEST(Conversions, CovariancesAreRowMajorInMessages) {
@@ -219,6 +224,17 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   result.resets = 2;
   fill(result.rig_rotation.w);
   fill(result.rig_rotation.covariance);
+  result.height_protection_level = 0.4;
+  result.height_alert_limit = 0.5;
+  result.protection_source = "near_region";
+  TestResult tilt;
+  tilt.name = "tilt";
+  tilt.difference = 2;
+  tilt.variance = 0.25;
+  tilt.ratio = 16;
+  tilt.limit = 9;
+  tilt.consecutive_failures = 3;
+  result.tests = {tilt};
 
   const LandingEstimate message = toMessage(result, header(), "base_link", 0.002, 3.5);
   // The message of what comes back shows every field once more.
@@ -240,11 +256,15 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_EQ(message.x, result.x);
   EXPECT_EQ(message.y_variance, result.y_variance);
   EXPECT_FALSE(toMessage(LandingResult(), header(), "base_link", 0, 0).x_known);
-  auto comparable = [](LandingEstimate estimate) {
-    estimate.height_protection_level = 0;  // NaN equals nothing
-    return estimate;
-  };
-  EXPECT_EQ(comparable(again), comparable(message));
+  EXPECT_EQ(message.height_protection_level, 0.4);
+  EXPECT_EQ(message.height_alert_limit, 0.5);
+  EXPECT_EQ(message.protection_source, "near_region");
+  ASSERT_EQ(message.tests.size(), 1u);
+  EXPECT_EQ(message.tests[0].name, "tilt");
+  EXPECT_EQ(message.tests[0].ratio, 16);
+  EXPECT_EQ(message.tests[0].consecutive_failures, 3u);
+  EXPECT_TRUE(message.tests[0].failed);
+  EXPECT_EQ(again, message);
 }
 
 TEST(Conversions, EveryReasonIsFoundByItsName) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace uav_landing {
+
+/// A test of one source of knowledge against the others on one pair: what they differ by, normalised by what
+/// they may differ by. The ratio is compared with a chi-square limit, so that the rate of false alarms is
+/// known as far as the variances are true.
+struct TestResult {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  std::string name;
+  double difference = kNone;  ///< in the test's own unit (docs/integrity.md)
+  double variance = kNone;    ///< that the difference has without a fault, unit^2
+  double ratio = kNone;       ///< squared normalised difference; NaN when the test was not possible
+  double limit = kNone;       ///< chi-square limit of the ratio
+  int consecutive_failures = 0;
+
+  bool possible() const { return std::isfinite(ratio); }
+  bool failed() const { return ratio > limit; }
+};
+
+/// Limit that the sum of squares of so many independent standard normal errors exceeds with this probability.
+double chiSquareLimit(double false_alarm_rate, int degrees_of_freedom);
+
+/// Factor k for which a normal error exceeds k sigma, to either side, with this probability.
+double normalQuantile(double probability);
+
+/// "tilt image_regions", or "" when none failed.
+std::string failedTests(const std::vector<TestResult>& tests);
+
+}  // namespace uav_landing

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "uav_landing/consistency_test.h"
+#include "uav_landing/stage_results.h"
+
+namespace uav_landing {
+
+/// Which test, in the order in which they are reported. docs/integrity.md says what each compares.
+enum class Consistency {
+  kRepeatedImage,
+  kPhotometric,
+  kRigRotation,
+  kTilt,
+  kVanishingPoint,
+  kImageRegions,
+  kRunwayWidth,
+  kInnovation,
+  kSinkRate
+};
+constexpr int kConsistencyTests = 9;
+const char* toString(Consistency test);
+
+/// The tests of one pair after another.
+class ConsistencyTests {
+ public:
+  explicit ConsistencyTests(double false_alarm_rate);
+
+  /// A new pair: nothing is tested yet.
+  void begin();
+  /// One difference with its variance; nothing when they are not finite and positive.
+  void add(Consistency test, double difference, double variance);
+  /// The same for the largest of several differences.
+  void addLargest(Consistency test, double difference, double variance, int count);
+  /// Several numbers at once. difference: the size that is reported.
+  void add(Consistency test, const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
+  /// A test that was made elsewhere.
+  void addRatio(Consistency test, double difference, double ratio, double limit);
+  bool failed(Consistency test) const { return tests_[static_cast<int>(test)].failed(); }
+  /// Counts failures in a row. After the last test of the pair.
+  std::vector<TestResult> finish();
+
+ private:
+  TestResult& of(Consistency test) { return tests_[static_cast<int>(test)]; }
+  double false_alarm_rate_;
+  std::array<TestResult, kConsistencyTests> tests_;
+};
+
+/// Sudden changes of what vertical disparities show of the rig's pitch and roll (rig_rotation.h): a camera
+/// that was bent, or images that were not taken at the same time. Constant errors, of lenses for instance, do
+/// not show.
+class RigChange {
+ public:
+  struct Innovation {
+    Eigen::Vector2d difference;  ///< of (rx, rz), rad
+    Eigen::Matrix2d covariance;
+  };
+  /// Against the mean of the pairs before; none for the first ones.
+  std::optional<Innovation> compare(const RigRotation& measured) const;
+  /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds.
+  void learn(double T, const RigRotation& measured, bool agrees);
+  void reset() { *this = RigChange(); }
+
+ private:
+  Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
+  double learned_ = 0, disagreed_ = 0;  // s
+};
+
+}  // namespace uav_landing

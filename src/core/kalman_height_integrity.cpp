@@ -1,0 +1,176 @@
+// The integrity part of KalmanHeightStage: what a pair says with each source left out, and the protection
+// level.
+
+#include <algorithm>
+#include <cmath>
+
+#include "text.h"
+#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/region_planes.h"
+#include "vertical_speed.h"
+
+namespace uav_landing {
+namespace {
+
+// Edges of the runway that are farther than this from the width learned are not believed (width_height.cpp).
+constexpr double kWidthTolerance = 0.02;
+// Share of the blocks that must look alike in both images.
+constexpr double kLeastAgreement = 0.0;
+
+}  // namespace
+
+void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction) const {
+  if (!parameters_.integrity_monitor || reconstruction.failure) return;
+  const double height = reconstruction.height;
+  const GroundPlane& plane = reconstruction.plane;
+  const bool by_width = reconstruction.by_width;
+  SolutionSeparation::Measurement everything{height, reconstruction.variance,
+                                             width_variance_ + rig_variance_};
+  // A height by the width has nothing in it of the stereo images but depends on what the edges are.
+  if (by_width) everything.common += std::pow(kWidthTolerance * height / 3, 2);
+  reconstruction.without.fill(everything);
+  if (by_width || !plane.valid()) return;
+
+  SolutionSeparation::Measurement& stereo_alone =
+      reconstruction.without[static_cast<int>(FaultySource::kVanishingPoint)];
+  const GroundPlane& alone = reconstruction.alone;
+  stereo_alone.height = height + alone.height() - plane.height();
+  stereo_alone.variance = alone.heightVariance() + modelVariance(height);
+  stereo_alone.common = GroundPlane{alone.g, reconstruction.alone_common}.heightVariance();
+  leaveOutRegions(stereo, approach, reconstruction);
+}
+
+void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction) const {
+  if (stereo.points.empty()) return;
+  const RegionPlanes regions = planesWithoutRegions(rig_, stereo.points, stereo.plane.g);
+  const GroundPlane& alone = reconstruction.alone;
+  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+                    approach.vanishing_covariance.allFinite();
+  const auto withVanishingPoint = [&](const GroundPlane& plane) {
+    if (!fuse) return plane;
+    return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
+                              std::pow(parameters_.vanishing_point_gate, 2), nullptr);
+  };
+  const double base = withVanishingPoint(alone).height();
+  for (int i = 0; i < kImageRegions; ++i) {
+    SolutionSeparation::Measurement& measurement =
+        reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
+    const GroundPlane& fitted = regions.without[i];
+    if (!fitted.valid()) {
+      measurement = {};
+      continue;
+    }
+    const GroundPlane plane = withVanishingPoint(
+        {alone.g + fitted.g - regions.all.g, fitted.covariance + reconstruction.alone_common});
+    measurement.height = reconstruction.height + plane.height() - base;
+    measurement.variance = plane.heightVariance() + modelVariance(measurement.height);
+    measurement.common = rig_variance_;
+  }
+}
+
+void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
+                                 const ApproachAngleResult& approach, Reconstruction& reconstruction,
+                                 LandingResult& result) {
+  if (!parameters_.integrity_monitor) return;
+  if (stereo.left_repeated || stereo.right_repeated) tests_.addRatio(Consistency::kRepeatedImage, 1, 1, 0);
+  if (std::isfinite(stereo.photometric_agreement))
+    tests_.addRatio(Consistency::kPhotometric, stereo.photometric_agreement, 1 - stereo.photometric_agreement,
+                    1 - kLeastAgreement);
+  if (const auto change = rig_change_.compare(stereo.vertical_rotation))
+    tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
+  rig_change_.learn(T, stereo.vertical_rotation, !tests_.failed(Consistency::kRigRotation));
+  testRegions(reconstruction);
+  if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
+    tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.height,
+               result.width_height_variance + reconstruction.variance);
+  if (reconstruction.alone.valid() && approach.vanishing_direction.allFinite()) {
+    const GroundPlane& plane = reconstruction.alone;
+    const Eigen::Vector3d& p = approach.vanishing_direction;
+    const double h = plane.height();
+    tests_.add(Consistency::kVanishingPoint, h * p.dot(plane.g),
+               h * h * p.dot(plane.covariance * p) +
+                   plane.normal().dot(approach.vanishing_covariance * plane.normal()));
+  }
+  if (reconstruction.failure) return;
+  for (const Consistency test : {Consistency::kRepeatedImage, Consistency::kPhotometric,
+                                 Consistency::kRigRotation, Consistency::kImageRegions}) {
+    if (!tests_.failed(test)) continue;
+    reconstruction.failure = {Reason::kInconsistent, toString(test)};
+    result.raw_height = reconstruction.height;
+    result.raw_height_variance = reconstruction.variance;
+    result.rejected = true;
+    ++consecutive_rejections_;
+    return;
+  }
+}
+
+void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {
+  if (reconstruction.failure || reconstruction.by_width) return;
+  double worst = 0, difference = 0, variance = 0;
+  int count = 0;
+  for (int i = 0; i < kImageRegions; ++i) {
+    const SolutionSeparation::Measurement& without =
+        reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
+    if (!without.known()) continue;
+    ++count;
+    const double d = without.height - reconstruction.height;
+    // The whole has the rest in it, but the grey levels besides.
+    const double allowed = without.variance;
+    if (d * d <= worst * allowed) continue;
+    worst = d * d / allowed;
+    difference = d;
+    variance = allowed;
+  }
+  if (count > 0) tests_.addLargest(Consistency::kImageRegions, difference, variance, count);
+}
+
+void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstruction,
+                                   const ApproachAngleResult& approach, LandingResult& result) {
+  if (!parameters_.integrity_monitor) return;
+  const std::optional<HeightMemory::Expected> before = memory_.expected();
+  const double scale = before ? before->height : filter_.initialised() ? filter_.state()[0] : kUnknown;
+  VerticalSpeed speed;
+  double velocity = kUnknown;
+  const Eigen::Vector3d normal = reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n;
+  if (!approach.step.failure && normal.allFinite() && std::isfinite(scale) && scale > 0) {
+    const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
+    speed = verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev);
+    velocity = approach.step.translation_over_height.norm() * scale / approach.step.duration;
+  }
+  if (T > 0) memory_.carry(T, speed.speed, speed.variance, velocity);
+  const std::optional<HeightMemory::Expected> expected = memory_.expected();
+  if (expected && filter_.initialised())
+    tests_.add(Consistency::kSinkRate, filter_.state()[0] - expected->height,
+               expected->variance + filter_.covariance()(0, 0) + modelVariance(expected->height));
+  const bool agrees = !tests_.failed(Consistency::kSinkRate);
+  if (!agrees) {
+    const double off = filter_.state()[0] - expected->height;
+    refuse(result, {Reason::kInconsistent, text("sink_rate: the height is off by ", off,
+                                                " m from the one before and the motion since")});
+  }
+  memory_.refresh(filter_, agrees,
+                  std::max(parameters_.alert_limit, parameters_.alert_limit_relative * scale));
+}
+
+void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) const {
+  result.height_valid = false;
+  if (!result.failure) result.failure = failure;
+}
+
+void KalmanHeightStage::reportProtection(LandingResult& result) const {
+  if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
+  const SolutionSeparation::Level level =
+      separation_.protectionLevel(result.height, result.height_variance, modelVariance(result.height));
+  result.height_protection_level = level.bound;
+  result.protection_source = level.source;
+  result.height_alert_limit =
+      std::max(parameters_.alert_limit, parameters_.alert_limit_relative * result.height);
+  if (level.bound <= result.height_alert_limit) return;
+  refuse(result, {Reason::kUncertain,
+                  text("height ", result.height, " m has a protection level of ", level.bound,
+                       " m because of ", level.source, ", alert limit ", result.height_alert_limit, " m")});
+}
+
+}  // namespace uav_landing

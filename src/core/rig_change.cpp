@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <cmath>
+
+#include "uav_landing/consistency_tests.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kMemory = 2.0;                // s that the mean is of
+constexpr double kFirst = 0.4;                 // s before there is anything to compare with
+constexpr double kPatience = 3.0;              // s of something else, after which that is the rig
+constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
+
+Eigen::Vector2d value(const RigRotation& rotation) { return {rotation.w.x(), rotation.w.z()}; }
+
+Eigen::Matrix2d covariance(const RigRotation& rotation) {
+  Eigen::Matrix2d result;
+  result << rotation.covariance(0, 0), rotation.covariance(0, 2), rotation.covariance(2, 0),
+      rotation.covariance(2, 2);
+  return result + kFloor * kFloor * Eigen::Matrix2d::Identity();
+}
+
+}  // namespace
+
+std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measured) const {
+  if (!measured.known() || learned_ < kFirst) return std::nullopt;
+  return Innovation{value(measured) - mean_, covariance_ + covariance(measured)};
+}
+
+void RigChange::learn(double T, const RigRotation& measured, bool agrees) {
+  if (!measured.known()) return;
+  if (!agrees) {
+    disagreed_ += T;
+    if (disagreed_ < kPatience) return;
+    reset();
+  }
+  disagreed_ = 0;
+  const double share = learned_ > 0 ? std::clamp(T / std::min(learned_ + T, kMemory), 0.0, 1.0) : 1.0;
+  mean_ += share * (value(measured) - mean_);
+  // Pairs in a row see the same texture: their mean is not better than the best of them.
+  covariance_ += share * (covariance(measured) - covariance_);
+  learned_ += T > 0 ? T : 1e-3;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "faults.h"
+
+// What single faults do to a pair (see faults.cpp for their names).
+namespace uav_landing {
+
+/// Turns the right camera: rotation vector in its own optical axes, rad.
+void turnCamera(cv::Mat& image, const CameraCalibration& camera, const Eigen::Vector3d& w);
+/// Enlarges a picture about its principal point.
+void zoomCamera(cv::Mat& image, const CameraCalibration& camera, double factor);
+void changeExposure(cv::Mat& image, double gain, double offset);
+void blur(cv::Mat& image, double sigma);
+void smear(cv::Mat& image, int pixels);
+void addNoise(cv::Mat& image, double sigma, cv::RNG& random);
+/// Dark spots at fixed places.
+void soil(cv::Mat& image, uint64_t seed);
+/// Water drops at fixed places: blurred and displaced.
+void wet(cv::Mat& image, uint64_t seed);
+void glare(cv::Mat& image);
+void band(cv::Mat& image, double phase);
+/// Haze that grows with the distance of the ground.
+void night(cv::Mat& image, uint64_t seed);
+
+/// Gives every pixel that sees the ground another grey level: paint(x, y, grey) with x, y on the ground in
+/// the runway frame, m.
+using GroundPaint = std::function<double(double x, double y, double grey)>;
+void paintGround(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose,
+                 const GroundPaint& paint);
+/// Replaces the ground beyond near_x by what a mirror there shows of the sky.
+void mirrorSky(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose, double near_x,
+               double far_x);
+
+}  // namespace uav_landing

@@ -1,0 +1,37 @@
+#include "fault_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+
+void FaultScore::take(const LandingResult& landing, double true_height, bool is_faulted, double duration) {
+  if (!std::isfinite(true_height)) return;
+  const bool valid = landing.height_valid;
+  const double error = std::abs(landing.height - true_height);
+  const bool over_level = valid && !(error <= landing.height_protection_level);
+  const bool over_limit = valid && !(error <= landing.height_alert_limit);
+  misled_for_ = over_limit ? misled_for_ + duration : 0;
+  time_to_alert = std::max(time_to_alert, misled_for_);
+  if (!is_faulted) {
+    ++healthy;
+    healthy_valid += valid;
+    healthy_misleading += over_level || over_limit;
+    return;
+  }
+  ++faulted;
+  faulted_valid += valid;
+  beyond_level += over_level;
+  beyond_limit += over_limit;
+  misleading += over_level || over_limit;
+  if (valid) {
+    worst_level_ratio = std::max(worst_level_ratio, error / landing.height_protection_level);
+    worst_limit_ratio = std::max(worst_limit_ratio, error / landing.height_alert_limit);
+  } else if (alarm.empty()) {
+    alarm = toString(landing.failure.reason);
+    const std::string failed = failedTests(landing.tests);
+    if (!failed.empty()) alarm += ": " + failed;
+  }
+}
+
+}  // namespace uav_landing

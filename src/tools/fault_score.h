@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "uav_landing/stage_results.h"
+
+namespace uav_landing {
+
+/// Counts of one run: before the fault's onset (healthy) and from it on (faulted). Frames of the first second
+/// and frames without a true height count for neither.
+struct FaultScore {
+  int healthy = 0, healthy_valid = 0;
+  int faulted = 0, faulted_valid = 0;
+  int beyond_level = 0;        ///< valid, and the error is larger than the protection level
+  int beyond_limit = 0;        ///< valid, and the error is larger than the alert limit
+  int misleading = 0;          ///< either
+  int healthy_misleading = 0;  ///< either, before the onset
+  double time_to_alert =
+      0;  ///< s, longest time for which the error was beyond the limit and the height valid
+  double worst_level_ratio = 0;  ///< error over protection level, of valid faulted frames
+  double worst_limit_ratio = 0;  ///< error over alert limit, of valid faulted frames
+  std::string alarm;             ///< reason of the first faulted frame that is not valid
+
+  /// One frame. duration: s since the frame before.
+  void take(const LandingResult& landing, double true_height, bool is_faulted, double duration);
+
+ private:
+  double misled_for_ = 0;  // s
+};
+
+}  // namespace uav_landing

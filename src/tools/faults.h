@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "uav_landing/calibration.h"
+#include "uav_landing/simulator/approach_simulator.h"
+#include "uav_landing/truth.h"
+
+namespace uav_landing {
+
+/// A healthy sequence of raw pairs with truth, from the simulator or a dataset.
+struct Flight {
+  struct Frame {
+    double time = 0;  ///< s
+    cv::Mat left, right;
+    Truth truth;
+    CameraPose pose;  ///< of the rectified left camera; only when simulated
+  };
+  CameraCalibration left, right;
+  const CameraRig* rig = nullptr;  ///< null when not simulated: then nothing can be painted on the ground
+  std::vector<Frame> frames;
+};
+
+/// A pair as it reaches the chain. images are the fault's own to change; time: s, of both stamps.
+struct Delivery {
+  double time = 0;
+  cv::Mat left, right;
+  bool delivered = true;
+};
+
+/// What a fault knows of the run that it spoils.
+struct FaultRun {
+  const Flight& flight;
+  int onset = 0;  ///< first frame with the fault
+  cv::RNG random;
+};
+
+/// One fault. Faults of a pair of faults are applied in the order of their places on the way from the scene
+/// to the chain.
+struct Fault {
+  enum class Place { kTiming, kScene, kOptics, kSensor };
+  std::string name, meaning;
+  Place place = Place::kSensor;
+  /// Of a frame from the onset on; empty when there is nothing to do to the images.
+  std::function<void(FaultRun&, int, Delivery&)> spoil;
+  /// Wrong calibration, for the whole run; empty otherwise.
+  std::function<void(CameraCalibration&, CameraCalibration&)> calibrate;
+  /// Another scene, for the whole run; empty otherwise. Only when simulated.
+  std::function<void(SimulatorParameters&)> build;
+  bool needs_scene = false;  ///< only when simulated
+
+  bool wholeRun() const { return calibrate || build; }
+};
+
+/// All of them; the first, "none", does nothing.
+const std::vector<Fault>& allFaults();
+
+}  // namespace uav_landing

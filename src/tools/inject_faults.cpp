@@ -1,0 +1,321 @@
+// Flies simulated approaches or a dataset through the chain with one or two faults from a random moment on,
+// and counts what was available, what was misleading and how long until it was noticed.
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "camera_info.h"
+#include "command_line.h"
+#include "csv_row.h"
+#include "dataset.h"
+#include "fault_score.h"
+#include "faults.h"
+#include "pending_file.h"
+#include "progress_bar.h"
+#include "random_approach.h"
+#include "uav_landing/parameter_file.h"
+#include "uav_landing/pipeline.h"
+
+namespace {
+
+using namespace uav_landing;
+
+struct Options {
+  std::string config, csv, dataset;
+  std::vector<std::string> faults;
+  uint64_t first = 1;
+  int count = 10, frames = 70, pairs = 0;
+};
+
+constexpr double kSettled = 1.0;  // s at the start of a run that do not count
+constexpr const char* kHeader =
+    "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
+    "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm";
+
+using Combination = std::vector<const Fault*>;
+
+std::string nameOf(const Combination& faults) {
+  std::string name;
+  for (const Fault* fault : faults) name += (name.empty() ? "" : "+") + fault->name;
+  return name;
+}
+
+/// A rig and heights that a small image can do: 320 x 240 with a baseline of 2 m, as good as 640 x 480 with 1
+/// m.
+SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters) {
+  cv::RNG random(seed * 0x9E3779B97F4A7C15ULL + 1);
+  const double height = 3 * std::pow(10.0, random.uniform(0.0, 1.0));
+  SimulatorParameters p = drawSnippet(seed * 1000003, height, frames, parameters);
+  p.image.width = 320;
+  p.image.height = 240;
+  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
+    camera->fx = camera->fy = 277.13;
+    camera->cx = 159.5;
+    camera->cy = 119.5;
+  }
+  p.rig.x = 2;
+  return p;
+}
+
+struct SimulatedFlight {
+  explicit SimulatedFlight(const ApproachSimulator& simulator) : rig(simulator.rig()) {
+    flight.left = rig.left.calibration;
+    flight.right = rig.right.calibration;
+    flight.rig = &rig;
+    for (int i = 0; i < simulator.frames(); ++i) {
+      ApproachSimulator::Frame frame = simulator.frame(i);
+      flight.frames.push_back({frame.time, frame.left, frame.right, frame.truth, simulator.pose(frame.time)});
+    }
+  }
+  CameraRig rig;
+  Flight flight;
+};
+
+std::string withoutCommas(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ';');
+  return text;
+}
+
+std::unique_ptr<SimulatedFlight> simulate(const SimulatorParameters& drawn) {
+  const Expected<ApproachSimulator> simulator = ApproachSimulator::create(drawn);
+  if (!simulator) return nullptr;  // a scene that a fault has put in the aircraft's way
+  return std::make_unique<SimulatedFlight>(*simulator);
+}
+
+Flight readFlight(const std::string& folder) {
+  const Expected<Dataset> dataset = readDataset(folder);
+  if (!dataset) throw std::runtime_error(dataset.error().detail);
+  Flight flight;
+  flight.left = toCalibration(dataset->left);
+  flight.right = toCalibration(dataset->right);
+  for (const DatasetFrame& frame : dataset->frames) {
+    const auto left = readImage(frame.left, flight.left.imageSize());
+    const auto right = readImage(frame.right, flight.right.imageSize());
+    if (!left || !right) throw std::runtime_error((left ? right : left).error().detail);
+    const double time = (frame.stamp - dataset->frames.front().stamp).toSec();
+    flight.frames.push_back({time, *left, *right, frame.truth, {}});
+  }
+  return flight;
+}
+
+/// So many frames of it, from this one on.
+Flight cut(const Flight& whole, int first, int frames) {
+  Flight part{whole.left, whole.right, whole.rig, {}};
+  const auto begin = whole.frames.begin() + first;
+  part.frames.assign(begin, begin + frames);
+  return part;
+}
+
+Delivery deliver(FaultRun& run, const Combination& faults, int frame) {
+  const Flight::Frame& source = run.flight.frames[static_cast<size_t>(frame)];
+  Delivery pair{source.time, source.left.clone(), source.right.clone(), true};
+  if (frame < run.onset) return pair;
+  for (const Fault* fault : faults)
+    if (fault->spoil) fault->spoil(run, frame, pair);
+  return pair;
+}
+
+/// The true height at any time between the frames: stamps and pictures may be those of others.
+double trueHeight(const Flight& flight, double time) {
+  const auto& frames = flight.frames;
+  size_t next = 1;
+  while (next + 1 < frames.size() && frames[next].time < time) ++next;
+  const Flight::Frame &a = frames[next - 1], &b = frames[next];
+  return a.truth.height + (time - a.time) / (b.time - a.time) * (b.truth.height - a.truth.height);
+}
+
+FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint64_t seed,
+               const Parameters& parameters) {
+  CameraCalibration left = flight.left, right = flight.right;
+  for (const Fault* fault : faults)
+    if (fault->calibrate) fault->calibrate(left, right);
+  FaultScore score;
+  Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters);
+  if (!pipeline) {
+    score.alarm = "refused: " + pipeline.error().detail;
+    return score;
+  }
+  FaultRun run{flight, onset, cv::RNG(seed)};
+  double last = flight.frames.front().time;
+  for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
+    const Delivery pair = deliver(run, faults, frame);
+    const double now = flight.frames[static_cast<size_t>(frame)].time;
+    // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
+    if (!pair.delivered) continue;
+    const Pipeline::Output& output = pipeline->process(100 + pair.time, pair.left, pair.right);
+    if (now - flight.frames.front().time < kSettled) continue;
+    score.take(output.landing, trueHeight(flight, pair.time), frame >= onset, now - last);
+    last = now;
+  }
+  return score;
+}
+
+class Campaign {
+ public:
+  Campaign(const Options& options, const Parameters& parameters)
+      : options_(options), parameters_(parameters), pending_(options.csv), file_(pending_.temporary()) {
+    if (!file_) throw std::runtime_error(options.csv + ": cannot be written");
+    file_ << kHeader << '\n';
+    chooseFaults();
+  }
+
+  void run() {
+    const Flight recorded = options_.dataset.empty() ? Flight() : readFlight(options_.dataset);
+    ProgressBar progress(static_cast<unsigned long>(options_.count));
+    for (uint64_t seed = options_.first; seed < options_.first + options_.count; ++seed) {
+      if (options_.dataset.empty())
+        flySimulated(seed);
+      else
+        flyRecorded(recorded, seed);
+      progress.step();
+    }
+    file_.close();
+    if (!file_) throw std::runtime_error(options_.csv + ": could not be written completely");
+    pending_.commit();
+  }
+
+ private:
+  void chooseFaults() {
+    const bool simulated = options_.dataset.empty();
+    std::set<std::string> wanted(options_.faults.begin(), options_.faults.end());
+    for (const Fault& fault : allFaults()) {
+      if (!wanted.empty() && wanted.erase(fault.name) == 0) continue;
+      if (!fault.needs_scene || simulated) faults_.push_back(&fault);
+    }
+    if (!wanted.empty() && wanted.count("none") == 0 && !allFaults().empty()) {
+      for (const std::string& name : wanted) {
+        const auto known = std::any_of(allFaults().begin(), allFaults().end(),
+                                       [&](const Fault& fault) { return fault.name == name; });
+        if (!known) throw std::runtime_error("there is no fault " + name);
+      }
+    }
+  }
+
+  /// Each fault alone, and some pairs of them drawn by the seed.
+  std::vector<Combination> combinations(uint64_t seed) const {
+    std::vector<Combination> all;
+    for (const Fault* fault : faults_) all.push_back({fault});
+    cv::RNG random(seed * 77 + 5);
+    const int count = static_cast<int>(faults_.size());
+    for (int i = 0; i < options_.pairs && count > 2; ++i) {
+      const Fault* first = faults_[static_cast<size_t>(random.uniform(1, count))];
+      const Fault* second = faults_[static_cast<size_t>(random.uniform(1, count))];
+      if (first == second || first->name == "none" || second->name == "none") continue;
+      if (first->place > second->place) std::swap(first, second);
+      all.push_back({first, second});
+    }
+    return all;
+  }
+
+  void flySimulated(uint64_t seed) {
+    const SimulatorParameters drawn = drawFlight(seed, options_.frames, parameters_);
+    const auto plain = simulate(drawn);
+    if (!plain) return;
+    for (const Combination& faults : combinations(seed)) {
+      SimulatorParameters changed = drawn;
+      bool rebuilt = false;
+      for (const Fault* fault : faults) {
+        if (!fault->build) continue;
+        fault->build(changed);
+        rebuilt = true;
+      }
+      const auto other = rebuilt ? simulate(changed) : nullptr;
+      if (rebuilt && !other) continue;
+      flyOne(rebuilt ? other->flight : plain->flight, "simulator", faults, seed);
+    }
+  }
+
+  void flyRecorded(const Flight& recorded, uint64_t seed) {
+    const int frames = std::min(options_.frames, static_cast<int>(recorded.frames.size()));
+    cv::RNG random(seed * 1234567 + 3);
+    const int first = random.uniform(0, static_cast<int>(recorded.frames.size()) - frames + 1);
+    const Flight part = cut(recorded, first, frames);
+    std::string name = options_.dataset;
+    while (!name.empty() && name.back() == '/') name.pop_back();
+    name = name.substr(name.find_last_of('/') + 1);
+    for (const Combination& faults : combinations(seed)) flyOne(part, name, faults, seed);
+  }
+
+  void flyOne(const Flight& flight, const std::string& source, const Combination& faults, uint64_t seed) {
+    const int frames = static_cast<int>(flight.frames.size());
+    uint64_t hash = seed;
+    for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);
+    cv::RNG random(hash);
+    const bool whole =
+        std::any_of(faults.begin(), faults.end(), [](const Fault* f) { return f->wholeRun(); });
+    const bool healthy = faults.size() == 1 && faults[0]->name == "none";
+    int onset = random.uniform(frames * 2 / 5, frames * 3 / 5);
+    if (whole) onset = 0;
+    if (healthy) onset = frames;
+    const FaultScore score = fly(flight, faults, onset, hash, parameters_);
+    CsvRow row(file_);
+    row.text(source).text(std::to_string(seed)).text(nameOf(faults));
+    row.number(onset < frames ? flight.frames[static_cast<size_t>(onset)].time - flight.frames[0].time
+                              : kUnknown);
+    row.number(score.healthy).number(score.healthy_valid).number(score.healthy_misleading);
+    row.number(score.faulted)
+        .number(score.faulted_valid)
+        .number(score.beyond_level)
+        .number(score.beyond_limit);
+    row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
+    row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
+    file_ << '\n';
+  }
+
+  Options options_;
+  Parameters parameters_;
+  std::vector<const Fault*> faults_;
+  PendingFile pending_;
+  std::ofstream file_;
+};
+
+int run(const CLI::App& app, const Options& options) {
+  Parameters parameters;
+  if (!options.config.empty()) {
+    const Expected<Parameters> loaded = loadParameterFile(options.config);
+    if (!loaded) return inputUnusable(app, loaded.error().detail);
+    parameters = *loaded;
+  }
+  Campaign(options, parameters).run();
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Flies approaches with faults through the chain and counts misleading heights.",
+               "inject_faults");
+  Options options;
+  app.add_option("--csv", options.csv, "rows to write, one per run");
+  app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
+  app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
+  app.add_option("--faults", options.faults, "only these; without it all")->delimiter(',');
+  app.add_option("--pairs", options.pairs, "pairs of faults besides, for each seed")->capture_default_str();
+  app.add_option("--first", options.first, "first seed")->capture_default_str();
+  app.add_option("--count", options.count, "how many seeds")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--frames", options.frames, "of a run")->capture_default_str()->check(CLI::Range(25, 1000));
+  app.add_flag_callback(
+      "--list",
+      [] {
+        for (const Fault& fault : allFaults()) std::cout << fault.name << '\t' << fault.meaning << '\n';
+        throw CLI::Success();
+      },
+      "print the faults and leave");
+  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  if (options.csv.empty()) {
+    std::cerr << "inject_faults: --csv is required\n";
+    return kWrongUsage;
+  }
+  cv::setNumThreads(1);  // one process per core: run several with different seeds at once
+  try {
+    return run(app, options);
+  } catch (const std::exception& error) {
+    return inputUnusable(app, error.what());
+  }
+}

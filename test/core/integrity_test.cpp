@@ -1,0 +1,291 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "uav_landing/consistency_tests.h"
+#include "uav_landing/height_memory.h"
+#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/region_planes.h"
+#include "uav_landing/solution_separation.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+StereoRig makeRig() {
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 500;
+  rig.cx = rig.cx_right = 320;
+  rig.cy = 240;
+  rig.baseline = 1.0;
+  return rig;
+}
+
+/// Matches on a grid over the ground of this plane.
+std::vector<StereoDepthResult::Point> matchesOn(const StereoRig& rig, const Eigen::Vector3d& g) {
+  std::vector<StereoDepthResult::Point> points;
+  for (int v = 300; v < 470; v += 12) {
+    for (int u = 20; u < 620; u += 25) {
+      const double error = 0.05 * std::sin(1.7 * u + 2.9 * v);
+      points.push_back({double(u), double(v), rig.fb() * g.dot(rig.ray(u, v)) + error, 0.05, true});
+    }
+  }
+  return points;
+}
+
+SolutionSeparation::Measurements same(double height, double variance) {
+  SolutionSeparation::Measurements all;
+  all.fill({height, variance, 0});
+  return all;
+}
+
+TEST(ConsistencyTests, LimitsAreThoseOfTheChiSquareTable) {
+  EXPECT_NEAR(chiSquareLimit(0.05, 1), 3.841, 1e-3);
+  EXPECT_NEAR(chiSquareLimit(0.001, 2), 13.816, 1e-3);
+  EXPECT_NEAR(normalQuantile(0.05), 1.960, 1e-3);
+  EXPECT_NEAR(normalQuantile(1e-5), 4.417, 1e-3);
+}
+
+TEST(ConsistencyTests, CountsFailuresInARowAndForgetsThemAtTheNextPairThatPasses) {
+  ConsistencyTests tests(0.05);
+  for (const double difference : {3.0, 3.0, 1.0}) {
+    tests.begin();
+    tests.add(Consistency::kRunwayWidth, difference, 1.0);
+    const std::vector<TestResult> results = tests.finish();
+    const TestResult& width = results[static_cast<int>(Consistency::kRunwayWidth)];
+    EXPECT_EQ(width.name, "runway_width");
+    EXPECT_EQ(width.failed(), difference > 1.96);
+    EXPECT_FALSE(results[static_cast<int>(Consistency::kTilt)].possible());
+    if (difference < 2) {
+      EXPECT_EQ(width.consecutive_failures, 0);
+      EXPECT_EQ(failedTests(results), "");
+    } else {
+      EXPECT_EQ(failedTests(results), "runway_width");
+    }
+  }
+}
+
+TEST(SolutionSeparation, BoundsTheErrorByTheSolutionWithoutTheSourceThatIsWrong) {
+  KalmanHeightParameters parameters;
+  parameters.integrity_risk = 1e-5;
+  parameters.fault_probability = 1e-3;
+  parameters.unwatched_scale_error = 0;
+  parameters.use_motion = false;
+  SolutionSeparation separation(parameters);
+  SolutionSeparation::Measurements without = same(10, 0.01);
+  // The left half of the image is wrong by half a metre; only the filter without it knows.
+  without[static_cast<int>(FaultySource::kLeft)].height = 9.5;
+  separation.start(without, 10);
+  const auto level = separation.protectionLevel(10, 0.01, 0);
+  EXPECT_STREQ(level.source, "left_region");
+  EXPECT_NEAR(level.bound, 0.5 + 2.576 * 0.1, 1e-3);  // 1 % to both sides: 2.576 sigma
+  // Pair after pair the noise averages out, the separation stays.
+  for (int i = 0; i < 50; ++i) {
+    separation.predict(0.05);
+    separation.update(without);
+  }
+  const auto later = separation.protectionLevel(10, 0.001, 0);
+  EXPECT_GT(later.bound, 0.5);
+  EXPECT_LT(later.bound, level.bound);
+}
+
+TEST(SolutionSeparation, GrowsWhereNothingIsLeftWithoutTheSource) {
+  SolutionSeparation separation({});
+  separation.start(same(10, 0.0001), 10);
+  SolutionSeparation::Measurements without = same(10, 0.0001);
+  without[static_cast<int>(FaultySource::kNear)] = {};
+  double before = 0;
+  for (int i = 0; i < 20; ++i) {
+    separation.predict(0.05);
+    separation.update(without);
+    const auto level = separation.protectionLevel(10, 0.0001, 0);
+    if (i > 5) {
+      EXPECT_STREQ(level.source, "near_region");
+      EXPECT_GT(level.bound, before);
+    }
+    before = level.bound;
+  }
+}
+
+TEST(SolutionSeparation, HasTheScaleThatNothingSeesInIt) {
+  KalmanHeightParameters parameters;
+  parameters.unwatched_scale_error = 0.02;
+  SolutionSeparation separation(parameters);
+  EXPECT_NEAR(separation.protectionLevel(10, 1e-12, 0).bound, 0.2, 1e-4);
+  EXPECT_STREQ(separation.protectionLevel(10, 1e-12, 0).source, "scale");
+  EXPECT_STREQ(separation.protectionLevel(10, 1, 0).source, "noise");
+  EXPECT_NEAR(separation.protectionLevel(10, 1, 0).bound, 4.417, 1e-3);
+}
+
+TEST(RegionPlanes, APlaneWithoutTheWrongHalfIsRight) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d g = normalFromPitchRoll(-4 * kDegree, 0) / 10;
+  std::vector<StereoDepthResult::Point> points = matchesOn(rig, g);
+  // Left of the middle all disparities are too large by a share: a height too low by a twentieth.
+  for (StereoDepthResult::Point& point : points)
+    if (point.u < 310) point.disparity *= 1.02;
+  const RegionPlanes planes = planesWithoutRegions(rig, points, g);
+  const auto heightWithout = [&](ImageRegion region) {
+    return planes.without[static_cast<int>(region)].height();
+  };
+  EXPECT_NEAR(heightWithout(ImageRegion::kLeft), 10, 0.03);
+  EXPECT_NEAR(heightWithout(ImageRegion::kRight), 10 / 1.02, 0.03);
+  EXPECT_GT(planes.without[static_cast<int>(ImageRegion::kNear)].heightVariance(),
+            planes.all.heightVariance());
+}
+
+TEST(RegionPlanes, NothingIsClaimedWithoutPoints) {
+  const RegionPlanes planes = planesWithoutRegions(makeRig(), {}, {0, 0.1, 0});
+  EXPECT_FALSE(planes.all.valid());
+  for (const GroundPlane& plane : planes.without) EXPECT_FALSE(plane.valid());
+}
+
+/// A filter that knows height and sink rate.
+HeightFilter settled(double height, double speed) {
+  HeightFilter filter(1.5, 5, 5);
+  filter.initialise(height, 1e-4);
+  filter.updateSpeed(speed, 1e-4);
+  return filter;
+}
+
+TEST(HeightMemory, CarriesTheHeightOnByTheMotion) {
+  HeightMemory memory;
+  double height = 20;
+  for (int i = 0; i <= 24; ++i) {
+    if (i > 0) {
+      height -= 0.05;
+      memory.carry(0.05, -1, 1e-4, 20);
+    }
+    memory.refresh(settled(height, -1), true, 1);
+    if (i == 10) continue;  // the sum of the steps may be a hair less than half a second
+    EXPECT_EQ(memory.expected().has_value(), i > 10) << "half a second at 20 Hz, frame " << i;
+  }
+  EXPECT_NEAR(memory.expected()->height, height, 0.02);
+  // 0.15 degrees of half a second to a second at 20 m/s.
+  EXPECT_GT(std::sqrt(memory.expected()->variance), 0.026);
+  EXPECT_LT(std::sqrt(memory.expected()->variance), 0.1);
+}
+
+TEST(HeightMemory, KeepsTheOldHeightWhileTheNewOneContradictsUntilItIsOfNoUse) {
+  HeightMemory memory;
+  for (int i = 0; i < 25; ++i) {
+    memory.carry(0.05, 0, 1e-4, 20);
+    memory.refresh(settled(20, 0), true, 1);
+  }
+  double lasted = 0;
+  while (memory.expected() && lasted < 60) {
+    EXPECT_NEAR(memory.expected()->height, 20, 0.05);
+    memory.carry(0.05, 0, 1e-4, 20);
+    memory.refresh(settled(23, 0), false, 1);
+    lasted += 0.05;
+  }
+  // 0.15 degrees at 20 m/s are 5 cm in a second: beyond a metre after about 19 s.
+  EXPECT_GT(lasted, 10);
+  EXPECT_LT(lasted, 25);
+}
+
+RigRotation rotation(double rx_deg, double rz_deg) {
+  RigRotation result;
+  result.w = Eigen::Vector3d(rx_deg, 0, rz_deg) * kDegree;
+  result.covariance = std::pow(0.005 * kDegree, 2) * Eigen::Matrix3d::Identity();
+  return result;
+}
+
+TEST(RigChange, SeesASuddenBendButNotAConstantError) {
+  RigChange change;
+  ConsistencyTests tests(1e-5);
+  const auto failed = [&](const RigRotation& measured) {
+    tests.begin();
+    const auto innovation = change.compare(measured);
+    if (innovation) tests.add(Consistency::kRigRotation, innovation->difference, innovation->covariance);
+    const bool result = tests.failed(Consistency::kRigRotation);
+    change.learn(0.05, measured, !result);
+    return result;
+  };
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(failed(rotation(0.1, -0.05 + 0.003 * std::sin(i))));
+  EXPECT_TRUE(failed(rotation(0.1, 0.02)));
+  EXPECT_FALSE(failed(rotation(0.1, -0.05)));
+}
+
+/// A pair of a level flight at this height, 20 m/s, with its points.
+StereoDepthResult stereoAt(double stamp, double height) {
+  StereoDepthResult stereo;
+  stereo.stamp = stamp;
+  stereo.plane.g = normalFromPitchRoll(-4 * kDegree, 0) / height;
+  const double along = 0.01 / (height * height);
+  stereo.plane.covariance = along * along * Eigen::Matrix3d::Identity();
+  stereo.points = matchesOn(makeRig(), stereo.plane.g);
+  return stereo;
+}
+
+ApproachAngleResult levelFlight(double stamp, double height) {
+  ApproachAngleResult approach;
+  approach.stamp = stamp;
+  approach.n = normalFromPitchRoll(-4 * kDegree, 0);
+  approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d forward(0, -std::sin(4 * kDegree), std::cos(4 * kDegree));
+  for (ApproachAngleResult::Motion* motion : {&approach.step, &approach.window}) {
+    motion->duration = 0.05;
+    motion->rotation.setZero();
+    motion->translation_over_height = forward / height;
+    motion->covariance = 1e-8 * Matrix6d::Identity();
+    motion->angle = 0;
+    motion->angle_variance = 1e-6;
+  }
+  return approach;
+}
+
+TEST(KalmanHeightIntegrity, AHealthyFlightPassesAllTestsAndIsProtected) {
+  KalmanHeightStage stage(makeRig(), {});
+  LandingResult result;
+  for (int i = 0; i < 40; ++i)
+    result = stage.process(stereoAt(1 + 0.05 * i, 10), levelFlight(1 + 0.05 * i, 10));
+  EXPECT_TRUE(result.height_valid) << result.failure.message();
+  EXPECT_EQ(failedTests(result.tests), "");
+  EXPECT_TRUE(result.tests[static_cast<int>(Consistency::kSinkRate)].possible());
+  EXPECT_TRUE(result.tests[static_cast<int>(Consistency::kImageRegions)].possible());
+  EXPECT_GT(result.height_protection_level, 0.2) << "two per cent of 10 m are by assumption";
+  EXPECT_LT(result.height_protection_level, 0.5);
+  EXPECT_DOUBLE_EQ(result.height_alert_limit, 0.05 * result.height);
+}
+
+TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTime) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 1;
+  for (int i = 0; i < 40; ++i, stamp += 0.05) stage.process(stereoAt(stamp, 10), levelFlight(stamp, 10));
+  const double onset = stamp;
+  LandingResult result;
+  do {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.left_repeated = true;
+    result = stage.process(stereo, levelFlight(stamp, 10));
+    EXPECT_EQ(result.status, Status::kCoasting);
+    EXPECT_TRUE(result.rejected);
+    EXPECT_EQ(failedTests(result.tests), "repeated_image");
+    EXPECT_EQ(result.failure.message(), "inconsistent: repeated_image");
+    stamp += 0.05;
+  } while (result.height_valid && stamp < onset + 2);
+  EXPECT_LE(stamp - 0.05 - onset, 0.35 + 1e-9);
+  EXPECT_EQ(result.consecutive_rejections, result.tests[0].consecutive_failures);
+}
+
+TEST(KalmanHeightIntegrity, AnotherHeightAfterALossOfTrackIsNotBelievedWhileTheOldOneIsRemembered) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 1;
+  for (int i = 0; i < 40; ++i, stamp += 0.05) stage.process(stereoAt(stamp, 10), levelFlight(stamp, 10));
+  const double onset = stamp;
+  LandingResult result;
+  for (; stamp < onset + 3; stamp += 0.05) {
+    result = stage.process(stereoAt(stamp, 14), levelFlight(stamp, 10));
+    EXPECT_FALSE(result.height_valid && std::abs(result.height - 14) < 1);
+  }
+  EXPECT_GT(result.resets, 0);
+  EXPECT_NEAR(result.height, 14, 0.1);
+  EXPECT_EQ(failedTests(result.tests), "sink_rate");
+}
+
+}  // namespace
+}  // namespace uav_landing
