@@ -263,7 +263,7 @@ class Campaign {
         .number(score.beyond_limit);
     row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
     row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
-    file_ << '\n';
+    file_ << std::endl;  // what is there already can be looked at
   }
 
   Options options_;

@@ -1,0 +1,65 @@
+"""scripts/fault_campaign: what it counts, and a short campaign without a misleading frame."""
+
+import csv
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from project import BUILD_DIR, SOURCE_DIR, run
+
+sys.path.insert(0, str(SOURCE_DIR / "scripts"))
+from measurement import faults  # noqa: E402 (only there after the line before)
+
+PROGRAM = BUILD_DIR / "devel/lib/uav_landing/inject_faults"
+
+
+def row(name, **counts):
+    numbers = dict(healthy=0, healthy_valid=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
+                   worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0)
+    return {"faults": name, "source": "simulator", "seed": "1", **{key: str(value) for key, value in
+                                                                  {**numbers, **counts}.items()}}
+
+
+class CountsTest(unittest.TestCase):
+    def test_bounds_are_those_of_clopper_and_pearson(self):
+        # None of n: 1 - 0.05^(1 / n). One of 100: from tables.
+        self.assertAlmostEqual(faults.upper_bound(0, 100), 1 - 0.05 ** 0.01, places=9)
+        self.assertAlmostEqual(faults.upper_bound(1, 100), 0.0466, places=4)
+        self.assertEqual(faults.upper_bound(5, 5), 1)
+
+    def test_a_misleading_frame_is_a_problem_unless_nothing_could_have_seen_it(self):
+        misled = dict(faulted=40, faulted_valid=40, misleading=3)
+        self.assertEqual(faults.Campaign([row("baseline_8", **misled), row("dirt+baseline_2", **misled)]).problems(), [])
+        self.assertIn("dirt: 3 misleading frames (dirt simulator 1)", faults.Campaign([row("dirt", **misled)]).problems())
+
+    def test_false_alarms_are_counted_on_healthy_runs_only_and_half_a_per_cent_is_too_much(self):
+        rows = [row("none", healthy=1000, healthy_valid=996), row("dirt", healthy=1000, healthy_valid=0)]
+        self.assertEqual(faults.Campaign(rows).problems(), [])
+        rows[0]["healthy_valid"] = "994"
+        self.assertEqual(faults.Campaign(rows).problems(), ["6 false alarms on 1000 healthy frames"])
+
+
+class ShortCampaignTest(unittest.TestCase):
+    def test_faults_are_noticed_and_a_healthy_flight_is_valid(self):
+        folder = Path(tempfile.mkdtemp(prefix="uav_landing_faults_"))
+        self.addCleanup(shutil.rmtree, str(folder))
+        names = "none,frozen_left,swapped,unsynchronised,overexposed,featureless,bent_roll_1,baseline_8"
+        result = run([PROGRAM, "--csv", folder / "rows.csv", "--first", 3, "--count", 1, "--frames", 50, "--faults", names])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with (folder / "rows.csv").open() as file:
+            rows = {row["faults"]: row for row in csv.DictReader(file)}
+        self.assertEqual(list(rows), names.split(","))
+        healthy = rows.pop("none")
+        self.assertEqual((healthy["healthy"], healthy["healthy_valid"]), ("30", "30"))
+        self.assertEqual(rows.pop("baseline_8")["misleading"], "30", "nothing can see the baseline's length")
+        for name, faulted in rows.items():
+            self.assertEqual(faulted["misleading"], "0", name)
+            self.assertLess(int(faulted["faulted_valid"]), int(faulted["faulted"]), name)
+            self.assertLessEqual(float(faulted["time_to_alert_s"]), 0.35, name)
+
+    def test_an_unknown_fault_is_refused_by_its_name(self):
+        result = run([PROGRAM, "--csv", "/tmp/none.csv", "--faults", "moon"])
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("moon", result.stderr)
