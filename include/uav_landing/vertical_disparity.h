@@ -49,14 +49,15 @@ class RowAlignment {
   /// right image is from level().
   RigRotation measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
                       const Eigen::Vector3d& g);
-  /// The rotation whose vertical disparities the pair measured last has after level(), averaged over the last
-  /// second or so. When none has been measured: none, with bias_stddev (pixels at the middle of the image).
+  /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
+  /// with what a calibration that is good to bias_stddev (pixels in the middle of the image) leads to expect,
+  /// as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig, double bias_stddev) const;
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
   bool adapt(const StereoRig& rig, const RigRotation& residual);
-  void average(const StereoRig& rig, const RigRotation& measured);
+  void average(const RigRotation& measured);
 
   bool enabled_;
   int window_radius_;
@@ -64,7 +65,9 @@ class RowAlignment {
   // Of the sum of what is taken out and what is left, old pairs forgotten.
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
-  RigRotation residual_;
+  Eigen::Vector3d levelled_by_ =
+      Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
+  bool measured_ = false;
 };
 
 }  // namespace uav_landing

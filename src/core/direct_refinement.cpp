@@ -14,8 +14,8 @@
 namespace uav_landing {
 namespace {
 
-// Blocks compared: about 50 thousand pixels, which hold nearly all that a noisy image says.
-constexpr int kBlocks = 400;
+// Blocks compared: about 100 thousand pixels, which hold nearly all that a noisy image says.
+constexpr int kBlocks = 800;
 // Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them.
 constexpr int kSteps = 5;
 constexpr double kConverged = 0.003;

@@ -21,6 +21,9 @@ constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
 // Variance of the residuals over that of the noise in one image: the right one's loses some in interpolation
 // (0.64 of it is left half-way between two pixels).
 constexpr double kResidualPerNoise = 1.8;
+// The variance that a block of nothing but noise may show, over the lower quartile: three sigma of
+// chi-square.
+constexpr double kNoiseScatter = 1.45;
 // Squared correlation, noise taken off, below which a block does not show what the other image has there.
 constexpr double kLeastCorrelation = 0.75;
 // Shares of a block's grey levels and derivatives that must be more than noise.
@@ -269,7 +272,7 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     ++informative;
     // What the right image has beside noise: the part that is like the block, and the rest.
     const double alike = products.grey * products.grey / block.grey_energy * (common / block.grey_energy);
-    const double other = kPixels * std::max(0.0, variance - kResidualPerNoise * noise);
+    const double other = kPixels * std::max(0.0, variance - kNoiseScatter * kResidualPerNoise * noise);
     if (alike < kLeastCorrelation * (alike + other)) continue;
     matches.push_back({block.centre_u, block.centre_v, score / response,
                        std::sqrt(variance * energy) / response,

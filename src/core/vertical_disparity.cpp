@@ -173,29 +173,43 @@ RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<Di
   if (!found) return {};
   RigRotation rotation = *found;
   rotation.w += taken_out_;
-  average(level.rig, rotation);
+  average(rotation);
   adapt(level.rig, *found);
   return rotation;
 }
 
-RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
-  if (residual_.known()) return residual_;
-  RigRotation unknown;
-  unknown.w.setZero();
-  unknown.covariance = std::pow(bias_stddev / rig.fy, 2) * Eigen::Matrix3d::Identity();
-  return unknown;
-}
-
-void RowAlignment::average(const StereoRig& rig, const RigRotation& measured) {
+void RowAlignment::average(const RigRotation& measured) {
   constexpr double kKept = 0.95;  // of a pair's weight when the next comes
-  // Error that all pairs have, pixels: of lenses, which is no rotation, and of texture.
-  constexpr double kCommon = 0.003;
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
-  residual_.covariance = information_.inverse();
-  residual_.w = residual_.covariance * right_ - taken_out_;
-  residual_.covariance(0, 0) += std::pow(kCommon / rig.fy, 2);
+  levelled_by_ = taken_out_;
+  measured_ = true;
+}
+
+RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
+  // Error that all pairs have, pixels: of lenses, which is no rotation, and of texture.
+  constexpr double kCommon = 0.003;
+  // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
+  constexpr double kBelievable = 16;
+  constexpr double kExact = 1e-6;  // pixels
+  const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+  const Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
+  RigRotation residual;
+  residual.covariance = (information_ + prior).inverse();
+  residual.w = residual.covariance * right_;
+  if (measured_) {
+    const Eigen::Matrix3d alone = information_.inverse();
+    const Eigen::Vector3d w = alone * right_;
+    const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
+    if (w.dot(both.inverse() * w) > kBelievable) {
+      residual.covariance = alone;
+      residual.w = w;
+    }
+  }
+  residual.w -= levelled_by_;
+  residual.covariance(0, 0) += std::pow(kCommon / rig.fy, 2);
+  return residual;
 }
 
 bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
