@@ -19,9 +19,10 @@ class ApproachAngleStage {
   ApproachAngleStage(ApproachAngleStage&&) noexcept;
 
   /// left, right: rectified mono8 of the rig's size. stereo: result of the same pair; ignored when
-  /// use_stereo is false. A stamp that does not increase forgets the past.
+  /// use_stereo is false. imu: of the same pair; ignored when use_imu is false. A stamp that does not
+  /// increase forgets the past.
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
-                              const StereoDepthResult& stereo);
+                              const StereoDepthResult& stereo, const AttitudePrior& imu = {});
   void reset();
   const Timings& timings() const;
 

@@ -39,12 +39,18 @@ struct MotionEstimate {
   int inlier_count = 0;
 };
 
+/// Rotation from then to now that is known beforehand, of an inertial sensor.
+struct RotationPrior {
+  Eigen::Matrix3d R;
+  Eigen::Matrix3d covariance;  ///< of its rotation vector, in the frame now, rad^2
+};
+
 /// Robust motion: RANSAC over triples from the start, then Gauss-Newton with redescending weights over
-/// rotation, translation and normal, the latter with its prior covariance (rank 2). Fixed seed. Fails when
-/// fewer than min_matches agree.
+/// rotation, translation and normal, the latter with its prior covariance (rank 2), and with the rotation
+/// prior when there is one. Fixed seed. Fails when fewer than min_matches agree.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches);
+                                        int min_matches, const RotationPrior* rotation = nullptr);
 
 }  // namespace uav_landing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 
 #include "uav_landing/calibration.h"
@@ -41,6 +42,21 @@ Eigen::Vector3d horizonLine(const StereoRig& rig, const Eigen::Vector3d& normal)
 /// returned through nis; beyond max_nis the plane comes back unchanged.
 GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& p,
                                const Eigen::Matrix3d& p_covariance, double max_nis, double* nis);
+
+/// A direction that lies in the ground plane.
+struct GroundDirection {
+  Eigen::Vector3d direction;   ///< unit
+  Eigen::Matrix3d covariance;  ///< rad^2
+};
+/// What a normal known from elsewhere says as two directions in the ground plane: forward (the optical axis
+/// above the ground) and to the left. covariance: of the normal, rad^2.
+std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
+                                               const Eigen::Matrix3d& covariance);
+
+/// Adds a normal known independently of stereo, as an attitude sensor gives it, in the same way. nis: the
+/// larger test ratio of its two directions; beyond max_nis the plane comes back unchanged.
+GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,
+                       const Eigen::Matrix3d& covariance, double max_nis, double* nis);
 
 /// Yaw of the camera: angle of the optical axis from the landing direction p about the up axis, left
 /// positive. Radians.

@@ -57,6 +57,8 @@ class KalmanHeightStage {
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                  Reconstruction& reconstruction);
+  /// Turns the plane by a direction that lies in the ground.
+  void fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const;
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
   void averageAttitude(double stamp, const ApproachAngleResult& approach, Reconstruction& reconstruction,
                        LandingResult& result);

@@ -30,10 +30,12 @@ class MotionTracker {
   };
 
   /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
-  /// units of the height. Without a ground normal call skip().
+  /// units of the height. imu: its rotation since the frame before leads the search, helps where the corners
+  /// leave the rotation uncertain, and makes up for half of the corners; one that contradicts them is left
+  /// out. Without a ground normal call skip().
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
-                 Timings& timings);
+                 Timings& timings, const AttitudePrior& imu = {});
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   void reset();
@@ -50,11 +52,16 @@ class MotionTracker {
   TemporalMatchOptions matchOptions(int coarse_steps) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                    const Corners& corners, Result& result);
+                    const Corners& corners, const RotationPrior* rotation, Result& result);
+  std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   Expected<MotionEstimate> followFrom(const Frame& now, const CameraMotion& predicted,
                                       const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                                      const Corners& corners, Result& result);
-  CameraMotion searchFirst(const Frame& now, const Eigen::Vector3d& normal, const Corners& corners) const;
+                                      const Corners& corners, const RotationPrior* rotation, Result& result);
+  Expected<MotionEstimate> estimate(const std::vector<TemporalMatch>& matches, const Eigen::Vector3d& normal,
+                                    const Eigen::Matrix3d& covariance, const CameraMotion& start,
+                                    const RotationPrior* rotation) const;
+  CameraMotion searchFirst(const Frame& now, const Eigen::Vector3d& normal, const Corners& corners,
+                           const Eigen::Matrix3d& R) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);
   void advance(Frame&& now, const Result& result);

@@ -117,6 +117,14 @@ struct ApproachAngleParameters {
   AngleSmoothing angle_smoothing = AngleSmoothing::kAdaptive;
   double min_motion = 5.0;
   double runway_width = 0;
+  bool use_imu = true;
+  double imu_delay = 0;
+  double imu_wait = 0.02;
+  double imu_max_gap = 0.1;
+  double imu_attitude_stddev_deg = 1.0;
+  double imu_rate_stddev_deg = 0.3;
+  double imu_rate_bias_deg = 0.1;
+  double runway_slope_stddev_deg = 0.5;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -170,6 +178,23 @@ struct ApproachAngleParameters {
     v.number("runway_width", runway_width, 0.0, 200.0, "m",
              "between the outermost long edges along the runway; edges of another width are not believed. 0: "
              "not known");
+    v.flag("use_imu", use_imu,
+           "use attitude and angular velocity of an inertial sensor where messages of one come");
+    v.number("imu_delay", imu_delay, -1.0, 1.0, "s",
+             "by which an imu message's stamp is later than that of an image of the same moment");
+    v.number("imu_wait", imu_wait, 0.0, 1.0, "s",
+             "a pair waits this long for the imu message after it, then goes on by those before it");
+    v.number("imu_max_gap", imu_max_gap, 0.001, 1.0, "s",
+             "longest time between two imu messages, or after the newest one, that is bridged");
+    v.number("imu_attitude_stddev_deg", imu_attitude_stddev_deg, 0.01, 20.0, "deg",
+             "1 sigma of the imu's pitch and roll where its messages do not tell; slow errors included");
+    v.number("imu_rate_stddev_deg", imu_rate_stddev_deg, 0.001, 20.0, "deg/s",
+             "1 sigma of the imu's angular velocity where its messages do not tell");
+    v.number("imu_rate_bias_deg", imu_rate_bias_deg, 0.0, 20.0, "deg/s",
+             "1 sigma of the constant error of the imu's angular velocity, besides");
+    v.number("runway_slope_stddev_deg", runway_slope_stddev_deg, 0.0, 5.0, "deg",
+             "1 sigma by which the ground ahead slopes, along and across: for the ground normal from an "
+             "imu's attitude");
   }
 };
 
@@ -182,6 +207,7 @@ struct KalmanHeightParameters {
   ReconstructionAngle reconstruction_angle = ReconstructionAngle::kPitch;
   bool fuse_vanishing_point = true;
   double vanishing_point_gate = 3.0;
+  bool fuse_imu = true;
   bool use_motion = true;
   bool average_attitude = true;
   double acceleration_stddev = 1.5;
@@ -216,6 +242,8 @@ struct KalmanHeightParameters {
            "correct the stereo plane's pitch with the vanishing point");
     v.number("vanishing_point_gate", vanishing_point_gate, 1.0, 20.0, "sigma",
              "a vanishing point that disagrees more with the stereo plane is left out");
+    v.flag("fuse_imu", fuse_imu,
+           "correct the stereo plane's pitch and roll, and watch the rig, with the attitude of an imu");
     v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
     v.flag(
         "average_attitude", average_attitude,

@@ -23,8 +23,9 @@ class Pipeline {
     Timings stages;  ///< of the stages: rectify, stereo_depth, approach_angle, kalman_height
   };
   /// left, right: raw mono8 of the size the calibrations announce; another size is a failure in every
-  /// stage's result. stamp: of the left image, s. skew: right minus left, s.
-  const Output& process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
+  /// stage's result. stamp: of the left image, s. skew: right minus left, s. imu: of this pair.
+  const Output& process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0,
+                        const AttitudePrior& imu = {});
 
   const RigModel& rig() const { return rig_; }
 

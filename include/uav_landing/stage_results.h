@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "uav_landing/attitude_prior.h"
 #include "uav_landing/consistency_test.h"
 #include "uav_landing/failure.h"
 #include "uav_landing/ground_plane.h"
@@ -108,6 +109,8 @@ struct ApproachAngleResult {
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
+  /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
+  AttitudePrior imu;
 };
 
 enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };

@@ -1,9 +1,11 @@
 #include "uav_landing/approach_angle_stage.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "text.h"
 #include "uav_landing/approach_angle.h"
 #include "uav_landing/corners.h"
 #include "uav_landing/focus_of_expansion.h"
@@ -38,10 +40,11 @@ struct ApproachAngleStage::Implementation {
   }
 
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
-                              const StereoDepthResult& stereo) {
+                              const StereoDepthResult& stereo, const AttitudePrior& imu) {
     timings.clear();
     ApproachAngleResult result;
     result.stamp = stamp;
+    if (parameters.use_imu) result.imu = overSlopingGround(imu);
     result.failure = checkPair(model, left, right);
     if (result.failure) {
       result.step.failure = result.window.failure = result.failure;
@@ -53,7 +56,8 @@ struct ApproachAngleStage::Implementation {
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     const RunwayDirection direction = findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
-      result.failure = {Reason::kNoGroundNormal, "neither a stereo plane nor a vanishing point"};
+      result.failure = {Reason::kNoGroundNormal,
+                        "neither a stereo plane nor a vanishing point nor an imu's attitude"};
       result.step.failure = result.window.failure = result.failure;
       result.runway.failure = result.runway.threshold_failure = result.failure;
       tracker.skip(stamp, left);
@@ -64,6 +68,14 @@ struct ApproachAngleStage::Implementation {
     result.runway =
         runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
     return result;
+  }
+
+  // The ground's normal is that of level ground but for the slope of the ground.
+  AttitudePrior overSlopingGround(AttitudePrior imu) const {
+    const double slope = parameters.runway_slope_stddev_deg * kDegree;
+    imu.normal_covariance +=
+        slope * slope * (Eigen::Matrix3d::Identity() - imu.normal * imu.normal.transpose());
+    return imu;
   }
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
@@ -85,7 +97,14 @@ struct ApproachAngleStage::Implementation {
   // The normal that the angles refer to; false when there is none.
   bool findNormal(const GroundPlane* plane, ApproachAngleResult& result) const {
     const bool has_direction = result.vanishing_direction.allFinite();
-    if (parameters.normal_source == NormalSource::kVanishingLine || !plane) {
+    const bool literal = parameters.normal_source == NormalSource::kVanishingLine;
+    if (!literal && !plane && result.imu.hasNormal()) {
+      // As a plane at the height of 1.
+      const GroundPlane level{result.imu.normal, result.imu.normal_covariance};
+      setNormal(has_direction ? withDirection(level, result) : level, result);
+      return true;
+    }
+    if (literal || !plane) {
       if (!has_direction) return false;
       // The paper's level rig, or the roll that the stereo plane knows.
       GroundNormal normal{result.n_vp, result.n_vp_covariance};
@@ -98,15 +117,28 @@ struct ApproachAngleStage::Implementation {
       result.n_covariance = normal.covariance;
       return true;
     }
-    GroundPlane fused = *plane;
-    if (has_direction) {
+    GroundPlane fused = has_direction ? withDirection(*plane, result) : *plane;
+    if (result.imu.hasNormal()) {
       double nis = 0;
-      fused = fuseVanishingPoint(*plane, result.vanishing_direction, result.vanishing_covariance,
-                                 kMaxVanishingNis, &nis);
+      fused = fuseNormal(fused, result.imu.normal, result.imu.normal_covariance, kMaxVanishingNis, &nis);
+      if (!(nis <= kMaxVanishingNis)) {
+        const double off = std::acos(std::clamp(fused.normal().dot(result.imu.normal), -1.0, 1.0));
+        result.imu.failure = {Reason::kRejected,
+                              text("the imu's attitude is ", off / kDegree, " deg off the ground ahead")};
+      }
     }
-    result.n = fused.normal();
-    result.n_covariance = fused.normalCovariance();
+    setNormal(fused, result);
     return true;
+  }
+
+  static GroundPlane withDirection(const GroundPlane& plane, const ApproachAngleResult& result) {
+    return fuseVanishingPoint(plane, result.vanishing_direction, result.vanishing_covariance,
+                              kMaxVanishingNis, nullptr);
+  }
+
+  static void setNormal(const GroundPlane& plane, ApproachAngleResult& result) {
+    result.n = plane.normal();
+    result.n_covariance = plane.normalCovariance();
   }
 
   void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo,
@@ -114,7 +146,7 @@ struct ApproachAngleStage::Implementation {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(*stereo) : groundCorners(left, result.n);
     MotionTracker::Result motion =
-        tracker.process(stamp, left, result.n, result.n_covariance, corners, timings);
+        tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
     ScopedTimer timer(timings, "foe_and_angle");
     result.step = motion.step;
     result.window = motion.window;
@@ -201,8 +233,8 @@ ApproachAngleStage::~ApproachAngleStage() = default;
 ApproachAngleStage::ApproachAngleStage(ApproachAngleStage&&) noexcept = default;
 
 ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
-                                                const StereoDepthResult& stereo) {
-  return implementation_->process(stamp, left, right, checked(implementation_->model.rig, stereo));
+                                                const StereoDepthResult& stereo, const AttitudePrior& imu) {
+  return implementation_->process(stamp, left, right, checked(implementation_->model.rig, stereo), imu);
 }
 
 void ApproachAngleStage::reset() {

@@ -242,6 +242,18 @@ class WhitenedRows {
   double scale_ = 1;
 };
 
+Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+// Adds a rotation known beforehand to the normal equations: as a perturbation of Q on the left.
+void addRotation(const RotationPrior& prior, const State& state, Normal& sums) {
+  const Eigen::Matrix3d information = (state.Q * prior.covariance * state.Q.transpose()).inverse();
+  sums.information.topLeftCorner<3, 3>() += information;
+  sums.right.head<3>() += information * rotationVector(prior.R.transpose() * state.Q.transpose());
+}
+
 // The prior's covariance has rank 2; along the normal itself nothing may change, because it sets the scale.
 Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) {
   constexpr double kFixed = 1e-6;
@@ -254,7 +266,7 @@ Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Mat
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches) {
+                                        int min_matches, const RotationPrior* rotation) {
   constexpr int kIterations = 8;
   constexpr double kConverged = 1e-6;  // rad and shares of the height: a thousandth of a pixel
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
@@ -281,6 +293,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     }
     sums.information.bottomRightCorner<3, 3>() += prior;
     sums.right.tail<3>() += prior * (normal - state.n);
+    if (rotation != nullptr) addRotation(*rotation, state, sums);
     information = sums.information.selfadjointView<Eigen::Lower>();
     const Vector9d step = information.ldlt().solve(sums.right);
     state = state.apply(step);

@@ -53,6 +53,29 @@ GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& 
   return fused;
 }
 
+std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
+                                               const Eigen::Matrix3d& covariance) {
+  const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
+  const Eigen::Vector3d left = forward.cross(normal);
+  // Only how far they are tipped out of the plane counts.
+  const Eigen::Matrix3d along = normal * normal.transpose();
+  return {GroundDirection{forward, forward.dot(covariance * forward) * along},
+          GroundDirection{left, left.dot(covariance * left) * along}};
+}
+
+GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,
+                       const Eigen::Matrix3d& covariance, double max_nis, double* nis) {
+  GroundPlane fused = plane;
+  double worst = 0;
+  for (const GroundDirection& level : levelDirections(normal, covariance)) {
+    double ratio = 0;
+    fused = fuseVanishingPoint(fused, level.direction, level.covariance, max_nis, &ratio);
+    worst = ratio > worst || std::isnan(ratio) ? ratio : worst;
+  }
+  if (nis != nullptr) *nis = worst;
+  return worst <= max_nis ? fused : plane;
+}
+
 double yawOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& landing_direction) {
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d& p = landing_direction;

@@ -39,6 +39,18 @@ double rigAngleVariance(const GroundPlane& plane, const ApproachAngleResult& app
   return std::isfinite(turn) ? turn * turn : 0;
 }
 
+/// How the camera turned since the pair before, for the attitude: where the images do not tell, by the imu.
+ApproachAngleResult::Motion rotationOf(const ApproachAngleResult& approach, bool use_imu) {
+  const AttitudePrior& imu = approach.imu;
+  if (!use_imu || !approach.step.failure || !imu.hasRotation()) return approach.step;
+  ApproachAngleResult::Motion turn;
+  turn.duration = imu.duration;
+  turn.rotation = imu.rotation;
+  turn.covariance.setZero();
+  turn.covariance.topLeftCorner<3, 3>() = imu.rotation_covariance;
+  return turn;
+}
+
 /// plane: of which the rig's rotation was taken out, or null.
 void reportAngle(const ApproachAngleResult& approach, const GroundPlane* plane, double max_stddev,
                  LandingResult& result) {
@@ -216,21 +228,29 @@ void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const Approac
   reconstruction.alone = plane;
   reconstruction.alone_common = common;
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
-  // Only the vanishing direction is independent of the stereo plane; the fused normal of the approach angle
-  // contains the plane already.
-  const Eigen::Vector3d& p = approach.vanishing_direction;
-  if (!parameters_.fuse_vanishing_point || !p.allFinite() || !approach.vanishing_covariance.allFinite())
-    return;
-  const GroundPlane alone = plane;
+  // Only the vanishing direction and the imu are independent of the stereo plane; the fused normal of the
+  // approach angle contains the plane already.
+  if (parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+      approach.vanishing_covariance.allFinite())
+    fuseDirection({approach.vanishing_direction, approach.vanishing_covariance}, reconstruction);
+  if (!parameters_.fuse_imu || !approach.imu.hasNormal()) return;
+  for (const GroundDirection& level : levelDirections(approach.imu.normal, approach.imu.normal_covariance))
+    fuseDirection(level, reconstruction);
+}
+
+void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const {
+  const GroundPlane alone = reconstruction.plane;
+  const Eigen::Vector3d& p = ground.direction;
   double nis = 0;
-  plane = fuseVanishingPoint(alone, p, approach.vanishing_covariance,
-                             std::pow(parameters_.vanishing_point_gate, 2), &nis);
-  if (plane.g == alone.g) return;
-  // What the vanishing point is wrong by is mostly the runway's own slope: the next pairs have the same.
-  const double variance = alone.g.dot(approach.vanishing_covariance * alone.g);
+  reconstruction.plane =
+      fuseVanishingPoint(alone, p, ground.covariance, std::pow(parameters_.vanishing_point_gate, 2), &nis);
+  if (reconstruction.plane.g == alone.g) return;
+  // What the direction is wrong by is mostly the ground's own slope: the next pairs have the same.
+  const double variance = alone.g.dot(ground.covariance * alone.g);
   const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
-  common = kept * common * kept.transpose() + variance * gain * gain.transpose();
+  Eigen::Matrix3d& common = reconstruction.common;
+  common = (kept * common * kept.transpose()).eval() + variance * gain * gain.transpose();
 }
 
 void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult& approach,
@@ -242,11 +262,12 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
-  AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, approach.step);
+  const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
+  AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn);
   if (!estimate.agrees && confirmations_ < kConfirmations) {
     // Nothing yet that says which of the two normals is the ground's.
     attitude_.reset();
-    estimate = attitude_.update(stamp, plane.normal(), own, approach.step);
+    estimate = attitude_.update(stamp, plane.normal(), own, turn);
   }
   average = {estimate.normal, estimate.covariance + common};
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
@@ -286,10 +307,12 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
     reconstruction.alone_common = by_rotation + stereo.row_covariance;
     reconstruction.alone = {without.g - A * rotation.w, without.covariance + by_rotation};
   }
-  const RigRotationFilter::Corrected corrected = rig_rotation_.correct(
-      without, A, direction, approach.vanishing_covariance, parameters_.vanishing_point_gate);
+  const RigRotationFilter::Corrected corrected =
+      rig_rotation_.correct(without, A, direction, approach.vanishing_covariance,
+                            parameters_.vanishing_point_gate, parameters_.fuse_imu ? &approach.imu : nullptr);
   reconstruction.plane = corrected.plane;
-  reconstruction.common = corrected.common + stereo.row_covariance;
+  reconstruction.common =
+      corrected.common + corrected.kept * stereo.row_covariance * corrected.kept.transpose();
   rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();
 }
 

@@ -51,6 +51,22 @@ double matchAngleVariance(const MotionEstimate& estimate) {
                                of_t);
 }
 
+// The inertial sensor's rotation, when it is that of this step.
+std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
+  constexpr double kStampRounding = 1e-3;
+  if (!imu.hasRotation() || std::abs(imu.duration - duration) > kStampRounding) return std::nullopt;
+  const double angle = imu.rotation.norm();
+  const Eigen::Vector3d axis = angle > 0 ? (imu.rotation / angle).eval() : Eigen::Vector3d::UnitX();
+  return RotationPrior{Eigen::AngleAxisd(angle, axis).toRotationMatrix(), imu.rotation_covariance};
+}
+
+// The rotation that the matches want is one that the prior allows.
+bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
+  constexpr double kGate = 16.3;  // chi-square with 3 degrees of freedom, 1e-3
+  const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
+  return off.dot(prior.covariance.inverse() * off) <= kGate;
+}
+
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
@@ -92,7 +108,8 @@ void MotionTracker::skip(double stamp, const cv::Mat& left) { advance(takeFrame(
 
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                                              const Eigen::Matrix3d& normal_covariance,
-                                             const Corners& all_corners, Timings& timings) {
+                                             const Corners& all_corners, Timings& timings,
+                                             const AttitudePrior& imu) {
   Result result;
   const Corners corners = thinned(all_corners, static_cast<size_t>(parameters_.corner_count));
   Frame now;
@@ -104,7 +121,8 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
     ScopedTimer timer(timings, "feature_matching_motion");
-    estimateStep(now, normal, normal_covariance, corners, result);
+    const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
+    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, result);
   }
   ScopedTimer timer(timings, "window_motion");
   estimateWindow(now, normal, normal_covariance, corners, result);
@@ -114,20 +132,23 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
 }
 
 void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
-                                 const Eigen::Matrix3d& covariance, const Corners& corners, Result& result) {
+                                 const Eigen::Matrix3d& covariance, const Corners& corners,
+                                 const RotationPrior* rotation, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
-  if (last_step_) {
-    CameraMotion predicted = *last_step_;
-    predicted.t *= duration / last_duration_;
-    predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
-                                    Eigen::AngleAxisd(predicted.R).axis())
-                      .toRotationMatrix();
-    estimate = followFrom(now, predicted, normal, covariance, corners, result);
+  const auto good = [&] {
+    return estimate && estimate->inlier_count >= kLeastShare * result.step_matches.size();
+  };
+  for (const CameraMotion& predicted : predictions(duration, rotation)) {
+    estimate = followFrom(now, predicted, normal, covariance, corners, rotation, result);
+    if (good()) break;
   }
-  if (!estimate || estimate->inlier_count < kLeastShare * result.step_matches.size()) {
-    const CameraMotion first = searchFirst(now, normal, corners);
-    estimate = followFrom(now, first, normal, covariance, corners, result);
+  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
+  if (rotation != nullptr) rotations.insert(rotations.begin(), rotation->R);
+  for (const Eigen::Matrix3d& R : rotations) {
+    if (good()) break;
+    const CameraMotion first = searchFirst(now, normal, corners, R);
+    estimate = followFrom(now, first, normal, covariance, corners, rotation, result);
   }
   result.step = describe(estimate, duration, result.step_matches.size(), &result.step_match_variance);
   if (!estimate) return;
@@ -135,10 +156,24 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
   last_duration_ = duration;
 }
 
+// As the camera moved last, with the known rotation first.
+std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
+  std::vector<CameraMotion> predictions;
+  if (!last_step_) return predictions;
+  CameraMotion predicted = *last_step_;
+  predicted.t *= duration / last_duration_;
+  predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
+                                  Eigen::AngleAxisd(predicted.R).axis())
+                    .toRotationMatrix();
+  if (rotation != nullptr) predictions.push_back({rotation->R, predicted.t});
+  predictions.push_back(predicted);
+  return predictions;
+}
+
 Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const CameraMotion& predicted,
                                                    const Eigen::Vector3d& normal,
                                                    const Eigen::Matrix3d& covariance, const Corners& corners,
-                                                   Result& result) {
+                                                   const RotationPrior* rotation, Result& result) {
   // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
   // moves on as it did, so a small one comes first.
   constexpr size_t kScouts = 60;
@@ -158,22 +193,35 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
       break;
   }
   result.step_matches = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0));
-  return estimateMotion(rig_, result.step_matches, normal, covariance, start, parameters_.min_matches);
+  return estimate(result.step_matches, normal, covariance, start, rotation);
+}
+
+Expected<MotionEstimate> MotionTracker::estimate(const std::vector<TemporalMatch>& matches,
+                                                 const Eigen::Vector3d& normal,
+                                                 const Eigen::Matrix3d& covariance, const CameraMotion& start,
+                                                 const RotationPrior* rotation) const {
+  if (rotation != nullptr) {
+    // Three of the six unknowns are known already.
+    const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
+    const Expected<MotionEstimate> aided =
+        estimateMotion(rig_, matches, normal, covariance, start, needed, rotation);
+    if (aided && agrees(*aided, *rotation)) return aided;
+  }
+  return estimateMotion(rig_, matches, normal, covariance, start, parameters_.min_matches);
 }
 
 CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d& normal,
-                                        const Corners& corners) const {
+                                        const Corners& corners, const Eigen::Matrix3d& R) const {
   constexpr size_t kCorners = 90;
   const Corners some = thinned(corners, kCorners);
   // Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
   // is left to the search radius.
   const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
   const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
-  CameraMotion best;
+  CameraMotion best{R, Eigen::Vector3d::Zero()};
   double most = 0;
   for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1}) {
-    CameraMotion guess;
-    guess.t = share * ahead;
+    const CameraMotion guess{R, share * ahead};
     const std::vector<TemporalMatch> matches = matchOverTime(rig_, now.image, past_.back().image, mask_, some,
                                                              normal, guess, matchOptions(wideSteps()));
     const Expected<MotionEstimate> estimate =

@@ -23,7 +23,7 @@ Pipeline::Pipeline(RigModel rig, Rectifier left, Rectifier right, const Paramete
       kalman_(rig_.rig, parameters.kalman_height) {}
 
 const Pipeline::Output& Pipeline::process(double stamp, const cv::Mat& left, const cv::Mat& right,
-                                          double skew) {
+                                          double skew, const AttitudePrior& imu) {
   output_.parts.clear();
   output_.stages.clear();
   if (const Failure failure = rectify(left, right)) {
@@ -37,7 +37,7 @@ const Pipeline::Output& Pipeline::process(double stamp, const cv::Mat& left, con
   } else {
     output_.stereo = stereo_.process(stamp, output_.left, output_.right, skew);
     addTimings("stereo_depth", stereo_.timings());
-    output_.approach = approach_.process(stamp, output_.left, output_.right, output_.stereo);
+    output_.approach = approach_.process(stamp, output_.left, output_.right, output_.stereo, imu);
     addTimings("approach_angle", approach_.timings());
   }
   output_.landing = kalman_.process(output_.stereo, output_.approach);

@@ -78,6 +78,16 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
     motion.angle = motion.angle_variance = kUnknown;
 }
 
+void keepImu(AttitudePrior& imu) {
+  keepDirection(imu.normal, imu.normal_covariance);
+  const bool possible = imu.rotation.norm() <= M_PI && imu.duration >= kShortestStep &&
+                        imu.duration <= kLongestStep && isCovariance<3>(imu.rotation_covariance);
+  if (possible) return;
+  imu.duration = kUnknown;
+  imu.rotation.setConstant(kUnknown);
+  imu.rotation_covariance.setConstant(kUnknown);
+}
+
 void keepRunway(ApproachAngleResult::Runway& runway) {
   const auto isLength = [](double value, double variance) {
     return within(value, kLargestRatio) && isVariance(variance);
@@ -153,6 +163,7 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepMotion(kept.step);
   keepMotion(kept.window);
   keepRunway(kept.runway);
+  keepImu(kept.imu);
   if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);
   return kept;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace uav_landing {
 namespace {
@@ -44,7 +45,6 @@ void RigRotationFilter::setPrior(double bias_stddev) {
   if (variance == calibrated_variance_) return;
   calibrated_variance_ = variance;
   prior_.head<3>().setConstant(variance);
-  prior_[3] = 1;
   prior_[4] = std::pow(kLensError / rig_.fy, 2);
   prior_[5] = std::pow(kLensError / (kLensReach * rig_.fy), 2);
   solve();
@@ -60,23 +60,17 @@ void RigRotationFilter::updateVertical(const RigRotation& measured) {
   const Eigen::LLT<Eigen::Matrix2d> decomposed(covariance);
   if (!(covariance.trace() > 0) || decomposed.info() != Eigen::Success) return;
   const Eigen::Matrix2d weight = share_ * decomposed.solve(Eigen::Matrix2d::Identity());
-  Eigen::Matrix<double, 2, 6> rows = Eigen::Matrix<double, 2, 6>::Zero();
+  Eigen::Matrix<double, 2, kSize> rows = Eigen::Matrix<double, 2, kSize>::Zero();
   rows(0, 0) = rows(0, 4) = rows(1, 2) = rows(1, 5) = 1;
   information_ += rows.transpose() * weight * rows;
   right_ += rows.transpose() * weight * Eigen::Vector2d(measured.w.x(), measured.w.z());
   solve();
 }
 
-void RigRotationFilter::measure(const Eigen::Matrix<double, 1, 6>& row, double value, double variance) {
-  information_ += share_ / variance * row.transpose() * row;
-  right_ += share_ / variance * value * row.transpose();
-  solve();
-}
-
 void RigRotationFilter::solve() {
   constexpr int kIterations = 3;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Matrix6 all = information_;
+    Matrix all = information_;
     all.diagonal() += prior_.cwiseInverse();
     covariance_ = all.inverse();
     state_ = covariance_ * right_;
@@ -87,54 +81,93 @@ void RigRotationFilter::solve() {
   }
 }
 
-void RigRotationFilter::learnSlopeVariance(double variance) {
-  if (slope_variance_ > 0 && (1 - kNoiseShare) * variance >= slope_variance_) return;
-  slope_variance_ = (1 - kNoiseShare) * variance;
-  prior_[3] = slope_variance_;
-  solve();
+double RigRotationFilter::learnSlopeVariance(int slope, double variance) {
+  double& smallest = slope_variance_[slope];
+  if (!(smallest > 0) || (1 - kNoiseShare) * variance < smallest) {
+    smallest = prior_[slope] = (1 - kNoiseShare) * variance;
+    solve();
+  }
+  return smallest;
+}
+
+// Jointly with the state: 0 = p.g - s / h. Returns how many sigmas off the direction is.
+double RigRotationFilter::fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const {
+  const Eigen::Vector3d& p = sloping.ground.direction;
+  const double h = joint.plane.height();
+  const Eigen::Matrix<double, 3, kSize>& B = joint.by_state;
+  const Eigen::Matrix3d all = joint.plane.covariance + B * covariance_ * B.transpose();
+  const Eigen::Vector3d with_slope = B * covariance_.col(sloping.slope);
+  const double innovation = state_[sloping.slope] / h - p.dot(joint.plane.g);
+  const double variance = p.dot(all * p) - 2 * p.dot(with_slope) / h +
+                          (covariance_(sloping.slope, sloping.slope) + noise) / (h * h);
+  const double ratio = std::abs(innovation) / std::sqrt(variance);
+  if (!(ratio <= gate)) return ratio;
+  const Eigen::Vector3d gain = (all * p - with_slope / h) / variance;
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
+  joint.plane.g += gain * innovation;
+  joint.plane.covariance =
+      kept * joint.plane.covariance * kept.transpose() + noise / (h * h) * gain * gain.transpose();
+  joint.by_state = (kept * B).eval();
+  joint.kept = (kept * joint.kept).eval();
+  joint.by_state.col(sloping.slope) += gain / h;
+  return ratio;
 }
 
 RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane, const Eigen::Matrix3d& A,
                                                         const Eigen::Vector3d& direction,
                                                         const Eigen::Matrix3d& direction_covariance,
-                                                        double gate) {
-  Corrected corrected;
-  GroundPlane& now = corrected.plane;
-  now.g = plane.g - A * state_.head<3>();
-  corrected.common = A * covariance_.topLeftCorner<3, 3>() * A.transpose();
-  now.covariance = plane.covariance + corrected.common;
-  if (!direction.allFinite() || !direction_covariance.allFinite()) return corrected;
-
-  const double h = now.height();
-  const Eigen::Vector3d n = now.normal();
-  const double total = n.dot(direction_covariance * n);
-  if (!(total > 0)) return corrected;
-  learnSlopeVariance(total);
-  const double noise = total - slope_variance_;  // of p.n, of this frame alone
-
-  // Jointly: 0 = p.g - s / h.
-  const Eigen::Vector3d with_slope = -A * covariance_.block<3, 1>(0, 3);
-  const double innovation = state_[3] / h - direction.dot(now.g);
-  const double variance = direction.dot(now.covariance * direction) - 2 * direction.dot(with_slope) / h +
-                          (covariance_(3, 3) + noise) / (h * h);
-  const Eigen::Vector3d gain = (now.covariance * direction - with_slope / h) / variance;
-  const double ratio = std::abs(innovation) / std::sqrt(variance);
-  if (!(ratio >= 0)) return corrected;
-
-  if (ratio <= gate) {
-    now.g += gain * innovation;
-    now.covariance -= variance * gain * gain.transpose();
-    Eigen::Matrix<double, 3, 4> by_common;
-    by_common << A - gain * direction.transpose() * A, -gain / h;
-    corrected.common = by_common * covariance_.topLeftCorner<4, 4>() * by_common.transpose();
+                                                        double gate, const AttitudePrior* level) {
+  constexpr int kVanishing = 3, kForward = 6, kLeft = 7;
+  std::vector<Sloping> directions;
+  if (direction.allFinite() && direction_covariance.allFinite())
+    directions.push_back({{direction, direction_covariance}, kVanishing});
+  if (level != nullptr && level->hasNormal()) {
+    const auto [forward, left] = levelDirections(level->normal, level->normal_covariance);
+    directions.push_back({forward, kForward});
+    directions.push_back({left, kLeft});
   }
 
-  // For the frames to come.
-  Eigen::Matrix<double, 1, 6> row = Eigen::Matrix<double, 1, 6>::Zero();
-  row.head<3>() = h * direction.transpose() * A;
-  row[3] = 1;
-  const double of_frame = h * h * direction.dot(plane.covariance * direction) + noise;
-  measure(row, h * direction.dot(plane.g), of_frame * std::max(1.0, ratio / gate));
+  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity()};
+  joint.plane.g = plane.g - A * state_.head<3>();
+  joint.by_state.leftCols<3>() = -A;
+  // For the frames to come: all directions at once, as they share the noise of the plane.
+  const double h = joint.plane.height();
+  Eigen::MatrixXd rows(0, kSize), tips(0, 3);
+  Eigen::VectorXd values, noises, inflations;
+  for (const Sloping& sloping : directions) {
+    const Eigen::Vector3d n = joint.plane.normal();
+    const double total = n.dot(sloping.ground.covariance * n);
+    if (!(total > 0)) continue;
+    const double noise = total - learnSlopeVariance(sloping.slope, total);
+    const double ratio = fuse(sloping, noise, gate, joint);
+    if (!(ratio >= 0)) continue;
+    const Eigen::Index i = rows.rows();
+    rows.conservativeResize(i + 1, kSize);
+    tips.conservativeResize(i + 1, 3);
+    values.conservativeResize(i + 1);
+    noises.conservativeResize(i + 1);
+    inflations.conservativeResize(i + 1);
+    tips.row(i) = h * sloping.ground.direction.transpose();
+    rows.row(i).setZero();
+    rows.row(i).head<3>() = tips.row(i) * A;
+    rows(i, sloping.slope) = 1;
+    values[i] = tips.row(i) * plane.g;
+    noises[i] = noise;
+    inflations[i] = std::sqrt(std::max(1.0, ratio / gate));
+  }
+  Corrected corrected;
+  corrected.plane = joint.plane;
+  corrected.kept = joint.kept;
+  corrected.common = joint.by_state * covariance_ * joint.by_state.transpose();
+  corrected.plane.covariance += corrected.common;
+  if (values.size() == 0) return corrected;
+  Eigen::MatrixXd of_frame = tips * plane.covariance * tips.transpose();
+  of_frame.diagonal() += noises;
+  of_frame = (inflations.asDiagonal() * of_frame * inflations.asDiagonal()).eval();
+  const Eigen::MatrixXd weighted = share_ * of_frame.llt().solve(rows);
+  information_ += rows.transpose() * weighted;
+  right_ += weighted.transpose() * values;
+  solve();
   return corrected;
 }
 

@@ -1,7 +1,10 @@
+#include <deque>
+#include <functional>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "conversions.h"
 #include "image_input.h"
+#include "imu_input.h"
 #include "pairing.h"
 #include "pairs_in_flight.h"
 #include "rig_watch.h"
@@ -14,16 +17,32 @@ namespace uav_landing {
 ///
 /// Parameters: ApproachAngleParameters and the common ones of NodeParameters.
 /// Subscribes {left,right}/{image_rect, camera_info} of rectify and, unless use_stereo is false,
-/// stereo_depth, while somebody wants the output. Publishes approach_angle (ApproachAngle): one message per
-/// pair, also without an angle.
+/// stereo_depth, while somebody wants the output. Subscribes the topic of parameter imu (sensor_msgs/Imu) and
+/// /tf_static (its mounting) unless use_imu is false; while somebody publishes it, a pair waits up to
+/// imu_wait for the message after it. Publishes approach_angle (ApproachAngle): one message per pair, also
+/// without an angle.
 class ApproachAngleNodelet : public StageNodelet {
  public:
   ApproachAngleNodelet() : StageNodelet("approach_angle") {}
-  ~ApproachAngleNodelet() override { stop(); }
+  ~ApproachAngleNodelet() override {
+    stop();
+    wait_timer_.stop();
+    tf_subscriber_.shutdown();
+  }
 
  private:
   using StereoInputs = Pairing<sensor_msgs::Image, sensor_msgs::CameraInfo, sensor_msgs::Image,
                                sensor_msgs::CameraInfo, StereoDepth>;
+
+  static constexpr uint32_t kImuQueue = 1000;
+  static constexpr double kPatience = 0.5;  // s, with recorded data
+
+  /// A pair that waits for the imu, since then.
+  struct Waiting {
+    ros::Time stamp;
+    ros::WallTime since;
+    std::function<void()> work;
+  };
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<ApproachAngleParameters>();
@@ -33,19 +52,37 @@ class ApproachAngleNodelet : public StageNodelet {
       with_stereo_ = std::make_unique<StereoInputs>(
           exactPairing(), resolved({kLeftImage, kLeftInfo, kRightImage, kRightInfo, kStereoDepth}),
           [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info,
-                 const auto& stereo) { work(left, *left_info, right, *right_info, toResult(*stereo)); });
+                 const auto& stereo) {
+            take(left->header.stamp, [=] { work(left, *left_info, right, *right_info, toResult(*stereo)); });
+          });
     } else {
       without_stereo_ = std::make_unique<StereoPairing>(
           exactPairing(), resolved({kLeftImage, kLeftInfo, kRightImage, kRightInfo}),
           [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info) {
-            work(left, *left_info, right, *right_info, StereoDepthResult());
+            take(left->header.stamp,
+                 [=] { work(left, *left_info, right, *right_info, StereoDepthResult()); });
           });
     }
+    if (!parameters_.use_imu || node_.imu.empty()) return;
+    imu_ = std::make_unique<ImuInput>(parameters_);
+    tf_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
+        "/tf_static", 100,
+        [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addTransforms(*m); }); });
+    // Recorded data is to be used completely.
+    wait_ = ros::WallDuration(node_.drop_frames ? parameters_.imu_wait : kPatience);
+    wait_timer_ = getNodeHandle().createWallTimer(
+        wait_, [this](const ros::WallTimerEvent&) { release(); }, true, false);
   }
 
   bool wanted() const override { return publisher_.getNumSubscribers() > 0; }
   void subscribe() override {
     in_flight_ = PairsInFlight::join(getNodeHandle().resolveName(kLeftImage));
+    if (imu_) {
+      imu_subscriber_ = getNodeHandle().subscribe<sensor_msgs::Imu>(
+          node_.imu, kImuQueue,
+          [this](const sensor_msgs::ImuConstPtr& message) { guard([&] { takeImu(*message); }); },
+          ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+    }
     if (with_stereo_) {
       feedViews(*with_stereo_);
       feed<4, StereoDepth>(kStereoDepth, *with_stereo_, subscribers_);
@@ -62,6 +99,8 @@ class ApproachAngleNodelet : public StageNodelet {
   }
   void unsubscribe() override {
     subscribers_.clear();
+    imu_subscriber_.shutdown();
+    waiting_.clear();
     if (with_stereo_) with_stereo_->reset();
     if (without_stereo_) without_stereo_->reset();
     in_flight_.reset();
@@ -72,6 +111,49 @@ class ApproachAngleNodelet : public StageNodelet {
   }
   std::string complaint() override {
     return with_stereo_ ? with_stereo_->complaint() : without_stereo_->complaint();
+  }
+
+  void complainMore() override {
+    if (imu_heard_ && imu_unused_)
+      NODELET_WARN("%s: %s is not used for %.3g s: %s", getName().c_str(), imu_subscriber_.getTopic().c_str(),
+                   node_.complaint_period, imu_reason_.c_str());
+    imu_heard_ = imu_unused_ = false;
+  }
+  void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    if (imu_) status.add("imu", imu_reason_.empty() ? "used" : imu_reason_);
+  }
+
+  void takeImu(const sensor_msgs::Imu& message) {
+    const Failure failure = imu_->add(message);
+    imu_heard_ = true;
+    imu_silent_ = false;
+    if (failure) refuse(imu_subscriber_.getTopic() + ": " + failure.detail);
+    release();
+  }
+
+  // Pairs go on in order, each when the imu message after it is there.
+  void take(const ros::Time& stamp, std::function<void()> pair) {
+    waiting_.push_back({stamp, ros::WallTime::now(), std::move(pair)});
+    release();
+  }
+  void release() {
+    while (!waiting_.empty() && !mustWait(waiting_.front())) {
+      const std::function<void()> pair = std::move(waiting_.front().work);
+      waiting_.pop_front();
+      pair();
+    }
+    if (waiting_.empty()) return;
+    wait_timer_.stop();
+    wait_timer_.setPeriod(
+        std::max(ros::WallDuration(0.001), waiting_.front().since + wait_ - ros::WallTime::now()));
+    wait_timer_.start();
+  }
+  bool mustWait(const Waiting& pair) {
+    if (!imu_ || imu_silent_ || imu_subscriber_.getNumPublishers() == 0 || imu_->covers(pair.stamp))
+      return false;
+    if (ros::WallTime::now() - pair.since < wait_) return true;
+    imu_silent_ = true;
+    return false;
   }
 
   void work(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfo& left_info,
@@ -86,18 +168,26 @@ class ApproachAngleNodelet : public StageNodelet {
                const StereoDepthResult& stereo) {
     const double stamp = left->header.stamp.toSec();
     double compute_ms = 0;
+    AttitudePrior imu;
+    if (imu_) imu = imu_->at(left->header.stamp, left_info.header.frame_id, toCalibration(left_info).R);
     ApproachAngleResult result = attempt<ApproachAngleResult>([&] {
       return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,
                         [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
-                          auto processed = stage.process(stamp, left_view, right_view, stereo);
+                          auto processed = stage.process(stamp, left_view, right_view, stereo, imu);
                           compute_ms = stage.timings().total();
                           return processed;
                         });
     });
     result.stamp = stamp;
+    noteImu(result.imu);
     warnOf(result.failure);
     report_.served(left->header.stamp, compute_ms, result.failure.message());
     publisher_.publish(boost::make_shared<ApproachAngle>(toMessage(result, left->header, compute_ms)));
+  }
+
+  void noteImu(const AttitudePrior& imu) {
+    imu_unused_ = imu.failure && !imu.hasRotation();
+    imu_reason_ = imu.failure.message();
   }
 
   ApproachAngleParameters parameters_;
@@ -107,6 +197,15 @@ class ApproachAngleNodelet : public StageNodelet {
   std::unique_ptr<StereoPairing> without_stereo_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
   RigStage<ApproachAngleStage, ApproachAngleParameters> stage_;
+
+  std::unique_ptr<ImuInput> imu_;  // null: not to be used
+  ros::Subscriber imu_subscriber_, tf_subscriber_;
+  std::deque<Waiting> waiting_;
+  ros::WallDuration wait_;
+  ros::WallTimer wait_timer_;
+  bool imu_silent_ = false;                      // nothing came while the last pair waited
+  bool imu_heard_ = false, imu_unused_ = false;  // since the last complaint; by the last pair
+  std::string imu_reason_;                       // of the last pair
 };
 
 }  // namespace uav_landing

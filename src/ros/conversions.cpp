@@ -127,6 +127,28 @@ ApproachAngleResult::Runway toResult(const RunwayPosition& message) {
   return runway;
 }
 
+ImuPrior toMessage(const AttitudePrior& prior) {
+  ImuPrior message;
+  message.reason = prior.failure.message();
+  toArray(prior.normal, message.normal);
+  toArray(prior.normal_covariance, message.normal_covariance);
+  message.duration = prior.duration;
+  toArray(prior.rotation, message.rotation);
+  toArray(prior.rotation_covariance, message.rotation_covariance);
+  return message;
+}
+
+AttitudePrior toResult(const ImuPrior& message) {
+  AttitudePrior prior;
+  prior.failure = parseFailure(message.reason);
+  fromArray(message.normal, prior.normal);
+  fromArray(message.normal_covariance, prior.normal_covariance);
+  prior.duration = message.duration;
+  fromArray(message.rotation, prior.rotation);
+  fromArray(message.rotation_covariance, prior.rotation_covariance);
+  return prior;
+}
+
 }  // namespace
 
 Failure parseFailure(const std::string& reason) {
@@ -228,6 +250,7 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   toArray(result.foe, message.foe);
   toArray(result.foe_covariance, message.foe_covariance);
   message.runway = toMessage(result.runway);
+  message.imu = toMessage(result.imu);
   message.compute_ms = compute_ms;
   return message;
 }
@@ -249,6 +272,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   fromArray(message.foe, result.foe);
   fromArray(message.foe_covariance, result.foe_covariance);
   result.runway = toResult(message.runway);
+  result.imu = toResult(message.imu);
   return result;
 }
 

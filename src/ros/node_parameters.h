@@ -14,6 +14,7 @@ namespace uav_landing {
 struct NodeParameters {
   std::string camera = "/stereo";
   std::string image_transport = "raw";
+  std::string imu = "/imu/data";
   bool drop_frames = true;
   int backlog = 1000;
   std::string config_file;
@@ -30,9 +31,12 @@ struct NodeParameters {
     v.text("camera", camera,
            "namespace of the cameras: left/image_raw, left/camera_info, right/... (rectify)");
     v.text("image_transport", image_transport, "transport of the raw images: raw, compressed ... (rectify)");
+    v.text("imu", imu,
+           "topic of an inertial sensor (sensor_msgs/Imu), used when somebody publishes it; empty: none "
+           "(approach_angle)");
     v.flag("drop_frames", drop_frames,
            "when behind, serve the newest pair and count the ones left out; else process all in order "
-           "(rectify)");
+           "(rectify; approach_angle then waits longer for the imu)");
     v.number("backlog", backlog, 1, 100000, "pairs", "most that wait when drop_frames is false (rectify)");
     v.text(
         "config_file", config_file,

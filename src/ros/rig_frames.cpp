@@ -46,4 +46,12 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
   return child;
 }
 
+std::optional<Eigen::Isometry3d> RigFrames::leftFrom(const std::string& left_frame,
+                                                     const std::string& frame) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string left = stripped(left_frame), other = stripped(frame);
+  if (!static_transforms_.canTransform(left, other, ros::Time())) return std::nullopt;
+  return tf2::transformToEigen(static_transforms_.lookupTransform(left, other, ros::Time()));
+}
+
 }  // namespace uav_landing

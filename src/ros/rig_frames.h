@@ -34,6 +34,8 @@ class RigFrames {
 
   /// left_frame: frame_id of the left camera.
   Child find(const std::string& left_frame) const;
+  /// x_left = T x_frame for any frame that static tf connects with the left camera; none: it does not.
+  std::optional<Eigen::Isometry3d> leftFrom(const std::string& left_frame, const std::string& frame) const;
 
  private:
   const std::string base_frame_, runway_frame_;

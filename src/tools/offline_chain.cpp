@@ -8,23 +8,66 @@
 
 namespace uav_landing {
 
-OfflineChain::OfflineChain(const Parameters& parameters, const std::string& camera,
+OfflineChain::OfflineChain(const Parameters& parameters, const std::string& camera, bool with_imu,
                            std::vector<std::unique_ptr<PairSink>>& sinks,
                            std::function<void(const std::string&)> complain)
-    : parameters_(parameters), camera_(camera), sinks_(sinks), complain_(std::move(complain)) {}
+    : parameters_(parameters), camera_(camera), sinks_(sinks), complain_(std::move(complain)) {
+  if (with_imu && parameters.approach_angle.use_imu) imu_.emplace(parameters.approach_angle);
+}
+
+void OfflineChain::addTransforms(const tf2_msgs::TFMessage& static_transforms) {
+  if (imu_) imu_->addTransforms(static_transforms);
+}
+
+void OfflineChain::addImu(const sensor_msgs::Imu& message, const std::string& imu_topic) {
+  if (!imu_) return;
+  const Failure failure = imu_->add(message);
+  if (failure) complainOfImu(imu_topic + ": " + failure.detail);
+  release(false);
+}
+
+void OfflineChain::complainOfImu(const std::string& problem) {
+  if (problem == last_imu_complaint_) return;
+  last_imu_complaint_ = problem;
+  complain_(problem);
+}
 
 void OfflineChain::process(const sensor_msgs::ImageConstPtr& left,
                            const sensor_msgs::CameraInfoConstPtr& left_info,
                            const sensor_msgs::ImageConstPtr& right,
                            const sensor_msgs::CameraInfoConstPtr& right_info) {
-  const ros::Time& stamp = left->header.stamp;
-  const double skew = (right->header.stamp - stamp).toSec();
-  followCalibration(toCalibration(*left_info), toCalibration(*right_info), stamp);
+  waiting_.push_back({left, right, left_info, right_info});
+  release(false);
+}
+
+void OfflineChain::finish() { release(true); }
+
+void OfflineChain::release(bool all) {
+  constexpr double kPatience = 0.5;  // s of the images
+  while (!waiting_.empty()) {
+    const ros::Time stamp = waiting_.front().left->header.stamp;
+    const double waited = (waiting_.back().left->header.stamp - stamp).toSec();
+    const bool goes = all || !imu_ || imu_->covers(stamp) || waited < 0 || waited > kPatience;
+    if (!goes) return;
+    const Waiting pair = waiting_.front();
+    waiting_.pop_front();
+    process(pair);
+  }
+}
+
+void OfflineChain::process(const Waiting& pair) {
+  const ros::Time& stamp = pair.left->header.stamp;
+  const double skew = (pair.right->header.stamp - stamp).toSec();
+  followCalibration(toCalibration(*pair.left_info), toCalibration(*pair.right_info), stamp);
   ++pairs_;
-  const Failure problem = run(left, right, skew);
+  AttitudePrior imu;
+  if (imu_) imu = imu_->at(stamp, pair.left_info->header.frame_id, left_calibration_.R);
+  if (imu_ && imu.failure && !imu.hasRotation()) complainOfImu("imu: " + imu.failure.message());
+  const Failure problem = run(pair.left, pair.right, skew, imu);
   if (!problem) {
-    const ProcessedPair pair{stamp, left->header.frame_id, skew, {}, pipeline_->rig().rig, *output_};
-    for (const auto& sink : sinks_) sink->take(pair);
+    const ProcessedPair processed{stamp, pair.left->header.frame_id, skew,
+                                  {},    pipeline_->rig().rig,       *output_};
+    for (const auto& sink : sinks_) sink->take(processed);
     return;
   }
   ++unusable_;
@@ -34,8 +77,8 @@ void OfflineChain::process(const sensor_msgs::ImageConstPtr& left,
   nothing.landing.status = Status::kLost;
   nothing.landing.failure = problem;
   const StereoRig no_rig;
-  const ProcessedPair pair{stamp, left->header.frame_id, skew, problem, no_rig, nothing};
-  for (const auto& sink : sinks_) sink->take(pair);
+  const ProcessedPair processed{stamp, pair.left->header.frame_id, skew, problem, no_rig, nothing};
+  for (const auto& sink : sinks_) sink->take(processed);
 }
 
 void OfflineChain::followCalibration(const CameraCalibration& left, const CameraCalibration& right,
@@ -54,7 +97,7 @@ void OfflineChain::followCalibration(const CameraCalibration& left, const Camera
 }
 
 Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right,
-                          double skew) {
+                          double skew, const AttitudePrior& imu) {
   if (calibration_failure_) {
     return {calibration_failure_.reason, "camera_info: " + calibration_failure_.detail};
   }
@@ -63,7 +106,7 @@ Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_m
   const auto right_image = toMono8(right, right_calibration_, "/" + camera_ + "/right/image_raw");
   if (!right_image) return right_image.error();
   output_ =
-      &pipeline_->process(left->header.stamp.toSec(), (*left_image)->image, (*right_image)->image, skew);
+      &pipeline_->process(left->header.stamp.toSec(), (*left_image)->image, (*right_image)->image, skew, imu);
   return {};
 }
 

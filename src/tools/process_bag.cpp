@@ -18,7 +18,8 @@ namespace {
 using namespace uav_landing;
 
 struct Options {
-  std::string input, camera = "stereo", config, csv, output, report_data;
+  std::string input, camera = "stereo", imu = "/imu/data", config, csv, output, report_data;
+  bool imu_needed = false;
 };
 
 /// What goes wrong on the way, to stderr; a stream of ever new problems is cut short.
@@ -63,16 +64,19 @@ void reportPairing(const StereoPairing& pairing, Complaints& complain) {
 }
 
 Failure processBag(const Options& options, const Parameters& parameters, Complaints& complain) {
-  const StereoBagReader reader(options.input, options.camera);
-  if (const Failure failure = reader.checkTopics())
+  const StereoBagReader reader(options.input, options.camera, options.imu);
+  if (const Failure failure = reader.checkTopics(options.imu_needed))
     return {failure.reason, options.input + ": " + failure.detail};
 
   std::vector<std::unique_ptr<PairSink>> sinks = makeSinks(options, parameters, reader);
-  OfflineChain chain(parameters, options.camera, sinks, std::ref(complain));
+  OfflineChain chain(parameters, options.camera, reader.hasImu(), sinks, std::ref(complain));
   StereoPairing pairing(parameters.rectify, {reader.topics().begin(), reader.topics().end()},
                         [&](const auto&... messages) { chain.process(messages...); });
   ProgressBar progress(reader.messages());
-  reader.read(pairing, [&] { progress.step(); });
+  reader.readStaticTransforms([&](const auto& message) { chain.addTransforms(message); });
+  reader.read(
+      pairing, [&](const auto& message) { chain.addImu(message, options.imu); }, [&] { progress.step(); });
+  chain.finish();
 
   if (chain.pairs() == 0)
     return {Reason::kInputInvalid, options.input + ": no image pair: " + pairing.complaint()};
@@ -111,6 +115,11 @@ int main(int argc, char** argv) {
   app.add_option("--camera", options.camera, "namespace of the camera topics")
       ->capture_default_str()
       ->check(isCameraName());
+  CLI::Option* imu =
+      app.add_option("--imu", options.imu,
+                     "topic of an inertial sensor (sensor_msgs/Imu); the default may be missing, "
+                     "an empty one means none")
+          ->capture_default_str();
   app.add_option("--config", options.config, "parameter file; without it the defaults");
   app.add_option("--csv", options.csv, "estimates to write, one row per pair");
   app.add_option("--output", options.output, "bag to write, with the messages of the nodelets");
@@ -124,6 +133,7 @@ int main(int argc, char** argv) {
       },
       "print all parameters of the config file and leave");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  options.imu_needed = imu->count() > 0 && !options.imu.empty();
   try {
     return run(app, options);
   } catch (const rosbag::BagException& error) {

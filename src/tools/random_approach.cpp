@@ -47,6 +47,16 @@ void drawCalibration(Draw& draw, const CalibrationPrior& prior, SimulatorParamet
   p.rig.bend_rz_deg = draw.normal(prior.rz) / kDegree;
 }
 
+void drawImu(Draw& draw, const CalibrationPrior& prior, SimulatedImuParameters& imu) {
+  imu.rate = 100;
+  imu.pitch_error_deg = draw.normal(prior.imu_attitude) / kDegree;
+  imu.roll_error_deg = draw.normal(prior.imu_attitude) / kDegree;
+  imu.gyro_bias_x_deg = draw.normal(prior.imu_rate_bias) / kDegree;
+  imu.gyro_bias_y_deg = draw.normal(prior.imu_rate_bias) / kDegree;
+  imu.gyro_bias_z_deg = draw.normal(prior.imu_rate_bias) / kDegree;
+  imu.gyro_noise_deg = prior.imu_rate / kDegree;
+}
+
 void drawRunway(Draw& draw, SimulatedRunwayParameters& runway) {
   runway.width = draw.scale(18, 60);
   runway.length = draw.uniform(800, 2500);
@@ -127,10 +137,15 @@ CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_len
   // The simulator's ground is flat here: a baseline error stands for what the height may be wrong by in all.
   prior.baseline = parameters.kalman_height.height_model_error;
   prior.rx = prior.ry = prior.rz = parameters.stereo_depth.disparity_bias_stddev / focal_length;
+  const ApproachAngleParameters& imu = parameters.approach_angle;
+  prior.imu_attitude = std::hypot(imu.imu_attitude_stddev_deg, imu.runway_slope_stddev_deg) * kDegree;
+  prior.imu_rate_bias = imu.imu_rate_bias_deg * kDegree;
+  prior.imu_rate = imu.imu_rate_stddev_deg * kDegree;
   return prior;
 }
 
-SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters) {
+SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters,
+                                bool imu) {
   Draw draw(seed);
   SimulatorParameters p = drawFlight(draw);
   drawCalibration(draw, calibrationPrior(parameters, p.left_camera.fx), p);
@@ -138,10 +153,11 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   const double y = draw.uniform(-0.35, 0.35) * p.runway.width;
   place(height + sink * p.path.duration, draw.uniform(0, 400), y, p.path);
+  if (imu) drawImu(draw, calibrationPrior(parameters, p.left_camera.fx), p.imu);
   return p;
 }
 
-SimulatorParameters drawApproach(uint64_t seed) {
+SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters, bool imu) {
   Draw draw(seed);
   SimulatorParameters p = drawFlight(draw);
   constexpr double kStart = 60;  // m
@@ -161,6 +177,7 @@ SimulatorParameters drawApproach(uint64_t seed) {
   p.path.duration = (kStart - p.path.flare_height) / sink + p.path.flare_duration;
   place(kStart, draw.uniform(150, 400), draw.uniform(-0.2, 0.2) * p.runway.width, p.path);
   p.path.track_deg *= 0.2;
+  if (imu) drawImu(draw, calibrationPrior(parameters, p.left_camera.fx), p.imu);
   return p;
 }
 

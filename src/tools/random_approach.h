@@ -11,6 +11,9 @@ namespace uav_landing {
 struct CalibrationPrior {
   double baseline = 0;            ///< share of the baseline
   double rx = 0, ry = 0, rz = 0;  ///< rotation of the right camera in rectified axes, rad
+  double imu_attitude = 0;        ///< of an inertial sensor, with the ground's slope, which is flat here, rad
+  double imu_rate_bias = 0;       ///< rad/s
+  double imu_rate = 0;            ///< of each message, rad/s
 };
 CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_length);
 
@@ -18,9 +21,11 @@ CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_len
 // seed decides everything.
 
 /// A short piece of a glide that ends near this height, m; as many frames as asked for, at 20 Hz. The
-/// calibration's errors are drawn, too, from what the estimator is told of them.
-SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters);
+/// calibration's errors are drawn, too, from what the estimator is told of them. imu: an inertial sensor
+/// flies along; everything else is the same with it.
+SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters,
+                                bool imu = false);
 /// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
-SimulatorParameters drawApproach(uint64_t seed);
+SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
 
 }  // namespace uav_landing

@@ -54,9 +54,17 @@ void fly(const ApproachSimulator& simulator, LiveCameras& cameras, bool loop) {
 /// Renders all frames into the bag and the dataset (null: none).
 Failure simulate(const ApproachSimulator& simulator, StereoBagWriter& bag, DatasetWriter* dataset) {
   ProgressBar progress(simulator.frames());
+  const SimulatedImu imu = simulator.imu();
+  const int imu_messages = imu.count(simulator.duration());
+  const Eigen::Matrix3d left_from_imu = simulator.rig().left.calibration.R.transpose() * opticalFromImu();
+  int imu_next = 0;
   for (int i = 0; i < simulator.frames(); ++i, progress.step()) {
     const ApproachSimulator::Frame frame = simulator.frame(i);
     const ros::Time stamp = stampOf(frame.time);
+    for (; imu_next < imu_messages && imu.sample(imu_next).stamp <= frame.time; ++imu_next) {
+      const ImuSample sample = imu.sample(imu_next);
+      bag.writeImu(stampOf(sample.stamp), sample, left_from_imu);
+    }
     bag.write(stamp, frame.left, frame.right, frame.truth);
     if (dataset == nullptr) continue;
     if (const Failure failure = dataset->write(stamp, frame.left, frame.right, frame.truth)) return failure;

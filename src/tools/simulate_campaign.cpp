@@ -11,6 +11,7 @@
 #include "command_line.h"
 #include "progress_bar.h"
 #include "random_approach.h"
+#include "uav_landing/imu_buffer.h"
 #include "uav_landing/parameter_file.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -22,6 +23,7 @@ struct Options {
   std::string config, csv, kind = "snippets";
   uint64_t first = 1;
   int count = 20, frames = 13;
+  bool imu = false;
   std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
 };
 
@@ -37,6 +39,8 @@ template <class Visitor>
 void fly(const SimulatorParameters& drawn, const Parameters& parameters, const std::vector<double>& noise,
          CampaignCsv::Sample sample, Visitor&& visit) {
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
+  ImuBuffer imu(parameters.approach_angle);
+  for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
   std::vector<Pipeline> pipelines;
   for (size_t i = 0; i < noise.size(); ++i)
     pipelines.push_back(orThrow(
@@ -44,12 +48,16 @@ void fly(const SimulatorParameters& drawn, const Parameters& parameters, const s
         sample.seed));
   for (sample.frame = 0; sample.frame < simulator.frames(); ++sample.frame) {
     const ApproachSimulator::Light light = simulator.light(sample.frame);
+    const double time = simulator.timeOf(sample.frame);
+    std::optional<double> before;
+    if (sample.frame > 0) before = simulator.timeOf(sample.frame - 1);
+    const AttitudePrior prior = imu.at(time, before, opticalFromImu());
     for (size_t i = 0; i < noise.size(); ++i) {
       const ApproachSimulator::Frame frame = simulator.expose(light, noise[i]);
       sample.noise = noise[i];
       sample.time = frame.time;
       // Stamps of 0 mean that there is none.
-      visit(sample, frame.truth, pipelines[i].process(100 + frame.time, frame.left, frame.right));
+      visit(sample, frame.truth, pipelines[i].process(100 + frame.time, frame.left, frame.right, 0, prior));
     }
   }
 }
@@ -61,7 +69,7 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
     for (const double height : options.heights) {
       // Another flight at every height, so that the cells are independent of each other.
       const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
-      const SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters);
+      const SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
       CampaignCsv::Sample sample;
       sample.seed = seed;
       sample.cell_height = height;
@@ -77,7 +85,7 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
 void flyApproaches(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
   ProgressBar progress(options.count);
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
-    const SimulatorParameters drawn = drawApproach(seed);
+    const SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
     CampaignCsv::Sample sample;
     sample.seed = seed;
     fly(drawn, parameters, options.noise, sample,
@@ -129,6 +137,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.frames, "of a snippet, at 20 Hz")
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
+  app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once
   try {

@@ -31,7 +31,8 @@ void add(StereoPairing& pairing, const rosbag::MessageInstance& message) {
 
 }  // namespace
 
-StereoBagReader::StereoBagReader(const std::string& path, const std::string& camera) {
+StereoBagReader::StereoBagReader(const std::string& path, const std::string& camera, const std::string& imu)
+    : imu_(imu) {
   if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": no such file");
   try {
     bag_.open(path, rosbag::bagmode::Read);
@@ -44,7 +45,8 @@ StereoBagReader::StereoBagReader(const std::string& path, const std::string& cam
              prefix + "right/camera_info"};
 }
 
-Failure StereoBagReader::checkTopics() const {
+Failure StereoBagReader::checkTopics(bool imu_needed) const {
+  constexpr char kImuType[] = "sensor_msgs/Imu";
   const std::map<std::string, std::string> found = topicsAndTypes(bag_);
   std::ostringstream problems;
   for (size_t i = 0; i < topics_.size(); ++i) {
@@ -55,10 +57,20 @@ Failure StereoBagReader::checkTopics() const {
       problems << "topic " << topics_[i] << " is " << topic->second << ", expected " << kTypes[i] << '\n';
     }
   }
+  const auto imu = found.find(imu_);
+  if (imu == found.end()) {
+    if (imu_needed) problems << "no topic " << imu_ << " (" << kImuType << ")\n";
+  } else if (imu->second != kImuType) {
+    problems << "topic " << imu_ << " is " << imu->second << ", expected " << kImuType << '\n';
+  }
   if (problems.str().empty()) return {};
   problems << (found.empty() ? "The bag is empty" : "The bag contains:");
   for (const auto& [topic, type] : found) problems << "\n  " << topic << " (" << type << ")";
   return {Reason::kInputInvalid, problems.str()};
+}
+
+bool StereoBagReader::hasImu() const {
+  return !imu_.empty() && rosbag::View(bag_, rosbag::TopicQuery(imu_)).size() > 0;
 }
 
 std::size_t StereoBagReader::leftImages() const {
@@ -66,12 +78,25 @@ std::size_t StereoBagReader::leftImages() const {
 }
 
 std::size_t StereoBagReader::messages() const {
-  return rosbag::View(bag_, rosbag::TopicQuery(std::vector<std::string>(topics_.begin(), topics_.end())))
-      .size();
+  return rosbag::View(bag_, rosbag::TopicQuery(wanted())).size();
 }
 
-void StereoBagReader::read(StereoPairing& pairing, const std::function<void()>& progress) const {
-  rosbag::View view(bag_, rosbag::TopicQuery(std::vector<std::string>(topics_.begin(), topics_.end())));
+std::vector<std::string> StereoBagReader::wanted() const {
+  std::vector<std::string> topics(topics_.begin(), topics_.end());
+  if (!imu_.empty()) topics.push_back(imu_);
+  return topics;
+}
+
+void StereoBagReader::readStaticTransforms(
+    const std::function<void(const tf2_msgs::TFMessage&)>& visit) const {
+  rosbag::View view(bag_, rosbag::TopicQuery("/tf_static"));
+  for (const rosbag::MessageInstance& message : view)
+    if (const auto transforms = message.instantiate<tf2_msgs::TFMessage>()) visit(*transforms);
+}
+
+void StereoBagReader::read(StereoPairing& pairing, const std::function<void(const sensor_msgs::Imu&)>& imu,
+                           const std::function<void()>& progress) const {
+  rosbag::View view(bag_, rosbag::TopicQuery(wanted()));
   for (const rosbag::MessageInstance& message : view) {
     const std::string topic = message.getTopic();
     if (topic == topics_[0]) {
@@ -80,8 +105,10 @@ void StereoBagReader::read(StereoPairing& pairing, const std::function<void()>& 
       add<1>(pairing, message);
     } else if (topic == topics_[2]) {
       add<2>(pairing, message);
-    } else {
+    } else if (topic == topics_[3]) {
       add<3>(pairing, message);
+    } else if (const auto sample = message.instantiate<sensor_msgs::Imu>()) {
+      imu(*sample);
     }
     progress();
   }

@@ -1,7 +1,10 @@
 #include "stereo_bag_writer.h"
 
 #include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/image_encodings.h>
+#include <tf2_eigen/tf2_eigen.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <boost/algorithm/string.hpp>
 #include <cmath>
@@ -9,6 +12,8 @@
 
 namespace uav_landing {
 namespace {
+
+constexpr char kImuFrame[] = "imu_link";
 
 /// Truth is exact: variance 0 where there is a value.
 double varianceOf(double value) { return std::isnan(value) ? kUnknown : 0.0; }
@@ -89,6 +94,52 @@ void StereoBagWriter::write(const ros::Time& stamp, const cv::Mat& left, const c
   writeCamera("left", stamp, left, left_);
   writeCamera("right", stamp, right, right_);
   bag_.write("/truth/landing_estimate", stamp, truthMessage(truth, left_, stamp, left_.header.frame_id));
+}
+
+void StereoBagWriter::writeImu(const ros::Time& stamp, const ImuSample& sample,
+                               const Eigen::Matrix3d& left_from_imu) {
+  if (!mounting_written_) writeMounting(stamp, left_from_imu);
+  mounting_written_ = true;
+  const auto store = [](const std::optional<Eigen::Matrix3d>& covariance, boost::array<double, 9>& out) {
+    // Zeros: not known.
+    const Eigen::Matrix3d known = covariance.value_or(Eigen::Matrix3d::Zero());
+    for (int i = 0; i < 9; ++i) out[static_cast<size_t>(i)] = known(i / 3, i % 3);
+  };
+  sensor_msgs::Imu message;
+  message.header.stamp = stamp;
+  message.header.frame_id = kImuFrame;
+  if (sample.orientation) {
+    tf2::convert(*sample.orientation, message.orientation);
+    store(sample.orientation_covariance, message.orientation_covariance);
+  } else {
+    message.orientation_covariance[0] = -1;
+  }
+  if (sample.angular_velocity) {
+    tf2::toMsg(*sample.angular_velocity, message.angular_velocity);
+    store(sample.angular_velocity_covariance, message.angular_velocity_covariance);
+  } else {
+    message.angular_velocity_covariance[0] = -1;
+  }
+  message.linear_acceleration_covariance[0] = -1;
+  bag_.write("/imu/data", stamp, message);
+}
+
+void StereoBagWriter::writeMounting(const ros::Time& stamp, const Eigen::Matrix3d& left_from_imu) {
+  tf2_msgs::TFMessage mounting;
+  mounting.transforms.resize(1);
+  geometry_msgs::TransformStamped& transform = mounting.transforms[0];
+  transform.header.stamp = stamp;
+  transform.header.frame_id = left_.header.frame_id;
+  transform.child_frame_id = kImuFrame;
+  tf2::convert(Eigen::Quaterniond(left_from_imu), transform.transform.rotation);
+  // Latched: who listens later is told, too.
+  const auto header = boost::make_shared<ros::M_string>();
+  (*header)["latching"] = "1";
+  (*header)["type"] = ros::message_traits::datatype(mounting);
+  (*header)["md5sum"] = ros::message_traits::md5sum(mounting);
+  (*header)["message_definition"] = ros::message_traits::definition(mounting);
+  (*header)["callerid"] = "/simulate_approach";
+  bag_.write("/tf_static", stamp, mounting, header);
 }
 
 void StereoBagWriter::writeCamera(const std::string& side, const ros::Time& stamp, const cv::Mat& image,

@@ -9,6 +9,7 @@
 
 #include "uav_landing/LandingEstimate.h"
 #include "uav_landing/failure.h"
+#include "uav_landing/imu_buffer.h"
 #include "uav_landing/truth.h"
 
 namespace uav_landing {
@@ -22,7 +23,8 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
 std::string opticalFrame(const std::string& camera, const std::string& side);
 
 /// Writes image pairs with their truth to a bag, the way a stereo camera driver would be recorded:
-/// /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate. Everything goes to
+/// /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate; if there is one, an inertial
+/// sensor on /imu/data. Everything goes to
 /// "<path>.active" first; finish() gives it its name, without it the file is removed.
 class StereoBagWriter {
  public:
@@ -36,15 +38,20 @@ class StereoBagWriter {
 
   /// left, right: raw mono8.
   void write(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right, const Truth& truth);
+  /// A message of the inertial sensor on /imu/data; its mounting goes on /tf_static once. stamp: of the
+  /// message. left_from_imu: rotation to the left camera's optical frame, as it is mounted.
+  void writeImu(const ros::Time& stamp, const ImuSample& sample, const Eigen::Matrix3d& left_from_imu);
   void finish();
 
  private:
+  void writeMounting(const ros::Time& stamp, const Eigen::Matrix3d& left_from_imu);
   void writeCamera(const std::string& side, const ros::Time& stamp, const cv::Mat& image,
                    sensor_msgs::CameraInfo& info);
 
   std::string path_, temporary_path_, camera_;
   sensor_msgs::CameraInfo left_, right_;
   rosbag::Bag bag_;
+  bool mounting_written_ = false;
 };
 
 }  // namespace uav_landing

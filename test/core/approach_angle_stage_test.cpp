@@ -237,6 +237,108 @@ TEST(ApproachAngleStage, CorrectsTheStereoNormalByTheVanishingPoint) {
   EXPECT_LT(std::abs(pitchOf(result.n) - pose.pitch), 0.15 * kDegree);
 }
 
+/// What a perfect inertial sensor says, tipped by an error of pitch.
+AttitudePrior inertial(const Pose& then, const Pose& now, double pitch_error = 0) {
+  constexpr double kAttitude = 0.5 * kDegree, kRotation = 0.02 * kDegree;
+  AttitudePrior prior;
+  prior.failure = {};
+  Pose tipped = now;
+  tipped.pitch += pitch_error;
+  prior.normal = tipped.down();
+  prior.normal_covariance =
+      kAttitude * kAttitude * (Eigen::Matrix3d::Identity() - prior.normal * prior.normal.transpose());
+  const Eigen::AngleAxisd turn(Movement(then, now).R);
+  prior.duration = kPeriod;
+  prior.rotation = turn.angle() * turn.axis();
+  prior.rotation_covariance = kRotation * kRotation * Eigen::Matrix3d::Identity();
+  return prior;
+}
+
+TEST(ApproachAngleStage, AnInertialSensorIsGroundNormalEnough) {
+  // Neither stereo nor painted lines.
+  Scene scene(45);
+  scene.parameters.use_stereo = false;
+  scene.parameters.runway_slope_stddev_deg = 0.4;
+  scene.ground.line_offset = 0;
+  const auto path = straight(attitude(-8, 3, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  ApproachAngleResult result;
+  for (int i = 0; i < 3; ++i) {
+    const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
+    result = stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
+                           {}, inertial(then, now));
+  }
+  EXPECT_FALSE(result.failure) << result.failure.message();
+  EXPECT_NEAR(result.step.angle, 10 * kDegree, 0.5 * kDegree);
+  // The slope of the ground is not known.
+  EXPECT_GT(std::sqrt(pitchVariance(result.imu.normal, result.imu.normal_covariance)),
+            0.99 * std::hypot(0.5, 0.4) * kDegree);
+}
+
+TEST(ApproachAngleStage, FusesAnInertialSensorWithStereoUnlessItContradicts) {
+  Scene scene(46);
+  scene.ground.line_offset = 0;
+  const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
+  StereoDepthResult stereo = scene.stereo(pose, 0);
+  stereo.plane = test::exactPlane(pose, kHeightShare, 0.7 * kDegree);
+  const auto run = [&](double error, bool use) {
+    scene.parameters.use_imu = use;
+    ApproachAngleStage stage(scene.model, scene.parameters);
+    return stage.process(0, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo,
+                         inertial(pose, pose, error));
+  };
+  const double alone = pitchOf(run(0.5 * kDegree, false).n);
+  const ApproachAngleResult fused = run(0.5 * kDegree, true);
+  // 0.7 degrees against 0.5 and the ground's 0.5 are equals.
+  EXPECT_NEAR(pitchOf(fused.n) - alone, 0.25 * kDegree, 0.1 * kDegree);
+  EXPECT_FALSE(fused.imu.failure) << fused.imu.failure.message();
+  const ApproachAngleResult wrong = run(8 * kDegree, true);
+  EXPECT_EQ(pitchOf(wrong.n), alone);
+  EXPECT_EQ(wrong.imu.failure.reason, Reason::kRejected);
+  EXPECT_NE(wrong.imu.failure.message().find("deg off the ground ahead"), std::string::npos);
+}
+
+TEST(ApproachAngleStage, FollowsAQuickTurnByTheInertialSensorsRotation) {
+  // From one frame to the next 9 degrees of yaw and 5 of pitch, there and back: more than is searched.
+  Scene scene(47);
+  const auto path = [](double t) {
+    const bool there = std::lround(t / kPeriod) % 2 == 1;
+    return straight(attitude(there ? -13 : -8, 0, there ? 9 : 0), 1.8, 1.4, 10)(t);
+  };
+  const auto run = [&](bool use) {
+    scene.parameters.use_imu = use;
+    ApproachAngleStage stage(scene.model, scene.parameters);
+    int known = 0;
+    for (int i = 0; i < 5; ++i) {
+      const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
+      const ApproachAngleResult result =
+          stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
+                        scene.stereo(now, i * kPeriod), inertial(then, now));
+      if (result.step.failure) continue;
+      ++known;
+      expectMotion(result.step, Movement(then, now), now.height(), "frame " + std::to_string(i));
+    }
+    return known;
+  };
+  EXPECT_EQ(run(true), 4);
+  EXPECT_LT(run(false), 4);
+}
+
+TEST(ApproachAngleStage, LeavesOutARotationThatTheImagesContradict) {
+  Scene scene(48);
+  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 4; ++i) {
+    const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
+    AttitudePrior prior = inertial(then, now);
+    prior.rotation.y() += 1.0 * kDegree;
+    const ApproachAngleResult result =
+        stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
+                      scene.stereo(now, i * kPeriod), prior);
+    if (i > 0) expectMotion(result.step, Movement(then, now), now.height(), "frame " + std::to_string(i));
+  }
+}
+
 TEST(ApproachAngleStage, GivesTheGeneralAngleAndEq1AsGeometrySays) {
   // With drift eq (1) is the difference of pitch and the focus' elevation in the image: worked out from the
   // poses.

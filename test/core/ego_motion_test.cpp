@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
@@ -306,6 +307,35 @@ TEST(EstimateMotion, UsesPointsOffTheGroundWithTheirOwnDepth) {
   const Expected<MotionEstimate> sharp = estimate(matcher.standing(100, 0.1, 0.001), step.n, 1e-3);
   ASSERT_TRUE(vague && sharp);
   EXPECT_GT(vague->covariance(5, 5), 4 * sharp->covariance(5, 5));
+}
+
+TEST(EstimateMotion, WeighsARotationKnownBeforehandAgainstTheMatches) {
+  const Step step = Step::make();
+  const std::vector<TemporalMatch> matches = Matcher(step, 17).ground(60, 0.3);
+  const Expected<MotionEstimate> alone = estimate(matches, step.n, 1e-4);
+  ASSERT_TRUE(alone);
+  const Eigen::Vector3d off(2e-3, -1e-3, 3e-3);
+  const auto with = [&](double stddev, double share = 1) {
+    const RotationPrior prior{Eigen::AngleAxisd(share * off.norm(), off.normalized()) * step.movement.R,
+                              stddev * stddev * Eigen::Matrix3d::Identity()};
+    const auto found = estimateMotion(rig(), matches, step.n, across(step.n, 1e-4), {}, 15, &prior);
+    EXPECT_TRUE(found);
+    return *found;
+  };
+  const Eigen::Vector3d trusted = rotationError(with(1e-6).motion.R, step.movement.R);
+  EXPECT_LT((trusted - off).norm(), 1e-5);
+  const MotionEstimate ignored = with(1);
+  EXPECT_LT(rotationError(ignored.motion.R, alone->motion.R).norm(), 1e-5);
+  // Both alike: the covariance is that of the sum of the informations, along the axis that is known worst.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(alone->covariance.topLeftCorner<3, 3>());
+  const Eigen::Vector3d axis = axes.eigenvectors().col(2);
+  const double variance = axes.eigenvalues()[2];
+  const MotionEstimate both = with(std::sqrt(variance), 0);
+  EXPECT_NEAR(axis.dot(both.covariance.topLeftCorner<3, 3>() * axis) / variance, 0.5, 0.1);
+  const auto of_translation = [](const MotionEstimate& e) {
+    return e.covariance.diagonal().segment(3, 3).sum();
+  };
+  EXPECT_LT(of_translation(both), of_translation(*alone));
 }
 
 TEST(EstimateMotion, SaysWhyThereIsNone) {

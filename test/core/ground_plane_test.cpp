@@ -155,6 +155,37 @@ TEST(FuseVanishingPoint, LeavesThePlaneWhenTheDirectionContradictsIt) {
   EXPECT_EQ(fused.covariance, plane.covariance);
 }
 
+TEST(FuseNormal, GivesTheWeightedLeastSquaresPlane) {
+  const GroundPlane plane = makePlane();
+  // Level ground tipped by 0.01 in pitch and -0.02 in roll against the plane.
+  const double stddev = 0.03;
+  const Eigen::Vector3d normal = (plane.normal() + Eigen::Vector3d(-0.02, 0, 0.01)).normalized();
+  const Eigen::Matrix3d covariance =
+      stddev * stddev * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  double nis = -1;
+  const GroundPlane fused = fuseNormal(plane, normal, covariance, 10, &nis);
+  // Information form: what lies in the level ground has no inverse depth, to this sigma times 1 / h.
+  const double noise = std::pow(stddev * normal.dot(plane.g), 2);
+  const Eigen::Matrix3d information =
+      plane.covariance.inverse() + (Eigen::Matrix3d::Identity() - normal * normal.transpose()) / noise;
+  const Eigen::Vector3d expected = information.inverse() * (plane.covariance.inverse() * plane.g);
+  EXPECT_LT((fused.g - expected).norm(), 1e-3 * (expected - plane.g).norm());
+  EXPECT_TRUE(fused.covariance.isApprox(information.inverse(), 1e-3));
+  EXPECT_GT(nis, 0);
+}
+
+TEST(FuseNormal, LeavesThePlaneWhenOneOfItsDirectionsContradictsIt) {
+  const GroundPlane plane = makePlane();
+  for (const Eigen::Vector3d& off : {Eigen::Vector3d(0.2, 0, 0), Eigen::Vector3d(0, 0, 0.2)}) {
+    const Eigen::Vector3d normal = (plane.normal() + off).normalized();
+    double nis = 0;
+    const GroundPlane fused = fuseNormal(plane, normal, 1e-6 * Eigen::Matrix3d::Identity(), 10, &nis);
+    EXPECT_GT(nis, 10);
+    EXPECT_EQ(fused.g, plane.g);
+    EXPECT_EQ(fused.covariance, plane.covariance);
+  }
+}
+
 TEST(FuseVanishingPoint, LeavesThePlaneWhenThereIsNoDirection) {
   const GroundPlane plane = makePlane();
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(std::nan(""));

@@ -101,6 +101,66 @@ TEST(RigRotationFilter, FindsYawAndRollAndFreesPitchAndHeightOfThem) {
   EXPECT_NEAR(plane.height(), height, 3 * std::sqrt(plane.heightVariance()));
 }
 
+/// A good attitude sensor over nearly level ground, wrong by this.
+AttitudePrior levelGround(const Approach& approach, double pitch_error, double roll_error) {
+  constexpr double kLevel = 0.3 * kDegree;
+  AttitudePrior level;
+  level.normal = normalFromPitchRoll(approach.pitch + pitch_error, roll_error);
+  level.normal_covariance =
+      kLevel * kLevel * (Eigen::Matrix3d::Identity() - level.normal * level.normal.transpose());
+  return level;
+}
+
+TEST(RigRotationFilter, AnAttitudeSensorShowsAYawWhereNothingElseDoes) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
+  const double truth = 0.05 * kDegree;
+  for (const double error : {-0.2 * kDegree, 0.0, 0.2 * kDegree}) {
+    Approach approach;
+    approach.w.y() = truth;
+    RigRotationFilter with(approach.rig, 60), without(approach.rig, 60);
+    GroundPlane plane;
+    double height = 0;
+    for (int i = 0; i < 400; ++i) {
+      height = 40 - 0.08 * i;
+      const GroundPlane seen = approach.seen(height);
+      const AttitudePrior level = levelGround(approach, error, -error);
+      for (RigRotationFilter* filter : {&with, &without}) {
+        filter->advance(i * kStep);
+        filter->setPrior(kBias);
+      }
+      plane = with.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3, &level).plane;
+      without.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3);
+    }
+    EXPECT_LT(std::abs(without.rotation().w.y()), 0.1 * truth);
+    const RigRotation rotation = with.rotation();
+    const double stddev = std::sqrt(rotation.covariance(1, 1));
+    EXPECT_NEAR(rotation.w.y(), truth, 3 * stddev) << error;
+    EXPECT_NEAR(rotation.w.y(), truth, 0.3 * truth) << error;
+    // 0.05 degrees of yaw turn the plane by 0.4 at 8 m.
+    EXPECT_NEAR(pitchError(plane, approach.pitch), 0, 0.15 * kDegree) << error;
+  }
+}
+
+TEST(RigRotationFilter, DoesNotTakeTheErrorOfAnAttitudeSensorForAYaw) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
+  Approach approach;
+  RigRotationFilter filter(approach.rig, 60);
+  const AttitudePrior level = levelGround(approach, 0.6 * kDegree, 0.6 * kDegree);
+  for (int i = 0; i < 200; ++i) {
+    filter.advance(i * kStep);
+    filter.setPrior(kBias);
+    const double height = 30 - 0.1 * i;
+    const GroundPlane plane = filter
+                                  .correct(approach.seen(height), approach.A(), none,
+                                           Eigen::Matrix3d::Constant(kUnknown), 3, &level)
+                                  .plane;
+    EXPECT_NEAR(pitchError(plane, approach.pitch), 0,
+                4 * std::sqrt(pitchVariance(plane.normal(), plane.normalCovariance())))
+        << i;
+  }
+  EXPECT_LT(std::abs(filter.rotation().w.y()), 0.03 / approach.rig.fx);
+}
+
 TEST(RigRotationFilter, DoesNotTakeTheRunwaysSlopeForAYaw) {
   Approach approach;
   approach.slope = kStraight;

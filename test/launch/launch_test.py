@@ -94,7 +94,7 @@ def chain_is_connected():
     _, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
     listened = {topic for topic, nodes in subscribers if "/uav_landing/manager" in nodes}
     return listened.issuperset([*INPUTS, "/uav_landing/left/image_rect", "/uav_landing/right/time_reference",
-                                "/uav_landing/stereo_depth", "/uav_landing/approach_angle"])
+                                "/uav_landing/stereo_depth", "/uav_landing/approach_angle", "/imu/data"])
 
 
 def differences(a, b, path=""):
@@ -119,6 +119,7 @@ class LaunchTest(unittest.TestCase):
         cls.bag = cls.folder / "approach.bag"
         config = yaml.safe_load((SOURCE_DIR / "config/simulator/lab.yaml").read_text())
         config["path"]["duration"] = 4
+        config["imu"] = {"rate": 100, "pitch_error_deg": 0.3, "gyro_bias_y_deg": 0.1}
         (cls.folder / "approach.yaml").write_text(yaml.safe_dump(config))
         subprocess.run(["rosrun", "uav_landing", "simulate_approach", "--config", str(cls.folder / "approach.yaml"),
                         "--output", str(cls.bag)], check=True, timeout=200)
@@ -198,11 +199,17 @@ class LaunchTest(unittest.TestCase):
                         str(offline_bag)], check=True, stdout=subprocess.DEVNULL, timeout=200)
         with rosbag.Bag(str(offline_bag)) as bag:
             offline = {name: [m for _, m, _ in bag.read_messages([f"/uav_landing/{name}"])] for name in OUTPUTS}
+        # Static transforms are there before the sensors are.
+        transforms = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
+        self.addCleanup(transforms.unregister)
+        with rosbag.Bag(str(self.bag)) as bag:
+            transforms.publish(next(m for _, m, _ in bag.read_messages(["/tf_static"])))
         listeners = {name: self.listen(f"/uav_landing/{name}", OUTPUTS[name]) for name in OUTPUTS}
         with launch("drop_frames:=false", "overlay:=false") as launched:
             self.assert_comes(chain_is_connected, launched)
+            self.assert_comes(lambda: transforms.get_num_connections() > 0, launched)
             with Process("rosbag", "play", "--quiet", "--rate=4", "--queue=1000", "--wait-for-subscribers",
-                         self.bag, "--topics", *INPUTS):
+                         self.bag, "--topics", *INPUTS, "/imu/data"):
                 self.assert_comes(lambda: self.estimate_of(self.stamps[-1]), launched)
         for name, listener in listeners.items():
             self.assertEqual(len(offline[name]), len(self.stamps), name)
@@ -211,6 +218,8 @@ class LaunchTest(unittest.TestCase):
             for a, b in zip(live, offline[name]):
                 self.assertEqual(differences(a, b, name), [], f"at {a.header.stamp.to_sec():.3f} s")
         self.assertTrue(any(e.valid for e in offline["landing_estimate"]))
+        self.assertEqual({a.imu.reason for a in offline["approach_angle"]}, {""})
+        self.assertTrue(all(math.isfinite(a.imu.rotation[0]) for a in offline["approach_angle"][1:]))
 
     def test_a_silent_right_camera_is_named_and_nothing_is_valid(self):
         with launch() as launched:

@@ -1,3 +1,5 @@
+#include <sensor_msgs/Imu.h>
+#include <tf2_msgs/TFMessage.h>
 #include <uav_landing/ApproachAngle.h>
 #include <uav_landing/StereoDepth.h>
 
@@ -45,6 +47,12 @@ class ApproachAngleNodeletTest : public NodeletTest {
       depth->plane_covariance.assign(nan);
     }
     stereo_.publish(depth);
+  }
+
+  /// One pair, from t seconds after the start of the scene.
+  void publishPair(double t) {
+    publishStereo(t);
+    images_.publish(scene_, t);
   }
 
   StereoScene scene_;
@@ -125,6 +133,134 @@ TEST_F(ApproachAngleNodeletTest, GoesOnAfterAJumpBackInTime) {
     ASSERT_TRUE(output_->waitFor([t](const auto& a) { return a.header.stamp == PairPublisher::stampOf(t); }));
   }
   EXPECT_EQ(output_->messages().back()->reason, "");
+}
+
+/// An inertial sensor on the scene's level, straight flying aircraft.
+class ImuTest : public ApproachAngleNodeletTest {
+ protected:
+  void startWithImu() {
+    start();
+    ASSERT_TRUE(eventually([&] { return imu_.getNumSubscribers() > 0; }));
+  }
+  void publishMounting(const std::string& child) {
+    tf2_msgs::TFMessage message;
+    message.transforms.resize(1);
+    message.transforms[0].header.frame_id = "left_optical";
+    message.transforms[0].child_frame_id = child;
+    // Forward, left, up in the optical frame.
+    message.transforms[0].transform.rotation.x = 0.5;
+    message.transforms[0].transform.rotation.y = -0.5;
+    message.transforms[0].transform.rotation.z = 0.5;
+    message.transforms[0].transform.rotation.w = 0.5;
+    tf_.publish(message);
+    ASSERT_TRUE(eventually([&] { return tf_.getNumSubscribers() > 0; }));
+  }
+  sensor_msgs::Imu message(double t) const {
+    sensor_msgs::Imu message;
+    message.header.stamp = PairPublisher::stampOf(t);
+    message.header.frame_id = "imu_link";
+    // Nose down is positive.
+    message.orientation.y = std::sin(-0.5 * scene_.pitch);
+    message.orientation.w = std::cos(-0.5 * scene_.pitch);
+    message.linear_acceleration_covariance[0] = -1;
+    return message;
+  }
+  void publishImu(double from, double to) {
+    for (int i = 0; i <= std::lround((to - from) / 0.01); ++i) imu_.publish(message(from + 0.01 * i));
+  }
+  ApproachAngle resultOf(double t) {
+    EXPECT_TRUE(output_->waitFor([t](const auto& a) { return a.header.stamp == PairPublisher::stampOf(t); }));
+    for (const auto& result : output_->messages())
+      if (result->header.stamp == PairPublisher::stampOf(t)) return *result;
+    return {};
+  }
+  /// Until a pair's result has this property, ever new pairs, t further on.
+  bool sooner(double& t, const std::function<bool(const ApproachAngle&)>& property) {
+    return eventually([&] {
+      t += 0.02;
+      publishImu(t - 0.02, t);
+      publishPair(t);
+      return property(resultOf(t));
+    });
+  }
+
+  ros::Publisher imu_ = handle_.advertise<sensor_msgs::Imu>("/imu/data", 1000);
+  ros::Publisher tf_ = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, true);
+};
+
+TEST_F(ImuTest, GivesTheNormalAndTheRotationOfEachPair) {
+  startWithImu();
+  publishMounting("imu_link");
+  double t = 0;
+  ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
+  publishImu(t, t + 0.1);
+  publishPair(t + 0.1);
+  const ApproachAngle result = resultOf(t + 0.1);
+  EXPECT_EQ(result.imu.reason, "");
+  EXPECT_NEAR(result.imu.normal[1], std::cos(scene_.pitch), 1e-6);
+  EXPECT_NEAR(result.imu.normal[2], -std::sin(scene_.pitch), 1e-6);
+  EXPECT_NEAR(result.imu.duration, 0.1, 1e-6);
+  EXPECT_NEAR(result.imu.rotation[0], 0, 1e-9);
+}
+
+TEST_F(ImuTest, APairWaitsForTheMessageAfterIt) {
+  setParameter("approach_angle", "drop_frames", false);  // half a second of patience
+  startWithImu();
+  publishMounting("imu_link");
+  double t = 0;
+  ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); }));
+  publishPair(t + 0.2);
+  publishImu(t + 0.01, t + 0.21);
+  EXPECT_EQ(resultOf(t + 0.2).imu.reason, "");
+}
+
+TEST_F(ImuTest, ALateSensorHoldsNoPairUp) {
+  startWithImu();
+  publishMounting("imu_link");
+  double t = 0;
+  ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); }));
+  publishPair(t + 0.3);
+  const ApproachAngle late = resultOf(t + 0.3);
+  EXPECT_EQ(late.imu.reason.find("timeout: the newest imu message is 0.3"), 0u) << late.imu.reason;
+  publishImu(t + 0.01, t + 0.41);
+  publishPair(t + 0.4);
+  EXPECT_EQ(resultOf(t + 0.4).imu.reason, "") << "and it is used again when it is back";
+}
+
+TEST_F(ImuTest, AMissingTransformIsNamedAndTheAngleIsFoundWithoutIt) {
+  startWithImu();
+  publishMounting("another_imu");
+  double t = 0;
+  const std::string missing = "no static transform between the imu's imu_link and left_optical";
+  EXPECT_TRUE(sooner(t, [&](const auto& result) {
+    return result.imu.reason == "transform_missing: " + missing && result.reason.empty();
+  }));
+  EXPECT_TRUE(logged("/imu/data is not used for 0.2 s: transform_missing: " + missing)) << wholeLog();
+}
+
+TEST_F(ImuTest, NumbersThatAreNoneAreNamedAndLeftOut) {
+  startWithImu();
+  publishMounting("imu_link");
+  double t = 0;
+  ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); }));
+  for (int i = 1; i <= 10; ++i) {
+    sensor_msgs::Imu bad = message(t + 0.01 * i);
+    bad.orientation.x = std::nan("");
+    bad.angular_velocity.z = std::nan("");
+    imu_.publish(bad);
+  }
+  EXPECT_TRUE(logged("/imu/data: angular_velocity: expected finite numbers, got 0, 0, nan")) << wholeLog();
+  publishImu(t + 0.11, t + 0.3);
+  publishPair(t + 0.3);
+  EXPECT_EQ(resultOf(t + 0.3).imu.reason, "");
+}
+
+TEST_F(ImuTest, IsLeftAloneWhenToldTo) {
+  setParameter("approach_angle", "use_imu", false);
+  start();
+  publishPair(0);
+  EXPECT_EQ(resultOf(0).imu.reason, "not_yet: no imu message");
+  EXPECT_EQ(imu_.getNumSubscribers(), 0u);
 }
 
 TEST_F(ApproachAngleNodeletTest, BadParametersRefuseToLoadByName) {

@@ -87,6 +87,12 @@ struct ApproachMessages {
     result.runway.x = (-300 + kSpeed * kStep * pair) / h;
     result.runway.y_variance = result.runway.width_variance = 1e-4;
     result.runway.x_variance = 1e-2;
+    result.imu.failure = {};
+    result.imu.normal = result.n;
+    result.imu.normal_covariance = 100 * directionCovariance(result.n);
+    result.imu.duration = kStep;
+    result.imu.rotation.setZero();
+    result.imu.rotation_covariance = 1e-7 * Eigen::Matrix3d::Identity();
     return result;
   }
 

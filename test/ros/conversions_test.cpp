@@ -149,6 +149,12 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   result.window = distinctMotion();
   fill(result.foe);
   fill(result.foe_covariance);
+  result.imu.failure = {Reason::kRejected, "off"};
+  fill(result.imu.normal);
+  fill(result.imu.normal_covariance);
+  result.imu.duration = 0.1;
+  fill(result.imu.rotation);
+  fill(result.imu.rotation_covariance);
   result.runway.failure = {Reason::kNotYet, "2 of 3"};
   result.runway.threshold_failure = {Reason::kNoRunway, "no bars"};
   for (double* number :
@@ -172,6 +178,12 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   expectEqual(back.window, result.window);
   EXPECT_EQ(back.foe, result.foe);
   EXPECT_EQ(back.foe_covariance, result.foe_covariance);
+  EXPECT_EQ(back.imu.failure.message(), result.imu.failure.message());
+  EXPECT_EQ(back.imu.normal, result.imu.normal);
+  EXPECT_EQ(back.imu.normal_covariance, result.imu.normal_covariance);
+  EXPECT_EQ(back.imu.duration, result.imu.duration);
+  EXPECT_EQ(back.imu.rotation, result.imu.rotation);
+  EXPECT_EQ(back.imu.rotation_covariance, result.imu.rotation_covariance);
   EXPECT_EQ(back.runway.failure.message(), result.runway.failure.message());
   EXPECT_EQ(back.runway.threshold_failure.message(), result.runway.threshold_failure.message());
   EXPECT_EQ(back.runway.x, result.runway.x);

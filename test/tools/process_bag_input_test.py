@@ -9,6 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import rosbag
+import rospy
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import Imu
+from tf2_msgs.msg import TFMessage
 
 from project import BUILD_DIR, run
 from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
@@ -94,7 +98,7 @@ class UsageTest(ProcessBagTest):
     def test_help_names_every_option(self):
         result = run([PROGRAMS / "process_bag", "--help"])
         self.assertEqual(result.returncode, 0)
-        for option in ("--input", "--camera", "--config", "--csv", "--output", "--report-data", "--list-parameters",
+        for option in ("--input", "--camera", "--imu", "--config", "--csv", "--output", "--report-data", "--list-parameters",
                        "--version"):
             self.assertIn(option, result.stdout)
 
@@ -157,6 +161,48 @@ class TopicsTest(ProcessBagTest):
             frame.messages["left/image_raw"] = frame.messages["left/camera_info"]
         self.assert_refused(self.process_frames(frames), "/stereo/left/image_raw is sensor_msgs/CameraInfo",
                             "expected sensor_msgs/Image")
+
+    def write_imu(self, mounted=True, frame="imu_link"):
+        """Adds a sensor at 100 Hz to the bag of noise_frames()."""
+        with rosbag.Bag(str(self.bag), "a") as bag:
+            if mounted:
+                transform = TransformStamped()
+                transform.header.frame_id, transform.child_frame_id = "left", frame
+                transform.transform.rotation.w = 1
+                bag.write("/tf_static", TFMessage([transform]), rospy.Time(999))
+            for i in range(40):
+                message = Imu()
+                message.header.stamp, message.header.frame_id = rospy.Time.from_sec(10 + 0.01 * i), frame
+                message.orientation.w = 1
+                bag.write("/imu/data", message, rospy.Time.from_sec(1000 + 0.001 * i))
+
+    def test_an_imu_is_optional_unless_it_is_asked_for(self):
+        write_bag(self.bag, noise_frames())
+        self.assertEqual(self.process().returncode, 0)
+        self.csv.unlink()
+        self.assert_refused(self.process("--imu", "/mavros/imu/data"), "no topic /mavros/imu/data (sensor_msgs/Imu)")
+        self.assert_refused(self.process("--imu", "/stereo/left/image_raw"),
+                            "topic /stereo/left/image_raw is sensor_msgs/Image, expected sensor_msgs/Imu")
+        self.assertEqual(self.process("--imu", "").returncode, 0)
+
+    def test_an_imu_whose_mounting_is_not_known_is_named(self):
+        write_bag(self.bag, noise_frames())
+        self.write_imu(mounted=False)
+        result = self.process()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("imu: transform_missing: no static transform between the imu's imu_link and left", result.stderr)
+
+    def test_an_imu_is_in_the_messages(self):
+        write_bag(self.bag, noise_frames())
+        self.write_imu()
+        output = self.folder / "output.bag"
+        result = self.process("--output", output)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with rosbag.Bag(str(output)) as bag:
+            priors = [message.imu for _, message, _ in bag.read_messages("/uav_landing/approach_angle")]
+        # The camera's axes are the sensor's: gravity is along -z.
+        self.assertEqual([tuple(round(x, 9) for x in prior.normal) for prior in priors], 3 * [(0, 0, -1)])
+        self.assertEqual([prior.rotation for prior in priors[1:]], 2 * [(0, 0, 0)])
 
     def test_right_camera_that_falls_silent(self):
         frames = noise_frames(5)

@@ -75,6 +75,23 @@ TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround)
   EXPECT_NEAR(gusts, 100, 30);
 }
 
+TEST(RandomApproach, AnInertialSensorIsAsWrongAsTheEstimatorIsToldAndChangesNothingElse) {
+  Parameters parameters;
+  parameters.approach_angle.imu_attitude_stddev_deg = 0.6;
+  parameters.approach_angle.runway_slope_stddev_deg = 0.8;
+  std::vector<double> pitch;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    const SimulatorParameters with = drawSnippet(seed, 10, 13, parameters, true);
+    const SimulatorParameters without = drawSnippet(seed, 10, 13, parameters);
+    ASSERT_EQ(with.rig.bend_ry_deg, without.rig.bend_ry_deg);
+    ASSERT_EQ(with.path.start_y, without.path.start_y);
+    ASSERT_GT(with.imu.rate, 0);
+    ASSERT_EQ(without.imu.rate, 0);
+    pitch.push_back(with.imu.pitch_error_deg);
+  }
+  EXPECT_NEAR(spread(pitch), 1.0, 0.1) << "attitude and slope together";
+}
+
 TEST(RandomApproach, SeedDecidesEverything) {
   const SimulatorParameters one = drawSnippet(7, 10, 13, {}), again = drawSnippet(7, 10, 13, {});
   EXPECT_EQ(one.runway.width, again.runway.width);

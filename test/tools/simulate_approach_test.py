@@ -70,6 +70,27 @@ class OutputTest(SimulateApproachTest):
                          {"/stereo/left/image_raw": 3, "/stereo/left/camera_info": 3, "/stereo/right/image_raw": 3,
                           "/stereo/right/camera_info": 3, "/truth/landing_estimate": 3})
 
+    def test_an_inertial_sensor_flies_along_when_asked_for(self):
+        config = yaml.safe_load(LAB.read_text())
+        config["imu"] = {"rate": 50, "attitude_noise_deg": 0, "gyro_noise_deg": 0, "pitch_error_deg": 1}
+        with_imu = self.folder / "imu.yaml"
+        with_imu.write_text(yaml.safe_dump(config))
+        result = self.simulate(with_imu, "--duration", 0.2)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with rosbag.Bag(str(self.bag)) as bag:
+            imu = [message for _, message, _ in bag.read_messages("/imu/data")]
+            mounting = [message for _, message, _ in bag.read_messages("/tf_static")]
+            truth = [message for _, message, _ in bag.read_messages("/truth/landing_estimate")]
+        self.assertEqual([round(message.header.stamp.to_sec(), 6) for message in imu],
+                         [round(100 + 0.02 * i, 6) for i in range(11)])
+        self.assertEqual(len(mounting), 1)
+        self.assertEqual((mounting[0].transforms[0].header.frame_id, mounting[0].transforms[0].child_frame_id),
+                         ("stereo_left_optical_frame", imu[0].header.frame_id))
+        # The forward axis rises by the pitch; the sensor says one degree more.
+        q = imu[0].orientation
+        rise = math.degrees(math.asin(2 * (q.x * q.z - q.w * q.y)))
+        self.assertAlmostEqual(rise - math.degrees(truth[0].pitch), 1, delta=0.02)
+
     def test_the_dataset_folder_holds_what_the_bag_holds(self):
         self.simulate_short("--dataset", self.folder / "set")
         again = self.folder / "again.bag"

@@ -45,6 +45,15 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertNotIn(0, [float(self.fly(*options)[0][name]) for name in names])
         self.assertEqual([float(self.fly(*options, "--config", config)[0][name]) for name in names], [0, 0, 0, 0])
 
+    def test_an_inertial_sensor_shows_in_the_estimates_and_nowhere_else(self):
+        config = self.folder / "perfect.yaml"
+        config.write_text("approach_angle: {imu_attitude_stddev_deg: 0.01, runway_slope_stddev_deg: 0}\n")
+        options = ("--first", 4, "--count", 1, "--heights", 30, "--noise", 2, "--config", config)
+        without, with_imu = self.fly(*options)[0], self.fly(*options, "--imu")[0]
+        self.assertEqual(with_imu["pitch_true_deg"], without["pitch_true_deg"])
+        self.assertLess(float(with_imu["pitch_stddev_deg"]), 0.5 * float(without["pitch_stddev_deg"]))
+        self.assertLess(abs(float(with_imu["pitch_deg"]) - float(with_imu["pitch_true_deg"])), 0.04)
+
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
         self.assertEqual(result.returncode, 1)

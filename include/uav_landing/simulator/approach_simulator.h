@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "uav_landing/simulator/camera_rig.h"
+#include "uav_landing/simulator/imu.h"
 #include "uav_landing/simulator/renderer.h"
 #include "uav_landing/simulator/trajectory.h"
 #include "uav_landing/truth.h"
@@ -36,6 +37,10 @@ class ApproachSimulator {
   double timeOf(int index) const { return index / parameters_.path.rate; }
   CameraPose pose(double time) const { return trajectory_.pose(time); }
   const CameraRig& rig() const { return rig_; }
+  SimulatedImu imu() const {
+    return {parameters_.imu, trajectory_, static_cast<uint64_t>(parameters_.random.seed)};
+  }
+  double duration() const { return timeOf(frames_ - 1); }
 
  private:
   ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig);

@@ -264,6 +264,34 @@ struct SimulatedGustParameters {
   }
 };
 
+/// An inertial sensor on the rig and its errors (section imu).
+struct SimulatedImuParameters {
+  double rate = 0;
+  double delay = 0;
+  double pitch_error_deg = 0, roll_error_deg = 0;
+  double attitude_noise_deg = 0.05;
+  double gyro_bias_x_deg = 0, gyro_bias_y_deg = 0, gyro_bias_z_deg = 0;
+  double gyro_noise_deg = 0.1;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("rate", rate, 0.0, 2000.0, "Hz", "messages per second; 0: no inertial sensor");
+    v.number("delay", delay, -1.0, 1.0, "s", "by which its stamps are late");
+    v.number("pitch_error_deg", pitch_error_deg, -20.0, 20.0, "deg",
+             "constant error of its pitch, its mounting's included; positive: says nose up");
+    v.number("roll_error_deg", roll_error_deg, -20.0, 20.0, "deg",
+             "constant error of its roll; positive: says right side down");
+    v.number("attitude_noise_deg", attitude_noise_deg, 0.0, 20.0, "deg",
+             "1 sigma of each message's attitude");
+    v.number("gyro_bias_x_deg", gyro_bias_x_deg, -20.0, 20.0, "deg/s",
+             "constant error of the angular velocity about its forward axis");
+    v.number("gyro_bias_y_deg", gyro_bias_y_deg, -20.0, 20.0, "deg/s", "about its left axis");
+    v.number("gyro_bias_z_deg", gyro_bias_z_deg, -20.0, 20.0, "deg/s", "about its up axis");
+    v.number("gyro_noise_deg", gyro_noise_deg, 0.0, 20.0, "deg/s",
+             "1 sigma of each message's angular velocity");
+  }
+};
+
 /// What makes one run different from the next (section random).
 struct SimulatedRandomParameters {
   int seed = 1;
@@ -286,6 +314,7 @@ struct SimulatorParameters {
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
   SimulatedGustParameters gust;
+  SimulatedImuParameters imu;
   SimulatedRandomParameters random;
 
   /// Calls v(section name, parameter struct) for every section.
@@ -302,6 +331,7 @@ struct SimulatorParameters {
     v("path", path);
     v("wobble", wobble);
     v("gust", gust);
+    v("imu", imu);
     v("random", random);
   }
 };

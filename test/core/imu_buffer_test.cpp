@@ -1,0 +1,205 @@
+#include "uav_landing/imu_buffer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::Pose;
+
+/// Forward, left, up of the camera.
+Eigen::Matrix3d opticalFromBody() {
+  Eigen::Matrix3d rotation;
+  rotation << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return rotation;
+}
+
+/// A sensor mounted askew that turns about all its axes at once.
+class ImuBufferTest : public ::testing::Test {
+ protected:
+  static Pose poseAt(double t) {
+    Pose pose;
+    pose.pitch = (-4 + 6 * std::sin(t)) * kDegree;
+    pose.roll = 20 * std::sin(2 * t) * kDegree;
+    pose.yaw = (100 + 15 * t) * kDegree;
+    return pose;
+  }
+  static Eigen::Quaterniond orientationAt(double t) {
+    return Eigen::Quaterniond(poseAt(t).worldFromOptical() * opticalFromImu());
+  }
+  /// The camera sees the sensor's axes turned by this.
+  static Eigen::Matrix3d opticalFromImu() {
+    return opticalFromBody() *
+           Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  }
+  static ImuSample sampleAt(double t, double delay = 0) {
+    constexpr double kStep = 1e-5;
+    ImuSample sample;
+    sample.stamp = t + delay;
+    sample.orientation = orientationAt(t);
+    const Eigen::AngleAxisd turn(orientationAt(t - kStep).conjugate() * orientationAt(t + kStep));
+    sample.angular_velocity = turn.angle() / (2 * kStep) * turn.axis();
+    return sample;
+  }
+  ImuBuffer filled(double rate, double until, double delay = 0) const {
+    ImuBuffer buffer(parameters);
+    for (int i = 0; i <= until * rate; ++i) buffer.add(sampleAt(i / rate, delay));
+    return buffer;
+  }
+  static void expectNormal(const AttitudePrior& prior, double t, double tolerance) {
+    ASSERT_TRUE(prior.hasNormal()) << prior.failure.message();
+    EXPECT_LT((prior.normal - poseAt(t).down()).norm(), tolerance);
+  }
+  static void expectRotation(const AttitudePrior& prior, double then, double now, double tolerance) {
+    ASSERT_TRUE(prior.hasRotation());
+    EXPECT_NEAR(prior.duration, now - then, 1e-9);
+    // x_now = R x_then for what is at rest.
+    const Eigen::AngleAxisd truth(poseAt(now).worldFromOptical().transpose() *
+                                  poseAt(then).worldFromOptical());
+    EXPECT_LT((prior.rotation - truth.angle() * truth.axis()).norm(), tolerance);
+  }
+
+  ApproachAngleParameters parameters;
+  const Eigen::Matrix3d mounting_ = opticalFromImu();
+};
+
+TEST_F(ImuBufferTest, GravityAndRotationBetweenMessagesAreThoseOfThePose) {
+  const ImuBuffer buffer = filled(100, 2);
+  for (const double t : {0.503, 1.0, 1.2345}) {
+    const AttitudePrior prior = buffer.at(t, t - 0.05, mounting_);
+    expectNormal(prior, t, 1e-4);
+    expectRotation(prior, t - 0.05, t, 1e-4);
+    EXPECT_EQ(prior.failure.message(), "");
+  }
+}
+
+TEST_F(ImuBufferTest, ADelayShiftsTheStamps) {
+  parameters.imu_delay = 0.03;
+  const AttitudePrior prior = filled(100, 2, 0.03).at(1.0, 0.9, mounting_);
+  expectNormal(prior, 1.0, 1e-4);
+  expectRotation(prior, 0.9, 1.0, 1e-4);
+  parameters.imu_delay = 0;
+  const AttitudePrior late = filled(100, 2, 0.03).at(1.0, 0.9, mounting_);
+  EXPECT_GT((late.normal - poseAt(1.0).down()).norm(), 3e-3) << "20 deg/s and more for 0.03 s";
+}
+
+TEST_F(ImuBufferTest, MessagesThatComeOutOfOrderOrTwiceChangeNothing) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 200; ++i) {
+    const int swapped = i % 4 == 1 ? i + 1 : i % 4 == 2 ? i - 1 : i;
+    buffer.add(sampleAt(0.01 * swapped));
+    ImuSample again = sampleAt(0.01 * swapped);
+    again.orientation = Eigen::Quaterniond::Identity();
+    buffer.add(again);
+  }
+  const AttitudePrior mixed = buffer.at(1.234, 1.1, mounting_);
+  const AttitudePrior sorted = filled(100, 2).at(1.234, 1.1, mounting_);
+  EXPECT_LT((mixed.normal - sorted.normal).norm(), 1e-12);
+  EXPECT_LT((mixed.rotation - sorted.rotation).norm(), 1e-12);
+}
+
+TEST_F(ImuBufferTest, AClockThatIsSetBackStartsAnew) {
+  ImuBuffer buffer = filled(100, 20);
+  for (int i = 0; i <= 50; ++i) buffer.add(sampleAt(0.01 * i));
+  expectNormal(buffer.at(0.4, 0.3, mounting_), 0.4, 1e-4);
+  EXPECT_FALSE(buffer.covers(10));
+}
+
+TEST_F(ImuBufferTest, AheadOfTheNewestMessageItTurnsOnAndSaysSoByItsVariance) {
+  const ImuBuffer buffer = filled(100, 1);
+  EXPECT_TRUE(buffer.covers(1.0));
+  EXPECT_FALSE(buffer.covers(1.04));
+  const AttitudePrior ahead = buffer.at(1.04, 0.95, mounting_);
+  expectNormal(ahead, 1.04, 2e-3);
+  expectRotation(ahead, 0.95, 1.04, 3e-3);
+  EXPECT_GT(ahead.normal_covariance.trace(), buffer.at(1.0, 0.95, mounting_).normal_covariance.trace());
+  const AttitudePrior beyond = buffer.at(1.3, 1.25, mounting_);
+  EXPECT_FALSE(beyond.hasNormal());
+  EXPECT_FALSE(beyond.hasRotation());
+  EXPECT_EQ(beyond.failure.message(), "timeout: the newest imu message is 0.3 s before the image");
+}
+
+TEST_F(ImuBufferTest, AGapIsNotBridged) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 200; ++i)
+    if (i < 90 || i > 110) buffer.add(sampleAt(0.01 * i));
+  EXPECT_EQ(buffer.at(1.0, 0.5, mounting_).failure.message(),
+            "timeout: no imu message within 0.1 s around the image");
+  const AttitudePrior after = buffer.at(1.2, 0.85, mounting_);
+  expectNormal(after, 1.2, 1e-4);
+  // The angular velocity is not known all the way, but the attitudes at both ends are.
+  expectRotation(after, 0.85, 1.2, 1e-4);
+}
+
+TEST_F(ImuBufferTest, AGyroAloneGivesTheRotationAndSaysThatThereIsNoOrientation) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 200; ++i) {
+    ImuSample sample = sampleAt(0.01 * i);
+    sample.orientation.reset();
+    buffer.add(sample);
+  }
+  const AttitudePrior prior = buffer.at(1.004, 0.9, mounting_);
+  EXPECT_FALSE(prior.hasNormal());
+  EXPECT_EQ(prior.failure.message(), "input_invalid: the imu messages have no orientation");
+  expectRotation(prior, 0.9, 1.004, 1e-4);
+}
+
+TEST_F(ImuBufferTest, WithoutAGyroTheAttitudesGiveTheRotation) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 200; ++i) {
+    ImuSample sample = sampleAt(0.01 * i);
+    sample.angular_velocity.reset();
+    buffer.add(sample);
+  }
+  expectRotation(buffer.at(1.004, 0.9, mounting_), 0.9, 1.004, 1e-4);
+}
+
+TEST_F(ImuBufferTest, VariancesAreThoseOfTheMessageOrTheDefault) {
+  parameters.imu_attitude_stddev_deg = 2;
+  parameters.imu_rate_stddev_deg = 0.4;
+  parameters.imu_rate_bias_deg = 0.3;
+  const AttitudePrior unknown = filled(100, 2).at(1.0, 0.9, mounting_);
+  EXPECT_NEAR(pitchVariance(unknown.normal, unknown.normal_covariance), std::pow(2 * kDegree, 2), 1e-9);
+  EXPECT_NEAR(rollVariance(unknown.normal, unknown.normal_covariance), std::pow(2 * kDegree, 2), 1e-4);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(std::sqrt(unknown.rotation_covariance(i, i)), 0.1 * 0.5 * kDegree, 1e-6);
+  EXPECT_NEAR(unknown.normal.dot(unknown.normal_covariance * unknown.normal), 0, 1e-12);
+
+  // Of a sensor that knows its roll well and its pitch badly; its axes are the body's.
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 200; ++i) {
+    ImuSample sample = sampleAt(0.01 * i);
+    sample.orientation = Eigen::Quaterniond(Pose().worldFromOptical() * opticalFromBody());
+    sample.orientation_covariance = Eigen::Vector3d(1e-6, 4e-4, 1).asDiagonal();
+    sample.angular_velocity_covariance = 1e-4 * Eigen::Matrix3d::Identity();
+    buffer.add(sample);
+  }
+  const AttitudePrior known = buffer.at(1.0, 0.9, opticalFromBody());
+  EXPECT_NEAR(std::sqrt(rollVariance(known.normal, known.normal_covariance)), 1e-3, 1e-5);
+  EXPECT_NEAR(std::sqrt(pitchVariance(known.normal, known.normal_covariance)), 2e-2, 1e-4);
+  EXPECT_NEAR(known.rotation_covariance(0, 0), 0.01 * (1e-4 + std::pow(0.3 * kDegree, 2)), 1e-9);
+}
+
+TEST_F(ImuBufferTest, KeepsAMinute) {
+  const ImuBuffer buffer = filled(100, 100);
+  expectNormal(buffer.at(41, 40.9, mounting_), 41, 1e-4);
+  EXPECT_EQ(buffer.at(30, 29.9, mounting_).failure.message(),
+            "not_yet: the oldest imu message is 10 s after the image");
+}
+
+TEST_F(ImuBufferTest, NothingIsSaidWithoutMessages) {
+  const ImuBuffer buffer(parameters);
+  const AttitudePrior prior = buffer.at(1, 0.9, mounting_);
+  EXPECT_FALSE(prior.hasNormal());
+  EXPECT_FALSE(prior.hasRotation());
+  EXPECT_EQ(prior.failure.message(), "not_yet: no imu message");
+  EXPECT_FALSE(buffer.covers(0));
+}
+
+}  // namespace
+}  // namespace uav_landing
