@@ -16,6 +16,9 @@ constexpr double kLeastShare = 0.35;
 // Fewest matches that make a motion good enough to search from.
 constexpr int kFewestScouts = 6;
 
+// Images kept however close their stamps are: 0.5 s of 100 Hz.
+constexpr size_t kMostFrames = 50;
+
 // At most count of the corners, spread as the corners are.
 std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
   if (corners.size() <= count) return corners;
@@ -329,7 +332,7 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
   past_.push_back(std::move(now));
   const double oldest = past_.back().stamp - parameters_.angle_window - 0.05;
-  while (past_.size() > 2 && past_.front().stamp < oldest) {
+  while (past_.size() > 2 && (past_.front().stamp < oldest || past_.size() > kMostFrames)) {
     spare_.push_back(std::move(past_.front().image));
     past_.pop_front();
   }

@@ -18,6 +18,7 @@ constexpr double kCorrelationTime = 1.0;       // s, of the rate
 constexpr double kStartStddev = 45 * kDegree;  // of the angle before anything is known
 constexpr double kMemory = 2.0;          // s, after which a measurement hardly speaks for a model any more
 constexpr double kStampRounding = 1e-3;  // s
+constexpr size_t kMostSteps = 50;        // however short they are: the time taken grows with their cube
 
 // The angles of all steps under one model: prior covariance of the process.
 Eigen::MatrixXd pathCovariance(const std::vector<double>& middles, double rate_stddev) {
@@ -67,7 +68,8 @@ void PathAngleFilter::reset() {
 PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measurement& step,
                                                   const Measurement& chord) {
   steps_.push_back({stamp, step});
-  while (stamp - (steps_.front().stamp - steps_.front().measurement.duration) > window_ + kStampRounding &&
+  while ((stamp - (steps_.front().stamp - steps_.front().measurement.duration) > window_ + kStampRounding ||
+          steps_.size() > kMostSteps) &&
          steps_.size() > 1) {
     steps_.pop_front();
   }

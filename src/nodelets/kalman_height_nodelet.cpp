@@ -240,7 +240,10 @@ class KalmanHeightNodelet : public StageNodelet {
     if (now.isZero() || now - std::max(last_pair_, last_timeout_) < max_age) return;
     last_timeout_ = now;
     // In the clock of the images, which may be another one than that of this machine.
-    const ros::Time stamp = last_stamp_.isZero() ? now : last_stamp_ + (now - last_pair_);
+    // Adding up throws where a stamp is at the end of what can be told.
+    const ros::Duration age = now - last_pair_;
+    const bool own_clock = !last_stamp_.isZero() && last_stamp_ < ros::TIME_MAX - age;
+    const ros::Time stamp = own_clock ? last_stamp_ + age : now;
     LandingResult lost;
     if (stage_) {
       lost = stage_->timeout(stamp.toSec());

@@ -184,6 +184,16 @@ class RectifyNodelet : public StageNodelet {
   sensor_msgs::ImagePtr rectify(View& view, const sensor_msgs::ImageConstPtr& raw,
                                 const sensor_msgs::CameraInfo& info) {
     CameraCalibration calibration = toCalibration(info);
+    if (const Failure failure = checkCalibration(calibration)) {
+      refuse("camera_info of " + view.topic + ": " + failure.detail);
+      return nullptr;
+    }
+    // The image comes before the rectifier: maps of a size that no image has would fill the memory.
+    const auto mono = toMono8(raw, calibration, view.topic);
+    if (!mono) {
+      refuse(mono.error().detail);
+      return nullptr;
+    }
     if (calibration != view.calibration) {
       if (view.calibration) NODELET_WARN("%s: the camera_info changed: starting anew", view.topic.c_str());
       view.rectifier = Rectifier::create(calibration);
@@ -191,11 +201,6 @@ class RectifyNodelet : public StageNodelet {
     }
     if (!view.rectifier) {
       refuse("camera_info of " + view.topic + ": " + view.rectifier.error().detail);
-      return nullptr;
-    }
-    const auto mono = toMono8(raw, *view.calibration, view.topic);
-    if (!mono) {
-      refuse(mono.error().detail);
       return nullptr;
     }
     const cv::Size size = view.calibration->imageSize();

@@ -8,6 +8,7 @@
 #include "pairs_in_flight.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
+#include "time_difference.h"
 #include "uav_landing/stereo_depth_stage.h"
 
 namespace uav_landing {
@@ -61,7 +62,7 @@ class StereoDepthNodelet : public StageNodelet {
                const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfo& right_info,
                const sensor_msgs::TimeReference& time) {
     const double stamp = left->header.stamp.toSec();
-    const double skew = (time.time_ref - left->header.stamp).toSec();
+    const double skew = secondsBetween(left->header.stamp, time.time_ref);
     double compute_ms = 0;
     StereoDepthResult result = attempt<StereoDepthResult>([&] {
       return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,

@@ -5,6 +5,8 @@
 namespace uav_landing {
 namespace {
 
+constexpr size_t kMostFrames = 10000;  // of a whole robot there are hundreds
+
 /// tf2 knows frames without a leading slash.
 std::string stripped(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
 
@@ -18,6 +20,7 @@ void RigFrames::add(const tf2_msgs::TFMessage& message, bool is_static) {
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
     const std::string parent = stripped(transform.header.frame_id);
     if (parent == runway_frame_) continue;
+    if (parents_.size() >= kMostFrames && parents_.count(stripped(transform.child_frame_id)) == 0) continue;
     parents_[stripped(transform.child_frame_id)] = parent;
     if (is_static) static_transforms_.setTransform(transform, "tf_static", true);
   }

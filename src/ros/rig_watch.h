@@ -41,12 +41,16 @@ class RigStage {
            const std::string& right_topic, const sensor_msgs::CameraInfo& right_info,
            const Parameters& parameters, Work&& work)
       -> Expected<decltype(work(std::declval<Stage&>(), cv::Mat(), cv::Mat()))> {
+    const CameraCalibration left_camera = toCalibration(left_info), right_camera = toCalibration(right_info);
+    // In this order: images before a stage is made for their size, which takes memory.
+    const auto rig = makeStereoRig(left_camera, right_camera);
+    if (!rig) return tl::make_unexpected(rig.error());
+    const auto left_view = toMono8(left, left_camera, left_topic);
+    if (!left_view) return tl::make_unexpected(left_view.error());
+    const auto right_view = toMono8(right, right_camera, right_topic);
+    if (!right_view) return tl::make_unexpected(right_view.error());
     const Failure wrong_cameras = prepare(left_info, right_info, parameters);
     if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
-    const auto left_view = toMono8(left, cameras_.left(), left_topic);
-    if (!left_view) return tl::make_unexpected(left_view.error());
-    const auto right_view = toMono8(right, cameras_.right(), right_topic);
-    if (!right_view) return tl::make_unexpected(right_view.error());
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
 

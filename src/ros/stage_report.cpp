@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "time_difference.h"
+
 namespace uav_landing {
 namespace {
 
@@ -14,7 +16,7 @@ void StageReport::served(const ros::Time& stamp, double compute_ms, const std::s
   ++now_.served;
   ++served_;
   now_.compute_ms += compute_ms;
-  now_.latency += (ros::Time::now() - stamp).toSec();
+  now_.latency += secondsBetween(stamp, ros::Time::now());
   if (reason.empty()) return;
   ++now_.failed;
   now_.reason = reason;

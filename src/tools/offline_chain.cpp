@@ -5,6 +5,7 @@
 #include "camera_info.h"
 #include "decimal_time.h"
 #include "image_input.h"
+#include "time_difference.h"
 
 namespace uav_landing {
 
@@ -46,7 +47,7 @@ void OfflineChain::release(bool all) {
   constexpr double kPatience = 0.5;  // s of the images
   while (!waiting_.empty()) {
     const ros::Time stamp = waiting_.front().left->header.stamp;
-    const double waited = (waiting_.back().left->header.stamp - stamp).toSec();
+    const double waited = secondsBetween(stamp, waiting_.back().left->header.stamp);
     const bool goes = all || !imu_ || imu_->covers(stamp) || waited < 0 || waited > kPatience;
     if (!goes) return;
     const Waiting pair = waiting_.front();
@@ -57,7 +58,7 @@ void OfflineChain::release(bool all) {
 
 void OfflineChain::process(const Waiting& pair) {
   const ros::Time& stamp = pair.left->header.stamp;
-  const double skew = (pair.right->header.stamp - stamp).toSec();
+  const double skew = secondsBetween(stamp, pair.right->header.stamp);
   followCalibration(toCalibration(*pair.left_info), toCalibration(*pair.right_info), stamp);
   ++pairs_;
   AttitudePrior imu;

@@ -91,6 +91,16 @@ TEST(PathAngleFilter, GivesTheFirstStepAsItIs) {
   EXPECT_NEAR(estimate.variance, 1e-6, 1e-8);
 }
 
+TEST(PathAngleFilter, KeepsNoMoreStepsThanItCanHandleHoweverCloseTheyAre) {
+  // A camera driver that counts nanoseconds: all of them are within the window. The work of an update grows
+  // with the cube of the steps, so that without a bound this would run for hours.
+  PathAngleFilter filter(0.5);
+  PathAngleFilter::Estimate estimate;
+  for (int k = 1; k < 2000; ++k)
+    estimate = filter.update(10 + 1e-9 * k, {0.1, 1e-4, 1e-9}, {0.1, 1e-4, 1e-9});
+  EXPECT_NEAR(estimate.angle, 0.1, 1e-6);
+}
+
 TEST(PathAngleFilter, ForgetsWhatWasBeforeAReset) {
   PathAngleFilter filter(0.5);
   for (int k = 1; k < 40; ++k) filter.update(0.05 * k, {0.1, 1e-8, 0.05}, {0.1, 1e-8, 0.05});

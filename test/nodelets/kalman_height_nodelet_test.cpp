@@ -299,6 +299,29 @@ TEST_F(KalmanHeightNodeletTest, TheServiceResetForgetsTheHeight) {
   EXPECT_TRUE(estimateOf(0.8).valid);
 }
 
+TEST_F(KalmanHeightNodeletTest, AMessageThatWasNeverFilledInHasItsEstimateAndChangesNothing) {
+  start();
+  publishSome(0, 5);
+  auto depth = boost::make_shared<StereoDepth>();
+  depth->header.stamp = PairPublisher::stampOf(0.5);
+  depth->u.resize(3);  // and nothing else
+  auto angle = boost::make_shared<ApproachAngle>();
+  angle->header = depth->header;
+  for (const bool right : {false, true}) {
+    const auto info = scene_.info(right);
+    info->header.stamp = depth->header.stamp;
+    (right ? right_info_ : left_info_).publish(info);
+  }
+  stereo_.publish(depth);
+  approach_.publish(angle);
+  ASSERT_TRUE(waitFor(0.5));
+  EXPECT_FALSE(estimateOf(0.5).valid);
+  publishSome(0.6, 4);
+  const LandingEstimate after = estimateOf(0.9);
+  EXPECT_TRUE(after.valid) << after.reason;
+  EXPECT_NEAR(after.height, 2, 0.01);
+}
+
 TEST_F(KalmanHeightNodeletTest, MarkersAreFinite) {
   start();
   publishSome(0, 5);

@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include "nodelets/nodelet_fixture.h"
 #include "nodelets/nodelet_test_main.h"
 #include "nodelets/stereo_scene.h"
@@ -112,6 +114,23 @@ TEST_F(RectifyNodeletTest, AnImageOfAnotherSizeIsRefusedByName) {
   EXPECT_TRUE(logged("/stereo/left/image_raw: width, height: 400x240, but camera_info announces 320x240"));
   cameras_.publish(scene_, 1);
   EXPECT_TRUE(left_->waitFor(1)) << "goes on with the next";
+}
+
+TEST_F(RectifyNodeletTest, ACameraInfoOfAHugeImageTakesNoMemory) {
+  start();
+  const auto kilobytes = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const auto before = kilobytes();
+  StereoScene huge = scene_;
+  huge.width = huge.height = 16000;
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), huge.info(false));
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), huge.info(true));
+  EXPECT_TRUE(logged("width, height: 320x240, but camera_info announces 16000x16000")) << wholeLog();
+  // Its maps would take 14 bytes a pixel.
+  EXPECT_LT(kilobytes() - before, 500 * 1024);
 }
 
 TEST_F(RectifyNodeletTest, AnUnknownEncodingIsRefusedByName) {
