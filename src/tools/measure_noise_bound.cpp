@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command_line.h"
+#include "pending_file.h"
 #include "progress_bar.h"
 #include "uav_landing/simulator/renderer.h"
 #include "uav_landing/simulator/sensor.h"
@@ -161,7 +162,8 @@ void writeRow(std::ostream& out, double noise, double height, const Sums& sums) 
 }
 
 Failure run(const Options& options) {
-  std::ofstream out(options.output);
+  PendingFile pending(options.output);
+  std::ofstream out(pending.temporary());
   if (!out) return {Reason::kInputInvalid, options.output + ": cannot be written"};
   out << "noise,height_m,pairs,failed";
   for (const char* kind : {"bound", "claimed", "rms", "corners_rms"}) {
@@ -183,6 +185,9 @@ Failure run(const Options& options) {
     }
     for (size_t i = 0; i < options.noises.size(); ++i) writeRow(out, options.noises[i], height, sums[i]);
   }
+  out.close();
+  if (!out) return {Reason::kInputInvalid, options.output + ": could not be written completely"};
+  pending.commit();
   return {};
 }
 

@@ -72,7 +72,9 @@ void ReportData::writePictures(const ProcessedPair& pair, const cv::Mat& overlay
   std::snprintf(number, sizeof number, "_%06zu.png", pairs_ - 1);
   const auto write = [&](const std::string& name, const cv::Mat& picture) {
     const std::string path = folder_ + "/" + name + number;
-    if (!cv::imwrite(path, picture)) throw std::runtime_error(path + ": cannot be written");
+    const std::string temporary = path + ".part.png";
+    if (!cv::imwrite(temporary, picture)) throw std::runtime_error(path + ": cannot be written");
+    std::filesystem::rename(temporary, path);
   };
   const Pipeline::Output& output = pair.output;
   write("lines_left", drawLines(output.left, output.approach.left, overlay_));

@@ -4,6 +4,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
+from evaluation.pending_file import pending  # noqa: E402
 from .checks import GRID, occupied  # noqa: E402
 import numpy as np  # noqa: E402
 
@@ -22,5 +23,6 @@ def draw_coverage(path, calibrator, views):
         axis.set(xlim=(0, width), ylim=(height, 0), aspect="equal", title=("left", "right")[side])
     figure.suptitle("Corners of the board; red: never any, the lens is extrapolated there")
     figure.colorbar(points, ax=axes, label="reprojection error of the view, px", shrink=0.8)
-    figure.savefig(str(path), dpi=100)
+    with pending(path) as temporary:
+        figure.savefig(temporary, dpi=100)
     plt.close(figure)

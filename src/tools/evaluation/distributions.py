@@ -7,6 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
+from evaluation.pending_file import pending  # noqa: E402
 from evaluation.scores import SETTLING_TIME, SIGMAS_95  # noqa: E402
 
 # Title, column of estimates and truth, standard deviation, validity, unit in the picture, factor to it.
@@ -39,7 +40,8 @@ def scored_errors(truth, joined):
 
 def save(figure, path):
     figure.tight_layout()
-    figure.savefig(path, dpi=110)
+    with pending(path) as temporary:
+        figure.savefig(temporary, dpi=110)
     plt.close(figure)
 
 

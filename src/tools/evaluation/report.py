@@ -12,6 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
 from evaluation.distributions import Missing, draw_consistency, draw_histograms, draw_timeline  # noqa: E402
+from evaluation.pending_file import pending  # noqa: E402
 from evaluation.scores import COLUMNS, summary  # noqa: E402
 from evaluation.tables import InputError, Table  # noqa: E402
 
@@ -53,7 +54,8 @@ def show_pictures(path, images, titles):
         axis.set_title(title)
         axis.axis("off")
     figure.tight_layout()
-    figure.savefig(path, dpi=120, bbox_inches="tight")
+    with pending(path) as temporary:
+        figure.savefig(temporary, dpi=120, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -98,7 +100,8 @@ def plot_against_truth(path, truth, joined, column, unit, label, curves):
     for axis in axes[:, 0]:
         axis.grid(alpha=0.3)
     figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    with pending(path) as temporary:
+        figure.savefig(temporary, dpi=120)
     plt.close(figure)
 
 
@@ -198,7 +201,7 @@ def write_report(folder, truth, joined, scores, report_data):
     absent = "<h2>Missing</h2><ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in missing) + "</ul>" \
         if missing else ""
     path = os.path.join(folder, "index.html")
-    with open(path, "w") as page:
+    with pending(path) as temporary, open(temporary, "w") as page:
         page.write(f"<!DOCTYPE html><html lang='en'><meta charset='utf-8'><title>Landing estimate</title>"
                    f"<style>{STYLE}</style><h1>Landing estimate against truth</h1>"
                    f"<p>{html.escape(summary(scores).splitlines()[0])}</p>"
