@@ -29,4 +29,4 @@ _uav_landing_script() {
 
 complete -o default -F _uav_landing_rosrun rosrun
 complete -o default -F _uav_landing_script scripts/calibrate scripts/process_bags scripts/accuracy scripts/plot_estimates \
-  scripts/record_estimates scripts/print_board
+  scripts/record_estimates scripts/print_board scripts/flightgear
