@@ -151,6 +151,7 @@ class ApproachAngleNodelet : public StageNodelet {
   bool mustWait(const Waiting& pair) {
     if (!imu_ || imu_silent_ || imu_subscriber_.getNumPublishers() == 0 || imu_->covers(pair.stamp))
       return false;
+    if (waiting_.size() > kStageQueue) return false;
     if (ros::WallTime::now() - pair.since < wait_) return true;
     imu_silent_ = true;
     return false;
