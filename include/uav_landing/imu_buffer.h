@@ -29,6 +29,7 @@ class ImuBuffer {
   void add(const ImuSample& sample);
   void clear() { samples_.clear(); }
   bool empty() const { return samples_.empty(); }
+  double newest() const { return samples_.back().stamp; }  ///< s; not while empty
   /// There is a message at or after an image of this stamp (imu_delay taken into account).
   bool covers(double stamp) const;
 

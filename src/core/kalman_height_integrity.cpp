@@ -134,7 +134,9 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
   VerticalSpeed speed;
   double velocity = kUnknown;
   const Eigen::Vector3d normal = reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n;
-  if (!approach.step.failure && normal.allFinite() && std::isfinite(scale) && scale > 0) {
+  // While normals contradict each other nobody knows which part of the motion was downwards.
+  const bool level_known = normal.allFinite() && !tests_.failed(Consistency::kTilt);
+  if (!approach.step.failure && level_known && std::isfinite(scale) && scale > 0) {
     const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
     speed = verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev);
     velocity = approach.step.translation_over_height.norm() * scale / approach.step.duration;

@@ -9,13 +9,18 @@ namespace uav_landing {
 namespace {
 
 using Covariance = boost::array<double, 9>;
+constexpr double kMostVariance = 1e6;  // rad^2 or rad^2/s^2; more says nothing, and overflows further on
+constexpr double kSilence = 1;         // s, of a sensor until another one takes its place
+constexpr double kMostRate = 100;      // rad/s; gyroscopes end at 4000 deg/s
 
 bool absent(const Covariance& covariance) { return covariance[0] == -1; }
 
 std::optional<Eigen::Matrix3d> known(const Covariance& covariance) {
   const Eigen::Matrix3d given =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(covariance.data());
-  if (!given.allFinite() || !(given.diagonal().minCoeff() > 0)) return std::nullopt;
+  // Also when there is a NaN.
+  if (!(given.array().abs() <= kMostVariance).all() || !(given.diagonal().array() > 0).all())
+    return std::nullopt;
   const Eigen::Matrix3d symmetric = 0.5 * (given + given.transpose());
   if (Eigen::LLT<Eigen::Matrix3d>(symmetric).info() != Eigen::Success) return std::nullopt;
   return symmetric;
@@ -51,12 +56,12 @@ ImuReading toReading(const sensor_msgs::Imu& message) {
   if (!absent(message.angular_velocity_covariance)) {
     const Eigen::Vector3d rate(message.angular_velocity.x, message.angular_velocity.y,
                                message.angular_velocity.z);
-    if (rate.allFinite()) {
+    if (rate.norm() <= kMostRate) {
       sample.angular_velocity = rate;
       sample.angular_velocity_covariance = known(message.angular_velocity_covariance);
     } else {
       reading.failure = {Reason::kInputInvalid,
-                         "angular_velocity: expected finite numbers, got " + listed(rate)};
+                         "angular_velocity: expected at most 100 rad/s, got " + listed(rate)};
     }
   }
   if (!reading.usable() && !reading.failure)
@@ -66,7 +71,13 @@ ImuReading toReading(const sensor_msgs::Imu& message) {
 
 Failure ImuInput::add(const sensor_msgs::Imu& message) {
   const ImuReading reading = toReading(message);
-  if (message.header.frame_id != frame_) buffer_.clear();
+  if (message.header.frame_id != frame_) {
+    // Another sensor that comes in between must not silence the first one.
+    if (!buffer_.empty() && std::abs(reading.sample.stamp - buffer_.newest()) < kSilence)
+      return {Reason::kInputInvalid, "frame_id: '" + message.header.frame_id + "' after '" + frame_ +
+                                         "': are there two sensors on this topic?"};
+    buffer_.clear();
+  }
   frame_ = message.header.frame_id;
   if (reading.usable()) buffer_.add(reading.sample);
   return reading.failure;

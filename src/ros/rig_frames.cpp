@@ -1,14 +1,27 @@
 #include "rig_frames.h"
 
+#include <tf2/exceptions.h>
 #include <tf2_eigen/tf2_eigen.h>
+
+#include <cmath>
 
 namespace uav_landing {
 namespace {
 
-constexpr size_t kMostFrames = 10000;  // of a whole robot there are hundreds
+constexpr size_t kMostFrames = 10000;     // of a whole robot there are hundreds
+constexpr double kUnitTolerance = 0.001;  // of a quaternion's length
 
 /// tf2 knows frames without a leading slash.
 std::string stripped(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
+
+/// What tf2 lets pass: lengths that are no number, and quaternions that are not quite of unit length.
+bool usable(const geometry_msgs::Transform& transform) {
+  const auto& t = transform.translation;
+  const Eigen::Quaterniond q(transform.rotation.w, transform.rotation.x, transform.rotation.y,
+                             transform.rotation.z);
+  return std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z) &&
+         std::abs(q.norm() - 1) <= kUnitTolerance;
+}
 
 }  // namespace
 
@@ -19,9 +32,13 @@ void RigFrames::add(const tf2_msgs::TFMessage& message, bool is_static) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
     const std::string parent = stripped(transform.header.frame_id);
-    if (parent == runway_frame_) continue;
-    if (parents_.size() >= kMostFrames && parents_.count(stripped(transform.child_frame_id)) == 0) continue;
-    parents_[stripped(transform.child_frame_id)] = parent;
+    const std::string child = stripped(transform.child_frame_id);
+    if (parent == child || parent.empty() || child.empty()) continue;
+    if (parent == runway_frame_ || !usable(transform.transform)) continue;
+    // tf2 never forgets a name, be it of a parent or a child.
+    if (names_.size() + 2 > kMostFrames && (names_.count(parent) == 0 || names_.count(child) == 0)) continue;
+    names_.insert({parent, child});
+    parents_[child] = parent;
     if (is_static) static_transforms_.setTransform(transform, "tf_static", true);
   }
 }
@@ -34,7 +51,8 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
   camera.frame = left + "_rect";
   camera.may_broadcast = parents_.count(camera.frame) == 0;
 
-  if (!static_transforms_.canTransform(left, base, ros::Time())) {
+  const std::optional<Eigen::Isometry3d> left_from_base = look(left, base);
+  if (!left_from_base) {
     if (!base_frame_.empty())
       camera.failure = {Reason::kTransformMissing, "no static transform between " + base + " and " + left};
     return camera;
@@ -44,7 +62,7 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
   if (has_parent && base_frame_.empty()) return camera;
   Child child;
   child.frame = base;
-  child.left_from_child = tf2::transformToEigen(static_transforms_.lookupTransform(left, base, ros::Time()));
+  child.left_from_child = left_from_base;
   child.may_broadcast = !has_parent;
   return child;
 }
@@ -52,9 +70,18 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
 std::optional<Eigen::Isometry3d> RigFrames::leftFrom(const std::string& left_frame,
                                                      const std::string& frame) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::string left = stripped(left_frame), other = stripped(frame);
-  if (!static_transforms_.canTransform(left, other, ros::Time())) return std::nullopt;
-  return tf2::transformToEigen(static_transforms_.lookupTransform(left, other, ros::Time()));
+  return look(stripped(left_frame), stripped(frame));
+}
+
+std::optional<Eigen::Isometry3d> RigFrames::look(const std::string& target, const std::string& source) const {
+  try {
+    Eigen::Isometry3d transform =
+        tf2::transformToEigen(static_transforms_.lookupTransform(target, source, ros::Time()));
+    transform.linear() = Eigen::Quaterniond(transform.linear()).normalized().toRotationMatrix();
+    return transform;
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;  // not connected, not known, or a loop
+  }
 }
 
 }  // namespace uav_landing

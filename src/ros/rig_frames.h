@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "uav_landing/failure.h"
@@ -29,7 +30,8 @@ class RigFrames {
   /// base_frame: the configured one, or "" for base_link if static tf knows it.
   RigFrames(const std::string& base_frame, const std::string& runway_frame);
 
-  /// A message of /tf_static or /tf.
+  /// A message of /tf_static or /tf. Transforms that are none (lengths or rotations that are no numbers) are
+  /// left out.
   void add(const tf2_msgs::TFMessage& message, bool is_static);
 
   /// left_frame: frame_id of the left camera.
@@ -38,10 +40,13 @@ class RigFrames {
   std::optional<Eigen::Isometry3d> leftFrom(const std::string& left_frame, const std::string& frame) const;
 
  private:
+  std::optional<Eigen::Isometry3d> look(const std::string& target, const std::string& source) const;
+
   const std::string base_frame_, runway_frame_;
   mutable std::mutex mutex_;
   tf2::BufferCore static_transforms_;
   std::map<std::string, std::string> parents_;  // of every frame on tf; our own transform aside
+  std::set<std::string> names_;                 // of all frames
 };
 
 }  // namespace uav_landing

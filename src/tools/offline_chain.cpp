@@ -45,10 +45,12 @@ void OfflineChain::finish() { release(true); }
 
 void OfflineChain::release(bool all) {
   constexpr double kPatience = 0.5;  // s of the images
+  constexpr size_t kMost = 100;      // pairs, however close their stamps
   while (!waiting_.empty()) {
     const ros::Time stamp = waiting_.front().left->header.stamp;
     const double waited = secondsBetween(stamp, waiting_.back().left->header.stamp);
-    const bool goes = all || !imu_ || imu_->covers(stamp) || waited < 0 || waited > kPatience;
+    const bool goes =
+        all || !imu_ || imu_->covers(stamp) || waited < 0 || waited > kPatience || waiting_.size() > kMost;
     if (!goes) return;
     const Waiting pair = waiting_.front();
     waiting_.pop_front();

@@ -14,6 +14,7 @@ const std::vector<NamedHarness>& harnesses() {
                                                 {"config", fuzzConfig},
                                                 {"image_message", fuzzImageMessage},
                                                 {"image_pair", fuzzImagePair},
+                                                {"imu", fuzzImu},
                                                 {"messages", fuzzMessages},
                                                 {"bag", fuzzBag},
                                                 {"dataset", fuzzDataset}};

@@ -16,6 +16,7 @@ void fuzzCameraInfo(const uint8_t* data, size_t size);       ///< numbers of two
 void fuzzConfig(const uint8_t* data, size_t size);           ///< text of config and simulator files
 void fuzzImageMessage(const uint8_t* data, size_t size);     ///< any encoding, size, step and data length
 void fuzzImagePair(const uint8_t* data, size_t size);        ///< pictures through all stages
+void fuzzImu(const uint8_t* data, size_t size);              ///< inertial messages and their mounting
 void fuzzMessages(const uint8_t* data, size_t size);         ///< StereoDepth and ApproachAngle of anybody
 void fuzzBag(const uint8_t* data, size_t size);              ///< bytes of a bag
 void fuzzDataset(const uint8_t* data, size_t size);          ///< files of a dataset folder

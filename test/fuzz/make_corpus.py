@@ -62,7 +62,7 @@ def write_bag(path, compression):
 def main():
     folder = sys.argv[1]
     chance = random.Random(1)
-    for harness in ("camera_info", "image_message", "image_pair", "messages"):
+    for harness in ("camera_info", "image_message", "image_pair", "imu", "messages"):
         for i in range(20):
             size = chance.choice([0, 10, 100, 1000])
             save(folder, harness, "random_{:02d}".format(i), bytes(chance.randrange(256) for _ in range(size)))

@@ -7,6 +7,7 @@
 #include "fuzz/harnesses.h"
 #include "fuzz/memory_file.h"
 #include "image_input.h"
+#include "imu_input.h"
 #include "rig_watch.h"
 #include "stereo_bag_reader.h"
 
@@ -46,8 +47,8 @@ void fuzzBag(const uint8_t* data, size_t size) {
   const MemoryFile file(data, size);
   if (!file.written()) return;
   try {
-    const StereoBagReader reader(file.path(), "stereo");
-    if (const Failure failure = reader.checkTopics()) {
+    const StereoBagReader reader(file.path(), "stereo", "/imu/data");
+    if (const Failure failure = reader.checkTopics(false)) {
       require(!failure.detail.empty(), "a bag that lacks a topic says which");
       return;
     }
@@ -55,7 +56,10 @@ void fuzzBag(const uint8_t* data, size_t size) {
                           [](const auto& left, const auto& left_info, const auto&, const auto&) {
                             toMono8(left, toCalibration(*left_info), "left");
                           });
-    reader.read(pairing, [] {});
+    ImuInput imu{ApproachAngleParameters()};
+    reader.readStaticTransforms([&](const tf2_msgs::TFMessage& message) { imu.addTransforms(message); });
+    reader.read(
+        pairing, [&](const sensor_msgs::Imu& message) { imu.add(message); }, [] {});
   } catch (const std::exception&) {
     // What the programs say on stderr, with exit status 1.
   }

@@ -83,7 +83,8 @@ TEST(ImuReading, WhatIsNoNumberIsLeftOutAndNamed) {
   reading = toReading(message);
   EXPECT_TRUE(reading.sample.orientation);
   EXPECT_FALSE(reading.sample.angular_velocity);
-  EXPECT_NE(reading.failure.message().find("angular_velocity: expected finite numbers"), std::string::npos);
+  EXPECT_NE(reading.failure.message().find("angular_velocity: expected at most 100 rad/s, got 0, inf, 0"),
+            std::string::npos);
 }
 
 TEST(ImuInput, TurnsIntoTheRectifiedCamera) {
@@ -132,11 +133,63 @@ TEST(ImuInput, SaysWhichFrameIsMissing) {
             "transform_missing: no static transform between the imu's imu_link and left");
   input.addTransforms(opticalFrame("imu_link", "left"));
   EXPECT_EQ(input.at(ros::Time(100.6), "left", Eigen::Matrix3d::Identity()).failure.message(), "");
-  sensor_msgs::Imu nameless = level(101.1);
+  sensor_msgs::Imu nameless = level(103);
   nameless.header.frame_id = "";
   input.add(nameless);
   EXPECT_EQ(input.at(ros::Time(100.7), "left", Eigen::Matrix3d::Identity()).failure.message(),
             "transform_missing: the imu messages have an empty frame_id");
+}
+
+TEST(ImuReading, NumbersThatOverflowFurtherOnAreNotTaken) {
+  sensor_msgs::Imu message = level(1);
+  message.angular_velocity.z = 1e200;
+  message.orientation_covariance = {1e300, 0, 0, 0, 1, 0, 0, 0, 1};
+  const ImuReading reading = toReading(message);
+  EXPECT_FALSE(reading.sample.angular_velocity);
+  ASSERT_TRUE(reading.sample.orientation);
+  EXPECT_FALSE(reading.sample.orientation_covariance);
+}
+
+TEST(ImuInput, AnotherSensorOnTheTopicIsNamedAndDoesNotSilenceTheFirst) {
+  ImuInput input{ApproachAngleParameters()};
+  input.addTransforms(opticalFrame("imu_link", "left"));
+  sensor_msgs::Imu foreign = level(0);
+  foreign.header.frame_id = "head";
+  for (int i = 0; i <= 100; ++i) {
+    EXPECT_EQ(input.add(level(100 + 0.01 * i)).message(), "");
+    if (i == 0) continue;
+    foreign.header.stamp = ros::Time(100 + 0.01 * i);
+    EXPECT_EQ(input.add(foreign).message(),
+              "input_invalid: frame_id: 'head' after 'imu_link': are there two sensors on this topic?");
+  }
+  EXPECT_TRUE(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).hasNormal());
+  // Once the first one is silent, it is the sensor.
+  foreign.header.stamp = ros::Time(102.5);
+  EXPECT_EQ(input.add(foreign).message(), "");
+  EXPECT_EQ(input.at(ros::Time(102.5), "left", Eigen::Matrix3d::Identity()).failure.reason,
+            Reason::kTransformMissing);
+}
+
+TEST(ImuInput, AStampAtTheEndOfTimeCostsNoMoreThanTheMessagesBeforeIt) {
+  ImuInput input{ApproachAngleParameters()};
+  input.addTransforms(opticalFrame("imu_link", "left"));
+  fill(input, level);
+  sensor_msgs::Imu last = level(0);
+  last.header.stamp = ros::TIME_MAX;
+  input.add(last);
+  EXPECT_FALSE(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).hasNormal());
+  fill(input, level);
+  EXPECT_TRUE(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).hasNormal());
+}
+
+TEST(ImuInput, ALoopInTfIsAMissingTransform) {
+  ImuInput input{ApproachAngleParameters()};
+  input.addTransforms(opticalFrame("a", "left"));
+  input.addTransforms(opticalFrame("b", "a"));
+  input.addTransforms(opticalFrame("left", "b"));
+  fill(input, level);
+  EXPECT_EQ(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).failure.reason,
+            Reason::kTransformMissing);
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 using namespace uav_landing;
 
 namespace {
@@ -69,6 +72,48 @@ TEST(RigFrames, OurOwnTransformIsNotAnotherParent) {
   frames.add(transform("runway", "base_link", 0), false);
   EXPECT_EQ(frames.find("left").frame, "base_link");
   EXPECT_TRUE(frames.find("left").may_broadcast);
+}
+
+TEST(RigFrames, TransformsThatAreNoneAreLeftOut) {
+  RigFrames frames("base_link", "runway");
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::nan("")}) {
+    frames.add(transform("base_link", "left", bad), true);
+    EXPECT_TRUE(frames.find("left").failure) << bad;
+  }
+  tf2_msgs::TFMessage no_rotation = transform("base_link", "left", 1);
+  no_rotation.transforms[0].transform.rotation.w = 0;
+  frames.add(no_rotation, true);
+  EXPECT_TRUE(frames.find("left").failure);
+  frames.add(transform("base_link", "left", 1), true);
+  EXPECT_FALSE(frames.find("left").failure);
+}
+
+TEST(RigFrames, AQuaternionThatIsNotQuiteOfUnitLengthIsARotationAllTheSame) {
+  RigFrames frames("base_link", "runway");
+  tf2_msgs::TFMessage message = transform("base_link", "left", 0);
+  message.transforms[0].transform.rotation.w = 1.0008 * std::cos(0.2);
+  message.transforms[0].transform.rotation.z = 1.0008 * std::sin(0.2);
+  frames.add(message, true);
+  ASSERT_TRUE(frames.find("left").left_from_child);
+  const Eigen::Matrix3d R = frames.find("left").left_from_child->linear();
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
+TEST(RigFrames, ALoopIsNoTransform) {
+  RigFrames frames("base_link", "runway");
+  frames.add(transform("arm", "mount", 1), true);
+  frames.add(transform("mount", "left", 1), true);
+  frames.add(transform("left", "arm", 1), true);
+  frames.add(transform("base_link", "nose", 1), true);
+  frames.add(transform("left", "left", 1), true);
+  EXPECT_TRUE(frames.find("left").failure);
+}
+
+TEST(RigFrames, NamesThatNeverEndAreNotKept) {
+  RigFrames frames("base_link", "runway");
+  for (int i = 0; i < 20000; ++i) frames.add(transform("parent" + std::to_string(i), "child", 1), true);
+  frames.add(transform("base_link", "left", 1), true);
+  EXPECT_TRUE(frames.find("left").failure) << "ten thousand names are enough";
 }
 
 TEST(RigFrames, AConfiguredFrameThatIsUnknownIsAFailure) {
