@@ -26,7 +26,6 @@ class ApproachAngleNodelet : public StageNodelet {
   ApproachAngleNodelet() : StageNodelet("approach_angle") {}
   ~ApproachAngleNodelet() override {
     stop();
-    wait_timer_.stop();
     tf_subscriber_.shutdown();
   }
 
@@ -100,6 +99,7 @@ class ApproachAngleNodelet : public StageNodelet {
   void unsubscribe() override {
     subscribers_.clear();
     imu_subscriber_.shutdown();
+    wait_timer_.stop();
     waiting_.clear();
     if (with_stereo_) with_stereo_->reset();
     if (without_stereo_) without_stereo_->reset();

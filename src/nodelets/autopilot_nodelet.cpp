@@ -4,6 +4,7 @@
 #include "pairing.h"
 #include "reconfigure_server.h"
 #include "stage_nodelet.h"
+#include "time_difference.h"
 
 namespace uav_landing {
 
@@ -50,8 +51,8 @@ class AutopilotNodelet : public StageNodelet {
   void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
     const ros::Time& stamp = pose.header.stamp;
     // Half a microsecond of slack: stamps are rounded.
-    const ros::Duration period(1 / parameters_.max_rate - 5e-7);
-    if (!last_stamp_.isZero() && stamp > last_stamp_ && stamp - last_stamp_ < period) return;
+    const double period = 1 / parameters_.max_rate - 5e-7;
+    if (!last_stamp_.isZero() && stamp > last_stamp_ && secondsBetween(last_stamp_, stamp) < period) return;
     last_stamp_ = stamp;
     const auto range = autopilotRange(height, pose, parameters_);
     const auto enu_pose = autopilotPose(pose, parameters_);

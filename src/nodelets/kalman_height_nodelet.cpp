@@ -98,6 +98,8 @@ class KalmanHeightNodelet : public StageNodelet {
                    last_reason_.c_str());
     valid_lately_ = false;
     last_reason_.clear();
+    if (clockIsMissing())
+      NODELET_WARN("%s: /use_sim_time is set and nobody publishes /clock", getName().c_str());
   }
 
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
@@ -120,7 +122,7 @@ class KalmanHeightNodelet : public StageNodelet {
 
   void process(const StereoDepth& stereo, const ApproachAngle& approach,
                const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
-    last_pair_ = ros::Time::now();
+    last_pair_ = now();
     last_stamp_ = stereo.header.stamp;
     double compute_ms = stereo.compute_ms + approach.compute_ms;
     const ApproachAngleResult approach_result = toResult(approach);
@@ -231,13 +233,22 @@ class KalmanHeightNodelet : public StageNodelet {
     broadcaster_->sendTransform(transform);
   }
 
-  /// Says that there is no estimate when no pair came for max_age, once per max_age of the ROS clock.
+  static bool clockIsMissing() { return ros::Time::isSimTime() && ros::Time::now().isZero(); }
+  /// By the ROS clock or, while /use_sim_time is set and nobody publishes /clock, that of the machine.
+  static ros::Time now() {
+    if (!clockIsMissing()) return ros::Time::now();
+    const ros::WallTime wall = ros::WallTime::now();
+    return {wall.sec, wall.nsec};
+  }
+
+  /// Says that there is no estimate when no pair came for max_age, once per max_age of the clock.
   void checkAge() {
-    const ros::Time now = ros::Time::now();
+    if (clockIsMissing() && last_stamp_.isZero()) return;  // it may be a bag that is about to begin
+    const ros::Time now = KalmanHeightNodelet::now();
     const ros::Duration max_age(parameters_.max_age);
     if (last_pair_.isZero() || now < last_pair_) last_pair_ = now;  // just started, or the clock was set back
     if (now < last_timeout_) last_timeout_ = now;
-    if (now.isZero() || now - std::max(last_pair_, last_timeout_) < max_age) return;
+    if (now - std::max(last_pair_, last_timeout_) < max_age) return;
     last_timeout_ = now;
     // In the clock of the images, which may be another one than that of this machine.
     // Adding up throws where a stamp is at the end of what can be told.
@@ -284,7 +295,7 @@ class KalmanHeightNodelet : public StageNodelet {
   std::optional<KalmanHeightStage> stage_;
   RunwayPath path_;
   std::string left_frame_;
-  ros::Time last_pair_, last_timeout_;  // by the ROS clock
+  ros::Time last_pair_, last_timeout_;  // by now()
   ros::Time last_stamp_;                // of the last pair
   std::mutex rig_mutex_;
   // Of the last pair, for the diagnostics.

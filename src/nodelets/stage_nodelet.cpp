@@ -39,7 +39,10 @@ void StageNodelet::onInit() {
         NODELET_INFO("%s: reset", getName().c_str());
         return true;
       });
-  updateSubscription();
+  // Not in this thread: a callback must not run while the subscriber that it belongs to is still being
+  // stored.
+  start_timer_ = handle.createWallTimer(
+      ros::WallDuration(0.001), [this](const ros::WallTimerEvent&) { updateSubscription(); }, true);
 }
 
 void StageNodelet::refuseToLoad(const std::string& problem) {
@@ -53,6 +56,7 @@ ros::SubscriberStatusCallback StageNodelet::onConnection() {
 
 void StageNodelet::updateSubscription() {
   const std::lock_guard<std::mutex> lock(subscription_mutex_);
+  if (stopped_) return;
   const bool want = wanted();
   if (want == subscribed_) return;
   if (want)
@@ -78,11 +82,13 @@ void StageNodelet::warnOf(const Failure& failure) {
 
 void StageNodelet::stop() {
   reset_service_.shutdown();
+  start_timer_.stop();
   complaint_timer_.stop();
   diagnostic_timer_.stop();
   const std::lock_guard<std::mutex> lock(subscription_mutex_);
   if (subscribed_) unsubscribe();
   subscribed_ = false;
+  stopped_ = true;
 }
 
 void StageNodelet::complain() {

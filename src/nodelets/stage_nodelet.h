@@ -39,6 +39,7 @@ class StageNodelet : public nodelet::Nodelet {
   virtual void setUp() = 0;
   /// Somebody wants the output.
   virtual bool wanted() const = 0;
+  /// In the callbacks' thread, like unsubscribe(); that one also in the thread that destroys the nodelet.
   virtual void subscribe() = 0;
   virtual void unsubscribe() = 0;
   /// Counts per input, and why nothing was paired since the last call ("" when something was).
@@ -130,9 +131,9 @@ class StageNodelet : public nodelet::Nodelet {
 
   const std::string section_;
   mutable std::mutex subscription_mutex_;
-  bool subscribed_ = false;
+  bool subscribed_ = false, stopped_ = false;
   std::unique_ptr<diagnostic_updater::Updater> updater_;
-  ros::WallTimer complaint_timer_, diagnostic_timer_;
+  ros::WallTimer complaint_timer_, diagnostic_timer_, start_timer_;
   ros::ServiceServer reset_service_;
   std::string last_complaint_;
   ros::WallTime last_complaint_time_;

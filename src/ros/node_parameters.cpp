@@ -8,6 +8,8 @@
 namespace uav_landing {
 namespace {
 
+/// A plain value. Lists and maps become an empty list: no parameter is one, and the parameter server's may be
+/// nested without end.
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
@@ -18,16 +20,9 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
       return YAML::Node(static_cast<double>(value));
     case XmlRpc::XmlRpcValue::TypeString:
       return YAML::Node(static_cast<std::string>(value));
-    case XmlRpc::XmlRpcValue::TypeStruct: {
-      YAML::Node map(YAML::NodeType::Map);
-      for (auto& member : value) map[member.first] = toYaml(member.second);
-      return map;
-    }
-    case XmlRpc::XmlRpcValue::TypeArray: {
-      YAML::Node list(YAML::NodeType::Sequence);
-      for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
-      return list;
-    }
+    case XmlRpc::XmlRpcValue::TypeStruct:
+    case XmlRpc::XmlRpcValue::TypeArray:
+      return YAML::Node(YAML::NodeType::Sequence);
     default:
       return YAML::Node();
   }
@@ -70,8 +65,11 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
                        NodeParameters& node_parameters) {
   XmlRpc::XmlRpcValue given;
   YAML::Node all(YAML::NodeType::Map);
-  if (ros::param::get(private_handle.getNamespace(), given)) all = toYaml(given);
-  if (!all.IsMap()) return {Reason::kInputInvalid, section + ": expected a map of names and values"};
+  if (ros::param::get(private_handle.getNamespace(), given)) {
+    if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+      return {Reason::kInputInvalid, section + ": expected a map of names and values"};
+    for (auto& member : given) all[member.first] = toYaml(member.second);
+  }
   SectionLoader loader(takeNodeKeys(all), section);
   NodeParameters loaded = node_parameters;
   loaded.visit(loader);

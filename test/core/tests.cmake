@@ -53,3 +53,4 @@ uav_landing_add_gtest(vertical_disparity_test test/core/vertical_disparity_test.
 uav_landing_add_gtest(attitude_filter_test test/core/attitude_filter_test.cpp)
 uav_landing_add_gtest(imu_buffer_test test/core/imu_buffer_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(bad_calibrations_test test/core/bad_calibrations_test.cpp LIBS yaml-cpp)

@@ -6,3 +6,5 @@ uav_landing_add_rostest(test/launch/autopilot.test SOURCES test/launch/autopilot
 uav_landing_add_rostest(test/launch/diagnostics.test SOURCES test/launch/diagnostics_test.py DEPENDENCIES uav_landing_nodelets)
 uav_landing_add_rostest(test/launch/simulate.test SOURCES test/launch/simulate_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach)
+uav_landing_add_rostest(test/launch/recovery.test SOURCES test/launch/recovery_test.py
+  DEPENDENCIES uav_landing_nodelets simulate_approach)
