@@ -6,6 +6,12 @@ namespace uav_landing {
 
 /// The paper's Kalman filter for the height, eqs (6)-(8): state (height, vertical speed positive up), white
 /// random acceleration. Joseph form, innovation gate.
+///
+/// Part of a height's variance may be common to all pairs (calibration, surface): it must not average out. It
+/// counts in the gate and in the gain, which makes the filter cautious where it changes after all, and is
+/// left out of a second covariance, that of what is independent from pair to pair, which is carried along
+/// with the same gains (a consider covariance, Schmidt: Application of state-space methods to navigation
+/// problems, Advances in Control Systems 3, 1966).
 class HeightFilter {
  public:
   /// acceleration_stddev: m/s^2, of eta in eq (7). gate: largest normalised innovation, sigmas.
@@ -18,26 +24,29 @@ class HeightFilter {
   };
 
   bool initialised() const { return initialised_; }
-  /// Starts at a reconstructed height (m, m^2) with speed 0.
-  void initialise(double height, double variance);
+  /// Starts at a reconstructed height (m, m^2) with speed 0. common: part of the variance.
+  void initialise(double height, double variance, double common = 0);
   /// Eq (7) over T seconds, T >= 0.
   void predict(double T);
-  /// Eq (8) with a measured height (m, m^2). A measurement beyond the gate changes nothing.
-  Update update(double height, double variance);
+  /// Eq (8) with a measured height (m, m^2). A measurement beyond the gate changes nothing. common: part of
+  /// the variance.
+  Update update(double height, double variance, double common = 0);
   /// The same with a measured vertical speed (positive up, m/s, m^2/s^2). Not in the paper.
   Update updateSpeed(double speed, double variance);
   void reset() { initialised_ = false; }
 
   const Eigen::Vector2d& state() const { return state_; }  ///< m, m/s
   const Eigen::Matrix2d& covariance() const { return covariance_; }
+  /// Of what is independent from pair to pair: to be added to what is common to all.
+  const Eigen::Matrix2d& ownCovariance() const { return own_; }
 
  private:
-  Update fuse(const Eigen::RowVector2d& observation, double measured, double variance);
+  Update fuse(const Eigen::RowVector2d& observation, double measured, double variance, double common);
 
   double acceleration_stddev_, initial_speed_stddev_, gate_;
   bool initialised_ = false;
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero(), own_ = Eigen::Matrix2d::Zero();
 };
 
 }  // namespace uav_landing

@@ -89,6 +89,8 @@ class KalmanHeightStage {
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// and the unevenness that shows ahead.
   double modelVariance(double height) const;
+  /// Of the last height's variance what is the same on all pairs: surface, width and rig, m^2.
+  double commonVariance(double height) const;
   void followSurface(double surface_variance);
 
   Failure followTime(double stamp);

@@ -37,7 +37,7 @@ class SolutionSeparation {
 
   struct Measurement {
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, of one pair
-    double common = 0;  ///< variance that is the same on all pairs and must not average out, m^2
+    double common = 0;  ///< part of the variance that is the same on all pairs and must not average out, m^2
     bool known() const { return height > 0 && variance > 0; }
   };
   /// Of one pair: what it measures with each source left out; not known() where nothing is left.
@@ -54,9 +54,8 @@ class SolutionSeparation {
     double bound = kUnknown;  ///< m
     const char* source = "";  ///< what it is because of
   };
-  /// height, variance: published, m, m^2. surface_variance: by which the surface below may differ from the
-  /// one seen ahead, common to all solutions, m^2.
-  Level protectionLevel(double height, double variance, double surface_variance) const;
+  /// height, variance: published, m, m^2.
+  Level protectionLevel(double height, double variance) const;
 
  private:
   struct Solution {

@@ -25,8 +25,7 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   const double height = reconstruction.height;
   const GroundPlane& plane = reconstruction.plane;
   const bool by_width = reconstruction.by_width;
-  SolutionSeparation::Measurement everything{height, reconstruction.variance,
-                                             width_variance_ + rig_variance_};
+  SolutionSeparation::Measurement everything{height, reconstruction.variance, commonVariance(height)};
   // A height by the width has nothing in it of the stereo images but depends on what the edges are.
   if (by_width) everything.common += std::pow(kWidthTolerance * height / 3, 2);
   reconstruction.without.fill(everything);
@@ -37,7 +36,8 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   const GroundPlane& alone = reconstruction.alone;
   stereo_alone.height = height + alone.height() - plane.height();
   stereo_alone.variance = alone.heightVariance() + modelVariance(height);
-  stereo_alone.common = GroundPlane{alone.g, reconstruction.alone_common}.heightVariance();
+  stereo_alone.common =
+      GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() + modelVariance(height);
   leaveOutRegions(stereo, approach, reconstruction);
 }
 
@@ -66,7 +66,7 @@ void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const A
         {alone.g + fitted.g - regions.all.g, fitted.covariance + reconstruction.alone_common});
     measurement.height = reconstruction.height + plane.height() - base;
     measurement.variance = plane.heightVariance() + modelVariance(measurement.height);
-    measurement.common = rig_variance_;
+    measurement.common = commonVariance(measurement.height);
   }
 }
 
@@ -145,7 +145,7 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
   const std::optional<HeightMemory::Expected> expected = memory_.expected();
   if (expected && filter_.initialised())
     tests_.add(Consistency::kSinkRate, filter_.state()[0] - expected->height,
-               expected->variance + filter_.covariance()(0, 0) + modelVariance(expected->height));
+               expected->variance + filter_.ownCovariance()(0, 0) + modelVariance(expected->height));
   const bool agrees = !tests_.failed(Consistency::kSinkRate);
   if (!agrees) {
     const double off = filter_.state()[0] - expected->height;
@@ -163,8 +163,7 @@ void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) co
 
 void KalmanHeightStage::reportProtection(LandingResult& result) const {
   if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
-  const SolutionSeparation::Level level =
-      separation_.protectionLevel(result.height, result.height_variance, modelVariance(result.height));
+  const SolutionSeparation::Level level = separation_.protectionLevel(result.height, result.height_variance);
   result.height_protection_level = level.bound;
   result.protection_source = level.source;
   result.height_alert_limit =

@@ -155,6 +155,10 @@ double KalmanHeightStage::modelVariance(double height) const {
   return std::pow(parameters_.height_model_error * height, 2) + std::max(0.0, surface_variance_);
 }
 
+double KalmanHeightStage::commonVariance(double height) const {
+  return modelVariance(height) + width_variance_ + rig_variance_;
+}
+
 void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
                                  LandingResult& result) {
   constexpr double kAgreement = 3;  // sigma
@@ -388,7 +392,7 @@ Failure KalmanHeightStage::followTime(double stamp) {
 }
 
 void KalmanHeightStage::start(double stamp, const Reconstruction& reconstruction) {
-  filter_.initialise(reconstruction.height, reconstruction.variance);
+  filter_.initialise(reconstruction.height, reconstruction.variance, commonVariance(reconstruction.height));
   if (parameters_.integrity_monitor) separation_.start(reconstruction.without, reconstruction.height);
   confirmations_ = 0;
   accept(stamp);
@@ -441,7 +445,8 @@ void KalmanHeightStage::filterHeight(double stamp, const Reconstruction& reconst
 
 void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconstruction,
                                      const ApproachAngleResult::Motion& step, LandingResult& result) {
-  const HeightFilter::Update update = filter_.update(reconstruction.height, reconstruction.variance);
+  const HeightFilter::Update update =
+      filter_.update(reconstruction.height, reconstruction.variance, commonVariance(reconstruction.height));
   result.innovation = update.innovation;
   result.innovation_variance = update.innovation_variance;
   tests_.addRatio(Consistency::kInnovation, update.innovation,
@@ -478,9 +483,7 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   if (!filter_.initialised()) return;
   const double h = filter_.state()[0];
   result.height = h;
-  // The filter averages the model error as if it were noise, but the surface stays as it is, and so does the
-  // rig.
-  result.height_variance = filter_.covariance()(0, 0) + modelVariance(h) + width_variance_ + rig_variance_;
+  result.height_variance = filter_.ownCovariance()(0, 0) + commonVariance(h);
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 

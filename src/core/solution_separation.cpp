@@ -47,8 +47,8 @@ void SolutionSeparation::start(const Measurements& without, double height) {
     HeightFilter filter(acceleration_stddev_, initial_speed_stddev_, kNoGate);
     const Measurement& first = without[i];
     // What is not known is somewhere.
-    filter.initialise(first.known() ? first.height : height,
-                      first.known() ? first.variance : height * height);
+    filter.initialise(first.known() ? first.height : height, first.known() ? first.variance : height * height,
+                      first.known() ? first.common : 0);
     solutions_[i].emplace(Solution{filter, first.known() ? first.common : 0});
   }
 }
@@ -61,7 +61,7 @@ void SolutionSeparation::predict(double T) {
 void SolutionSeparation::update(const Measurements& without) {
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i] || !without[i].known()) continue;
-    solutions_[i]->filter.update(without[i].height, without[i].variance);
+    solutions_[i]->filter.update(without[i].height, without[i].variance, without[i].common);
     solutions_[i]->common = without[i].common;
   }
 }
@@ -72,8 +72,7 @@ void SolutionSeparation::updateSpeed(double speed, double variance) {
       solutions_[i]->filter.updateSpeed(speed, variance);
 }
 
-SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance,
-                                                              double surface_variance) const {
+SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance) const {
   const double sigma = std::sqrt(variance);
   Level level{factor_ * sigma, "noise"};
   const double scaled = unwatched_scale_ * height + fault_factor_ * sigma;
@@ -81,7 +80,7 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i]) continue;
     const HeightFilter& filter = solutions_[i]->filter;
-    const double without = std::sqrt(filter.covariance()(0, 0) + solutions_[i]->common + surface_variance);
+    const double without = std::sqrt(filter.ownCovariance()(0, 0) + solutions_[i]->common);
     const double bound = std::abs(height - filter.state()[0]) + fault_factor_ * without;
     if (!(bound <= level.bound)) level = {bound, toString(static_cast<FaultySource>(i))};
   }

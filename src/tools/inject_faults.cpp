@@ -181,18 +181,14 @@ class Campaign {
  private:
   void chooseFaults() {
     const bool simulated = options_.dataset.empty();
-    std::set<std::string> wanted(options_.faults.begin(), options_.faults.end());
+    const std::set<std::string> wanted(options_.faults.begin(), options_.faults.end());
+    std::set<std::string> unknown = wanted;
     for (const Fault& fault : allFaults()) {
-      if (!wanted.empty() && wanted.erase(fault.name) == 0) continue;
-      if (!fault.needs_scene || simulated) faults_.push_back(&fault);
+      unknown.erase(fault.name);
+      const bool asked = wanted.empty() || wanted.count(fault.name) > 0;
+      if (asked && (!fault.needs_scene || simulated)) faults_.push_back(&fault);
     }
-    if (!wanted.empty() && wanted.count("none") == 0 && !allFaults().empty()) {
-      for (const std::string& name : wanted) {
-        const auto known = std::any_of(allFaults().begin(), allFaults().end(),
-                                       [&](const Fault& fault) { return fault.name == name; });
-        if (!known) throw std::runtime_error("there is no fault " + name);
-      }
-    }
+    if (!unknown.empty()) throw std::runtime_error("there is no fault " + *unknown.begin());
   }
 
   /// Each fault alone, and some pairs of them drawn by the seed.

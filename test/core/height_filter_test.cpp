@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 namespace uav_landing {
@@ -123,6 +124,29 @@ TEST(HeightFilter, RefusesNaN) {
   EXPECT_FALSE(filter.update(std::numeric_limits<double>::quiet_NaN(), 0.06).accepted);
   EXPECT_FALSE(filter.updateSpeed(1.0, std::numeric_limits<double>::quiet_NaN()).accepted);
   EXPECT_DOUBLE_EQ(filter.state()[0], 10);
+}
+
+TEST(HeightFilter, WhatIsCommonToAllMeasurementsDoesNotAverageOut) {
+  // Level flight seen by measurements that share an error: over many flights the height is off by that error
+  // and what is left of the noise.
+  constexpr double kOwn = 0.1, kCommon = 0.2;
+  constexpr int kFlights = 4000;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  double squares = 0, claimed = 0;
+  for (int flight = 0; flight < kFlights; ++flight) {
+    HeightFilter filter(0.01, 0.01, kWideGate);
+    const double shared = kCommon * normal(random), variance = kOwn * kOwn + kCommon * kCommon;
+    filter.initialise(10 + shared + kOwn * normal(random), variance, kCommon * kCommon);
+    for (int i = 0; i < 15; ++i) {
+      filter.predict(0.05);
+      filter.update(10 + shared + kOwn * normal(random), variance, kCommon * kCommon);
+    }
+    squares += std::pow(filter.state()[0] - 10, 2) / kFlights;
+    claimed = filter.ownCovariance()(0, 0) + kCommon * kCommon;
+  }
+  EXPECT_NEAR(claimed / squares, 1, 0.1);
+  EXPECT_LT(claimed, 0.25 * kOwn * kOwn + kCommon * kCommon);
 }
 
 }  // namespace

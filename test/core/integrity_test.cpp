@@ -79,7 +79,7 @@ TEST(SolutionSeparation, BoundsTheErrorByTheSolutionWithoutTheSourceThatIsWrong)
   // The left half of the image is wrong by half a metre; only the filter without it knows.
   without[static_cast<int>(FaultySource::kLeft)].height = 9.5;
   separation.start(without, 10);
-  const auto level = separation.protectionLevel(10, 0.01, 0);
+  const auto level = separation.protectionLevel(10, 0.01);
   EXPECT_STREQ(level.source, "left_region");
   EXPECT_NEAR(level.bound, 0.5 + 2.576 * 0.1, 1e-3);  // 1 % to both sides: 2.576 sigma
   // Pair after pair the noise averages out, the separation stays.
@@ -87,7 +87,7 @@ TEST(SolutionSeparation, BoundsTheErrorByTheSolutionWithoutTheSourceThatIsWrong)
     separation.predict(0.05);
     separation.update(without);
   }
-  const auto later = separation.protectionLevel(10, 0.001, 0);
+  const auto later = separation.protectionLevel(10, 0.001);
   EXPECT_GT(later.bound, 0.5);
   EXPECT_LT(later.bound, level.bound);
 }
@@ -101,7 +101,7 @@ TEST(SolutionSeparation, GrowsWhereNothingIsLeftWithoutTheSource) {
   for (int i = 0; i < 20; ++i) {
     separation.predict(0.05);
     separation.update(without);
-    const auto level = separation.protectionLevel(10, 0.0001, 0);
+    const auto level = separation.protectionLevel(10, 0.0001);
     if (i > 5) {
       EXPECT_STREQ(level.source, "near_region");
       EXPECT_GT(level.bound, before);
@@ -114,10 +114,10 @@ TEST(SolutionSeparation, HasTheScaleThatNothingSeesInIt) {
   KalmanHeightParameters parameters;
   parameters.unwatched_scale_error = 0.02;
   SolutionSeparation separation(parameters);
-  EXPECT_NEAR(separation.protectionLevel(10, 1e-12, 0).bound, 0.2, 1e-4);
-  EXPECT_STREQ(separation.protectionLevel(10, 1e-12, 0).source, "scale");
-  EXPECT_STREQ(separation.protectionLevel(10, 1, 0).source, "noise");
-  EXPECT_NEAR(separation.protectionLevel(10, 1, 0).bound, 4.417, 1e-3);
+  EXPECT_NEAR(separation.protectionLevel(10, 1e-12).bound, 0.2, 1e-4);
+  EXPECT_STREQ(separation.protectionLevel(10, 1e-12).source, "scale");
+  EXPECT_STREQ(separation.protectionLevel(10, 1).source, "noise");
+  EXPECT_NEAR(separation.protectionLevel(10, 1).bound, 4.417, 1e-3);
 }
 
 TEST(RegionPlanes, APlaneWithoutTheWrongHalfIsRight) {
