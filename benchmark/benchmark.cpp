@@ -9,11 +9,13 @@
 #include <iostream>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 
 #include "command_line.h"
 #include "image_allocations.h"
 #include "paper_pipeline.h"
 #include "peers.h"
+#include "pending_file.h"
 #include "sequences.h"
 #include "uav_landing/parameter_file.h"
 #include "uav_landing/pipeline.h"
@@ -147,7 +149,8 @@ void print(const Measurement& m) {
 }
 
 void writeJson(const std::string& path, const std::vector<Measurement>& measurements) {
-  std::ofstream out(path);
+  PendingFile pending(path);
+  std::ofstream out(pending.temporary());
   const auto list = [&out](const std::vector<std::pair<std::string, Times>>& all) {
     const char* separator = "";
     for (const auto& [name, times] : all) {
@@ -169,6 +172,9 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
     out << "}}";
   }
   out << "\n]}\n";
+  out.close();
+  if (!out) throw std::runtime_error(path + ": cannot be written");
+  pending.commit();
 }
 
 struct Options {

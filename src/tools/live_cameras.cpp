@@ -6,6 +6,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "stereo_bag_writer.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 const ros::Duration kTick(0.01);  // of the clock
 constexpr uint32_t kQueue = 10;
+constexpr double kPatience = 600;  // s, until somebody subscribes
 
 }  // namespace
 
@@ -36,10 +38,13 @@ LiveCameras::Camera LiveCameras::advertise(const std::string& topic, const std::
 }
 
 bool LiveCameras::waitForSubscribers(const ros::Time& start) {
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
   while (ros::ok()) {
     const bool seen = left_.image.getNumSubscribers() > 0 && right_.image.getNumSubscribers() > 0 &&
                       left_.info.getNumSubscribers() > 0 && right_.info.getNumSubscribers() > 0;
     if (seen) return true;
+    if (ros::WallTime::now() > deadline)
+      throw std::runtime_error("nobody has subscribed the cameras for 10 minutes");
     setClock(start);
     ros::WallDuration(kTick.toSec()).sleep();
   }

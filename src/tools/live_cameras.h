@@ -21,7 +21,8 @@ class LiveCameras {
   LiveCameras(const std::string& camera, const sensor_msgs::CameraInfo& left,
               const sensor_msgs::CameraInfo& right, double speed);
 
-  /// Until both cameras have a subscriber; the clock stands at start. False when ROS was shut down.
+  /// Until both cameras have a subscriber; the clock stands at start. False when ROS was shut down;
+  /// throws when nobody subscribes for ten minutes.
   bool waitForSubscribers(const ros::Time& start);
   /// Puts the clock forward.
   void setClock(const ros::Time& now);

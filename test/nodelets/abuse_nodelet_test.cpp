@@ -2,6 +2,8 @@
 // input.
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/callback_queue.h>
+#include <sensor_msgs/Imu.h>
+#include <tf2_msgs/TFMessage.h>
 #include <uav_landing/ApproachAngle.h>
 #include <uav_landing/LandingEstimate.h>
 #include <uav_landing/StereoDepth.h>
@@ -171,6 +173,32 @@ TEST_F(AbuseTest, NodeletsThatAreUnloadedAndLoadedAgain) {
     expectRecovery(t + 5);
     t += 10;
   }
+}
+
+TEST_F(AbuseTest, AnInertialSensorOutOfItsMind) {
+  const ros::Publisher imu = handle_.advertise<sensor_msgs::Imu>("/imu/data", 5000);
+  const ros::Publisher tf = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, true);
+  ASSERT_TRUE(eventually([&] { return imu.getNumSubscribers() > 0 && tf.getNumSubscribers() > 0; }));
+  for (const auto& [parent, child] : {std::pair("imu_link", "left_optical"), {"left_optical", "imu_link"}}) {
+    tf2_msgs::TFMessage mounting;
+    mounting.transforms.resize(1);
+    mounting.transforms[0].header.frame_id = parent;
+    mounting.transforms[0].child_frame_id = child;
+    mounting.transforms[0].transform.rotation.w = 1;
+    tf.publish(mounting);
+  }
+  const ros::Time stamps[] = {{}, ros::TIME_MAX, PairPublisher::stampOf(50), PairPublisher::stampOf(-50)};
+  for (int i = 0; i < 4000; ++i) {
+    sensor_msgs::Imu message;
+    message.header.stamp = stamps[i % 4];
+    message.header.frame_id = i % 3 == 0 ? "head" : "imu_link";
+    message.orientation.w = i % 5 == 0 ? std::nan("") : 1;
+    message.angular_velocity.x = i % 7 == 0 ? 1e300 : 3;
+    message.orientation_covariance.fill(i % 11 == 0 ? 1e308 : 0);
+    imu.publish(message);
+  }
+  expectRecovery(30);
+  EXPECT_TRUE(counted("approach_angle", "inputs refused"));
 }
 
 TEST_F(AbuseTest, SomebodyElseWhoPublishesNonsense) {
