@@ -69,7 +69,8 @@ void fuzzCameraInfo(const uint8_t* data, size_t size) {
 
 void fuzzCalibrationFile(const uint8_t* data, size_t size) {
   silenceLog();
-  const MemoryFile file(data, size);
+  const bool ini = size > 0 && data[0] == '#';
+  const MemoryFile file(data, size, ini ? ".ini" : ".yaml");
   if (!file.written()) return;
   const Expected<sensor_msgs::CameraInfo> info = readCalibrationFile(file.path());
   if (info) useCalibrations(toCalibration(*info), toCalibration(*info));

@@ -1,29 +1,40 @@
 #pragma once
 
-#include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace uav_landing {
 namespace fuzz {
 
-/// A file in memory with a path, for readers that want one.
+/// A file for readers that want a path, in memory where there is a file system for that. ending: of the name,
+/// which some readers go by.
 class MemoryFile {
  public:
-  MemoryFile(const void* data, size_t size) : descriptor_(memfd_create("fuzz", 0)) {
-    written_ = descriptor_ >= 0 && write(descriptor_, data, size) == static_cast<ssize_t>(size);
+  MemoryFile(const void* data, size_t size, const std::string& ending) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+    path_ = folder / ("uav_landing_fuzz_" + std::to_string(getpid()) + ending);
+    std::ofstream file(path_, std::ios::binary);
+    file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    written_ = static_cast<bool>(file.flush());
   }
-  ~MemoryFile() { close(descriptor_); }
+  ~MemoryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   bool written() const { return written_; }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  std::string path() const { return path_.string(); }
 
  private:
-  int descriptor_;
-  bool written_;
+  std::filesystem::path path_;
+  bool written_ = false;
 };
 
 }  // namespace fuzz

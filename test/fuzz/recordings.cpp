@@ -44,7 +44,7 @@ std::string section(std::string& rest) {
 
 void fuzzBag(const uint8_t* data, size_t size) {
   silenceLog();
-  const MemoryFile file(data, size);
+  const MemoryFile file(data, size, ".bag");
   if (!file.written()) return;
   try {
     const StereoBagReader reader(file.path(), "stereo", "/imu/data");

@@ -150,9 +150,10 @@ TEST_F(KalmanHeightNodeletTest, PublishesEstimateRangePoseAndTransformOfTheImage
   EXPECT_FALSE(estimate.x_known);
   EXPECT_FALSE(estimate.y_known);
 
-  ASSERT_TRUE(ranges_.waitFor(5));
-  EXPECT_EQ(ranges_.messages()[4]->header.stamp, PairPublisher::stampOf(0.4));
-  EXPECT_NEAR(ranges_.messages()[4]->range, 2, 0.01);
+  // Between slow pairs there may be one that says that the height is lost.
+  ASSERT_TRUE(ranges_.waitFor([](const auto& range) {
+    return range.header.stamp == PairPublisher::stampOf(0.4) && std::abs(range.range - 2) < 0.01;
+  }));
   EXPECT_TRUE(std::isnan(ranges_.messages()[0]->range)) << "not confirmed yet";
 
   ASSERT_TRUE(transforms_.waitFor(
