@@ -5,7 +5,7 @@ add_library(uav_landing_tools STATIC
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
-target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11)
+target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11 PRIVATE yaml-cpp)
 add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
 
 add_executable(dataset_to_bag src/tools/dataset_to_bag.cpp)

@@ -1,12 +1,15 @@
 #include "dataset.h"
 
 #include <camera_calibration_parsers/parse.h>
+#include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <tuple>
 
 #include "csv_table.h"
 #include "decimal_time.h"
@@ -18,6 +21,36 @@ namespace fs = std::filesystem;
 constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
 
 Failure invalid(const std::string& detail) { return {Reason::kInputInvalid, detail}; }
+
+/// The sizes of the matrices in a YAML file: camera_calibration_parsers ends the program where they differ,
+/// and takes memory for any number of coefficients.
+Failure checkMatrices(const std::string& path) {
+  constexpr int kMostCoefficients = 100;
+  if (fs::path(path).extension() == ".ini") return {};
+  try {
+    const YAML::Node file = YAML::LoadFile(path);
+    if (!file.IsMap()) return {};  // the parser says so
+    for (const auto& [name, rows, columns] : {std::tuple("camera_matrix", 3, 3),
+                                              {"rectification_matrix", 3, 3},
+                                              {"projection_matrix", 3, 4},
+                                              {"distortion_coefficients", 0, 0}}) {
+      const YAML::Node matrix = file[name];
+      if (!matrix.IsDefined() || !matrix.IsMap()) continue;
+      const int given_rows = matrix["rows"].as<int>(-1), given_columns = matrix["cols"].as<int>(-1);
+      const auto numbers = static_cast<int>(std::min<size_t>(matrix["data"].size(), kMostCoefficients));
+      const auto possible = [](int count) { return count >= 0 && count < kMostCoefficients; };
+      const bool sizes = columns > 0 ? given_rows == rows && given_columns == columns
+                                     : possible(given_rows) && possible(given_columns);
+      if (!sizes || numbers != given_rows * given_columns)
+        return invalid(path + ": " + name + ": " + std::to_string(given_rows) + " rows, " +
+                       std::to_string(given_columns) + " cols and " + std::to_string(numbers) +
+                       " numbers do not fit together");
+    }
+  } catch (const YAML::Exception&) {
+    // The parser says what it cannot read.
+  }
+  return {};
+}
 
 /// Fills one truth field from its column, scaled; returns the failure of a field that is not a number.
 Failure readTruthField(const CsvTable& table, size_t row, const std::string& column, double scale,
@@ -95,6 +128,7 @@ bool hasPngSignature(const std::vector<unsigned char>& bytes) {
 
 Expected<sensor_msgs::CameraInfo> readCalibrationFile(const std::string& path) {
   if (!fs::is_regular_file(path)) return tl::make_unexpected(invalid(path + ": no such file"));
+  if (const Failure failure = checkMatrices(path)) return tl::make_unexpected(failure);
   sensor_msgs::CameraInfo info;
   std::string name;
   if (!camera_calibration_parsers::readCalibration(path, name, info))

@@ -22,8 +22,11 @@ const std::vector<NamedHarness>& harnesses() {
 }
 
 void silenceLog() {
-  static const bool silent =
-      ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Fatal);
+  static const bool silent = [] {
+    const bool set = ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Fatal);
+    ros::console::notifyLoggerLevelsChanged();
+    return set;
+  }();
   require(silent, "the log can be silenced");
 }
 

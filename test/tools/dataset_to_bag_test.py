@@ -200,10 +200,22 @@ class BadInputTest(DatasetToBagTest):
         self.assert_refused("left/b.png: damaged PNG image")
 
     def test_calibrations_that_are_none(self):
-        for content in ("", "hello", "image_width: 48", "{", CALIBRATION.replace("[50,", "[")):
+        for content in ("", "hello", "image_width: 48", "{"):
             with self.subTest(content=content):
                 (self.dataset / "left.yaml").write_text(content)
                 self.assert_refused("left.yaml: not a ROS camera calibration file")
+
+    def test_matrices_whose_numbers_do_not_fit_together(self):
+        good = CALIBRATION.format(width=48, height=32, name="left", shift=0)
+        wrong = {good.replace("[50,", "["): "camera_matrix: 3 rows, 3 cols and 8 numbers",
+                 good.replace("rows: 3", "rows: 2", 1): "camera_matrix: 2 rows, 3 cols and 9 numbers",
+                 good.replace("cols: 4", "cols: 400000000"): "projection_matrix: 3 rows, 400000000 cols and 12 numbers",
+                 good.replace("cols: 5", "cols: 2000000000"): "distortion_coefficients: 1 rows, 2000000000 cols"}
+        for content, problem in wrong.items():
+            with self.subTest(problem=problem):
+                self.assertNotEqual(content, good)
+                (self.dataset / "left.yaml").write_text(content)
+                self.assert_refused("left.yaml: " + problem)
 
     def test_a_calibration_without_a_size(self):
         (self.dataset / "right.yaml").write_text(CALIBRATION.format(width=0, height=0, name="right", shift=0))
