@@ -27,27 +27,30 @@ Failure invalid(const std::string& detail) { return {Reason::kInputInvalid, deta
 Failure checkMatrices(const std::string& path) {
   constexpr int kMostCoefficients = 100;
   if (fs::path(path).extension() == ".ini") return {};
+  YAML::Node file;
   try {
-    const YAML::Node file = YAML::LoadFile(path);
-    if (!file.IsMap()) return {};  // the parser says so
-    for (const auto& [name, rows, columns] : {std::tuple("camera_matrix", 3, 3),
-                                              {"rectification_matrix", 3, 3},
-                                              {"projection_matrix", 3, 4},
-                                              {"distortion_coefficients", 0, 0}}) {
-      const YAML::Node matrix = file[name];
-      if (!matrix.IsDefined() || !matrix.IsMap()) continue;
-      const int given_rows = matrix["rows"].as<int>(-1), given_columns = matrix["cols"].as<int>(-1);
-      const auto numbers = static_cast<int>(std::min<size_t>(matrix["data"].size(), kMostCoefficients));
-      const auto possible = [](int count) { return count >= 0 && count < kMostCoefficients; };
-      const bool sizes = columns > 0 ? given_rows == rows && given_columns == columns
-                                     : possible(given_rows) && possible(given_columns);
-      if (!sizes || numbers != given_rows * given_columns)
-        return invalid(path + ": " + name + ": " + std::to_string(given_rows) + " rows, " +
-                       std::to_string(given_columns) + " cols and " + std::to_string(numbers) +
-                       " numbers do not fit together");
-    }
+    file = YAML::LoadFile(path);
   } catch (const YAML::Exception&) {
-    // The parser says what it cannot read.
+    return {};  // the parser says what it cannot read
+  }
+  if (!file.IsMap()) return {};
+  const auto possible = [](int count) { return count >= 0 && count < kMostCoefficients; };
+  for (const auto& [name, rows, columns] : {std::tuple("camera_matrix", 3, 3),
+                                            {"rectification_matrix", 3, 3},
+                                            {"projection_matrix", 3, 4},
+                                            {"distortion_coefficients", 0, 0}}) {
+    const YAML::Node matrix = file[name];
+    if (!matrix.IsDefined() || !matrix.IsMap()) continue;
+    const YAML::Node data = matrix["data"];
+    const size_t size = data.IsDefined() && data.IsSequence() ? data.size() : 0;
+    const int numbers = static_cast<int>(std::min<size_t>(size, kMostCoefficients));
+    const int given_rows = matrix["rows"].as<int>(-1), given_columns = matrix["cols"].as<int>(-1);
+    const bool sizes = columns > 0 ? given_rows == rows && given_columns == columns
+                                   : possible(given_rows) && possible(given_columns);
+    if (!sizes || numbers != given_rows * given_columns)
+      return invalid(path + ": " + name + ": " + std::to_string(given_rows) + " rows, " +
+                     std::to_string(given_columns) + " cols and " + std::to_string(numbers) +
+                     " numbers do not fit together");
   }
   return {};
 }
