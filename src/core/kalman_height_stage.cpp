@@ -152,7 +152,7 @@ void KalmanHeightStage::reset() {
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
-  return std::pow(parameters_.height_model_error * height, 2) + std::max(0.0, surface_variance_);
+  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_;
 }
 
 double KalmanHeightStage::commonVariance(double height) const {
@@ -195,7 +195,15 @@ void KalmanHeightStage::followSurface(double surface_variance) {
   constexpr int kPairs = 20;
   if (!std::isfinite(surface_variance)) return;
   surface_pairs_ = filter_.initialised() ? std::min(surface_pairs_ + 1, kPairs) : 1;
-  surface_variance_ += (surface_variance - surface_variance_) / surface_pairs_;
+  const double share = 1.0 / surface_pairs_, before = surface_pairs_ > 1 ? surface_mean_ : surface_variance;
+  surface_mean_ = before + share * (surface_variance - before);
+  const double square = (surface_variance - before) * (surface_variance - surface_mean_);
+  surface_scatter_ += share * (square - surface_scatter_);
+  // Each pair's is the small difference of two large variances: of flat ground it scatters around zero. What
+  // is within its mean's own error is not believed, once there are enough of them to tell.
+  constexpr int kEnough = 5;
+  const double error = surface_pairs_ < kEnough ? 0 : std::sqrt(surface_scatter_ / surface_pairs_);
+  surface_variance_ = std::max(0.0, surface_mean_ - error);
 }
 
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
