@@ -81,19 +81,25 @@ class Search {
   }
   /// Whether this is a dark strip that begins within the picture, as at a threshold.
   bool isStrip(const MirroredPair& pair) const {
-    const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
-    return isEven(pair) && l.begins && r.begins && l.brighter_left &&
-           std::abs(std::log(l.near / r.near)) < kSameBeginning;
+    const GroundEdge& l = edges_[pair.left];
+    return isEven(pair) && l.begins && l.brighter_left && beginAlike(pair);
   }
   /// A centre line is dashed.
   static bool isUnbroken(const GroundEdge& edge) {
     return edge.extent >= kUnbroken * std::log(edge.far / edge.near);
   }
-  /// Whether these are two unbroken lines alike, each with both its sides.
+  /// Whether both edges begin at the same distance, or neither within the picture.
+  bool beginAlike(const MirroredPair& pair) const {
+    const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
+    return l.begins == r.begins && (!l.begins || std::abs(std::log(l.near / r.near)) < kSameBeginning);
+  }
+  /// Whether these are two unbroken lines alike, each with both its sides. A single dash is not the
+  /// counterpart of a line that goes on.
   bool areTwoLines(const Symmetry& symmetry) const {
     return symmetry.pairs.size() >= 2 &&
            std::all_of(symmetry.pairs.begin(), symmetry.pairs.end(), [this](const MirroredPair* pair) {
-             return isEven(*pair) && isUnbroken(edges_[pair->left]) && isUnbroken(edges_[pair->right]);
+             return isEven(*pair) && beginAlike(*pair) && isUnbroken(edges_[pair->left]) &&
+                    isUnbroken(edges_[pair->right]);
            });
   }
 

@@ -13,6 +13,7 @@ constexpr double kDegree = M_PI / 180.0;
 constexpr double kGate = 4;         // sigma between what is seen and what was expected
 constexpr double kSlack = 0.01;     // of the runway's width, that the gate is wider
 constexpr double kSameWidth = 0.1;  // of the width: between the surface's edges and the lines along them
+constexpr double kVague = 0.1;      // of the width: a centre expected within more than this says nothing
 constexpr double kPatience = 1.0;   // s without the edges, after which the interpretation is forgotten
 constexpr double kThresholdPatience = 0.5;
 constexpr double kUnknownMotion = 0.1;  // of the height: 1 sigma of a step's movement that is not known
@@ -42,7 +43,7 @@ bool RunwayTracker::Follower::update(double value, double variance, double slack
   // Errors of pairs in a row are much the same, so their mean is hardly better than one of them.
   const double gain = variance_ / (variance_ + variance);
   value_ = *value_ + gain * (value - *value_);
-  variance_ = std::max((1 - gain) * variance_, 0.5 * variance);
+  variance_ = std::max((1 - gain) * variance_, std::min(variance_, 0.5 * variance));
   confirmations_ = std::min(confirmations_ + 1, kConfirmations);
   return confirmations_ >= kConfirmations;
 }
@@ -136,7 +137,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
     if (contradicted_ > kPatience) {
       centre_ = threshold_ = width_ = wider_ = Follower();
       contradicted_ = 0;
-    } else if (!seen || contradicts) {
+    } else if ((!seen || contradicts) && expected.tolerance <= kVague * width_.value()) {
       seen = findRunwayEdges(axes, edges.both, width, expected);
       if (!seen) seen = findRunwayEdges(axes, edges.either, width, expected);
     }
