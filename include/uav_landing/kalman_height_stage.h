@@ -121,9 +121,10 @@ class KalmanHeightStage {
   double last_accepted_ = 0;          ///< stamp of the last measurement that was believed, s
   double width_variance_ = 0;         ///< of the last height, common to all that are from the same width, m^2
   double rig_variance_ = 0;           ///< of the height, by the rig's rotation, m^2
-  double surface_mean_ = 0, surface_scatter_ = 0;  ///< of the surface's variance of the recent pairs, m^2, m^4
+  double surface_mean_ = 0,
+         surface_scatter_ = 0;   ///< of the surface's variance of the recent pairs, m^2, m^4
   double surface_variance_ = 0;  ///< of the surface about its plane as far as it is certain, m^2
-  int surface_pairs_ = 0;             ///< that the mean is of
+  int surface_pairs_ = 0;        ///< that the mean is of
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;
   int resets_ = 0;

@@ -56,7 +56,8 @@ class ShortCampaignTest(unittest.TestCase):
         self.assertEqual(rows.pop("baseline_8")["misleading"], "30", "nothing can see the baseline's length")
         for name, faulted in rows.items():
             self.assertEqual(faulted["misleading"], "0", name)
-            self.assertLess(int(faulted["faulted_valid"]), int(faulted["faulted"]), name)
+            if name != "overexposed":  # what is not white shows the height as well
+                self.assertLess(int(faulted["faulted_valid"]), int(faulted["faulted"]), name)
             self.assertLessEqual(float(faulted["time_to_alert_s"]), 0.35, name)
 
     def test_an_unknown_fault_is_refused_by_its_name(self):
