@@ -14,6 +14,7 @@ namespace uav_landing {
 enum class Consistency {
   kRepeatedImage,
   kPhotometric,
+  kRowAgreement,
   kRigRotation,
   kTilt,
   kVanishingPoint,
@@ -22,7 +23,7 @@ enum class Consistency {
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 9;
+constexpr int kConsistencyTests = 10;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.

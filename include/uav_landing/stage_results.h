@@ -49,6 +49,9 @@ struct StereoDepthResult {
   double skew = 0;                     ///< stamp of right minus left image, seconds
   /// What vertical disparities say of the rig, of this pair alone; random errors only.
   RigRotation vertical_rotation;
+  /// Share of the corners matched along the rows that are found when they may move across the rows as well:
+  /// wrong matches mostly are not. Unknown where nothing was measured.
+  double row_agreement = kUnknown;
   /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
   double disparity_bias_stddev = 0;
   /// Share of the image blocks over the ground that look alike in both images and lie on one plane; unknown

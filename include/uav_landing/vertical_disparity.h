@@ -16,9 +16,11 @@ namespace uav_landing {
 /// samples: matched corners with the disparity found in the level's right image. The right row of a few of
 /// them is measured to sub-pixel (gain and offset free, within 2 rows), then w fitted with redescending
 /// weights. g: plane that tells how windows are sheared, 1/m. Fails when fewer than 20 corners have a row.
+/// agreement: set to the share of the corners whose row was found, unless null; NaN when there are none.
 Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
                                                  const std::vector<DisparitySample>& samples,
-                                                 const Eigen::Vector3d& g, int window_radius);
+                                                 const Eigen::Vector3d& g, int window_radius,
+                                                 double* agreement = nullptr);
 
 /// The same with nothing matched yet: looks for corners around the places that a rough plane predicts, within
 /// 3 columns and 3 rows of whole pixels first.
@@ -53,6 +55,9 @@ class RowAlignment {
   /// with what a calibration that is good to bias_stddev (pixels in the middle of the image) leads to expect,
   /// as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig, double bias_stddev) const;
+  /// Of the pair measured last: share of the corners matched along the rows that are found when they may move
+  /// across the rows as well. Wrong matches mostly are not. NaN when nothing was measured.
+  double agreement() const { return agreement_; }
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
@@ -68,6 +73,7 @@ class RowAlignment {
   Eigen::Vector3d levelled_by_ =
       Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
   bool measured_ = false;
+  double agreement_ = kUnknown;
 };
 
 }  // namespace uav_landing

@@ -99,8 +99,24 @@ class Campaign:
         return frames, frames - valid, self.total(rows, "healthy_misleading")
 
     def healthy_rows(self):
-        """Each approach once: the frames before a fault's onset are the same for all faults of an approach."""
-        return [row for row in self.rows if row["faults"] == "none"]
+        """Each approach and each dataset once: the frames before a fault's onset are the same for all faults."""
+        rows = {}
+        for row in self.rows:
+            if row["faults"] == "none":
+                rows.setdefault((row["source"], row["seed"] if row["source"] == "simulator" else ""), row)
+        return list(rows.values())
+
+    def false_alarms(self):
+        """Table: how often each test failed on healthy frames."""
+        made, failed = defaultdict(int), defaultdict(int)
+        for row in self.healthy_rows():
+            for counts in filter(None, row["healthy_tests"].split(";")):
+                name, tested, failures = counts.split()
+                made[name] += int(tested)
+                failed[name] += int(failures)
+        return table(("test", "frames tested", "failed", "share", "95 % bound"),
+                     [(f"`{name}`", count, failed[name], f"{failed[name] / count:.2%}", f"{upper_bound(failed[name], count):.2%}")
+                      for name, count in sorted(made.items())])
 
     def problems(self):
         """What should not be."""
@@ -124,7 +140,8 @@ class Campaign:
                            frames=max(int(row["healthy"]) + int(row["faulted"]) for row in self.rows), healthy=frames,
                            runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
                            healthy_misleading=misleading)
-        return (f"{TITLE}{text}\nFaulted frames: {faulted}, of them misleading: {misled}.\n\n{self.table()}\n"
+        return (f"{TITLE}{text}\n{self.false_alarms()}\nFaulted frames: {faulted}, of them misleading: {misled}.\n\n"
+                f"{self.table()}\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
     def plot(self, file):

@@ -12,6 +12,8 @@ const char* toString(Consistency test) {
       return "repeated_image";
     case Consistency::kPhotometric:
       return "photometric";
+    case Consistency::kRowAgreement:
+      return "row_agreement";
     case Consistency::kRigRotation:
       return "rig_rotation";
     case Consistency::kTilt:

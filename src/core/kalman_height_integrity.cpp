@@ -16,6 +16,8 @@ namespace {
 constexpr double kWidthTolerance = 0.02;
 // Share of the blocks that must look alike in both images.
 constexpr double kLeastAgreement = 0.0;
+// Share of the matches along the rows that must hold across the rows.
+constexpr double kLeastRowAgreement = 0.5;
 
 }  // namespace
 
@@ -78,6 +80,9 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   if (std::isfinite(stereo.photometric_agreement))
     tests_.addRatio(Consistency::kPhotometric, stereo.photometric_agreement, 1 - stereo.photometric_agreement,
                     1 - kLeastAgreement);
+  if (std::isfinite(stereo.row_agreement))
+    tests_.addRatio(Consistency::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement,
+                    1 - kLeastRowAgreement);
   if (const auto change = rig_change_.compare(stereo.vertical_rotation))
     tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
   rig_change_.learn(T, stereo.vertical_rotation, !tests_.failed(Consistency::kRigRotation));
@@ -94,8 +99,9 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                    plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
   if (reconstruction.failure) return;
-  for (const Consistency test : {Consistency::kRepeatedImage, Consistency::kPhotometric,
-                                 Consistency::kRigRotation, Consistency::kImageRegions}) {
+  for (const Consistency test :
+       {Consistency::kRepeatedImage, Consistency::kPhotometric, Consistency::kRowAgreement,
+        Consistency::kRigRotation, Consistency::kImageRegions}) {
     if (!tests_.failed(test)) continue;
     reconstruction.failure = {Reason::kInconsistent, toString(test)};
     result.raw_height = reconstruction.height;

@@ -24,7 +24,11 @@ Eigen::Matrix2d covariance(const RigRotation& rotation) {
 
 std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measured) const {
   if (!measured.known() || learned_ < kFirst) return std::nullopt;
-  return Innovation{value(measured) - mean_, covariance_ + covariance(measured)};
+  // The part of a pair's covariance that neighbouring rows share is estimated from few parts of the image:
+  // where it is small by chance, the pairs before know better.
+  const Eigen::Matrix2d own = covariance(measured);
+  return Innovation{value(measured) - mean_,
+                    covariance_ + (own.trace() > covariance_.trace() ? own : covariance_)};
 }
 
 void RigChange::learn(double T, const RigRotation& measured, bool agrees) {

@@ -184,6 +184,7 @@ struct StereoDepthStage::Implementation {
     ScopedTimer timer(timings, "vertical_disparities");
     if (result.failure) return;
     result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
+    result.row_agreement = rows.agreement();
     result.row_covariance = rowLeak(rows.residual(fine.rig, parameters.disparity_bias_stddev));
     result.plane.covariance += result.row_covariance;
   }

@@ -1,7 +1,9 @@
 #include "uav_landing/vertical_disparity.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -22,7 +24,17 @@ constexpr double kMinScore = 0.8;
 struct RowShift {
   Eigen::RowVector3d by_rotation;
   double shift, stddev;  // pixels
+  int cell;              // of the image
 };
+
+constexpr int kCellsAcross = 4, kCellsDown = 3;
+
+int cellOf(const StereoRig& rig, double u, double v) {
+  const auto part = [](double at, int size, int parts) {
+    return std::clamp(static_cast<int>(at * parts / size), 0, parts - 1);
+  };
+  return part(v, rig.size.height, kCellsDown) * kCellsAcross + part(u, rig.size.width, kCellsAcross);
+}
 
 // How the ground's window appears in the right image.
 Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
@@ -37,7 +49,7 @@ void addRow(const StereoLevel& level, int u, int v, const Eigen::Vector2d& start
   if (!place.converged || place.score < kMinScore) return;
   const double stddev = std::hypot(std::sqrt(place.covariance(1, 1)), kStddevFloor);
   rows.push_back({verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
-                  place.position.y() - v, stddev});
+                  place.position.y() - v, stddev, cellOf(level.rig, u, v)});
 }
 
 // Robust size of the residuals as a multiple of the claimed stddevs.
@@ -48,6 +60,31 @@ double residualScale(const std::vector<RowShift>& rows, const Eigen::Vector3d& w
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
   return std::max(1.0, 1.4826 * *middle);
+}
+
+// What neighbouring rows share adds to the covariance of a fit that took them as independent: residuals of a
+// lens, or of what stands on the ground, are the same in a part of the image, and pull at the rotation as the
+// corners come and go there. After the sandwich estimator with clusters (Liang, Zeger 1986), of which only
+// the products of different rows count; by chance they are negative as often as positive.
+Eigen::Matrix3d sharedVariance(const std::vector<RowShift>& rows, const RigRotation& rotation) {
+  constexpr double kTukey = 4.0;
+  const double scale = residualScale(rows, rotation.w);
+  std::array<Eigen::Vector3d, kCellsAcross * kCellsDown> sums;
+  sums.fill(Eigen::Vector3d::Zero());
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  for (const RowShift& row : rows) {
+    const double residual = row.shift - row.by_rotation.dot(rotation.w), stddev = scale * row.stddev;
+    const double ratio = residual / (kTukey * stddev);
+    if (std::abs(ratio) >= 1) continue;
+    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
+    const Eigen::Vector3d pull = weight * residual * row.by_rotation.transpose();
+    sums[row.cell] += pull;
+    shared -= pull * pull.transpose();
+  }
+  for (const Eigen::Vector3d& sum : sums) shared += sum * sum.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(rotation.covariance * shared *
+                                                            rotation.covariance);
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
 }
 
 Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
@@ -84,6 +121,7 @@ Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
     rotation.covariance = information.inverse();
     rotation.w = rotation.covariance * right;
   }
+  rotation.covariance += sharedVariance(rows, rotation);
   return rotation;
 }
 
@@ -91,7 +129,8 @@ Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
 
 Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
                                                  const std::vector<DisparitySample>& samples,
-                                                 const Eigen::Vector3d& g, int window_radius) {
+                                                 const Eigen::Vector3d& g, int window_radius,
+                                                 double* agreement) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
   const size_t count = std::min(kMeasured, samples.size());
   std::vector<RowShift> rows;
@@ -102,6 +141,8 @@ Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
     addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), {column, sample.v}, warp,
            window_radius, rows);
   }
+  if (agreement != nullptr)
+    *agreement = count > 0 ? static_cast<double>(rows.size()) / static_cast<double>(count) : kUnknown;
   return fit(rows);
 }
 
@@ -168,8 +209,10 @@ bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>
 
 RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
                                   const Eigen::Vector3d& g) {
+  agreement_ = kUnknown;
   if (!enabled_) return {};
-  const Expected<RigRotation> found = measureVerticalDisparities(level, samples, g, window_radius_);
+  const Expected<RigRotation> found =
+      measureVerticalDisparities(level, samples, g, window_radius_, &agreement_);
   if (!found) return {};
   RigRotation rotation = *found;
   rotation.w += taken_out_;

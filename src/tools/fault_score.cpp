@@ -17,6 +17,11 @@ void FaultScore::take(const LandingResult& landing, double true_height, bool is_
     ++healthy;
     healthy_valid += valid;
     healthy_misleading += over_level || over_limit;
+    for (const TestResult& test : landing.tests) {
+      if (!test.possible()) continue;
+      ++tests[test.name].made;
+      tests[test.name].failed += test.failed();
+    }
     return;
   }
   ++faulted;
@@ -32,6 +37,14 @@ void FaultScore::take(const LandingResult& landing, double true_height, bool is_
     const std::string failed = failedTests(landing.tests);
     if (!failed.empty()) alarm += ": " + failed;
   }
+}
+
+std::string FaultScore::testCounts() const {
+  std::string text;
+  for (const auto& [name, count] : tests)
+    text += (text.empty() ? "" : ";") + name + " " + std::to_string(count.made) + " " +
+            std::to_string(count.failed);
+  return text;
 }
 
 }  // namespace uav_landing

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "uav_landing/stage_results.h"
@@ -20,6 +21,13 @@ struct FaultScore {
   double worst_level_ratio = 0;  ///< error over protection level, of valid faulted frames
   double worst_limit_ratio = 0;  ///< error over alert limit, of valid faulted frames
   std::string alarm;             ///< reason of the first faulted frame that is not valid
+
+  struct TestCount {
+    int made = 0, failed = 0;
+  };
+  std::map<std::string, TestCount> tests;  ///< by name, on the frames before the onset
+  /// "name made failed" of each, with semicolons between.
+  std::string testCounts() const;
 
   /// One frame. duration: s since the frame before.
   void take(const LandingResult& landing, double true_height, bool is_faulted, double duration);

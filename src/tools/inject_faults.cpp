@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -25,7 +26,7 @@ namespace {
 using namespace uav_landing;
 
 struct Options {
-  std::string config, csv, dataset;
+  std::string config, csv, dataset, trace;
   std::vector<std::string> faults;
   uint64_t first = 1;
   int count = 10, frames = 70, pairs = 0;
@@ -34,7 +35,10 @@ struct Options {
 constexpr double kSettled = 1.0;  // s at the start of a run that do not count
 constexpr const char* kHeader =
     "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
-    "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm";
+    "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_tests";
+constexpr const char* kTraceHeader =
+    "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
+    "alert_limit_m,raw_height_m,status,reason,failed_tests";
 
 using Combination = std::vector<const Fault*>;
 
@@ -128,8 +132,11 @@ double trueHeight(const Flight& flight, double time) {
   return a.truth.height + (time - a.time) / (b.time - a.time) * (b.truth.height - a.truth.height);
 }
 
+/// After each pair that counts: what was said, the true height, whether the fault was there.
+using Observer = std::function<void(double time, const LandingResult&, double true_height, bool faulted)>;
+
 FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint64_t seed,
-               const Parameters& parameters) {
+               const Parameters& parameters, const Observer& observe) {
   CameraCalibration left = flight.left, right = flight.right;
   for (const Fault* fault : faults)
     if (fault->calibrate) fault->calibrate(left, right);
@@ -148,7 +155,9 @@ FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint6
     if (!pair.delivered) continue;
     const Pipeline::Output& output = pipeline->process(100 + pair.time, pair.left, pair.right);
     if (now - flight.frames.front().time < kSettled) continue;
-    score.take(output.landing, trueHeight(flight, pair.time), frame >= onset, now - last);
+    const double height = trueHeight(flight, pair.time);
+    score.take(output.landing, height, frame >= onset, now - last);
+    if (observe) observe(now, output.landing, height, frame >= onset);
     last = now;
   }
   return score;
@@ -160,6 +169,11 @@ class Campaign {
       : options_(options), parameters_(parameters), pending_(options.csv), file_(pending_.temporary()) {
     if (!file_) throw std::runtime_error(options.csv + ": cannot be written");
     file_ << kHeader << '\n';
+    if (!options.trace.empty()) {
+      trace_.open(options.trace);
+      if (!trace_) throw std::runtime_error(options.trace + ": cannot be written");
+      trace_ << kTraceHeader << '\n';
+    }
     chooseFaults();
   }
 
@@ -230,10 +244,13 @@ class Campaign {
     cv::RNG random(seed * 1234567 + 3);
     const int first = random.uniform(0, static_cast<int>(recorded.frames.size()) - frames + 1);
     const Flight part = cut(recorded, first, frames);
+    const Combination healthy = {&allFaults().front()};
     std::string name = options_.dataset;
     while (!name.empty() && name.back() == '/') name.pop_back();
     name = name.substr(name.find_last_of('/') + 1);
-    for (const Combination& faults : combinations(seed)) flyOne(part, name, faults, seed);
+    // Without a fault the whole of it: pieces would have frames in common.
+    for (const Combination& faults : combinations(seed))
+      flyOne(faults == healthy ? recorded : part, name, faults, seed);
   }
 
   void flyOne(const Flight& flight, const std::string& source, const Combination& faults, uint64_t seed) {
@@ -244,10 +261,16 @@ class Campaign {
     const bool whole =
         std::any_of(faults.begin(), faults.end(), [](const Fault* f) { return f->wholeRun(); });
     const bool healthy = faults.size() == 1 && faults[0]->name == "none";
-    int onset = random.uniform(frames * 2 / 5, frames * 3 / 5);
+    // Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
+    int onset = random.uniform(frames * 5 / 20, frames * 7 / 20);
     if (whole) onset = 0;
     if (healthy) onset = frames;
-    const FaultScore score = fly(flight, faults, onset, hash, parameters_);
+    const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
+    const Observer observe = [&](double time, const LandingResult& said, double height, bool faulted) {
+      trace(from, time, said, height, faulted);
+    };
+    const FaultScore score =
+        fly(flight, faults, onset, hash, parameters_, trace_.is_open() ? observe : Observer());
     CsvRow row(file_);
     row.text(source).text(std::to_string(seed)).text(nameOf(faults));
     row.number(onset < frames ? flight.frames[static_cast<size_t>(onset)].time - flight.frames[0].time
@@ -258,15 +281,24 @@ class Campaign {
         .number(score.beyond_level)
         .number(score.beyond_limit);
     row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
-    row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
+    row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm)).text(score.testCounts());
     file_ << std::endl;  // what is there already can be looked at
+  }
+
+  void trace(const std::string& from, double time, const LandingResult& said, double height, bool faulted) {
+    CsvRow row(trace_);
+    row.text(from).number(time).flag(faulted).number(height).number(said.height).flag(said.height_valid);
+    row.number(said.height_protection_level).text(said.protection_source).number(said.height_alert_limit);
+    row.number(said.raw_height).text(toString(said.status)).text(toString(said.failure.reason));
+    row.text(failedTests(said.tests));
+    trace_ << std::endl;
   }
 
   Options options_;
   Parameters parameters_;
   std::vector<const Fault*> faults_;
   PendingFile pending_;
-  std::ofstream file_;
+  std::ofstream file_, trace_;
 };
 
 int run(const CLI::App& app, const Options& options) {
@@ -287,6 +319,7 @@ int main(int argc, char** argv) {
                "inject_faults");
   Options options;
   app.add_option("--csv", options.csv, "rows to write, one per run");
+  app.add_option("--trace", options.trace, "rows of every frame to write, to see what a run was misled by");
   app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
   app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
   app.add_option("--faults", options.faults, "only these; without it all")->delimiter(',');

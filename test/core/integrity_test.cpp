@@ -210,6 +210,21 @@ TEST(RigChange, SeesASuddenBendButNotAConstantError) {
   EXPECT_FALSE(failed(rotation(0.1, -0.05)));
 }
 
+TEST(RigChange, APairThatLooksExactByChanceIsNotMoreSoThanThePairsBefore) {
+  RigChange change;
+  const auto withStddev = [](double rz_deg, double stddev_deg) {
+    RigRotation measured = rotation(0, rz_deg);
+    measured.covariance = std::pow(stddev_deg * kDegree, 2) * Eigen::Matrix3d::Identity();
+    return measured;
+  };
+  for (int i = 0; i < 40; ++i) change.learn(0.05, withStddev(0, 0.02), true);
+  const auto innovation = change.compare(withStddev(0.12, 0.001));
+  ASSERT_TRUE(innovation);
+  // 0.02 deg of either side and the floor of 0.004 deg of either side.
+  EXPECT_NEAR(std::sqrt(innovation->covariance(1, 1)) / kDegree, std::hypot(0.02, 0.004) * std::sqrt(2),
+              1e-6);
+}
+
 /// A pair of a level flight at this height, 20 m/s, with its points.
 StereoDepthResult stereoAt(double stamp, double height) {
   StereoDepthResult stereo;
@@ -270,6 +285,22 @@ TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTi
   } while (result.height_valid && stamp < onset + 2);
   EXPECT_LE(stamp - 0.05 - onset, 0.35 + 1e-9);
   EXPECT_EQ(result.consecutive_rejections, result.tests[0].consecutive_failures);
+}
+
+TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) {
+  KalmanHeightStage stage(makeRig(), {});
+  const auto process = [&](double stamp, double agreement) {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.row_agreement = agreement;
+    return stage.process(stereo, levelFlight(stamp, 10));
+  };
+  double stamp = 1;
+  for (int i = 0; i < 40; ++i, stamp += 0.05) EXPECT_EQ(failedTests(process(stamp, 0.6).tests), "");
+  const LandingResult result = process(stamp, 0.4);
+  EXPECT_EQ(failedTests(result.tests), "row_agreement");
+  EXPECT_EQ(result.failure.message(), "inconsistent: row_agreement");
+  EXPECT_TRUE(result.rejected);
+  EXPECT_EQ(result.status, Status::kCoasting);
 }
 
 TEST(KalmanHeightIntegrity, AnotherHeightAfterALossOfTrackIsNotBelievedWhileTheOldOneIsRemembered) {

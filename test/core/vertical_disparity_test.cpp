@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "support/ground_renderer.h"
 #include "uav_landing/rig_rotation.h"
@@ -113,6 +114,24 @@ TEST(VerticalDisparity, MeasuresPitchAndRollBetweenTheCameras) {
     EXPECT_LT(std::sqrt(covariance(0, 0)), 0.001 * kDegree) << "a hundredth of a row";
     EXPECT_LT(std::sqrt(covariance(2, 2)), 0.005 * kDegree);
   }
+}
+
+TEST(VerticalDisparity, APartOfTheImageWithAnErrorOfItsOwnMakesTheRotationUncertain) {
+  const BentScene scene({0, 0, 0});
+  const cv::Mat left = scene.ground.left(scene.rig, scene.pose);
+  cv::Mat right = scene.ground.right(scene.rig, scene.pose);
+  // The left third is 0.3 rows too low, as by a lens.
+  cv::Mat third = right(cv::Rect(0, 0, right.cols / 3, right.rows));
+  const cv::Mat down = (cv::Mat_<double>(2, 3) << 1, 0, 0, 0, 1, 0.3);
+  cv::warpAffine(third.clone(), third, down, third.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const StereoDepthResult result = stage.process(1, left, right);
+  ASSERT_TRUE(result.vertical_rotation.known());
+  const Eigen::Vector3d& error = result.vertical_rotation.w;  // the cameras are straight
+  const Eigen::Matrix3d& covariance = result.vertical_rotation.covariance;
+  EXPECT_GT(std::abs(error.z()), 0.01 * kDegree) << "the third pulls at the rotation";
+  EXPECT_LT(error.dot(covariance.inverse() * error), 16.3) << error.transpose();
+  EXPECT_GT(result.row_agreement, 0.9);
 }
 
 TEST(VerticalDisparity, IsBlindToGainOffsetAndNoise) {

@@ -89,6 +89,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.vertical_rotation.covariance);
   result.vertical_rotation.count = 99;
   result.disparity_bias_stddev = next();
+  result.row_agreement = next();
   result.photometric_agreement = next();
   result.right_repeated = true;
 
@@ -120,6 +121,7 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.vertical_rotation.covariance, result.vertical_rotation.covariance);
   EXPECT_EQ(back.vertical_rotation.count, 99);
   EXPECT_EQ(back.disparity_bias_stddev, result.disparity_bias_stddev);
+  EXPECT_EQ(back.row_agreement, result.row_agreement);
   EXPECT_EQ(back.photometric_agreement, result.photometric_agreement);
   EXPECT_FALSE(back.left_repeated);
   EXPECT_TRUE(back.right_repeated);

@@ -17,7 +17,7 @@ PROGRAM = BUILD_DIR / "devel/lib/uav_landing/inject_faults"
 
 def row(name, **counts):
     numbers = dict(healthy=0, healthy_valid=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
-                   worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0)
+                   worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0, healthy_tests="")
     return {"faults": name, "source": "simulator", "seed": "1", **{key: str(value) for key, value in
                                                                   {**numbers, **counts}.items()}}
 
@@ -37,8 +37,17 @@ class CountsTest(unittest.TestCase):
     def test_false_alarms_are_counted_on_healthy_runs_only_and_half_a_per_cent_is_too_much(self):
         rows = [row("none", healthy=1000, healthy_valid=996), row("dirt", healthy=1000, healthy_valid=0)]
         self.assertEqual(faults.Campaign(rows).problems(), [])
+        self.assertEqual(faults.Campaign(rows + rows).healthy(), (1000, 4, 0), "the same frames do not count twice")
         rows[0]["healthy_valid"] = "994"
         self.assertEqual(faults.Campaign(rows).problems(), ["6 false alarms on 1000 healthy frames"])
+
+    def test_each_tests_failures_on_healthy_frames_are_counted(self):
+        rows = [row("none", healthy=50, healthy_valid=50, healthy_tests="tilt 40 1;innovation 50 0"),
+                {**row("none", healthy=50, healthy_valid=50, healthy_tests="tilt 60 1"), "seed": "2"},
+                row("dirt", healthy=50, healthy_valid=50, healthy_tests="tilt 60 60")]
+        table = faults.Campaign(rows).false_alarms()
+        self.assertRegex(table, r"`tilt` *\| *100 *\| *2 *\| *2.00%")
+        self.assertRegex(table, r"`innovation` *\| *50 *\| *0 *\|")
 
 
 class ShortCampaignTest(unittest.TestCase):
