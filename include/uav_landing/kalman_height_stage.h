@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "uav_landing/attitude_filter.h"
 #include "uav_landing/consistency_tests.h"
@@ -76,6 +77,8 @@ class KalmanHeightStage {
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);
   void testRegions(const Reconstruction& reconstruction);
+  /// Why the pair is left out, or "".
+  std::string problemOfPair();
   /// The published height against the one remembered.
   void testMemory(double T, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                   LandingResult& result);
@@ -114,6 +117,7 @@ class KalmanHeightStage {
   SolutionSeparation separation_;
   ConsistencyTests tests_;
   RigChange rig_change_;
+  int pairs_failed_ = 0, pairs_passed_ = 0;  // tests of one pair: failures before and passes since, up to 3
   HeightMemory memory_;
   Timings timings_;
 

@@ -85,7 +85,8 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                     1 - kLeastRowAgreement);
   if (const auto change = rig_change_.compare(stereo.vertical_rotation))
     tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
-  rig_change_.learn(T, stereo.vertical_rotation, !tests_.failed(Consistency::kRigRotation));
+  const bool bent = tests_.failed(Consistency::kRigRotation);
+  if (bent || pairs_failed_ == 0) rig_change_.learn(T, stereo.vertical_rotation, !bent);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
     tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.height,
@@ -99,17 +100,31 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                    plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
   if (reconstruction.failure) return;
+  const std::string problem = problemOfPair();
+  if (problem.empty()) return;
+  reconstruction.failure = {Reason::kInconsistent, problem};
+  result.raw_height = reconstruction.height;
+  result.raw_height_variance = reconstruction.variance;
+  result.rejected = true;
+  ++consecutive_rejections_;
+}
+
+std::string KalmanHeightStage::problemOfPair() {
   for (const Consistency test :
        {Consistency::kRepeatedImage, Consistency::kPhotometric, Consistency::kRowAgreement,
         Consistency::kRigRotation, Consistency::kImageRegions}) {
     if (!tests_.failed(test)) continue;
-    reconstruction.failure = {Reason::kInconsistent, toString(test)};
-    result.raw_height = reconstruction.height;
-    result.raw_height_variance = reconstruction.variance;
-    result.rejected = true;
-    ++consecutive_rejections_;
-    return;
+    pairs_failed_ = std::min(pairs_failed_ + 1, kConfirmations);
+    pairs_passed_ = 0;
+    return toString(test);
   }
+  if (pairs_failed_ == 0) return "";
+  // Among pairs of a lasting fault some pass by chance: as many in a row are asked for as failed.
+  if (++pairs_passed_ >= pairs_failed_) {
+    pairs_failed_ = pairs_passed_ = 0;
+    return "";
+  }
+  return text(pairs_passed_, " of ", pairs_failed_, " pairs that pass the tests again");
 }
 
 void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {

@@ -145,6 +145,7 @@ void KalmanHeightStage::reset() {
   rig_rotation_.reset();
   rig_variance_ = 0;
   rig_change_.reset();
+  pairs_failed_ = pairs_passed_ = 0;
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   last_stamp_.reset();

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@ namespace {
 constexpr double kMemory = 2.0;                // s that the mean is of
 constexpr double kFirst = 0.4;                 // s before there is anything to compare with
 constexpr double kPatience = 3.0;              // s of something else, after which that is the rig
+constexpr double kMostDisorder = 2.0;          // stddev of a pair over that of the pairs before
 constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
 
 Eigen::Vector2d value(const RigRotation& rotation) { return {rotation.w.x(), rotation.w.z()}; }
@@ -24,11 +26,13 @@ Eigen::Matrix2d covariance(const RigRotation& rotation) {
 
 std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measured) const {
   if (!measured.known() || learned_ < kFirst) return std::nullopt;
-  // The part of a pair's covariance that neighbouring rows share is estimated from few parts of the image:
-  // where it is small by chance, the pairs before know better.
-  const Eigen::Matrix2d own = covariance(measured);
-  return Innovation{value(measured) - mean_,
-                    covariance_ + (own.trace() > covariance_.trace() ? own : covariance_)};
+  // What neighbouring rows share is estimated from few parts of one image: where it is small by chance, the
+  // pairs before know better, and where it is large, images of two scenes must not be excused by the disorder
+  // they make.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> against(covariance(measured), covariance_);
+  const Eigen::Vector2d ratios = against.eigenvalues().cwiseMax(1).cwiseMin(kMostDisorder * kMostDisorder);
+  const Eigen::Matrix2d axes = covariance_ * against.eigenvectors();
+  return Innovation{value(measured) - mean_, covariance_ + axes * ratios.asDiagonal() * axes.transpose()};
 }
 
 void RigChange::learn(double T, const RigRotation& measured, bool agrees) {

@@ -16,6 +16,9 @@ void FaultScore::take(const LandingResult& landing, double true_height, bool is_
   if (!is_faulted) {
     ++healthy;
     healthy_valid += valid;
+    healthy_uncertain += !valid && landing.status == Status::kTracking &&
+                         failedTests(landing.tests).empty() &&
+                         !(landing.height_protection_level <= landing.height_alert_limit);
     healthy_misleading += over_level || over_limit;
     for (const TestResult& test : landing.tests) {
       if (!test.possible()) continue;

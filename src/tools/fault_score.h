@@ -11,6 +11,7 @@ namespace uav_landing {
 /// and frames without a true height count for neither.
 struct FaultScore {
   int healthy = 0, healthy_valid = 0;
+  int healthy_uncertain = 0;  ///< no test failed, but the protection level is above the alert limit
   int faulted = 0, faulted_valid = 0;
   int beyond_level = 0;        ///< valid, and the error is larger than the protection level
   int beyond_limit = 0;        ///< valid, and the error is larger than the alert limit

@@ -218,11 +218,14 @@ TEST(RigChange, APairThatLooksExactByChanceIsNotMoreSoThanThePairsBefore) {
     return measured;
   };
   for (int i = 0; i < 40; ++i) change.learn(0.05, withStddev(0, 0.02), true);
-  const auto innovation = change.compare(withStddev(0.12, 0.001));
-  ASSERT_TRUE(innovation);
-  // 0.02 deg of either side and the floor of 0.004 deg of either side.
-  EXPECT_NEAR(std::sqrt(innovation->covariance(1, 1)) / kDegree, std::hypot(0.02, 0.004) * std::sqrt(2),
-              1e-6);
+  const auto stddev = [&](double of_pair) {
+    return std::sqrt(change.compare(withStddev(0.12, of_pair))->covariance(1, 1)) / kDegree;
+  };
+  // With the floor of 0.004 deg on either side.
+  const double before = std::hypot(0.02, 0.004);
+  EXPECT_NEAR(stddev(0.001), std::hypot(before, before), 1e-6);
+  EXPECT_NEAR(stddev(0.03), std::hypot(before, std::hypot(0.03, 0.004)), 1e-6);
+  EXPECT_NEAR(stddev(0.5), std::hypot(before, 2 * before), 1e-6);
 }
 
 /// A pair of a level flight at this height, 20 m/s, with its points.
@@ -301,6 +304,31 @@ TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) 
   EXPECT_EQ(result.failure.message(), "inconsistent: row_agreement");
   EXPECT_TRUE(result.rejected);
   EXPECT_EQ(result.status, Status::kCoasting);
+}
+
+TEST(KalmanHeightIntegrity, AsManyPairsInARowMustPassAsFailedBefore) {
+  for (const int failures : {1, 2, 3, 5}) {
+    KalmanHeightStage stage(makeRig(), {});
+    double stamp = 1;
+    const auto accepted = [&](double agreement) {
+      StereoDepthResult stereo = stereoAt(stamp, 10);
+      stereo.row_agreement = agreement;
+      const LandingResult result = stage.process(stereo, levelFlight(stamp, 10));
+      stamp += 0.05;
+      return result.status == Status::kTracking;
+    };
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(accepted(0.9));
+    for (int i = 0; i < failures; ++i) EXPECT_FALSE(accepted(0.4));
+    // One that passes by chance, and a failure again: it begins anew.
+    if (failures > 1) {
+      EXPECT_FALSE(accepted(0.9)) << failures;
+      EXPECT_FALSE(accepted(0.4)) << failures;
+    }
+    const int needed = failures == 1 ? 1 : 3;
+    for (int i = 1; i < needed; ++i) EXPECT_FALSE(accepted(0.9)) << failures << ", " << i;
+    EXPECT_TRUE(accepted(0.9)) << failures;
+    EXPECT_TRUE(accepted(0.9)) << failures;
+  }
 }
 
 TEST(KalmanHeightIntegrity, AnotherHeightAfterALossOfTrackIsNotBelievedWhileTheOldOneIsRemembered) {

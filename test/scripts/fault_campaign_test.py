@@ -16,7 +16,7 @@ PROGRAM = BUILD_DIR / "devel/lib/uav_landing/inject_faults"
 
 
 def row(name, **counts):
-    numbers = dict(healthy=0, healthy_valid=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
+    numbers = dict(healthy=0, healthy_valid=0, healthy_uncertain=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
                    worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0, healthy_tests="")
     return {"faults": name, "source": "simulator", "seed": "1", **{key: str(value) for key, value in
                                                                   {**numbers, **counts}.items()}}
@@ -40,6 +40,10 @@ class CountsTest(unittest.TestCase):
         self.assertEqual(faults.Campaign(rows + rows).healthy(), (1000, 4, 0), "the same frames do not count twice")
         rows[0]["healthy_valid"] = "994"
         self.assertEqual(faults.Campaign(rows).problems(), ["6 false alarms on 1000 healthy frames"])
+
+    def test_what_is_too_uncertain_by_itself_is_no_false_alarm(self):
+        rows = [row("none", healthy=1000, healthy_valid=900, healthy_uncertain=98)]
+        self.assertEqual(faults.Campaign(rows).healthy(), (902, 2, 0))
 
     def test_each_tests_failures_on_healthy_frames_are_counted(self):
         rows = [row("none", healthy=50, healthy_valid=50, healthy_tests="tilt 40 1;innovation 50 0"),
