@@ -144,8 +144,15 @@ class Campaign:
                            bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
                            healthy_misleading=misleading)
         return (f"{TITLE}{text}\n{self.false_alarms()}\nFaulted frames: {faulted}, of them misleading: {misled}.\n\n"
-                f"{self.table()}\n"
+                f"{self.table()}\n{self.remarks()}\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
+
+    def remarks(self):
+        """What should not be, as a list."""
+        problems = self.problems()
+        if not problems:
+            return "No frame was misleading where there is something to see.\n"
+        return "Should not be:\n\n" + "".join(f"- {problem}\n" for problem in problems)
 
     def plot(self, file):
         """Worst error over protection level, and availability, of each fault."""
