@@ -18,12 +18,13 @@ enum class Consistency {
   kRigRotation,
   kTilt,
   kVanishingPoint,
+  kImu,
   kImageRegions,
   kRunwayWidth,
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 10;
+constexpr int kConsistencyTests = 11;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.

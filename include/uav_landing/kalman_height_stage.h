@@ -77,6 +77,8 @@ class KalmanHeightStage {
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);
   void testRegions(const Reconstruction& reconstruction);
+  /// The ground's normal by stereo alone against the imu's direction of gravity.
+  void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
   /// Why the pair is left out, or "".
   std::string problemOfPair();
   /// The published height against the one remembered.

@@ -20,6 +20,8 @@ const char* toString(Consistency test) {
       return "tilt";
     case Consistency::kVanishingPoint:
       return "vanishing_point";
+    case Consistency::kImu:
+      return "imu";
     case Consistency::kImageRegions:
       return "image_regions";
     case Consistency::kRunwayWidth:

@@ -7,6 +7,7 @@
 #include "text.h"
 #include "uav_landing/kalman_height_stage.h"
 #include "uav_landing/region_planes.h"
+#include "vanishing_candidate.h"
 #include "vertical_speed.h"
 
 namespace uav_landing {
@@ -99,6 +100,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                h * h * p.dot(plane.covariance * p) +
                    plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
+  testAttitude(reconstruction.alone, approach.imu);
   if (reconstruction.failure) return;
   const std::string problem = problemOfPair();
   if (problem.empty()) return;
@@ -107,6 +109,13 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   result.raw_height_variance = reconstruction.variance;
   result.rejected = true;
   ++consecutive_rejections_;
+}
+
+void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePrior& imu) {
+  if (!plane.valid() || !imu.hasNormal()) return;
+  const Eigen::Matrix<double, 3, 2> basis = tangents(plane.normal());
+  tests_.add(Consistency::kImu, basis.transpose() * (imu.normal - plane.normal()),
+             basis.transpose() * (plane.normalCovariance() + imu.normal_covariance) * basis);
 }
 
 std::string KalmanHeightStage::problemOfPair() {

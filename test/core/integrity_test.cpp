@@ -331,6 +331,25 @@ TEST(KalmanHeightIntegrity, AsManyPairsInARowMustPassAsFailedBefore) {
   }
 }
 
+TEST(KalmanHeightIntegrity, AnImuThatContradictsTheGroundsNormalIsNamedAndOneThatAgreesIsNot) {
+  // The ground's slope is in the imu's covariance: 0.6 degrees, 1 sigma. The limit of 1e-5 with two degrees
+  // of freedom is 4.8 sigma: 2.9 degrees.
+  for (const double off_deg : {0.0, 2.0, -2.0, 4.0, -4.0}) {
+    KalmanHeightStage stage(makeRig(), {});
+    LandingResult result;
+    for (int i = 0; i < 5; ++i) {
+      const double stamp = 1 + 0.05 * i;
+      ApproachAngleResult approach = levelFlight(stamp, 10);
+      approach.imu.normal = normalFromPitchRoll((-4 + off_deg) * kDegree, 0);
+      approach.imu.normal_covariance = std::pow(0.6 * kDegree, 2) * Eigen::Matrix3d::Identity();
+      result = stage.process(stereoAt(stamp, 10), approach);
+    }
+    EXPECT_EQ(failedTests(result.tests), std::abs(off_deg) > 3 ? "imu" : "") << off_deg;
+    const TestResult& test = result.tests[static_cast<int>(Consistency::kImu)];
+    EXPECT_NEAR(test.difference, std::abs(off_deg) * kDegree, 0.002) << off_deg;
+  }
+}
+
 TEST(KalmanHeightIntegrity, AnotherHeightAfterALossOfTrackIsNotBelievedWhileTheOldOneIsRemembered) {
   KalmanHeightStage stage(makeRig(), {});
   double stamp = 1;
