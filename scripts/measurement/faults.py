@@ -12,6 +12,8 @@ TITLE = "## Campaign\n"
 # Nothing in the images or between the sources tells these: docs/integrity.md says why.
 UNOBSERVABLE = ("baseline_2", "baseline_8")
 MOST_FALSE_ALARMS = 0.005
+LEAST_DRAWN = 0.01  # error over protection level, where the plot begins
+AIM = 100000  # faulted frames
 HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "runs misled", "95 % bound",
           "error / level, worst", "error / limit, worst", "longest, s")
 TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}.
@@ -25,9 +27,9 @@ limit while the height was valid: the time to alert. Pairs of faults are in one 
 fault in another.
 
 Healthy frames (of the runs without a fault): {healthy} in {runs} runs, {false_alarms} without a valid
-height ({share:.2%}, 95 % bound {bound:.2%}), {healthy_misleading} misleading. Besides {uncertain} frames, mostly from
-above 15 m with a small camera, that passed all tests but had a protection level above the alert limit: these are not
-available, with or without a fault. Each test on the healthy frames:
+height ({share:.2%}, 95 % bound {bound:.2%}), {healthy_misleading} misleading. Besides {uncertain} frames that passed all tests
+but had a protection level above the alert limit: these are not available, with or without a fault. Each test on the
+healthy frames:
 """
 
 
@@ -143,7 +145,8 @@ class Campaign:
                            runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
                            bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
                            healthy_misleading=misleading)
-        return (f"{TITLE}{text}\n{self.false_alarms()}\nFaulted frames: {faulted}, of them misleading: {misled}.\n\n"
+        return (f"{TITLE}{text}\n{self.false_alarms()}\nFaulted frames: {faulted} of the {AIM:,} aimed at, of them misleading: "
+                f"{misled}.\n\n"
                 f"{self.table()}\n{self.remarks()}\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
@@ -163,11 +166,13 @@ class Campaign:
         names = list(groups)
         figure, (left, right) = pyplot.subplots(1, 2, sharey=True, figsize=(11, 0.2 * len(names) + 1.2))
         for at, name in enumerate(names):
-            runs = [float(row["worst_level_ratio"]) for row in groups[name] if int(row["faulted_valid"])]
+            runs = [max(LEAST_DRAWN, float(row["worst_level_ratio"])) for row in groups[name] if int(row["faulted_valid"])]
             left.plot(runs, [at] * len(runs), "|", color="tab:blue", markersize=7)
             frames = self.total(groups[name], "faulted")
             right.barh(at, 100 * self.total(groups[name], "faulted_valid") / frames, color="tab:blue")
         left.axvline(1, color="tab:red")
+        left.set_xscale("log")
+        left.set_ylim(-1, len(names))
         left.set_yticks(range(len(names)))
         left.set_yticklabels([name.replace("_", " ") for name in names], fontsize=7)
         left.set_xlabel("worst error of a run over its protection level")
