@@ -50,6 +50,8 @@ class KalmanHeightStage {
         Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
     GroundPlane alone;            ///< by stereo alone: without the vanishing point
     Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
+    GroundPlane below;  ///< tangent of the surface straight below; the plane where not known
+    double bend = 0;    ///< its height less the plane's, m
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
     double points_height = kUnknown;                ///< m
     bool by_width = false;                          ///< the height is from the runway's width
@@ -92,10 +94,12 @@ class KalmanHeightStage {
   void useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
                 LandingResult& result);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
-  /// and the unevenness that shows ahead.
+  /// the unevenness that shows ahead, and what its bend leaves open.
   double modelVariance(double height) const;
   /// Of the last height's variance what is the same on all pairs: surface, width and rig, m^2.
   double commonVariance(double height) const;
+  /// From the plane of the surface ahead to its tangent straight below.
+  void followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction);
   void followSurface(double surface_variance);
 
   Failure followTime(double stamp);
@@ -131,6 +135,7 @@ class KalmanHeightStage {
          surface_scatter_ = 0;   ///< of the surface's variance of the recent pairs, m^2, m^4
   double surface_variance_ = 0;  ///< of the surface about its plane as far as it is certain, m^2
   int surface_pairs_ = 0;        ///< that the mean is of
+  double bend_variance_ = 0;     ///< of the height, by the bend of the surface ahead, m^2
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;
   int resets_ = 0;

@@ -42,6 +42,8 @@ struct StereoDepthParameters {
   double plane_tolerance = 0.6;
   bool vertical_disparities = true;
   bool direct_refinement = true;
+  bool surface_curvature = true;
+  double slope_change_deg = 0.3;
   double disparity_bias_stddev = 0.02;
   double max_roll_deg = 30.0;
   double max_pitch_deg = 30.0;
@@ -74,6 +76,13 @@ struct StereoDepthParameters {
            "measure by how many rows matches are off, which shows a bent rig, and make the rows level");
     v.flag("direct_refinement", direct_refinement,
            "refine the plane by aligning the grey levels of the two images over the ground");
+    v.flag("surface_curvature", surface_curvature,
+           "let the slope of the surface ahead change with the distance where the refinement shows that it "
+           "does: "
+           "the height is then that above the surface straight below");
+    v.number("slope_change_deg", slope_change_deg, 0.001, 10.0, "deg",
+             "1 sigma by which the slope of such ground changes over 100 m: vertical curves of runways have "
+             "radii of 7.5 km and more, most 20 km");
     v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
              "1 sigma, in the middle of the image, by which the right camera may have turned since a good "
              "calibration: an error common to all disparities of all pairs");

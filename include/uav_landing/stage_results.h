@@ -43,6 +43,12 @@ struct StereoDepthResult {
   /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
   /// 1/m^2.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
+  /// Tangent of the surface straight below the camera, for the height: the plane is that of the surface
+  /// ahead. Not known without direct refinement.
+  GroundPlane below;
+  /// Mean change of the surface's slope over distance, positive in a sag, 1/m, and its variance, 1/m^2;
+  /// unknown without direct refinement.
+  double curvature = kUnknown, curvature_variance = kUnknown;
   double residual_stddev = kUnknown;   ///< of the points on the plane, pixels of disparity
   double surface_variance = kUnknown;  ///< of the surface ahead about the plane, unbiased (may be < 0), m^2
   bool from_search = false;            ///< found without a plane from the previous pair

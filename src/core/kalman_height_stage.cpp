@@ -116,11 +116,13 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
               parameters_.max_angle_stddev_deg * kDegree, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
-    result.velocity = approach.step.translation_over_height * result.height / approach.step.duration;
+    result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
+                      approach.step.duration;
   {
     const ScopedTimer timer(timings_, "runway_filter");
     position_.process(approach, reconstruction.plane.valid() ? reconstruction.plane.normal() : approach.n,
-                      result.height_valid ? result.height : kUnknown, result.height_variance, result);
+                      result.height_valid ? result.height - reconstruction.bend : kUnknown,
+                      result.height_variance, result);
   }
   reportRig(result);
   if (parameters_.integrity_monitor) result.tests = tests_.finish();
@@ -153,7 +155,7 @@ void KalmanHeightStage::reset() {
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
-  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_;
+  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_ + bend_variance_;
 }
 
 double KalmanHeightStage::commonVariance(double height) const {
@@ -167,7 +169,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   if (runway.failure) return;
   const std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
   if (seen) {
-    result.width_height = seen->height;
+    result.width_height = seen->height + reconstruction.bend;
     result.width_height_variance = seen->variance + modelVariance(seen->height);
   }
   const bool by_stereo = !reconstruction.failure;
@@ -179,7 +181,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
       width_variance_ = seen->common;
       reconstruction.by_width = true;
     } else if (by_stereo && width_.independent()) {
-      const double difference = seen->height - reconstruction.height;
+      const double difference = result.width_height - reconstruction.height;
       const double sum = seen->variance + reconstruction.variance;
       if (difference * difference <= kAgreement * kAgreement * sum) {
         const double model = modelVariance(reconstruction.height), own = reconstruction.variance - model;
@@ -189,7 +191,8 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
     }
   }
   if (by_stereo && confirmations_ >= kConfirmations)
-    width_.learn(runway.width, runway.width_variance, reconstruction.height, reconstruction.variance);
+    width_.learn(runway.width, runway.width_variance, reconstruction.height - reconstruction.bend,
+                 reconstruction.variance);
 }
 
 void KalmanHeightStage::followSurface(double surface_variance) {
@@ -207,6 +210,16 @@ void KalmanHeightStage::followSurface(double surface_variance) {
   surface_variance_ = std::max(0.0, surface_mean_ - error);
 }
 
+void KalmanHeightStage::followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction) {
+  reconstruction.below = reconstruction.plane;
+  bend_variance_ = 0;
+  if (!stereo.below.valid() || parameters_.height_source != HeightSource::kPlane) return;
+  // What corrects the plane of the surface ahead corrects the tangent likewise: both are of the same images.
+  reconstruction.below.g += stereo.below.g - stereo.plane.g;
+  reconstruction.bend = reconstruction.below.height() - reconstruction.plane.height();
+  bend_variance_ = std::max(0.0, stereo.below.heightVariance() - stereo.plane.heightVariance());
+}
+
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
                                                                  const ApproachAngleResult& approach) {
   const ScopedTimer timer(timings_, "reconstruction");
@@ -216,10 +229,11 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
 
   followSurface(stereo.surface_variance);
   findPlane(stereo, approach, reconstruction);
+  followBend(stereo, reconstruction);
   const Eigen::Vector3d n = reconstruction.plane.normal();
   reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;
   if (parameters_.height_source == HeightSource::kPlane) {
-    reconstruction.height = reconstruction.plane.height();
+    reconstruction.height = reconstruction.below.height();
     reconstruction.variance = reconstruction.plane.heightVariance();
   } else {
     reconstructFromPoints(stereo, approach, reconstruction);
@@ -482,8 +496,8 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
 void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
                                     const ApproachAngleResult::Motion& step) {
   const VerticalSpeed measured =
-      verticalSpeed(step, reconstruction.plane, reconstruction.height, reconstruction.variance,
-                    parameters_.height_model_error, parameters_.acceleration_stddev);
+      verticalSpeed(step, reconstruction.below, reconstruction.height - reconstruction.bend,
+                    reconstruction.variance, parameters_.height_model_error, parameters_.acceleration_stddev);
   filter_.updateSpeed(measured.speed, measured.variance);
   separation_.updateSpeed(measured.speed, measured.variance);
 }

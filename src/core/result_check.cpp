@@ -130,6 +130,11 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
   const double surface = result.surface_variance * size * size;
   if (!std::isnan(surface) && !(surface >= kLeastSurface && surface <= kLargestSurface))
     return text("surface_variance: ", result.surface_variance, " m^2 at a height of ", 1 / size, " m");
+  if (!result.below.g.array().isNaN().all()) {
+    const double below = result.below.g.norm() / size;
+    if (!(below > 0.5 && below < 2 && isCovariance<3>(result.below.covariance)))
+      return "plane_below: no tangent of the surface that the plane is of";
+  }
   if (!std::isfinite(result.skew)) return "skew: not a number";
   if (result.points.size() > kMostPoints)
     return text("u: ", result.points.size(), " points, at most ", kMostPoints, " expected");

@@ -7,6 +7,7 @@
 #include "uav_landing/match_image.h"
 #include "uav_landing/plane_fit.h"
 #include "uav_landing/stereo_matching.h"
+#include "uav_landing/surface_profile.h"
 #include "uav_landing/vertical_disparity.h"
 
 namespace uav_landing {
@@ -217,6 +218,19 @@ struct StereoDepthStage::Implementation {
     if (!fit || !samePlane(fit->plane, result.plane)) return;
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
+    if (parameters.surface_curvature) bend(*fit, result);
+  }
+
+  void bend(const PlaneFit& flat, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "surface_profile");
+    const std::optional<SurfaceProfile> profile =
+        fitSurfaceProfile(model.rig, direct->samples(), flat, limits, parameters.disparity_bias_stddev,
+                          parameters.slope_change_deg * kDegree);
+    if (!profile) return;
+    result.below = profile->below;
+    result.below.covariance += result.row_covariance;
+    result.curvature = profile->curvature;
+    result.curvature_variance = profile->curvature_variance;
   }
 };
 

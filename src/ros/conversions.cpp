@@ -184,6 +184,10 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.g, message.plane);
   toArray(result.plane.covariance, message.plane_covariance);
   toArray(result.row_covariance, message.plane_row_covariance);
+  toArray(result.below.g, message.plane_below);
+  toArray(result.below.covariance, message.plane_below_covariance);
+  message.surface_curvature = result.curvature;
+  message.surface_curvature_variance = result.curvature_variance;
   message.residual_stddev = result.residual_stddev;
   message.surface_variance = result.surface_variance;
   message.disparity_bias_stddev = result.disparity_bias_stddev;
@@ -219,6 +223,10 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
   fromArray(message.plane_row_covariance, result.row_covariance);
+  fromArray(message.plane_below, result.below.g);
+  fromArray(message.plane_below_covariance, result.below.covariance);
+  result.curvature = message.surface_curvature;
+  result.curvature_variance = message.surface_curvature_variance;
   result.residual_stddev = message.residual_stddev;
   result.surface_variance = message.surface_variance;
   result.disparity_bias_stddev = message.disparity_bias_stddev;

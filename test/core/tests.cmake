@@ -9,6 +9,8 @@ uav_landing_add_gtest(plane_fit_test test/core/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(direct_refinement_test test/core/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(surface_profile_test test/core/surface_profile_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(patch_matching_test test/core/patch_matching_test.cpp)
 uav_landing_add_gtest(path_angle_filter_test test/core/path_angle_filter_test.cpp)
 uav_landing_add_gtest(stereo_depth_stage_test test/core/stereo_depth_stage_test.cpp

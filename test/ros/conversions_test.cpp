@@ -81,6 +81,10 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.plane.g);
   fill(result.plane.covariance);
   fill(result.row_covariance);
+  fill(result.below.g);
+  fill(result.below.covariance);
+  result.curvature = next();
+  result.curvature_variance = next();
   result.residual_stddev = next();
   result.surface_variance = next();
   result.from_search = true;
@@ -113,6 +117,10 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.plane.g, result.plane.g);
   EXPECT_EQ(back.plane.covariance, result.plane.covariance);
   EXPECT_EQ(back.row_covariance, result.row_covariance);
+  EXPECT_EQ(back.below.g, result.below.g);
+  EXPECT_EQ(back.below.covariance, result.below.covariance);
+  EXPECT_EQ(back.curvature, result.curvature);
+  EXPECT_EQ(back.curvature_variance, result.curvature_variance);
   EXPECT_EQ(back.residual_stddev, result.residual_stddev);
   EXPECT_EQ(back.surface_variance, result.surface_variance);
   EXPECT_TRUE(back.from_search);

@@ -236,6 +236,9 @@ TEST_F(ForeignMessages, TheFieldThatIsWrongIsNamed) {
   stereo.surface_variance = 900;
   EXPECT_EQ(messageOf(stereo), "input_invalid: surface_variance: 900 m^2 at a height of 17 m");
   stereo = messages_.stereo;
+  stereo.plane_below[1] = 9;
+  EXPECT_EQ(messageOf(stereo), "input_invalid: plane_below: no tangent of the surface that the plane is of");
+  stereo = messages_.stereo;
   stereo.skew = nan;
   EXPECT_EQ(messageOf(stereo), "input_invalid: skew: not a number");
 }
