@@ -33,6 +33,8 @@ constexpr double kCorrelation = 100;
 constexpr double kLeastBias = 1e-4;
 // Farther away distances are not told, pixels.
 constexpr double kLeastDisparity = 0.3;
+// Bins of samples at about the same distance.
+constexpr int kBins = 40;
 
 /// Ground with a curvature that wanders at random, by kinks: two for each stretch, where their changes of
 /// slope are worth as much as its curvature (Gauss' quadrature of degree 3).
@@ -57,7 +59,12 @@ struct Kinked {
       for (int j = 0; j < kKinks; ++j)
         covariance(i, j) = lengths[i] * lengths[j] * std::exp(-std::abs(at[i] - at[j]) / kCorrelation);
   }
-  Kinks rises(double distance) const { return (distance - at.array()).max(0.0); }
+};
+
+/// Sums over samples at about the same distance, by their information.
+struct Bin {
+  double information = 0, expected = 0, reach = 0, v = 0, y = 0;
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();  // disparity by plane
 };
 
 struct Bend {
@@ -90,23 +97,17 @@ class ProfileFit {
     Eigen::Matrix<double, kWaves, kWaves> to_waves = wave_information_;
     Eigen::Vector3d right_plane = Eigen::Vector3d::Zero();
     Kinks right_kinks = Kinks::Zero();
-    for (size_t i = 0; i < given_.size(); ++i) {
-      if (!plane_.agrees[i]) continue;
-      const DisparitySample& sample = flattened_[i];
-      const double weight = 1 / (sample.stddev * std::sqrt(noise));
-      const Eigen::Vector3d a = rig_.fb() * weight * rig_.ray(sample.u, sample.v);
-      const Kinks b = byKinks(i) * weight;
-      const Waves c = waves(sample.v) * weight;
-      const double y = (given_[i].disparities.front() - disparity(i)) * weight;
-      to_plane_ += a * a.transpose();
-      mixed += a * b.transpose();
-      to_kinks.selfadjointView<Eigen::Lower>().rankUpdate(b);
-      right_plane += a * y;
-      right_kinks += b * y;
-      to_waves += c * c.transpose();
-      waves_plane += c * a.transpose();
-      waves_kinks += c * b.transpose();
-      right_waves += c * y;
+    for (const Bin& bin : fillBins(noise, right_plane)) {
+      if (bin.information == 0) continue;
+      const Kinks b = byKinks(bin.expected / bin.information, bin.reach / bin.information);
+      const Waves c = waves(bin.v / bin.information);
+      mixed += bin.a * b.transpose();
+      to_kinks.selfadjointView<Eigen::Lower>().rankUpdate(b, bin.information);
+      right_kinks += b * bin.y;
+      to_waves += bin.information * c * c.transpose();
+      waves_plane += c * bin.a.transpose();
+      waves_kinks += bin.information * c * b.transpose();
+      right_waves += c * bin.y;
     }
     plane_by_kinks_ = -to_plane_.ldlt().solve(mixed);
     // Without what the waves explain, and then without what the plane does.
@@ -168,13 +169,13 @@ class ProfileFit {
   /// Takes the bend off the disparities and fits the plane to what is left.
   bool flatten(const Bend& bend, const PlaneLimits& limits, double bias_stddev) {
     for (size_t i = 0; i < given_.size(); ++i)
-      flattened_[i].disparities = {given_[i].disparities.front() - byKinks(i).dot(bend.mean)};
+      flattened_[i].disparities.front() =
+          given_[i].disparities.front() - byKinks(expected_[i], reaches_[i]).dot(bend.mean);
     const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend.mean;
     Expected<PlaneFit> fit = refinePlane(rig_, flattened_, start, limits, bias_stddev);
     if (!fit) return false;
     plane_ = *fit;
-    for (size_t i = 0; i < given_.size(); ++i)
-      findDistance(i, disparity(i) + given_[i].disparities.front() - flattened_[i].disparities.front());
+    findPlaces();
     return true;
   }
 
@@ -215,19 +216,42 @@ class ProfileFit {
 
   /// By the plane through all of them.
   void findDistances() {
+    findPlaces();
     std::vector<double> seen;
-    expected_.resize(given_.size());
-    distances_.resize(given_.size());
-    for (size_t i = 0; i < given_.size(); ++i) {
-      findDistance(i, disparity(i));
-      if (plane_.agrees[i]) seen.push_back(distances_[i]);
-    }
+    for (size_t i = 0; i < given_.size(); ++i)
+      if (plane_.agrees[i]) seen.push_back(reaches_[i] / expected_[i]);
     top_ = rig_.size.height;
     for (const DisparitySample& sample : given_) top_ = std::min(top_, sample.v);
     if (seen.size() < static_cast<size_t>(4 * kKinks)) return;
     std::sort(seen.begin(), seen.end());
     const double nearest = seen[seen.size() / 50], farthest = seen[seen.size() - 1 - seen.size() / 50];
     if (nearest > 0 && farthest > 1.5 * nearest) kinks_.emplace(nearest, farthest);
+  }
+
+  /// The samples that agree, and the sums of the plane alone. What kinks do is linear in the disparity, but
+  /// at the kinks, so that the middle of a bin stands for all of it; the bins are narrower far away, where
+  /// the kinks are close in disparity.
+  std::array<Bin, kBins> fillBins(double noise, Eigen::Vector3d& right_plane) {
+    std::array<Bin, kBins> bins;
+    const double largest = *std::max_element(expected_.begin(), expected_.end());
+    for (size_t i = 0; i < given_.size(); ++i) {
+      if (!plane_.agrees[i]) continue;
+      const DisparitySample& sample = flattened_[i];
+      const double information = 1 / (sample.stddev * sample.stddev * noise);
+      const Eigen::Vector3d a = rig_.fb() * rig_.ray(sample.u, sample.v);
+      const double y = (given_[i].disparities.front() - disparity(i)) * information;
+      to_plane_ += information * a * a.transpose();
+      right_plane += a * y;
+      const int place = static_cast<int>(kBins * std::sqrt(expected_[i] / largest));
+      Bin& bin = bins[std::min(place, kBins - 1)];
+      bin.information += information;
+      bin.expected += information * expected_[i];
+      bin.reach += information * reaches_[i];
+      bin.v += information * sample.v;
+      bin.y += y;
+      bin.a += information * a;
+    }
+    return bins;
   }
 
   /// Chebyshev's polynomials of degree 2 and more over the rows from the horizon to the bottom.
@@ -243,25 +267,31 @@ class ProfileFit {
     return values;
   }
 
-  /// Along the plane straight below, where a disparity is expected.
-  void findDistance(size_t i, double expected) {
+  /// Where the samples are on the surface.
+  void findPlaces() {
+    expected_.resize(given_.size());
+    reaches_.resize(given_.size());
     const Eigen::Vector3d n = plane_.plane.normal();
     const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
-    expected_[i] = std::max(expected, kLeastDisparity);
-    distances_[i] = rig_.fb() * forward.dot(rig_.ray(given_[i].u, given_[i].v)) / expected_[i];
+    for (size_t i = 0; i < given_.size(); ++i) {
+      const double bent = given_[i].disparities.front() - flattened_[i].disparities.front();
+      expected_[i] = std::max(disparity(i) + bent, kLeastDisparity);
+      reaches_[i] = rig_.fb() * forward.dot(rig_.ray(given_[i].u, given_[i].v));
+    }
   }
 
   /// What changes of slope at the kinks do to a disparity. Ground that is higher by z is at the inverse depth
-  /// 1/Z = g.r + z |g| / Z.
-  Kinks byKinks(size_t i) const {
-    return expected_[i] * plane_.plane.g.norm() * kinks_->rises(distances_[i]);
+  /// 1/Z = g.r + z |g| / Z; behind a kink, z is the distance from it.
+  Kinks byKinks(double expected, double reach) const {
+    return plane_.plane.g.norm() * (reach - expected * kinks_->at.array()).max(0.0);
   }
 
   const StereoRig& rig_;
   const std::vector<DisparitySample>& given_;
   std::vector<DisparitySample> flattened_;
   PlaneFit plane_;
-  std::vector<double> expected_, distances_;  // disparity and distance of the surface
+  // Disparity of the surface, and that times the distance along the tangent straight below.
+  std::vector<double> expected_, reaches_;
   std::optional<Kinked> kinks_;
   double top_ = 0;  // highest row of the samples
 
