@@ -225,6 +225,8 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane_row_covariance, result.row_covariance);
   fromArray(message.plane_below, result.below.g);
   fromArray(message.plane_below_covariance, result.below.covariance);
+  // Who does not know the field leaves it empty.
+  if (result.below.g.isZero()) result.below = GroundPlane();
   result.curvature = message.surface_curvature;
   result.curvature_variance = message.surface_curvature_variance;
   result.residual_stddev = message.residual_stddev;

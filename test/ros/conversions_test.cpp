@@ -135,6 +135,14 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_TRUE(back.right_repeated);
 }
 
+TEST(Conversions, ATangentThatWasNeverFilledInIsNotKnown) {
+  StereoDepth message;
+  message.plane = {0, 0.5, 0};
+  const StereoDepthResult result = toResult(message);
+  EXPECT_TRUE(result.plane.valid());
+  EXPECT_TRUE(result.below.g.array().isNaN().all());
+}
+
 TEST(Conversions, CovariancesAreRowMajorInMessages) {
   StereoDepthResult result;
   fill(result.plane.covariance);
