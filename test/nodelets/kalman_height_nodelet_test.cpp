@@ -48,6 +48,7 @@ class KalmanHeightNodeletTest : public NodeletTest {
     auto depth = boost::make_shared<StereoDepth>();
     depth->header.stamp = stamp;
     depth->header.frame_id = "left_optical";
+    depth->row_agreement = kNan;
     depth->vertical_rotation.assign(kNan);
     depth->vertical_rotation_covariance.assign(kNan);
     auto angle = boost::make_shared<ApproachAngle>();
