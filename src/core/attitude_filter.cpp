@@ -21,6 +21,8 @@ Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
   return basis;
 }
 
+Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
+
 Eigen::Matrix3d rotationOf(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   return angle > 0 ? Eigen::AngleAxisd(angle, w / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
@@ -53,9 +55,9 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   stamp_ = stamp;
   if (predicted) {
     const Eigen::Matrix<double, 3, 2> basis = across(estimate_->normal);
-    const Eigen::Matrix2d P = basis.transpose() * estimate_->covariance * basis;
+    const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
     const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
-    const Eigen::Matrix2d S = P + basis.transpose() * covariance * basis;
+    const Eigen::Matrix2d measured = symmetric(basis.transpose() * covariance * basis), S = P + measured;
     const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
     estimate_->ratio = innovation.dot(allowed.inverse() * innovation);
     estimate_->agrees = estimate_->ratio <= kGate;
@@ -63,7 +65,10 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
       agreed_ = stamp;
       const Eigen::Matrix2d gain = P * S.inverse();
       estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
-      estimate_->covariance = basis * (P - gain * S * gain.transpose()) * basis.transpose();
+      // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
+      const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
+      const Eigen::Matrix2d joint = kept * P * kept.transpose() + gain * measured * gain.transpose();
+      estimate_->covariance = basis * joint * basis.transpose();
       return *estimate_;
     }
     if (stamp - agreed_ < kPatience) return *estimate_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
@@ -140,6 +141,25 @@ TEST_F(TiltedSurface, IsTheGroundWhenItStays) {
 TEST_F(TiltedSurface, IsFollowedWhenItIsOnlyUneven) {
   const AttitudeFilter::Estimate estimate = update(0.5 * kDegree);
   EXPECT_TRUE(estimate.agrees);
+}
+
+TEST(AttitudeFilter, TheCovarianceStaysOneOverAWholeApproach) {
+  constexpr double kNormal = 0.01 * kDegree, kRotation = 0.001 * kDegree;
+  Flight flight(3, kNormal, kRotation);
+  AttitudeFilter filter;
+  for (int k = 0; k < 3000; ++k) {
+    // Pitch is known better than roll, as by far ground.
+    const Eigen::Vector3d n = flight.truth(k), across = n.cross(Eigen::Vector3d::UnitX()).normalized();
+    const Eigen::Matrix3d covariance =
+        flight.covariance(k) + 4 * kNormal * kNormal * across * across.transpose();
+    const auto motion = k > 0 ? flight.step(k) : ApproachAngleResult::Motion();
+    const AttitudeFilter::Estimate estimate =
+        filter.update(k * kStep, flight.measured(k), covariance, motion);
+    const Eigen::Vector3d values =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(estimate.covariance).eigenvalues();
+    ASSERT_GT(values[0], -1e-9 * values[2]) << k;
+    ASSERT_GT(values[1], 1e-3 * values[2]) << k;
+  }
 }
 
 }  // namespace
