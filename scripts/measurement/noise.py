@@ -46,7 +46,7 @@ def plot(rows):
         axis.set_title(title)
         axis.set_xlabel("noise, grey levels")
         axis.grid(True, which="both", linewidth=0.3)
-    axes[0].legend(title="height; dashed: bound")
+    axes[0].legend(title="height; dashed: bound", loc="lower right", fontsize=8, framealpha=0.6)
     figure.tight_layout()
     IMAGE.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(str(IMAGE), dpi=80)
