@@ -93,6 +93,8 @@ class KalmanHeightStage {
   /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
   void useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
                 LandingResult& result);
+  /// The angle over the window, or of the step alone where the window has none.
+  static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// the unevenness that shows ahead, and what its bend leaves open.
   double modelVariance(double height) const;

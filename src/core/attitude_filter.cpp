@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "rotation.h"
+
 namespace uav_landing {
 namespace {
 
@@ -13,26 +15,7 @@ constexpr double kPatience = 0.5;        // s, with normals that contradict
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
-/// Two unit vectors that span the plane across a unit vector.
-Eigen::Matrix<double, 3, 2> across(const Eigen::Vector3d& n) {
-  Eigen::Matrix<double, 3, 2> basis;
-  basis.col(0) = n.unitOrthogonal();
-  basis.col(1) = n.cross(basis.col(0));
-  return basis;
-}
-
 Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
-
-Eigen::Matrix3d rotationOf(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, w / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
-}
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 }  // namespace
 
@@ -40,9 +23,9 @@ bool AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& st
   if (!estimate_ || step.failure || !step.rotation.allFinite() || !step.covariance.allFinite()) return false;
   // A step that spans another time is not the way from the last normal to this one.
   if (!(std::abs(stamp - stamp_ - step.duration) <= kStampRounding)) return false;
-  const Eigen::Matrix3d R = rotationOf(step.rotation);
+  const Eigen::Matrix3d R = rotationMatrix(step.rotation);
   estimate_->normal = R * estimate_->normal;
-  const Eigen::Matrix3d by_rotation = cross(estimate_->normal);
+  const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
   estimate_->covariance = std::exp(step.duration / kMemory) * R * estimate_->covariance * R.transpose() +
                           by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
   return true;
@@ -54,7 +37,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const bool predicted = predict(stamp, step);
   stamp_ = stamp;
   if (predicted) {
-    const Eigen::Matrix<double, 3, 2> basis = across(estimate_->normal);
+    const Eigen::Matrix<double, 3, 2> basis = tangents(estimate_->normal);
     const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
     const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
     const Eigen::Matrix2d measured = symmetric(basis.transpose() * covariance * basis), S = P + measured;

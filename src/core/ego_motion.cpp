@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+#include "rotation.h"
+
 namespace uav_landing {
 namespace {
 
@@ -20,25 +22,13 @@ constexpr int kRansacIterations = 80;
 constexpr double kTolerance = 2.0;
 constexpr double kTukey = 4.5;
 
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-Eigen::Matrix3d exponential(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + cross(w);
-  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
-}
-
 // The unknowns: rotation now -> then (perturbed on the left), translation, ground normal.
 struct State {
   Eigen::Matrix3d Q;
   Eigen::Vector3d t, n;
 
   State apply(const Vector9d& step) const {
-    return {exponential(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
+    return {rotationMatrix(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
   }
 };
 
@@ -77,7 +67,7 @@ class Problem {
         -rig_.fy * y.y() / (y.z() * y.z());
     const Eigen::Vector3d Qt = state.Q * state.t;
     result.residual = match.then - rig_.project(y);
-    result.jacobian.leftCols<3>() = -projection * cross(y);
+    result.jacobian.leftCols<3>() = -projection * crossMatrix(y);
     result.jacobian.middleCols<3>(3) = projection * state.Q * w;
     result.jacobian.rightCols<3>().setZero();
     result.covariance = match.covariance;
@@ -241,11 +231,6 @@ class WhitenedRows {
   std::vector<double> ratios_;
   double scale_ = 1;
 };
-
-Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
-  const Eigen::AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
-}
 
 // Adds a rotation known beforehand to the normal equations: as a perturbation of Q on the left.
 void addRotation(const RotationPrior& prior, const State& state, Normal& sums) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rotation.h"
 #include "text.h"
 
 namespace uav_landing {
@@ -14,17 +15,7 @@ constexpr size_t kMost = 60000;  // samples kept
 constexpr double kLate = 1.0;    // s by which a message may be late
 constexpr double kSameStamp = 1e-7;
 
-Eigen::Matrix3d cross(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-Eigen::Quaterniond exponential(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  if (!(angle > 0)) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, w / angle));
-}
+Eigen::Quaterniond exponential(const Eigen::Vector3d& w) { return Eigen::Quaterniond(rotationMatrix(w)); }
 
 bool earlier(const ImuSample& sample, double t) { return sample.stamp < t; }
 
@@ -131,7 +122,7 @@ AttitudePrior ImuBuffer::at(double stamp, std::optional<double> before,
   if (now->orientation) {
     prior.failure = {};
     prior.normal = camera_from_imu * (now->orientation->conjugate() * Eigen::Vector3d(0, 0, -1));
-    const Eigen::Matrix3d by_turn = cross(prior.normal) * camera_from_imu;
+    const Eigen::Matrix3d by_turn = crossMatrix(prior.normal) * camera_from_imu;
     prior.normal_covariance = by_turn * attitudeCovariance(*now) * by_turn.transpose();
   } else {
     prior.failure = {Reason::kInputInvalid, "the imu messages have no orientation"};
@@ -145,8 +136,7 @@ AttitudePrior ImuBuffer::at(double stamp, std::optional<double> before,
   if (!turn) return prior;
   prior.duration = stamp - *before;
   // The sensor turns by this, so what is at rest turns the other way.
-  const Eigen::AngleAxisd rotation(turn->conjugate());
-  prior.rotation = camera_from_imu * (rotation.angle() * rotation.axis());
+  prior.rotation = camera_from_imu * rotationVector(turn->conjugate().toRotationMatrix());
   prior.rotation_covariance =
       prior.duration * prior.duration * camera_from_imu * rateCovariance(*now) * camera_from_imu.transpose();
   return prior;

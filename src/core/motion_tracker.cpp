@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "rotation.h"
 #include "uav_landing/approach_angle.h"
+#include "uav_landing/consistency_test.h"
 #include "uav_landing/image_check.h"
 
 namespace uav_landing {
@@ -25,11 +27,6 @@ std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, si
   std::vector<TrackedCorner> some;
   for (size_t i = 0; i < count; ++i) some.push_back(corners[i * corners.size() / count]);
   return some;
-}
-
-Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
-  const Eigen::AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
 }
 
 // The angle's variance from the joint covariance of t and n (both enter asin(n.t/|t|)).
@@ -58,16 +55,14 @@ double matchAngleVariance(const MotionEstimate& estimate) {
 std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
   constexpr double kStampRounding = 1e-3;
   if (!imu.hasRotation() || std::abs(imu.duration - duration) > kStampRounding) return std::nullopt;
-  const double angle = imu.rotation.norm();
-  const Eigen::Vector3d axis = angle > 0 ? (imu.rotation / angle).eval() : Eigen::Vector3d::UnitX();
-  return RotationPrior{Eigen::AngleAxisd(angle, axis).toRotationMatrix(), imu.rotation_covariance};
+  return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
 }
 
 // The rotation that the matches want is one that the prior allows.
 bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
-  constexpr double kGate = 16.3;  // chi-square with 3 degrees of freedom, 1e-3
+  static const double gate = chiSquareLimit(1e-3, 3);
   const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
-  return off.dot(prior.covariance.inverse() * off) <= kGate;
+  return off.dot(prior.covariance.inverse() * off) <= gate;
 }
 
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {

@@ -229,7 +229,7 @@ PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, 
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
   constexpr int kIterations = 12;
-  // A step leaves about a tenth of itself, so after one this long the place is good to a few 0.001 px.
+  // A step leaves about a tenth of itself, so after one this long the place is good to less than 0.001 px.
   constexpr double kConverged = 0.004, kMaxDrift = 2.0;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
   constexpr double kIndependent = 0.25;

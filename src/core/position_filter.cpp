@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rotation.h"
+
 namespace uav_landing {
 namespace {
 
@@ -15,11 +17,6 @@ constexpr double kAcrossError = 0.005;  // of the distance flown: direction of t
 constexpr double kBlindError = 0.2;     // of the distance flown while the motion is not seen
 constexpr double kWorthlessX = 0.5;     // of the runway's width
 constexpr double kWorthlessY = 0.1;     // of the runway's width
-
-Eigen::Vector3d turned(const Eigen::Vector3d& rotation, const Eigen::Vector3d& v) {
-  const double angle = rotation.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, rotation / angle) * v : v;
-}
 
 }  // namespace
 
@@ -96,7 +93,7 @@ void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vect
   if (approach.vanishing_direction.allFinite()) {
     direction_ = approach.vanishing_direction;
   } else if (moved) {
-    direction_ = turned(step.rotation, direction_);
+    direction_ = rotationMatrix(step.rotation) * direction_;
   }
   if (moved && std::isfinite(height) && direction_.allFinite() && normal.allFinite()) {
     const Eigen::Vector3d forward = (direction_ - normal.dot(direction_) * normal).normalized();

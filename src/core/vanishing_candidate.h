@@ -9,14 +9,6 @@
 
 namespace uav_landing {
 
-/// Two unit vectors that span the plane across a unit direction.
-inline Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& direction) {
-  Eigen::Matrix<double, 3, 2> B;
-  B.col(0) = direction.unitOrthogonal();
-  B.col(1) = direction.cross(B.col(0));
-  return B;
-}
-
 /// A line as the search for the vanishing point needs it, pixels.
 struct VanishingCandidate {
   static constexpr double kClearance = 4;  // px between a line's end and the point where it vanishes

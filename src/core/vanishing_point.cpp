@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "rotation.h"
 #include "vanishing_candidate.h"
 
 namespace uav_landing {

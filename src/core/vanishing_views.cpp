@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rotation.h"
 #include "text.h"
 #include "uav_landing/vanishing_point.h"
 #include "vanishing_candidate.h"

@@ -62,22 +62,27 @@ double residualScale(const std::vector<RowShift>& rows, const Eigen::Vector3d& w
   return std::max(1.0, 1.4826 * *middle);
 }
 
+// Weight of a row by Tukey's function of its residual; 0 for outliers.
+double weightOf(const RowShift& row, const Eigen::Vector3d& w, double scale) {
+  constexpr double kTukey = 4.0;
+  const double stddev = scale * row.stddev;
+  const double ratio = (row.shift - row.by_rotation.dot(w)) / (kTukey * stddev);
+  if (std::abs(ratio) >= 1) return 0;
+  return (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
+}
+
 // What neighbouring rows share adds to the covariance of a fit that took them as independent: residuals of a
 // lens, or of what stands on the ground, are the same in a part of the image, and pull at the rotation as the
 // corners come and go there. After the sandwich estimator with clusters (Liang, Zeger 1986), of which only
 // the products of different rows count; by chance they are negative as often as positive.
 Eigen::Matrix3d sharedVariance(const std::vector<RowShift>& rows, const RigRotation& rotation) {
-  constexpr double kTukey = 4.0;
   const double scale = residualScale(rows, rotation.w);
   std::array<Eigen::Vector3d, kCellsAcross * kCellsDown> sums;
   sums.fill(Eigen::Vector3d::Zero());
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
   for (const RowShift& row : rows) {
-    const double residual = row.shift - row.by_rotation.dot(rotation.w), stddev = scale * row.stddev;
-    const double ratio = residual / (kTukey * stddev);
-    if (std::abs(ratio) >= 1) continue;
-    const double weight = (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
-    const Eigen::Vector3d pull = weight * residual * row.by_rotation.transpose();
+    const double residual = row.shift - row.by_rotation.dot(rotation.w);
+    const Eigen::Vector3d pull = weightOf(row, rotation.w, scale) * residual * row.by_rotation.transpose();
     sums[row.cell] += pull;
     shared -= pull * pull.transpose();
   }
@@ -89,7 +94,6 @@ Eigen::Matrix3d sharedVariance(const std::vector<RowShift>& rows, const RigRotat
 
 Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
   constexpr int kIterations = 6;
-  constexpr double kTukey = 4.0;
   // Without corners on all sides a component is not determined; rad.
   constexpr double kAnything = 0.1;
   const auto few = [](int count) {
@@ -109,10 +113,8 @@ Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     rotation.count = 0;
     for (const RowShift& row : rows) {
-      const double stddev = scale * row.stddev;
-      const double ratio = (row.shift - row.by_rotation.dot(rotation.w)) / (kTukey * stddev);
-      if (std::abs(ratio) >= 1) continue;
-      const double tukey = (1 - ratio * ratio) * (1 - ratio * ratio), weight = tukey / (stddev * stddev);
+      const double weight = weightOf(row, rotation.w, scale);
+      if (weight == 0) continue;
       information += weight * row.by_rotation.transpose() * row.by_rotation;
       right += weight * row.by_rotation.transpose() * row.shift;
       ++rotation.count;

@@ -58,7 +58,7 @@ class ShortCampaignTest(unittest.TestCase):
     def test_faults_are_noticed_and_a_healthy_flight_is_valid(self):
         folder = Path(tempfile.mkdtemp(prefix="uav_landing_faults_"))
         self.addCleanup(shutil.rmtree, str(folder))
-        names = "none,frozen_left,swapped,unsynchronised,overexposed,featureless,bent_roll_1,baseline_8"
+        names = "none,frozen_left,swapped,unsynchronised,overexposed,night,featureless,bent_roll_1,baseline_8"
         result = run([PROGRAM, "--csv", folder / "rows.csv", "--first", 3, "--count", 1, "--frames", 50, "--faults", names])
         self.assertEqual(result.returncode, 0, result.stderr)
         with (folder / "rows.csv").open() as file:

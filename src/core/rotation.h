@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace uav_landing {
+
+// Rotations by their vectors (axis times angle, rad), and directions by what is across them.
+
+/// The matrix of v x.
+inline Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& w) {
+  const double angle = w.norm();
+  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + crossMatrix(w);
+  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+inline Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
+  const Eigen::AngleAxisd turn(R);
+  return turn.angle() * turn.axis();
+}
+
+/// Two unit vectors that span the plane across a unit vector.
+inline Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& direction) {
+  Eigen::Matrix<double, 3, 2> B;
+  B.col(0) = direction.unitOrthogonal();
+  B.col(1) = direction.cross(B.col(0));
+  return B;
+}
+
+}  // namespace uav_landing
