@@ -1,100 +1,121 @@
 #include "uav_landing/corners.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "harris_rows.h"
 
 namespace uav_landing {
 namespace {
 
 struct Candidate {
-  float response;
-  cv::Point point;
+  float response;  // > 0
+  short x, y;
 };
 
-// Harris response of an image row by row, in single precision: sums over 3x3 of the products of 3x3 Sobel
-// gradients. Keeps the last rows only, so that all of it stays in the cache.
-class HarrisRows {
- public:
-  HarrisRows(const cv::Mat& image, double k)
-      : image_(image), k_(static_cast<float>(k)), columns_(image.cols), products_(9 * image.cols) {}
-
-  // Response of row v (2 <= v < rows - 2), 0 in the two outermost columns; rows must be asked for in turn.
-  void compute(int v, float* response) {
-    for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_)
-      image_.depth() == CV_8U ? gradients<uchar>(next_) : gradients<float>(next_);
-    const float* rows[3];
-    for (int k = 0; k < 3; ++k) rows[k] = row(v - 1 + k);
-    for (int plane = 0; plane < 3; ++plane) {
-      const int offset = plane * columns_;
-      const float *a = rows[0] + offset, *b = rows[1] + offset, *c = rows[2] + offset;
-      float* sum = sums_.data() + offset;
-      for (int u = 0; u < columns_; ++u) sum[u] = a[u] + b[u] + c[u];
-    }
-    const float *xx = sums_.data(), *xy = xx + columns_, *yy = xy + columns_;
-    response[0] = response[1] = response[columns_ - 2] = response[columns_ - 1] = 0;
-    for (int u = 2; u < columns_ - 2; ++u) {
-      const float a = xx[u - 1] + xx[u] + xx[u + 1], b = xy[u - 1] + xy[u] + xy[u + 1],
-                  c = yy[u - 1] + yy[u] + yy[u + 1];
-      response[u] = a * c - b * b - k_ * (a + c) * (a + c);
-    }
-  }
-
- private:
-  float* row(int v) { return products_.data() + static_cast<size_t>(v % 3) * 3 * columns_; }
-
-  template <class Pixel>
-  void gradients(int v) {
-    const Pixel *a = image_.ptr<Pixel>(v - 1), *b = image_.ptr<Pixel>(v), *c = image_.ptr<Pixel>(v + 1);
-    float *xx = row(v), *xy = xx + columns_, *yy = xy + columns_;
-    for (int u = 1; u < columns_ - 1; ++u) {
-      const auto gx = a[u + 1] + 2 * b[u + 1] + c[u + 1] - a[u - 1] - 2 * b[u - 1] - c[u - 1];
-      const auto gy = c[u - 1] + 2 * c[u] + c[u + 1] - a[u - 1] - 2 * a[u] - a[u + 1];
-      const float x = static_cast<float>(gx), y = static_cast<float>(gy);
-      xx[u] = x * x;
-      xy[u] = x * y;
-      yy[u] = y * y;
-    }
-  }
-
-  const cv::Mat& image_;
-  float k_;
-  int columns_, next_ = 0;
-  std::vector<float> products_;  // three rows of the three products
-  std::vector<float> sums_ = std::vector<float>(3 * columns_);
-};
-
-// Local maxima of a row of the response between its neighbours, inside the mask.
-void addMaxima(const float* above, const float* row, const float* below, const uchar* allowed, int columns,
-               int y, std::vector<Candidate>& maxima) {
-  for (int x = 2; x + 2 < columns; ++x) {
-    const float r = row[x];
-    if (!(r > 0) || r <= row[x - 1] || r < row[x + 1] || !allowed[x]) continue;
-    if (r > above[x - 1] && r > above[x] && r > above[x + 1] && r >= below[x - 1] && r >= below[x] &&
-        r >= below[x + 1])
-      maxima.push_back({r, {x, y}});
-  }
-}
-
-// Local maxima of the Harris response with a response of at least quality times the strongest one.
+/// Local maxima of the Harris response inside the mask, by rows, with a response of at least quality times
+/// the strongest one.
 std::vector<Candidate> localMaxima(const cv::Mat& image, const cv::Mat& mask, double quality,
                                    double harris_k) {
   HarrisRows harris(image, harris_k);
-  std::vector<float> responses(static_cast<size_t>(3) * image.cols, 0.f);
-  const auto row = [&](int v) { return responses.data() + static_cast<size_t>(v % 3) * image.cols; };
   std::vector<Candidate> maxima;
-  for (int v = 2; v + 2 < image.rows; ++v) {
-    harris.compute(v, row(v));
-    if (v >= 4) addMaxima(row(v - 2), row(v - 1), row(v), mask.ptr<uchar>(v - 1), image.cols, v - 1, maxima);
-  }
+  size_t count = 0;
   float strongest = 0;
-  for (const Candidate& candidate : maxima) strongest = std::max(strongest, candidate.response);
+  for (int v = 2; v + 2 < image.rows; ++v) {
+    harris.compute(v);
+    if (v < 4) continue;
+    const float* row = harris.maxima(v - 1);
+    const uchar* allowed = mask.ptr<uchar>(v - 1);
+    // Written everywhere and kept where it counts: where maxima are is not to be guessed.
+    if (maxima.size() < count + image.cols) maxima.resize(2 * (count + image.cols));
+    for (int u = 2; u + 2 < image.cols; ++u) {
+      maxima[count] = {row[u], static_cast<short>(u), static_cast<short>(v - 1)};
+      const bool counts = (row[u] > 0) & (allowed[u] != 0);
+      count += counts ? 1 : 0;
+      strongest = std::max(strongest, counts ? row[u] : 0.F);
+    }
+  }
+  maxima.resize(count);
   const float threshold = static_cast<float>(quality) * strongest;
   maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
                               [threshold](const Candidate& c) { return c.response < threshold; }),
                maxima.end());
   return maxima;
 }
+
+/// Strongest first, equals as they come: digit by digit of the response's bits, which are in the order of
+/// positive numbers.
+void sortByResponse(std::vector<Candidate>& candidates) {
+  constexpr int kBits = 11, kDigits = 1 << kBits;
+  std::vector<Candidate> sorted(candidates.size());
+  const auto digit = [](const Candidate& candidate, int shift) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &candidate.response, sizeof(bits));
+    return kDigits - 1 - static_cast<int>((bits >> shift) & (kDigits - 1));
+  };
+  for (int shift = 0; shift < 32; shift += kBits) {
+    std::array<int, kDigits + 1> begin{};
+    for (const Candidate& candidate : candidates) ++begin[digit(candidate, shift) + 1];
+    for (int i = 0; i < kDigits; ++i) begin[i + 1] += begin[i];
+    for (const Candidate& candidate : candidates) sorted[begin[digit(candidate, shift)]++] = candidate;
+    candidates.swap(sorted);
+  }
+}
+
+/// The corners accepted so far, in square cells.
+class Cells {
+ public:
+  static constexpr int kMost = 4;  // corners in a cell
+
+  Cells(const cv::Size& area, double cell, double min_distance)
+      : min_squared_(min_distance * min_distance), reach_(static_cast<int>(std::ceil(min_distance))) {
+    for (int x = 0; x < area.width; ++x) columns_.push_back(static_cast<int>(x / cell));
+    for (int y = 0; y < area.height; ++y) rows_.push_back(static_cast<int>(y / cell));
+    cells_.resize(static_cast<size_t>(columns_.back() + 1) * (rows_.back() + 1));
+  }
+
+  /// How many stronger ones the cell of a corner has, which is added to it; nothing when it is full, or when
+  /// there is a stronger corner nearer than the least distance.
+  std::optional<int> add(const cv::Point& point) {
+    Cell& own = at(columns_[point.x], rows_[point.y]);
+    if (own.count == kMost || !isFree(point)) return std::nullopt;
+    own.corners[own.count] = point;
+    return own.count++;
+  }
+
+ private:
+  struct Cell {
+    int count = 0;
+    std::array<cv::Point, kMost> corners;
+  };
+
+  Cell& at(int column, int row) { return cells_[static_cast<size_t>(row) * (columns_.back() + 1) + column]; }
+
+  bool isFree(const cv::Point& point) {
+    const auto last = [&](const std::vector<int>& cell_of, int place) {
+      return cell_of[std::min(place + reach_, static_cast<int>(cell_of.size()) - 1)];
+    };
+    for (int y = rows_[std::max(point.y - reach_, 0)]; y <= last(rows_, point.y); ++y)
+      for (int x = columns_[std::max(point.x - reach_, 0)]; x <= last(columns_, point.x); ++x) {
+        const Cell& cell = at(x, y);
+        for (int i = 0; i < cell.count; ++i) {
+          const cv::Point step = cell.corners[i] - point;
+          if (step.dot(step) < min_squared_) return false;
+        }
+      }
+    return true;
+  }
+
+  double min_squared_;
+  int reach_;
+  std::vector<int> columns_, rows_;  // of cells, of a pixel
+  std::vector<Cell> cells_;
+};
 
 }  // namespace
 
@@ -103,45 +124,18 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
   const cv::Rect area = cv::boundingRect(mask);
   if (area.width < 7 || area.height < 7) return {};
   std::vector<Candidate> maxima = localMaxima(image(area), mask(area), quality, harris_k);
+  sortByResponse(maxima);
 
   // Rank within cells first, so that strong markings do not take all corners, then by strength.
-  const double cell = std::max(min_distance, std::sqrt(double(area.area()) / count));
-  const int columns = static_cast<int>(area.width / cell) + 1;
-  const int rows = static_cast<int>(area.height / cell) + 1;
-  std::sort(maxima.begin(), maxima.end(), [](const Candidate& a, const Candidate& b) {
-    if (a.response != b.response) return a.response > b.response;
-    return a.point.y != b.point.y ? a.point.y < b.point.y : a.point.x < b.point.x;
-  });
-  std::vector<std::vector<cv::Point>> cells(static_cast<size_t>(columns) * rows);
-  std::vector<std::pair<size_t, cv::Point>> ranked;
-  const double min_squared = min_distance * min_distance;
+  Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
+  std::array<std::vector<cv::Point>, Cells::kMost> ranked;
   for (const Candidate& candidate : maxima) {
-    const int cx = static_cast<int>(candidate.point.x / cell),
-              cy = static_cast<int>(candidate.point.y / cell);
-    bool free = true;
-    for (int y = std::max(0, cy - 1); free && y <= std::min(rows - 1, cy + 1); ++y) {
-      for (int x = std::max(0, cx - 1); free && x <= std::min(columns - 1, cx + 1); ++x) {
-        for (const cv::Point& other : cells[static_cast<size_t>(y) * columns + x]) {
-          const cv::Point step = other - candidate.point;
-          if (double(step.dot(step)) < min_squared) {
-            free = false;
-            break;
-          }
-        }
-      }
-    }
-    if (!free) continue;
-    std::vector<cv::Point>& own = cells[static_cast<size_t>(cy) * columns + cx];
-    if (own.size() >= 4) continue;
-    ranked.emplace_back(own.size(), candidate.point);
-    own.push_back(candidate.point);
+    const cv::Point point(candidate.x, candidate.y);
+    if (const std::optional<int> rank = cells.add(point)) ranked[*rank].push_back(point + area.tl());
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (ranked.size() > static_cast<size_t>(count)) ranked.resize(count);
   std::vector<cv::Point> corners;
-  corners.reserve(ranked.size());
-  for (const auto& entry : ranked) corners.push_back(entry.second + area.tl());
+  for (const std::vector<cv::Point>& rank : ranked) corners.insert(corners.end(), rank.begin(), rank.end());
+  if (corners.size() > static_cast<size_t>(count)) corners.resize(count);
   std::sort(corners.begin(), corners.end(),
             [](const cv::Point& a, const cv::Point& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   return corners;
