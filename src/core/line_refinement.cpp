@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace uav_landing {
 
@@ -18,9 +19,33 @@ constexpr int kGrowStep = 2;           // rows or columns
 constexpr int kMaxMisses = 2;          // steps without edge at which a growing line ends
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 
-/// Where the edge is at one station: distances along and across the current line, px.
+/// Where the edge is at one station: distances along and across the current line, px, and its gradient,
+/// grey/px.
 struct Peak {
-  double along, across, gradient, weight;
+  double along, across, gradient;
+};
+
+/// Of a value at each station; in the memory of the function that has it.
+using Values = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kMaxStations, 1>;
+
+/// The peaks along a line and their weights.
+struct Peaks {
+  int stations = 0;  ///< that were looked at
+  Values along, across, gradient, weight;
+
+  int size() const { return static_cast<int>(along.size()); }
+  /// Keeps what is there.
+  void resize(int size) {
+    along.conservativeResize(size);
+    across.conservativeResize(size);
+    gradient.conservativeResize(size);
+    weight.resize(size);
+  }
+  void set(int i, const Peak& peak) {
+    along[i] = peak.along;
+    across[i] = peak.across;
+    gradient[i] = peak.gradient;
+  }
 };
 
 /// Frame of a line: origin, direction along and (across) 90 degrees clockwise in the picture. Along points
@@ -41,35 +66,51 @@ struct Axis {
   double alongAt(int station) const { return (station - origin[major]) / along[major]; }
 };
 
-/// Gradient at -kRadius to kRadius px from the line along the row or column of a station, as the gradient
-/// across the line, grey/px, positive when brighter `across`.
-using Gradients = std::array<double, 2 * kRadius + 1>;
+/// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
+/// interpolating between them biases the peak by up to 0.1 px.
+struct Station {
+  cv::Point pixel;           ///< nearest to the line
+  const uchar* grey;         ///< of that pixel
+  std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
 
-/// Looks at whole pixels only: interpolating between them biases the peak by up to 0.1 px.
+  /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
+  int twiceGradient(int k) const { return grey[(k + 1) * neighbour] - grey[(k - 1) * neighbour]; }
+};
+
+/// Looks along one line.
 class EdgeSampler {
  public:
-  EdgeSampler(const cv::Mat& image, const cv::Mat& ground) : image_(image), ground_(ground) {}
+  EdgeSampler(const cv::Mat& image, const cv::Mat& ground, const Axis& axis)
+      : image_(image),
+        ground_(ground),
+        axis_(axis),
+        scale_(0.5 / axis.across[axis.minor]),
+        size_(axis.minor == 0 ? image.cols : image.rows),
+        stations_(axis.minor == 0 ? image.rows : image.cols),
+        neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)) {}
 
-  /// Gradients and the pixel in their middle; nothing outside image and ground.
-  std::optional<std::pair<Gradients, cv::Point>> at(const Axis& axis, int station) const {
-    const int centre = cvRound(axis.point(axis.alongAt(station))[axis.minor]);
-    const cv::Point pixel = axis.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
+  const Axis& axis() const { return axis_; }
+  /// From twice the gradient along a row or column to that across the line, grey/px, positive when brighter
+  /// `across`.
+  double scale() const { return scale_; }
+
+  /// Nothing outside image and ground.
+  std::optional<Station> at(int station) const {
+    const int centre = cvRound(axis_.point(axis_.alongAt(station))[axis_.minor]);
+    const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
     constexpr int kReach = kRadius + 1;
-    const int size = axis.minor == 0 ? image_.cols : image_.rows;
-    if (centre < kReach || centre >= size - kReach || pixel.x < 0 || pixel.y < 0 || pixel.x >= image_.cols ||
-        pixel.y >= image_.rows || ground_.at<uchar>(pixel) == 0)
+    if (centre < kReach || centre >= size_ - kReach || station < 0 || station >= stations_ ||
+        ground_.at<uchar>(pixel) == 0)
       return std::nullopt;
-    const uchar* middle = image_.ptr<uchar>(pixel.y) + pixel.x;
-    const std::ptrdiff_t step = axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image_.step);
-    const double scale = 0.5 / axis.across[axis.minor];
-    Gradients gradients;
-    for (int k = -kRadius; k <= kRadius; ++k)
-      gradients[kRadius + k] = scale * (middle[(k + 1) * step] - middle[(k - 1) * step]);
-    return std::make_pair(gradients, pixel);
+    return Station{pixel, image_.ptr<uchar>(pixel.y) + pixel.x, neighbour_};
   }
 
  private:
   const cv::Mat &image_, &ground_;
+  const Axis& axis_;
+  double scale_;
+  int size_, stations_;  // of the image, across and along
+  std::ptrdiff_t neighbour_;
 };
 
 /// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
@@ -79,46 +120,50 @@ struct EdgeKind {
 };
 
 /// The strongest gradient within `reach` px of the line, interpolated by a parabola.
-std::optional<Peak> findPeak(const EdgeSampler& sampler, const Axis& axis, int station, const EdgeKind& kind,
-                             int reach) {
-  const auto sample = sampler.at(axis, station);
+std::optional<Peak> findPeak(const EdgeSampler& sampler, int station, const EdgeKind& kind, int reach) {
+  const std::optional<Station> sample = sampler.at(station);
   if (!sample) return std::nullopt;
-  const auto g = [&](int k) { return kind.sign * sample->first[kRadius + k]; };
-  int best = -reach - 1;
-  for (int k = -reach; k <= reach + 1; ++k)
-    if (g(k) > g(best)) best = k;
+  const double scale = kind.sign * sampler.scale();
+  const int sign = scale >= 0 ? 1 : -1;
+  int best = 0, strongest = std::numeric_limits<int>::min();
+  for (int k = -reach - 1; k <= reach + 1; ++k) {
+    const int gradient = sign * sample->twiceGradient(k);
+    best = gradient > strongest ? k : best;
+    strongest = std::max(strongest, gradient);
+  }
+  const auto g = [&](int k) { return scale * sample->twiceGradient(k); };
   if (std::abs(best) > reach || g(best) < kind.min_gradient) return std::nullopt;
-  Eigen::Vector2d p(sample->second.x, sample->second.y);
+  const Axis& axis = sampler.axis();
+  Eigen::Vector2d p(sample->pixel.x, sample->pixel.y);
   p[axis.minor] += best + 0.5 * (g(best - 1) - g(best + 1)) / (g(best - 1) - 2 * g(best) + g(best + 1));
   p -= axis.origin;
-  return Peak{axis.along.dot(p), axis.across.dot(p), g(best), 1};
+  return Peak{axis.along.dot(p), axis.across.dot(p), g(best)};
 }
 
-struct Collected {
-  std::vector<Peak> peaks;
-  int stations = 0;
-};
-
 /// Peaks at the rows or columns between two distances along the line.
-Collected collect(const EdgeSampler& sampler, const Axis& axis, double from, double to, const EdgeKind& kind,
-                  int reach) {
-  Collected found;
+void collect(const EdgeSampler& sampler, double from, double to, const EdgeKind& kind, int reach,
+             Peaks& peaks) {
+  const Axis& axis = sampler.axis();
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
   const int step = std::max(1, (last - first) / kMaxStations);
+  peaks.stations = 0;
+  peaks.resize(2 * kMaxStations);
+  int count = 0;
   for (int station = first; station <= last; station += step) {
-    ++found.stations;
-    if (const auto peak = findPeak(sampler, axis, station, kind, reach)) found.peaks.push_back(*peak);
+    ++peaks.stations;
+    if (const auto peak = findPeak(sampler, station, kind, reach)) peaks.set(count++, *peak);
   }
-  return found;
+  peaks.resize(count);
 }
 
 /// How far the edge goes on beyond `from`, in steps of this many rows or columns.
-double grow(const EdgeSampler& sampler, const Axis& axis, double from, int step, const EdgeKind& kind) {
+double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& kind) {
+  const Axis& axis = sampler.axis();
   double end = from;
   int misses = 0;
   for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
-    const auto peak = findPeak(sampler, axis, station, kind, 1);
+    const auto peak = findPeak(sampler, station, kind, 1);
     if (peak && std::abs(peak->across) < 1) {
       end = peak->along;
       misses = 0;
@@ -129,55 +174,61 @@ double grow(const EdgeSampler& sampler, const Axis& axis, double from, int step,
   return end;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets, so that only the
+/// few in the middle one are put in order.
+double median(const Values& values) {
+  constexpr int kBuckets = 32;
+  constexpr double kNothing = 1e-30;
+  const double largest = values.maxCoeff();
+  if (!(largest > kNothing)) return largest;
+  const double scale = (kBuckets - 0.5) / largest;
+  std::array<int, kBuckets> counts{};
+  std::array<uchar, 2 * kMaxStations> bucket_of;
+  for (int i = 0; i < values.size(); ++i) {
+    bucket_of[i] = static_cast<uchar>(values[i] * scale);
+    ++counts[bucket_of[i]];
+  }
+  int rank = static_cast<int>(values.size() / 2), bucket = 0;
+  while (rank >= counts[bucket]) rank -= counts[bucket++];
+  std::array<double, 2 * kMaxStations> middle;
+  int count = 0;
+  for (int i = 0; i < values.size(); ++i) {
+    middle[count] = values[i];
+    count += bucket_of[i] == bucket ? 1 : 0;
+  }
+  std::nth_element(middle.begin(), middle.begin() + rank, middle.begin() + count);
+  return middle[rank];
 }
 
 /// Weighted straight line across = offset + slope (along - centre).
 struct Fit {
   double centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
 
-  double residual(const Peak& p) const { return p.across - offset - slope * (p.along - centre); }
+  Values residuals(const Peaks& p) const { return p.across - offset - slope * (p.along - centre); }
 };
 
-Fit fitOnce(const std::vector<Peak>& peaks) {
+Fit fitOnce(const Peaks& p) {
   Fit f;
-  for (const Peak& p : peaks) {
-    f.weight += p.weight;
-    f.centre += p.weight * p.along;
-    f.offset += p.weight * p.across;
-  }
-  f.centre /= f.weight;
-  f.offset /= f.weight;
-  double mixed = 0;
-  for (const Peak& p : peaks) {
-    const double x = p.along - f.centre;
-    f.spread += p.weight * x * x;
-    mixed += p.weight * x * p.across;
-  }
-  f.slope = mixed / f.spread;
+  f.weight = p.weight.sum();
+  f.centre = (p.weight * p.along).sum() / f.weight;
+  f.offset = (p.weight * p.across).sum() / f.weight;
+  const Values x = p.along - f.centre, weighted = p.weight * x;
+  f.spread = (weighted * x).sum();
+  f.slope = (weighted * p.across).sum() / f.spread;
   return f;
 }
 
 /// Iteratively reweighted: the peak's variance falls with the gradient squared, and Tukey's biweight
 /// removes stations at which something else was taken for the edge.
-Fit fitRobustly(std::vector<Peak>& peaks, double& scale) {
-  std::vector<double> values(peaks.size());
-  std::transform(peaks.begin(), peaks.end(), values.begin(), [](const Peak& p) { return p.gradient; });
-  const double typical = median(values);
-  const auto base = [typical](const Peak& p) { return std::min(1.0, std::pow(p.gradient / typical, 2)); };
-  for (Peak& p : peaks) p.weight = base(p);
+Fit fitRobustly(Peaks& peaks, double& scale) {
+  const Values base = (peaks.gradient / median(peaks.gradient)).square().min(1.0);
+  peaks.weight = base;
   Fit fit = fitOnce(peaks);
   for (int i = 0; i < 3; ++i) {
-    std::transform(peaks.begin(), peaks.end(), values.begin(),
-                   [&](const Peak& p) { return std::abs(fit.residual(p)); });
-    scale = std::max(1.4826 * median(values), kMinScale);
-    for (Peak& p : peaks) {
-      const double u = fit.residual(p) / (4.685 * scale);
-      p.weight = std::abs(u) < 1 ? base(p) * std::pow(1 - u * u, 2) : 0;
-    }
+    const Values off = fit.residuals(peaks).abs();
+    scale = std::max(1.4826 * median(off), kMinScale);
+    const double inverse = 1 / (4.685 * scale);
+    peaks.weight = base * (1 - (off * inverse).min(1.0).square()).square();
     fit = fitOnce(peaks);
   }
   return fit;
@@ -185,17 +236,18 @@ Fit fitRobustly(std::vector<Peak>& peaks, double& scale) {
 
 /// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
 /// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
-double stationVariance(const std::vector<Peak>& peaks, const Fit& fit) {
+double stationVariance(const Peaks& peaks, const Fit& fit) {
+  const Values residuals = fit.residuals(peaks);
   double squares = 0, products = 0, pairs = 0;
   int used = 0;
-  for (size_t i = 0; i < peaks.size(); ++i) {
-    if (peaks[i].weight <= 0) continue;
+  for (int i = 0; i < peaks.size(); ++i) {
+    if (peaks.weight[i] <= 0) continue;
     ++used;
-    const double r = fit.residual(peaks[i]);
-    squares += peaks[i].weight * r * r;
-    if (i == 0 || peaks[i - 1].weight <= 0) continue;
-    const double w = std::sqrt(peaks[i].weight * peaks[i - 1].weight);
-    products += w * r * fit.residual(peaks[i - 1]);
+    const double r = residuals[i];
+    squares += peaks.weight[i] * r * r;
+    if (i == 0 || peaks.weight[i - 1] <= 0) continue;
+    const double w = std::sqrt(peaks.weight[i] * peaks.weight[i - 1]);
+    products += w * r * residuals[i - 1];
     pairs += w;
   }
   const double variance = squares / fit.weight;
@@ -204,22 +256,28 @@ double stationVariance(const std::vector<Peak>& peaks, const Fit& fit) {
 }
 
 /// Sign of the edge: the one of which more gradient is found along the line.
-int edgeSign(const EdgeSampler& sampler, const Axis& axis, double half) {
+int edgeSign(const EdgeSampler& sampler, double half) {
+  const Axis& axis = sampler.axis();
   double sum = 0;
   const int first = cvRound(axis.point(-half)[axis.major]), last = cvRound(axis.point(half)[axis.major]);
   const int step = std::max(1, (last - first) / 16);
   for (int station = first; station <= last; station += step)
-    if (const auto sample = sampler.at(axis, station)) {
-      const auto [lowest, highest] = std::minmax_element(sample->first.begin() + 1, sample->first.end() - 1);
-      sum += *highest + *lowest;
+    if (const std::optional<Station> sample = sampler.at(station)) {
+      int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+      for (int k = 1 - kRadius; k < kRadius; ++k) {
+        lowest = std::min(lowest, sample->twiceGradient(k));
+        highest = std::max(highest, sample->twiceGradient(k));
+      }
+      sum += sampler.scale() * (highest + lowest);
     }
   return sum >= 0 ? 1 : -1;
 }
 
-LineSegment finish(const Axis& axis, const std::vector<Peak>& peaks, const Fit& fit, int sign) {
-  const auto used = [](const Peak& p) { return p.weight > 0; };
-  const double first = std::find_if(peaks.begin(), peaks.end(), used)->along;
-  const double last = std::find_if(peaks.rbegin(), peaks.rend(), used)->along;
+LineSegment finish(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign) {
+  int begin = 0, end = peaks.size() - 1;
+  while (peaks.weight[begin] <= 0) ++begin;
+  while (peaks.weight[end] <= 0) --end;
+  const double first = peaks.along[begin], last = peaks.along[end];
   const auto point = [&](double along) -> Eigen::Vector2d {
     return axis.point(along) + (fit.offset + fit.slope * (along - fit.centre)) * axis.across;
   };
@@ -244,28 +302,29 @@ LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, 
 Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
                              const Eigen::Vector2d& b) {
   const Axis axis(0.5 * (a + b), b - a);
-  return edgeSign(EdgeSampler(image, ground), axis, 0.5 * (b - a).norm()) * axis.across;
+  return edgeSign(EdgeSampler(image, ground, axis), 0.5 * (b - a).norm()) * axis.across;
 }
 
 std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const RoughSegment& rough,
                                       double min_gradient) {
-  const EdgeSampler sampler(image, ground);
   Axis axis(0.5 * (rough.a + rough.b), rough.b - rough.a);
   double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
   const EdgeKind kind{axis.across.dot(rough.brighter) >= 0 ? 1 : -1, min_gradient};
+  Peaks peaks;
   for (const int reach : {2, 1}) {
-    Collected found = collect(sampler, axis, from, to, kind, reach);
-    std::vector<Peak>& peaks = found.peaks;
-    if (static_cast<int>(peaks.size()) < kMinStations) return std::nullopt;
+    const EdgeSampler sampler(image, ground, axis);
+    collect(sampler, from, to, kind, reach, peaks);
+    if (peaks.size() < kMinStations) return std::nullopt;
     double scale = 0;
     const Fit fit = fitRobustly(peaks, scale);
-    const auto used = std::count_if(peaks.begin(), peaks.end(), [](const Peak& p) { return p.weight > 0; });
-    if (used < kMinStations || used < kMinSupport * found.stations || scale > kMaxScatter)
+    const auto used = (peaks.weight > 0).count();
+    if (used < kMinStations || used < kMinSupport * peaks.stations || scale > kMaxScatter)
       return std::nullopt;
     if (reach == 1) return finish(axis, peaks, fit, kind.sign);
     axis = Axis(axis.point(fit.centre) + fit.offset * axis.across, axis.along + fit.slope * axis.across);
-    from = grow(sampler, axis, from - fit.centre, -kGrowStep, kind);
-    to = grow(sampler, axis, to - fit.centre, kGrowStep, kind);
+    const EdgeSampler refined(image, ground, axis);
+    from = grow(refined, from - fit.centre, -kGrowStep, kind);
+    to = grow(refined, to - fit.centre, kGrowStep, kind);
   }
   return std::nullopt;
 }
