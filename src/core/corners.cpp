@@ -18,6 +18,16 @@ struct Candidate {
   short x, y;
 };
 
+/// Appends the maxima of a row inside the mask and returns the end. Every pixel is written and only the end
+/// tells which ones stay: where maxima are a processor cannot guess. There must be room for all.
+Candidate* addMaxima(const float* maxima, const uchar* allowed, int columns, int row, Candidate* end) {
+  for (int u = 2; u + 2 < columns; ++u) {
+    *end = {maxima[u], static_cast<short>(u), static_cast<short>(row)};
+    end += static_cast<int>(maxima[u] > 0) & static_cast<int>(allowed[u] != 0);
+  }
+  return end;
+}
+
 /// Local maxima of the Harris response inside the mask, by rows, with a response of at least quality times
 /// the strongest one.
 std::vector<Candidate> localMaxima(const cv::Mat& image, const cv::Mat& mask, double quality,
@@ -25,22 +35,16 @@ std::vector<Candidate> localMaxima(const cv::Mat& image, const cv::Mat& mask, do
   HarrisRows harris(image, harris_k);
   std::vector<Candidate> maxima;
   size_t count = 0;
-  float strongest = 0;
   for (int v = 2; v + 2 < image.rows; ++v) {
     harris.compute(v);
     if (v < 4) continue;
-    const float* row = harris.maxima(v - 1);
-    const uchar* allowed = mask.ptr<uchar>(v - 1);
-    // Written everywhere and kept where it counts: where maxima are is not to be guessed.
     if (maxima.size() < count + image.cols) maxima.resize(2 * (count + image.cols));
-    for (int u = 2; u + 2 < image.cols; ++u) {
-      maxima[count] = {row[u], static_cast<short>(u), static_cast<short>(v - 1)};
-      const bool counts = (row[u] > 0) & (allowed[u] != 0);
-      count += counts ? 1 : 0;
-      strongest = std::max(strongest, counts ? row[u] : 0.F);
-    }
+    count = addMaxima(harris.maxima(v - 1), mask.ptr<uchar>(v - 1), image.cols, v - 1, &maxima[count]) -
+            maxima.data();
   }
   maxima.resize(count);
+  float strongest = 0;
+  for (const Candidate& candidate : maxima) strongest = std::max(strongest, candidate.response);
   const float threshold = static_cast<float>(quality) * strongest;
   maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
                               [threshold](const Candidate& c) { return c.response < threshold; }),

@@ -1,12 +1,13 @@
 #include "uav_landing/runway_threshold.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "multiversion.h"
 #include "text.h"
 
 namespace uav_landing {
@@ -42,31 +43,55 @@ constexpr double kLeastStep = 8;       // grey levels where the pavement begins
 constexpr double kClearStep = 5;       // the same, in standard errors over the stretches
 constexpr double kFirstStep = 0.5;     // of the clearest step: a nearer one that is taken instead
 
+/// Grey levels across the runway, not finite outside the picture.
+using Across = std::array<float, kColumns>;
+
+/// Where a picture shows points of a line in space, origin + y direction; columns below 0 behind the camera.
+struct LineView {
+  Eigen::Vector3d origin, direction;
+  double fx, fy, cx, cy;
+};
+using Places = std::array<double, kColumns>;
+UAV_LANDING_MULTIVERSION void project(const LineView& line, const Places& y, Places& u, Places& v) {
+  const double x0 = line.origin.x(), y0 = line.origin.y(), z0 = line.origin.z();
+  const double dx = line.direction.x(), dy = line.direction.y(), dz = line.direction.z();
+  const double fx = line.fx, fy = line.fy, cx = line.cx, cy = line.cy;
+  for (int c = 0; c < kColumns; ++c) {
+    const double z = z0 + y[c] * dz;
+    const double column = fx * (x0 + y[c] * dx) / z + cx;
+    v[c] = fy * (y0 + y[c] * dy) / z + cy;
+    u[c] = z > 0 ? column : -1;
+  }
+}
+
 /// The runway as seen from above, one row for each pixel of distance.
 class TopView {
  public:
   TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
           const RunwayCrossSection& runway)
-      : image_(image), mask_(mask), rig_(rig), axes_(axes), runway_(runway), step_(1 / rig.fy) {
+      : image_(image), mask_(mask), rig_(rig), axes_(axes), step_(1 / rig.fy) {
+    for (int c = 0; c < kColumns; ++c)
+      across_[c] = runway.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway.width;
     // Stations lie evenly in the inverse of the distance, as pixels do.
     const double farthest = std::min(kFarthest, std::sqrt(kFootprint * runway.width / step_));
+    rows_.reserve(image.rows + image.cols);  // more pixels than any line through the picture has
     bool begun = false;
     for (int k = 0;; ++k) {
       const double inverse = 1 / kNearest - k * step_;
       if (inverse <= 1 / farthest) break;
-      std::vector<float> row(kColumns);
-      if (!sample(1 / inverse, row)) {
+      rows_.emplace_back();
+      if (sample(1 / inverse, rows_.back())) {
+        begun = true;
+        inverse_.push_back(inverse);
+      } else {
+        rows_.pop_back();
         if (begun) break;
-        continue;
       }
-      begun = true;
-      inverse_.push_back(inverse);
-      rows_.push_back(std::move(row));
     }
   }
 
   int size() const { return static_cast<int>(rows_.size()); }
-  const std::vector<float>& row(int k) const { return rows_[k]; }
+  const Across& row(int k) const { return rows_[k]; }
   /// Forward of the camera, in heights, of a station that need not be whole.
   double distance(double k) const { return 1 / (inverse_.front() - k * step_); }
   /// Of one station, in heights.
@@ -75,38 +100,40 @@ class TopView {
  private:
   static constexpr double kNearest = 0.5;  // heights
 
-  bool sample(double x, std::vector<float>& row) const {
+  bool sample(double x, Across& row) const {
+    Places columns, lines;
+    project({x * axes_.forward + axes_.down, axes_.left, rig_.fx, rig_.fy, rig_.cx, rig_.cy}, across_,
+            columns, lines);
     int inside = 0;
     for (int c = 0; c < kColumns; ++c) {
-      const double y = runway_.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway_.width;
-      const Eigen::Vector3d ray = x * axes_.forward + y * axes_.left + axes_.down;
-      row[c] = std::numeric_limits<float>::quiet_NaN();
-      if (ray.z() <= 0) continue;
-      const Eigen::Vector2d pixel = rig_.project(ray);
-      // Beside the camera pixels are farther out than an int can say.
-      if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image_.cols - 1 && pixel.y() < image_.rows - 1))
-        continue;
-      const int i = static_cast<int>(pixel.y()), j = static_cast<int>(pixel.x());
-      if (mask_.at<uchar>(i, j) == 0) continue;
-      const double s = pixel.x() - j, t = pixel.y() - i;
-      const uchar *above = image_.ptr<uchar>(i) + j, *below = image_.ptr<uchar>(i + 1) + j;
-      row[c] = static_cast<float>((1 - t) * ((1 - s) * above[0] + s * above[1]) +
-                                  t * ((1 - s) * below[0] + s * below[1]));
-      ++inside;
+      row[c] = greyAt(columns[c], lines[c]);
+      inside += std::isnan(row[c]) ? 0 : 1;
     }
     return inside >= kLeastPicture * kColumns;
+  }
+
+  float greyAt(double u, double v) const {
+    // Beside the camera pixels are farther out than an int can say.
+    if (!(u >= 0 && v >= 0 && u < image_.cols - 1 && v < image_.rows - 1))
+      return std::numeric_limits<float>::quiet_NaN();
+    const int i = static_cast<int>(v), j = static_cast<int>(u);
+    if (mask_.at<uchar>(i, j) == 0) return std::numeric_limits<float>::quiet_NaN();
+    const double s = u - j, t = v - i;
+    const uchar *above = image_.ptr<uchar>(i) + j, *below = image_.ptr<uchar>(i + 1) + j;
+    return static_cast<float>((1 - t) * ((1 - s) * above[0] + s * above[1]) +
+                              t * ((1 - s) * below[0] + s * below[1]));
   }
 
   const cv::Mat &image_, &mask_;
   const StereoRig& rig_;
   const GroundAxes& axes_;
-  const RunwayCrossSection& runway_;
   double step_;
+  Places across_;  // left of the camera, in heights
   std::vector<double> inverse_;
-  std::vector<std::vector<float>> rows_;
+  std::vector<Across> rows_;
 };
 
-double meanOf(const std::vector<float>& row) {
+double meanOf(const Across& row) {
   double sum = 0;
   int count = 0;
   for (const float value : row) {
@@ -118,23 +145,30 @@ double meanOf(const std::vector<float>& row) {
 }
 
 /// Mean of the stations around k.
-std::vector<float> blockAround(const TopView& view, int k) {
-  std::vector<float> block(kColumns, 0.F);
-  for (int i = k - kBlock; i <= k + kBlock; ++i)
-    for (int c = 0; c < kColumns; ++c) block[c] += view.row(i)[c] / (2 * kBlock + 1);
+Across blockAround(const TopView& view, int k) {
+  Across block = view.row(k - kBlock);
+  for (int i = k - kBlock + 1; i <= k + kBlock; ++i)
+    for (int c = 0; c < kColumns; ++c) block[c] += view.row(i)[c];
+  for (float& value : block) value /= 2 * kBlock + 1;
   return block;
 }
 
-/// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars.
-double barContrast(const std::vector<float>& pattern) {
-  std::vector<float> sorted;
-  std::copy_if(pattern.begin(), pattern.end(), std::back_inserter(sorted),
-               [](float value) { return std::isfinite(value); });
-  if (sorted.size() < kLeastPicture * kColumns) return 0;
-  std::sort(sorted.begin(), sorted.end());
-  const float dark = sorted[sorted.size() / 8], light = sorted[sorted.size() - 1 - sorted.size() / 8];
+/// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars, or of less contrast.
+double barContrast(const Across& pattern, double least) {
+  Across known;
+  const auto end = std::copy_if(pattern.begin(), pattern.end(), known.begin(),
+                                [](float value) { return std::isfinite(value); });
+  const std::ptrdiff_t count = end - known.begin();
+  if (count < kLeastPicture * kColumns) return 0;
+  // Most of the runway is nearly of one grey.
+  const auto [darkest, lightest] = std::minmax_element(known.begin(), end);
+  if (*lightest - *darkest < least) return 0;
+  const auto from_below = known.begin() + count / 8, from_above = end - 1 - count / 8;
+  std::nth_element(known.begin(), from_below, end);
+  std::nth_element(from_below, from_above, end);
+  const float dark = *from_below, light = *from_above;
   const float contrast = light - dark;
-  if (contrast < kLeastContrast) return 0;
+  if (contrast < least) return 0;
   int flips = 0, last = 0, state = 0, gap = 0;
   for (int c = 0; c < kColumns; ++c) {
     if (!std::isfinite(pattern[c])) {
@@ -167,7 +201,7 @@ double commonLength(std::vector<double>& lengths, double tolerance, int fewest) 
 
 /// From bar to bar, in columns; 0 when they are not evenly apart or not equally wide: the marks of the
 /// aiming point with the centre line between them are no zebra.
-double pitchOf(const std::vector<float>& pattern) {
+double pitchOf(const Across& pattern) {
   const double level = meanOf(pattern);
   std::vector<double> pitches, widths;
   double rise = std::numeric_limits<double>::quiet_NaN();
@@ -185,7 +219,7 @@ double pitchOf(const std::vector<float>& pattern) {
 }
 
 /// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.
-double share(const std::vector<float>& pattern, const std::vector<float>& row) {
+double share(const Across& pattern, const Across& row) {
   const double pattern_mean = meanOf(pattern), row_mean = meanOf(row);
   double product = 0, square = 0;
   for (int c = 0; c < kColumns; ++c) {
@@ -198,7 +232,7 @@ double share(const std::vector<float>& pattern, const std::vector<float>& row) {
 }
 
 /// Correlation of two patterns across the runway.
-double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+double correlation(const Across& a, const Across& b) {
   const double product = share(a, b) * share(b, a);
   return share(a, b) > 0 ? std::sqrt(std::max(0.0, product)) : 0;
 }
@@ -223,8 +257,8 @@ bool areBars(const TopView& view, const Bars& bars) {
   const auto block = [&](int k) {
     return blockAround(view, std::clamp(k, kBlock, view.size() - 1 - kBlock));
   };
-  const std::vector<float> near = block(first + quarter), far = block(last - quarter);
-  std::vector<float> mirrored = near;
+  const Across near = block(first + quarter), far = block(last - quarter);
+  Across mirrored = near;
   std::reverse(mirrored.begin(), mirrored.end());
   return correlation(near, far) >= kLeastLikeness && correlation(near, mirrored) >= kLeastLikeness;
 }
@@ -233,13 +267,13 @@ std::optional<Bars> findBars(const TopView& view) {
   int anchor = -1;
   Bars bars;
   for (int k = kBlock; k + kBlock < view.size(); ++k) {
-    const double contrast = barContrast(blockAround(view, k));
+    const double contrast = barContrast(blockAround(view, k), std::max(kLeastContrast, bars.contrast));
     if (contrast <= bars.contrast) continue;
     bars.contrast = contrast;
     anchor = k;
   }
   if (anchor < 0) return std::nullopt;
-  const std::vector<float> pattern = blockAround(view, anchor);
+  const Across pattern = blockAround(view, anchor);
   bars.pitch = pitchOf(pattern);
   if (bars.pitch == 0) return std::nullopt;
   const auto follow = [&](int step, double& place) {
