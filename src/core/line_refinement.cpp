@@ -62,14 +62,23 @@ struct Axis {
     across = {-along.y(), along.x()};
   }
   Eigen::Vector2d point(double distance) const { return origin + distance * along; }
-  /// Distance along at a row (of a steep line) or column (of a flat one).
-  double alongAt(int station) const { return (station - origin[major]) / along[major]; }
+};
+
+/// A vector's parts along the image axis that a line runs along, and along the other one.
+struct Parts {
+  double major, minor;
+
+  Parts(const Eigen::Vector2d& v, const Axis& axis) : major(v[axis.major]), minor(v[axis.minor]) {}
+  double dot(double other_major, double other_minor) const {
+    return major * other_major + minor * other_minor;
+  }
 };
 
 /// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
 /// interpolating between them biases the peak by up to 0.1 px.
 struct Station {
-  cv::Point pixel;           ///< nearest to the line
+  int number;                ///< row or column
+  int centre;                ///< column or row of the pixel nearest to the line
   const uchar* grey;         ///< of that pixel
   std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
 
@@ -81,13 +90,17 @@ struct Station {
 class EdgeSampler {
  public:
   EdgeSampler(const cv::Mat& image, const cv::Mat& ground, const Axis& axis)
-      : image_(image),
-        ground_(ground),
+      : image_(image.ptr<uchar>()),
+        ground_(ground.ptr<uchar>()),
         axis_(axis),
-        scale_(0.5 / axis.across[axis.minor]),
+        origin_(axis.origin, axis),
+        along_(axis.along, axis),
+        across_(axis.across, axis),
+        scale_(0.5 / across_.minor),
         size_(axis.minor == 0 ? image.cols : image.rows),
         stations_(axis.minor == 0 ? image.rows : image.cols),
-        neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)) {}
+        image_step_(axis, image),
+        ground_step_(axis, ground) {}
 
   const Axis& axis() const { return axis_; }
   /// From twice the gradient along a row or column to that across the line, grey/px, positive when brighter
@@ -96,21 +109,36 @@ class EdgeSampler {
 
   /// Nothing outside image and ground.
   std::optional<Station> at(int station) const {
-    const int centre = cvRound(axis_.point(axis_.alongAt(station))[axis_.minor]);
-    const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
+    const int centre = cvRound(origin_.minor + along_.minor * ((station - origin_.major) / along_.major));
     constexpr int kReach = kRadius + 1;
     if (centre < kReach || centre >= size_ - kReach || station < 0 || station >= stations_ ||
-        ground_.at<uchar>(pixel) == 0)
+        ground_[ground_step_.to(station, centre)] == 0)
       return std::nullopt;
-    return Station{pixel, image_.ptr<uchar>(pixel.y) + pixel.x, neighbour_};
+    return Station{station, centre, image_ + image_step_.to(station, centre), image_step_.minor};
+  }
+  /// Of an edge this far from the station's pixel.
+  Peak peak(const Station& station, double distance, double gradient) const {
+    const double major = station.number - origin_.major;
+    const double minor = station.centre + distance - origin_.minor;
+    return {along_.dot(major, minor), across_.dot(major, minor), gradient};
   }
 
  private:
-  const cv::Mat &image_, &ground_;
+  struct Steps {
+    std::ptrdiff_t major, minor;
+
+    Steps(const Axis& axis, const cv::Mat& image)
+        : major(axis.major == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
+          minor(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)) {}
+    std::ptrdiff_t to(int station, int place) const { return station * major + place * minor; }
+  };
+
+  const uchar *image_, *ground_;
   const Axis& axis_;
+  Parts origin_, along_, across_;
   double scale_;
   int size_, stations_;  // of the image, across and along
-  std::ptrdiff_t neighbour_;
+  Steps image_step_, ground_step_;
 };
 
 /// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
@@ -133,11 +161,8 @@ std::optional<Peak> findPeak(const EdgeSampler& sampler, int station, const Edge
   }
   const auto g = [&](int k) { return scale * sample->twiceGradient(k); };
   if (std::abs(best) > reach || g(best) < kind.min_gradient) return std::nullopt;
-  const Axis& axis = sampler.axis();
-  Eigen::Vector2d p(sample->pixel.x, sample->pixel.y);
-  p[axis.minor] += best + 0.5 * (g(best - 1) - g(best + 1)) / (g(best - 1) - 2 * g(best) + g(best + 1));
-  p -= axis.origin;
-  return Peak{axis.along.dot(p), axis.across.dot(p), g(best)};
+  const double before = g(best - 1), after = g(best + 1);
+  return sampler.peak(*sample, best + 0.5 * (before - after) / (before - 2 * g(best) + after), g(best));
 }
 
 /// Peaks at the rows or columns between two distances along the line.

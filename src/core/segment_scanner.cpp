@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <opencv2/core/hal/intrin.hpp>
+
+#include "multiversion.h"
 
 namespace uav_landing {
 
@@ -15,6 +19,7 @@ constexpr double kMaxSlope = 1.1;    // px to the side a row; what is flatter be
 constexpr int kFirstLook = 3;        // stations to each side after which texture is mostly told
 constexpr int kDense = 8;            // stations to each side after which every other row will do
 constexpr double kLeastShare = 0.8;  // of stations that show the edge
+constexpr double kLargestResponse = 4 * 255 * 2;  // across and along together
 
 /// Straight line u = u0 + slope v through the stations seen so far, by least squares; v from the start.
 class GrowingLine {
@@ -46,10 +51,73 @@ class GrowingLine {
   double first_slope_, slope_, offset_ = 0;
 };
 
+/// 3x3 Sobel responses of the middle one of three rows.
+UAV_LANDING_MULTIVERSION void sobel(const uchar* __restrict a, const uchar* __restrict b,
+                                    const uchar* __restrict c, int columns, short* __restrict across,
+                                    short* __restrict along) {
+  for (int u = 1; u < columns - 1; ++u) {
+    const int left = a[u - 1] + 2 * b[u - 1] + c[u - 1], right = a[u + 1] + 2 * b[u + 1] + c[u + 1];
+    const int above = a[u - 1] + 2 * a[u] + a[u + 1], below = c[u - 1] + 2 * c[u] + c[u + 1];
+    across[u] = static_cast<short>(right - left);
+    along[u] = static_cast<short>(below - above);
+  }
+}
+
+/// 1 where the response across the row is a maximum of at least this strength in all, and not less than that
+/// along the row; at 2 .. columns - 3.
+UAV_LANDING_MULTIVERSION void markStarts(const short* __restrict across, const short* __restrict along,
+                                         int columns, short least, uchar* __restrict starts) {
+  const auto size = [](short s) { return static_cast<short>(s < 0 ? -s : s); };
+  for (int u = 2; u < columns - 2; ++u) {
+    const short here = size(across[u]), side = size(along[u]);
+    const short before = size(across[u - 1]), after = size(across[u + 1]);
+    const bool strong = static_cast<short>(here + side) >= least && here >= side;
+    starts[u] = static_cast<uchar>(strong && before < here && after <= here);
+  }
+}
+
+/// The image's columns as rows, 16 x 16 pixels at a time: interleaving the upper half of the rows with the
+/// lower one four times turns rows into columns.
+void transpose(const cv::Mat& image, cv::Mat& transposed) {
+  constexpr int kBlock = 16;
+  transposed.create(image.cols, image.rows, CV_8UC1);
+  const int rows = image.rows - image.rows % kBlock, columns = image.cols - image.cols % kBlock;
+  for (int v = 0; v < rows; v += kBlock)
+    for (int u = 0; u < columns; u += kBlock) {
+      cv::v_uint8x16 block[kBlock], mixed[kBlock];
+      for (int i = 0; i < kBlock; ++i) block[i] = cv::v_load(image.ptr<uchar>(v + i) + u);
+      for (int round = 0; round < 2; ++round) {
+        for (int i = 0; i < kBlock / 2; ++i)
+          cv::v_zip(block[i], block[i + kBlock / 2], mixed[2 * i], mixed[2 * i + 1]);
+        for (int i = 0; i < kBlock / 2; ++i)
+          cv::v_zip(mixed[i], mixed[i + kBlock / 2], block[2 * i], block[2 * i + 1]);
+      }
+      for (int i = 0; i < kBlock; ++i) cv::v_store(transposed.ptr<uchar>(u + i) + v, block[i]);
+    }
+  for (int v = 0; v < image.rows; ++v)
+    for (int u = v < rows ? columns : 0; u < image.cols; ++u)
+      transposed.at<uchar>(u, v) = image.at<uchar>(v, u);
+}
+
+/// Where edges may be, in an image or in a transposed one.
+class Ground {
+ public:
+  Ground(const cv::Mat& mask, bool transposed)
+      : mask_(mask.ptr<uchar>()),
+        along_row_(transposed ? static_cast<std::ptrdiff_t>(mask.step) : 1),
+        to_next_row_(transposed ? 1 : static_cast<std::ptrdiff_t>(mask.step)) {}
+
+  bool has(int u, int v) const { return mask_[u * along_row_ + v * to_next_row_] != 0; }
+
+ private:
+  const uchar* mask_;
+  std::ptrdiff_t along_row_, to_next_row_;
+};
+
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
 class SteepEdges {
  public:
-  SteepEdges(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits, cv::Mat& taken)
+  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, cv::Mat& taken)
       : image_(image),
         ground_(ground),
         limits_(limits),
@@ -63,20 +131,25 @@ class SteepEdges {
   /// Follows the edges that cross the scan rows. emit(u0, v0, u1, v1, sign): sign is that of the gradient
   /// along the rows.
   template <class Emit>
-  void scan(std::vector<short>& across, std::vector<short>& along, const Emit& emit) {
-    across.resize(image_.cols);
-    along.resize(image_.cols);
+  void scan(std::vector<short>& across, std::vector<short>& along, std::vector<uchar>& starts,
+            const Emit& emit) {
+    across.assign(image_.cols, 0);
+    along.assign(image_.cols, 0);
+    starts.assign(image_.cols, 0);
+    const short least = static_cast<short>(std::min(std::ceil(limits_.high), kLargestResponse));
     for (int row = 0, v = spacing_ / 2; v < image_.rows; ++row, v += spacing_) {
       if (v < 1 || v + 1 >= image_.rows) continue;
-      sobel(v, across.data(), along.data());
-      const uchar* ground = ground_.ptr<uchar>(v);
+      sobel(image_.ptr<uchar>(v - 1), image_.ptr<uchar>(v), image_.ptr<uchar>(v + 1), image_.cols,
+            across.data(), along.data());
+      markStarts(across.data(), along.data(), image_.cols, least, starts.data());
       const uchar* taken = taken_.ptr<uchar>(row);
-      for (int u = 2; u + 2 < image_.cols; ++u) {
-        const int gu = across[u], strength = std::abs(gu);
-        if (strength + std::abs(along[u]) < limits_.high || strength < std::abs(along[u])) continue;
-        if (std::abs(across[u - 1]) >= strength || std::abs(across[u + 1]) > strength) continue;
-        const int sign = gu > 0 ? 1 : -1;
-        if (ground[u] == 0 || (taken[u] & bit(sign)) != 0 || !isStraightAt(u, v, gu, along[u])) continue;
+      const auto next = [&](int from) {
+        const void* start = std::memchr(&starts[from], 1, starts.size() - from);
+        return start ? static_cast<int>(static_cast<const uchar*>(start) - starts.data()) : image_.cols;
+      };
+      for (int u = next(0); u < image_.cols; u = next(u + 1)) {
+        const int gu = across[u], sign = gu > 0 ? 1 : -1;
+        if (!ground_.has(u, v) || (taken[u] & bit(sign)) != 0 || !isStraightAt(u, v, gu, along[u])) continue;
         follow(u, v, sign, -static_cast<double>(along[u]) / gu, emit);
       }
     }
@@ -84,20 +157,6 @@ class SteepEdges {
 
  private:
   static int bit(int sign) { return sign > 0 ? 1 : 2; }
-
-  void sobel(int v, short* across, short* along) const {
-    const uchar *a = image_.ptr<uchar>(v - 1), *b = image_.ptr<uchar>(v), *c = image_.ptr<uchar>(v + 1);
-    const int last = image_.cols - 1;
-    across[0] = along[0] = across[last] = along[last] = 0;
-    for (int u = 1; u < last; ++u) {
-      const short left = static_cast<short>(a[u - 1] + 2 * b[u - 1] + c[u - 1]);
-      const short right = static_cast<short>(a[u + 1] + 2 * b[u + 1] + c[u + 1]);
-      const short above = static_cast<short>(a[u - 1] + 2 * a[u] + a[u + 1]);
-      const short below = static_cast<short>(c[u - 1] + 2 * c[u] + c[u + 1]);
-      across[u] = static_cast<short>(right - left);
-      along[u] = static_cast<short>(below - above);
-    }
-  }
 
   /// Whether the gradient keeps direction and strength for several pixels along the edge; texture does not.
   bool isStraightAt(int u, int v, int gu, int gv) const {
@@ -139,7 +198,7 @@ class SteepEdges {
       strongest = step;
       best = middle - 1 + k;
     }
-    return best >= 0 && ground_.at<uchar>(v, best) != 0 ? best : -1;
+    return best >= 0 && ground_.has(best, v) ? best : -1;
   }
 
   template <class Emit>
@@ -191,7 +250,8 @@ class SteepEdges {
     }
   }
 
-  const cv::Mat &image_, &ground_;
+  const cv::Mat& image_;
+  const Ground ground_;
   const EdgeLimits& limits_;
   cv::Mat& taken_;
   int spacing_;  // of the scan rows
@@ -203,14 +263,13 @@ class SteepEdges {
 std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::Mat& ground,
                                                const EdgeLimits& limits) {
   std::vector<RoughSegment> segments;
-  SteepEdges(image, ground, limits, taken_)
-      .scan(across_, along_, [&](double u0, double v0, double u1, double v1, double sign) {
+  SteepEdges(image, Ground(ground, false), limits, taken_)
+      .scan(across_, along_, starts_, [&](double u0, double v0, double u1, double v1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
       });
-  cv::transpose(image, image_);
-  cv::transpose(ground, ground_);
-  SteepEdges(image_, ground_, limits, taken_)
-      .scan(across_, along_, [&](double v0, double u0, double v1, double u1, double sign) {
+  transpose(image, transposed_);
+  SteepEdges(transposed_, Ground(ground, true), limits, taken_)
+      .scan(across_, along_, starts_, [&](double v0, double u0, double v1, double u1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {0, sign}});
       });
   return segments;

@@ -28,8 +28,9 @@ class SegmentScanner {
   std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
 
  private:
-  cv::Mat image_, ground_;  // transposed
-  std::vector<short> across_, along_;
+  cv::Mat transposed_;
+  std::vector<short> across_, along_;  // of one row
+  std::vector<uchar> starts_;
   cv::Mat taken_;
 };
 
