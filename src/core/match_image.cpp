@@ -1,6 +1,6 @@
 #include "uav_landing/match_image.h"
 
-#include <opencv2/imgproc.hpp>
+#include "smoothing.h"
 
 namespace uav_landing {
 
@@ -13,13 +13,13 @@ int coarseFactor(const cv::Size& size) {
 
 void MatchImage::assign(const cv::Mat& image) {
   factor = coarseFactor(image.size());
-  image.convertTo(fine, CV_32F);
-  if (factor > 1) {
-    cv::resize(fine, coarse, cv::Size(image.cols / factor, image.rows / factor), 0, 0, cv::INTER_AREA);
-    cv::GaussianBlur(coarse, coarse, cv::Size(3, 3), 0.7);
+  smooth(image, fine);
+  if (factor == 1) {
+    coarse = fine;
+  } else {
+    reduce(image, factor, reduced);
+    smooth(reduced, coarse);
   }
-  cv::GaussianBlur(fine, fine, cv::Size(3, 3), 0.7);
-  if (factor == 1) coarse = fine;
 }
 
 }  // namespace uav_landing

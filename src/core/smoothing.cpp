@@ -1,0 +1,94 @@
+#include "smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "multiversion.h"
+
+namespace uav_landing {
+namespace {
+
+/// Weights of a pixel and of each of its two neighbours.
+struct Kernel {
+  float middle, side;
+};
+
+Kernel gaussian(double sigma) {
+  const double side = std::exp(-0.5 / (sigma * sigma)), sum = 1 + 2 * side;
+  return {static_cast<float>(1 / sum), static_cast<float>(side / sum)};
+}
+
+/// One row of the result from three of the image. columns: mixed vertically, with a place before the first
+/// and one behind the last.
+template <class Pixel>
+inline void smoothRow(const Pixel* above, const Pixel* row, const Pixel* below, int size, Kernel kernel,
+                      float* __restrict columns, float* __restrict out) {
+  for (int u = 0; u < size; ++u)
+    columns[u + 1] =
+        kernel.middle * static_cast<float>(row[u]) + kernel.side * static_cast<float>(above[u] + below[u]);
+  columns[0] = columns[2];
+  columns[size + 1] = columns[size - 1];
+  for (int u = 0; u < size; ++u)
+    out[u] = kernel.middle * columns[u + 1] + kernel.side * (columns[u] + columns[u + 2]);
+}
+UAV_LANDING_MULTIVERSION void smoothRowOf8Bit(const uchar* above, const uchar* row, const uchar* below,
+                                              int size, Kernel kernel, float* columns, float* out) {
+  smoothRow(above, row, below, size, kernel, columns, out);
+}
+UAV_LANDING_MULTIVERSION void smoothRowOfFloat(const float* above, const float* row, const float* below,
+                                               int size, Kernel kernel, float* columns, float* out) {
+  smoothRow(above, row, below, size, kernel, columns, out);
+}
+
+UAV_LANDING_MULTIVERSION void addRow(const uchar* __restrict row, int size, std::uint16_t* __restrict sums) {
+  for (int u = 0; u < size; ++u) sums[u] = static_cast<std::uint16_t>(sums[u] + row[u]);
+}
+UAV_LANDING_MULTIVERSION void meanOfTwo(const std::uint16_t* __restrict sums, int size, float scale,
+                                        float* __restrict out) {
+  for (int u = 0; u < size; ++u) out[u] = scale * static_cast<float>(sums[2 * u] + sums[2 * u + 1]);
+}
+void meanOfMore(const std::uint16_t* sums, int size, int factor, float scale, float* out) {
+  for (int u = 0; u < size; ++u) {
+    int sum = 0;
+    for (int k = 0; k < factor; ++k) sum += sums[u * factor + k];
+    out[u] = scale * static_cast<float>(sum);
+  }
+}
+
+}  // namespace
+
+void smooth(const cv::Mat& image, cv::Mat& smoothed) {
+  static const Kernel kernel = gaussian(0.7);
+  smoothed.create(image.size(), CV_32FC1);
+  std::vector<float> columns(image.cols + 2);
+  for (int v = 0; v < image.rows; ++v) {
+    const int above = cv::borderInterpolate(v - 1, image.rows, cv::BORDER_REFLECT_101);
+    const int below = cv::borderInterpolate(v + 1, image.rows, cv::BORDER_REFLECT_101);
+    float* out = smoothed.ptr<float>(v);
+    if (image.depth() == CV_8U)
+      smoothRowOf8Bit(image.ptr<uchar>(above), image.ptr<uchar>(v), image.ptr<uchar>(below), image.cols,
+                      kernel, columns.data(), out);
+    else
+      smoothRowOfFloat(image.ptr<float>(above), image.ptr<float>(v), image.ptr<float>(below), image.cols,
+                       kernel, columns.data(), out);
+  }
+}
+
+void reduce(const cv::Mat& image, int factor, cv::Mat& reduced) {
+  reduced.create(image.rows / factor, image.cols / factor, CV_32FC1);
+  const float scale = 1.F / static_cast<float>(factor * factor);
+  std::vector<std::uint16_t> sums(static_cast<size_t>(reduced.cols) * factor);
+  for (int v = 0; v < reduced.rows; ++v) {
+    std::fill(sums.begin(), sums.end(), std::uint16_t(0));
+    for (int k = 0; k < factor; ++k)
+      addRow(image.ptr<uchar>(v * factor + k), static_cast<int>(sums.size()), sums.data());
+    if (factor == 2)
+      meanOfTwo(sums.data(), reduced.cols, scale, reduced.ptr<float>(v));
+    else
+      meanOfMore(sums.data(), reduced.cols, factor, scale, reduced.ptr<float>(v));
+  }
+}
+
+}  // namespace uav_landing
