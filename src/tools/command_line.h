@@ -6,6 +6,8 @@
 #include <regex>
 #include <string>
 
+#include "uav_landing/parameter_file.h"
+
 namespace uav_landing {
 
 /// Exit status of all programs.
@@ -33,6 +35,12 @@ inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv)
 inline int inputUnusable(const CLI::App& app, const std::string& message) {
   std::cerr << app.get_name() << ": " << message << '\n';
   return kInputUnusable;
+}
+
+/// The chain's parameters from --config, the defaults when it was not given.
+inline Expected<Parameters> parametersOf(const std::string& config) {
+  if (config.empty()) return Parameters();
+  return loadParameterFile(config);
 }
 
 /// Check for a camera namespace such as "stereo" or "uav1/stereo".

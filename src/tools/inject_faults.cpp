@@ -18,7 +18,6 @@
 #include "pending_file.h"
 #include "progress_bar.h"
 #include "random_approach.h"
-#include "uav_landing/parameter_file.h"
 #include "uav_landing/pipeline.h"
 
 namespace {
@@ -306,13 +305,9 @@ class Campaign {
 };
 
 int run(const CLI::App& app, const Options& options) {
-  Parameters parameters;
-  if (!options.config.empty()) {
-    const Expected<Parameters> loaded = loadParameterFile(options.config);
-    if (!loaded) return inputUnusable(app, loaded.error().detail);
-    parameters = *loaded;
-  }
-  Campaign(options, parameters).run();
+  const Expected<Parameters> parameters = parametersOf(options.config);
+  if (!parameters) return inputUnusable(app, parameters.error().detail);
+  Campaign(options, *parameters).run();
   return kDone;
 }
 

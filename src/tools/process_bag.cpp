@@ -11,7 +11,6 @@
 #include "report_data.h"
 #include "stereo_bag_reader.h"
 #include "timing_table.h"
-#include "uav_landing/parameter_file.h"
 
 namespace {
 
@@ -91,17 +90,13 @@ Failure processBag(const Options& options, const Parameters& parameters, Complai
 }
 
 int run(const CLI::App& app, const Options& options) {
-  Parameters parameters;
-  if (!options.config.empty()) {
-    const Expected<Parameters> loaded = loadParameterFile(options.config);
-    if (!loaded) return inputUnusable(app, loaded.error().detail);
-    parameters = *loaded;
-  }
+  const Expected<Parameters> parameters = parametersOf(options.config);
+  if (!parameters) return inputUnusable(app, parameters.error().detail);
   std::error_code none;
   if (!options.output.empty() && std::filesystem::equivalent(options.input, options.output, none))
     return inputUnusable(app, options.output + ": is the input");
   Complaints complain(app);
-  const Failure failure = processBag(options, parameters, complain);
+  const Failure failure = processBag(options, *parameters, complain);
   return failure ? inputUnusable(app, failure.detail) : kDone;
 }
 

@@ -12,7 +12,6 @@
 #include "progress_bar.h"
 #include "random_approach.h"
 #include "uav_landing/imu_buffer.h"
-#include "uav_landing/parameter_file.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
 namespace {
@@ -95,17 +94,13 @@ void flyApproaches(const Options& options, const Parameters& parameters, Campaig
 }
 
 int run(const CLI::App& app, const Options& options) {
-  Parameters parameters;
-  if (!options.config.empty()) {
-    const Expected<Parameters> loaded = loadParameterFile(options.config);
-    if (!loaded) return inputUnusable(app, loaded.error().detail);
-    parameters = *loaded;
-  }
+  const Expected<Parameters> parameters = parametersOf(options.config);
+  if (!parameters) return inputUnusable(app, parameters.error().detail);
   CampaignCsv csv(options.csv);
   if (options.kind == "snippets")
-    flySnippets(options, parameters, csv);
+    flySnippets(options, *parameters, csv);
   else
-    flyApproaches(options, parameters, csv);
+    flyApproaches(options, *parameters, csv);
   csv.finish();
   return kDone;
 }

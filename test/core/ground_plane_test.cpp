@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "support/rigs.h"
+
 namespace uav_landing {
 namespace {
 
@@ -27,16 +29,7 @@ Eigen::Vector3d seen(const Eigen::Matrix3d& runway_from_body, const Eigen::Vecto
   return {-body.y(), -body.z(), body.x()};
 }
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = 322;
-  rig.cy = 243;
-  rig.cx_right = 330;
-  rig.baseline = 0.65;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {322, 243}, 330, 0.65); }
 
 GroundPlane makePlane() {
   GroundPlane plane;

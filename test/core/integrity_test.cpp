@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "support/rigs.h"
 #include "uav_landing/consistency_tests.h"
 #include "uav_landing/height_memory.h"
 #include "uav_landing/kalman_height_stage.h"
@@ -14,15 +15,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 1.0;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// Matches on a grid over the ground of this plane.
 std::vector<StereoDepthResult::Point> matchesOn(const StereoRig& rig, const Eigen::Vector3d& g) {

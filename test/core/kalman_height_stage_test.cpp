@@ -6,21 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "support/rigs.h"
+
 namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kStep = 0.1;  // s between pairs
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 1.0;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// What stereo says of a plane at this height: 1 sigma of the height is height_stddev.
 StereoDepthResult stereoAt(double stamp, double height, double pitch = -0.1, double roll = 0.05,

@@ -6,18 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "support/rigs.h"
+
 namespace uav_landing {
 namespace {
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 600;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 0.8;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 600, {320, 240}, 320, 0.8); }
 
 const Eigen::Vector3d kTruePlane = Eigen::Vector3d(0.02, 0.99, 0.06).normalized() / 12;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/rigs.h"
 #include "uav_landing/ground_plane.h"
 
 namespace uav_landing {
@@ -12,16 +13,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = 322;
-  rig.cy = 243;
-  rig.cx_right = 330;
-  rig.baseline = 0.65;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {322, 243}, 330, 0.65); }
 
 /// The pixel and disparity of a point in the left camera's frame, by projecting it into both cameras.
 StereoDepthResult::Point see(const StereoRig& rig, const Eigen::Vector3d& X) {

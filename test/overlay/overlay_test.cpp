@@ -5,22 +5,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "support/rigs.h"
+
 namespace uav_landing {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr int kGrey = 100;
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {320, 240};
-  rig.fx = rig.fy = 300;
-  rig.cx = 160;
-  rig.cx_right = 150;
-  rig.cy = 120;
-  rig.baseline = 0.5;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({320, 240}, 300, {160, 120}, 150, 0.5); }
 
 OverlayParameters twice() {
   OverlayParameters parameters;
