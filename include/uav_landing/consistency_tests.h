@@ -16,6 +16,7 @@ enum class Consistency {
   kPhotometric,
   kRowAgreement,
   kRigRotation,
+  kStandstill,
   kTilt,
   kVanishingPoint,
   kImu,
@@ -24,7 +25,7 @@ enum class Consistency {
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 11;
+constexpr int kConsistencyTests = 12;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.
@@ -36,6 +37,8 @@ class ConsistencyTests {
   void begin();
   /// One difference with its variance; nothing when they are not finite and positive.
   void add(Consistency test, double difference, double variance);
+  /// The same where only positive differences are wrong.
+  void addOneSided(Consistency test, double difference, double variance);
   /// The same for the largest of several differences.
   void addLargest(Consistency test, double difference, double variance, int count);
   /// Several numbers at once. difference: the size that is reported.

@@ -11,6 +11,7 @@
 #include "uav_landing/position_filter.h"
 #include "uav_landing/rig_rotation_filter.h"
 #include "uav_landing/solution_separation.h"
+#include "uav_landing/speed_memory.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/timings.h"
 #include "uav_landing/width_height.h"
@@ -79,6 +80,9 @@ class KalmanHeightStage {
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);
   void testRegions(const Reconstruction& reconstruction);
+  /// The way since the pair before against the speed on those before that.
+  void testStandstill(double T, const ApproachAngleResult::Motion& step,
+                      const Reconstruction& reconstruction);
   /// The ground's normal by stereo alone against the imu's direction of gravity.
   void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
   /// Why the pair is left out, or "".
@@ -127,6 +131,7 @@ class KalmanHeightStage {
   RigChange rig_change_;
   int pairs_failed_ = 0, pairs_passed_ = 0;  // tests of one pair: failures before and passes since, up to 3
   HeightMemory memory_;
+  SpeedMemory speed_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s

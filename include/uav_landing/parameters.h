@@ -237,6 +237,7 @@ struct KalmanHeightParameters {
   double integrity_risk = 1e-5;
   double fault_probability = 1e-3;
   double false_alarm_rate = 1e-5;
+  double max_deceleration = 3.0;
   double alert_limit = 0.15;
   double alert_limit_relative = 0.05;
   double unwatched_scale_error = 0.02;
@@ -295,6 +296,9 @@ struct KalmanHeightParameters {
              "with integrity_risk even then");
     v.number("false_alarm_rate", false_alarm_rate, 1e-12, 0.1, "per test and pair",
              "probability that a test fails without a fault, as far as the claimed variances are true");
+    v.number("max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
+             "by which the aircraft can lose speed over the ground: a picture that stands still sooner is "
+             "that of a camera that hangs");
     v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
              "the height is not valid when its protection level exceeds this and alert_limit_relative");
     v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height", "see alert_limit");

@@ -16,6 +16,8 @@ const char* toString(Consistency test) {
       return "row_agreement";
     case Consistency::kRigRotation:
       return "rig_rotation";
+    case Consistency::kStandstill:
+      return "standstill";
     case Consistency::kTilt:
       return "tilt";
     case Consistency::kVanishingPoint:
@@ -45,6 +47,11 @@ void ConsistencyTests::begin() {
 
 void ConsistencyTests::add(Consistency test, double difference, double variance) {
   addLargest(test, difference, variance, 1);
+}
+
+void ConsistencyTests::addOneSided(Consistency test, double difference, double variance) {
+  addLargest(test, difference, variance, 1);
+  if (difference < 0) of(test).ratio = 0;
 }
 
 void ConsistencyTests::addLargest(Consistency test, double difference, double variance, int count) {

@@ -87,6 +87,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
     tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
   const bool bent = tests_.failed(Consistency::kRigRotation);
   if (bent || pairs_failed_ == 0) rig_change_.learn(T, stereo.vertical_rotation, !bent);
+  testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
     tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.height,
@@ -118,8 +119,9 @@ void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePri
 }
 
 std::string KalmanHeightStage::problemOfPair() {
-  for (const Consistency test : {Consistency::kRepeatedImage, Consistency::kRowAgreement,
-                                 Consistency::kRigRotation, Consistency::kImageRegions}) {
+  for (const Consistency test :
+       {Consistency::kRepeatedImage, Consistency::kRowAgreement, Consistency::kRigRotation,
+        Consistency::kStandstill, Consistency::kImageRegions}) {
     if (!tests_.failed(test)) continue;
     pairs_failed_ = std::min(pairs_failed_ + 1, kConfirmations);
     pairs_passed_ = 0;
@@ -132,6 +134,22 @@ std::string KalmanHeightStage::problemOfPair() {
     return "";
   }
   return text(pairs_passed_, " of ", pairs_failed_, " pairs that pass the tests again");
+}
+
+void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction) {
+  // Whether the motion is certain enough for an angle does not matter here: that of a picture that stands
+  // still is not.
+  const Eigen::Vector3d& t = step.translation_over_height;
+  const double height = filter_.initialised() ? filter_.state()[0] : reconstruction.height;
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0))
+    return speed_.skip(std::max(T, 0.0));
+  // Of any direction: the length of a vector that is nothing but noise has none.
+  const SpeedMemory::Step way{step.duration, t.norm() * height, height * height * covariance.trace()};
+  const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(way);
+  if (shortfall) tests_.addOneSided(Consistency::kStandstill, shortfall->difference, shortfall->variance);
+  speed_.learn(way, !tests_.failed(Consistency::kStandstill));
 }
 
 void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {

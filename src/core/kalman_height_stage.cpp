@@ -59,7 +59,8 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       rig_rotation_(rig, parameters.rig_memory),
       width_(parameters.known_runway_width),
       separation_(parameters),
-      tests_(parameters.false_alarm_rate) {}
+      tests_(parameters.false_alarm_rate),
+      speed_(parameters.max_deceleration) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
@@ -123,6 +124,7 @@ void KalmanHeightStage::reset() {
   pairs_failed_ = pairs_passed_ = 0;
   if (filter_.initialised()) loseTrack();
   memory_.reset();
+  speed_.reset();
   last_stamp_.reset();
   lost_ = false;
 }

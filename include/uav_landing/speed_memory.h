@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+
+namespace uav_landing {
+
+/// The camera's speed on the pairs before: a picture that stands still while the aircraft cannot have stopped
+/// is that of a camera that hangs, even where noise or light make every image another one.
+class SpeedMemory {
+ public:
+  /// max_deceleration: m/s^2, by which the aircraft can lose speed.
+  explicit SpeedMemory(double max_deceleration) : max_deceleration_(max_deceleration) {}
+
+  /// By how much the camera moved since the pair before.
+  struct Step {
+    double duration = 0;           ///< s
+    double way = 0, variance = 0;  ///< m, m^2
+  };
+  /// By how much less the camera moved than it must have, and the variance of that.
+  struct Shortfall {
+    double difference = 0, variance = 0;  ///< m, negative when it moved enough; m^2
+  };
+  /// Against the slower of the two steps known last, less what can be lost since. A third of that way is
+  /// enough: late stamps make steps look longer or shorter than they were. None where it may have stopped.
+  std::optional<Shortfall> compare(const Step& step) const;
+  /// A step that agrees, as compared. One that does not leaves the speed as it was: the aircraft does not
+  /// slow down while its pictures stand still. After half a minute of it nothing is known.
+  void learn(const Step& step, bool agrees);
+  /// A pair that tells nothing of the motion. duration: s.
+  void skip(double duration) { since_ += duration; }
+  void reset() { *this = SpeedMemory(max_deceleration_); }
+
+ private:
+  struct Speed {
+    double mean = 0, variance = 0;  // m/s, m^2/s^2
+  };
+  double max_deceleration_;
+  std::optional<Speed> before_, last_;
+  double since_ = 0;         // s, since the last known step
+  double contradicted_ = 0;  // s
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,31 @@
+#include "uav_landing/speed_memory.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kShare = 0.3;      // of the expected way that is enough
+constexpr double kPatience = 30.0;  // s
+
+}  // namespace
+
+std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const Step& step) const {
+  if (!before_ || !last_) return std::nullopt;
+  const Speed& slower = before_->mean < last_->mean ? *before_ : *last_;
+  const double least = slower.mean - max_deceleration_ * (since_ + step.duration);
+  if (!(least > 0)) return std::nullopt;
+  const double share = kShare * step.duration;
+  return Shortfall{share * least - step.way, step.variance + share * share * slower.variance};
+}
+
+void SpeedMemory::learn(const Step& step, bool agrees) {
+  if (!agrees) {
+    contradicted_ += step.duration;
+    if (contradicted_ > kPatience) reset();
+    return;
+  }
+  contradicted_ = since_ = 0;
+  before_ = last_;
+  last_ = Speed{step.way / step.duration, step.variance / (step.duration * step.duration)};
+}
+
+}  // namespace uav_landing
