@@ -106,6 +106,7 @@ struct ApproachAngleParameters {
   double min_line_length = 0.04;
   double max_line_gap = 4.0;
   bool refine_lines = true;
+  bool stripe_centres = true;
   int ransac_iterations = 500;
   double ransac_tolerance = 1.5;
   int min_lines = 3;
@@ -149,6 +150,8 @@ struct ApproachAngleParameters {
     v.number("min_line_length", min_line_length, 0.01, 1.0, "image heights", "shortest line kept");
     v.number("max_line_gap", max_line_gap, 0.0, 50.0, "px", "gap inside a line that is bridged");
     v.flag("refine_lines", refine_lines, "fit each line to the gradient along it to sub-pixel");
+    v.flag("stripe_centres", stripe_centres,
+           "for the vanishing point, take the middle of a stripe so narrow that blur pushes its sides apart");
     v.number("ransac_iterations", ransac_iterations, 10, 10000, "", "pairs of lines tried");
     v.number("ransac_tolerance", ransac_tolerance, 0.1, 20.0, "px",
              "distance by which a line's far end may miss the vanishing point's line");

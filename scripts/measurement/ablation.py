@@ -19,6 +19,7 @@ VARIANTS = (
     ("flat surface ahead (`surface_curvature`)", {"stereo_depth": {"surface_curvature": False}}),
     ("no watch on the rig (`rig_watch`)", {"kalman_height": {"rig_watch": False}}),
     ("lines as Hough gives them (`refine_lines`)", {"approach_angle": {"refine_lines": False}}),
+    ("sides of narrow stripes as blur shows them (`stripe_centres`)", {"approach_angle": {"stripe_centres": False}}),
     ("plane without the vanishing point (`fuse_vanishing_point`)", {"kalman_height": {"fuse_vanishing_point": False}}),
     ("angle's normal from the vanishing points alone (`normal_source`)",
      {"approach_angle": {"normal_source": "vanishing_line"}}),

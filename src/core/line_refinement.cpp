@@ -1,68 +1,23 @@
 #include "line_refinement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "line_fit.h"
+
 namespace uav_landing {
+
+using namespace line_fit;
 
 namespace {
 
-constexpr int kRadius = 3;         // px to both sides, first pass
-constexpr int kMaxStations = 160;  // rows or columns looked at, roughly; a longer line skips some
+constexpr int kRadius = 3;  // px to both sides, first pass
 constexpr int kMinStations = 6;
-constexpr double kMinSupport = 0.6;    // share of stations that must show the edge
-constexpr double kMaxScatter = 0.6;    // px, 1 sigma of the peaks; more is no straight edge
-constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
-constexpr int kGrowStep = 2;           // rows or columns
-constexpr int kMaxMisses = 2;          // steps without edge at which a growing line ends
-constexpr double kMinScale = 0.05;     // px, scale of the robust weights
-
-/// Where the edge is at one station: distances along and across the current line, px, and its gradient,
-/// grey/px.
-struct Peak {
-  double along, across, gradient;
-};
-
-/// Of a value at each station; in the memory of the function that has it.
-using Values = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kMaxStations, 1>;
-
-/// The peaks along a line and their weights.
-struct Peaks {
-  int stations = 0;  ///< that were looked at
-  Values along, across, gradient, weight;
-
-  int size() const { return static_cast<int>(along.size()); }
-  /// Keeps what is there.
-  void resize(int size) {
-    along.conservativeResize(size);
-    across.conservativeResize(size);
-    gradient.conservativeResize(size);
-    weight.resize(size);
-  }
-  void set(int i, const Peak& peak) {
-    along[i] = peak.along;
-    across[i] = peak.across;
-    gradient[i] = peak.gradient;
-  }
-};
-
-/// Frame of a line: origin, direction along and (across) 90 degrees clockwise in the picture. Along points
-/// down, or to the right when the line is flat, so that stations are whole rows or columns in rising order.
-struct Axis {
-  Eigen::Vector2d origin, along, across;
-  int major, minor;  ///< image axis that the line runs along, and the other: 0 u, 1 v
-
-  Axis(const Eigen::Vector2d& point, const Eigen::Vector2d& direction)
-      : origin(point), along(direction.normalized()) {
-    major = std::abs(along.y()) >= std::abs(along.x()) ? 1 : 0;
-    minor = 1 - major;
-    if (along[major] < 0) along = -along;
-    across = {-along.y(), along.x()};
-  }
-  Eigen::Vector2d point(double distance) const { return origin + distance * along; }
-};
+constexpr double kMinSupport = 0.6;  // share of stations that must show the edge
+constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; more is no straight edge
+constexpr int kGrowStep = 2;         // rows or columns
+constexpr int kMaxMisses = 2;        // steps without edge at which a growing line ends
 
 /// A vector's parts along the image axis that a line runs along, and along the other one.
 struct Parts {
@@ -199,87 +154,6 @@ double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& k
   return end;
 }
 
-/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets, so that only the
-/// few in the middle one are put in order.
-double median(const Values& values) {
-  constexpr int kBuckets = 32;
-  constexpr double kNothing = 1e-30;
-  const double largest = values.maxCoeff();
-  if (!(largest > kNothing)) return largest;
-  const double scale = (kBuckets - 0.5) / largest;
-  std::array<int, kBuckets> counts{};
-  std::array<uchar, 2 * kMaxStations> bucket_of;
-  for (int i = 0; i < values.size(); ++i) {
-    bucket_of[i] = static_cast<uchar>(values[i] * scale);
-    ++counts[bucket_of[i]];
-  }
-  int rank = static_cast<int>(values.size() / 2), bucket = 0;
-  while (rank >= counts[bucket]) rank -= counts[bucket++];
-  std::array<double, 2 * kMaxStations> middle;
-  int count = 0;
-  for (int i = 0; i < values.size(); ++i) {
-    middle[count] = values[i];
-    count += bucket_of[i] == bucket ? 1 : 0;
-  }
-  std::nth_element(middle.begin(), middle.begin() + rank, middle.begin() + count);
-  return middle[rank];
-}
-
-/// Weighted straight line across = offset + slope (along - centre).
-struct Fit {
-  double centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
-
-  Values residuals(const Peaks& p) const { return p.across - offset - slope * (p.along - centre); }
-};
-
-Fit fitOnce(const Peaks& p) {
-  Fit f;
-  f.weight = p.weight.sum();
-  f.centre = (p.weight * p.along).sum() / f.weight;
-  f.offset = (p.weight * p.across).sum() / f.weight;
-  const Values x = p.along - f.centre, weighted = p.weight * x;
-  f.spread = (weighted * x).sum();
-  f.slope = (weighted * p.across).sum() / f.spread;
-  return f;
-}
-
-/// Iteratively reweighted: the peak's variance falls with the gradient squared, and Tukey's biweight
-/// removes stations at which something else was taken for the edge.
-Fit fitRobustly(Peaks& peaks, double& scale) {
-  const Values base = (peaks.gradient / median(peaks.gradient)).square().min(1.0);
-  peaks.weight = base;
-  Fit fit = fitOnce(peaks);
-  for (int i = 0; i < 3; ++i) {
-    const Values off = fit.residuals(peaks).abs();
-    scale = std::max(1.4826 * median(off), kMinScale);
-    const double inverse = 1 / (4.685 * scale);
-    peaks.weight = base * (1 - (off * inverse).min(1.0).square()).square();
-    fit = fitOnce(peaks);
-  }
-  return fit;
-}
-
-/// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
-/// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
-double stationVariance(const Peaks& peaks, const Fit& fit) {
-  const Values residuals = fit.residuals(peaks);
-  double squares = 0, products = 0, pairs = 0;
-  int used = 0;
-  for (int i = 0; i < peaks.size(); ++i) {
-    if (peaks.weight[i] <= 0) continue;
-    ++used;
-    const double r = residuals[i];
-    squares += peaks.weight[i] * r * r;
-    if (i == 0 || peaks.weight[i - 1] <= 0) continue;
-    const double w = std::sqrt(peaks.weight[i] * peaks.weight[i - 1]);
-    products += w * r * residuals[i - 1];
-    pairs += w;
-  }
-  const double variance = squares / fit.weight;
-  const double rho = pairs > 0 && variance > 0 ? std::clamp(products / pairs / variance, 0.0, 0.9) : 0;
-  return variance * used / std::max(used - 2, 1) * (1 + rho) / (1 - rho);
-}
-
 /// Sign of the edge: the one of which more gradient is found along the line.
 int edgeSign(const EdgeSampler& sampler, double half) {
   const Axis& axis = sampler.axis();
@@ -296,24 +170,6 @@ int edgeSign(const EdgeSampler& sampler, double half) {
       sum += sampler.scale() * (highest + lowest);
     }
   return sum >= 0 ? 1 : -1;
-}
-
-LineSegment finish(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign) {
-  int begin = 0, end = peaks.size() - 1;
-  while (peaks.weight[begin] <= 0) ++begin;
-  while (peaks.weight[end] <= 0) --end;
-  const double first = peaks.along[begin], last = peaks.along[end];
-  const auto point = [&](double along) -> Eigen::Vector2d {
-    return axis.point(along) + (fit.offset + fit.slope * (along - fit.centre)) * axis.across;
-  };
-  const double variance = stationVariance(peaks, fit);
-  const double off_centre = 0.5 * (first + last) - fit.centre;
-  const double angle_variance = variance / fit.spread + 12 * std::pow(kOffsetFloor / (last - first), 2);
-  const double offset_variance =
-      variance / fit.weight + off_centre * off_centre * variance / fit.spread + kOffsetFloor * kOffsetFloor;
-  const Eigen::Vector2d a = point(first), b = point(last);
-  return sign > 0 ? makeLineSegment(a, b, std::sqrt(offset_variance), std::sqrt(angle_variance))
-                  : makeLineSegment(b, a, std::sqrt(offset_variance), std::sqrt(angle_variance));
 }
 
 }  // namespace
@@ -345,7 +201,7 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
     const auto used = (peaks.weight > 0).count();
     if (used < kMinStations || used < kMinSupport * peaks.stations || scale > kMaxScatter)
       return std::nullopt;
-    if (reach == 1) return finish(axis, peaks, fit, kind.sign);
+    if (reach == 1) return segmentOf(axis, peaks, fit, kind.sign);
     axis = Axis(axis.point(fit.centre) + fit.offset * axis.across, axis.along + fit.slope * axis.across);
     const EdgeSampler refined(image, ground, axis);
     from = grow(refined, from - fit.centre, -kGrowStep, kind);

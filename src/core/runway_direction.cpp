@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "stripe_line.h"
 #include "uav_landing/ground_direction.h"
 #include "uav_landing/half_plane.h"
 
@@ -35,6 +36,14 @@ std::vector<LineSegment> linesOf(const cv::Mat& image, const cv::Mat& mask, cons
   return findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
 }
 
+std::vector<LineSegment> straight(const cv::Mat& image, const cv::Mat& mask,
+                                  const std::vector<LineSegment>& lines,
+                                  const ApproachAngleParameters& parameters, Timings& timings) {
+  if (!parameters.stripe_centres) return lines;
+  ScopedTimer timer(timings, "hough_transform");
+  return withoutStripeBias(image, mask, lines);
+}
+
 void report(const Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
             ApproachAngleResult::View& view) {
   for (size_t i = 0; i < lines.size(); ++i)
@@ -60,13 +69,17 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
   result.left_lines = linesOf(left, left_mask, K_left, normal, parameters, timings);
   result.right_lines = linesOf(right, right_mask, K_right, normal, parameters, timings);
 
+  const std::vector<LineSegment> left_lines =
+      straight(left, left_mask, result.left_lines, parameters, timings);
+  const std::vector<LineSegment> right_lines =
+      straight(right, right_mask, result.right_lines, parameters, timings);
+
   ScopedTimer timer(timings, "ransac");
-  Expected<VanishingPoint> in_left = findVanishingPoint(result.left_lines, K_left, parameters, normal);
-  Expected<VanishingPoint> in_right = findVanishingPoint(result.right_lines, K_right, parameters, normal);
+  Expected<VanishingPoint> in_left = findVanishingPoint(left_lines, K_left, parameters, normal);
+  Expected<VanishingPoint> in_right = findVanishingPoint(right_lines, K_right, parameters, normal);
   if (plane && (!in_left || !in_right)) {
-    const auto along =
-        findLinesAlong({{result.left_lines, K_left}, {result.right_lines, K_right}}, plane_normal,
-                       plane->normalCovariance(), parameters.max_yaw_deg * kDegree);
+    const auto along = findLinesAlong({{left_lines, K_left}, {right_lines, K_right}}, plane_normal,
+                                      plane->normalCovariance(), parameters.max_yaw_deg * kDegree);
     const auto retry = [&](Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
                            const Eigen::Matrix3d& K, const std::vector<char>& members) {
       if (point) return;
@@ -74,8 +87,8 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
       if (fitted) point = std::move(fitted);
     };
     if (along) {
-      retry(in_left, result.left_lines, K_left, along->front());
-      retry(in_right, result.right_lines, K_right, along->back());
+      retry(in_left, left_lines, K_left, along->front());
+      retry(in_right, right_lines, K_right, along->back());
     }
   }
   report(in_left, result.left_lines, result.left);

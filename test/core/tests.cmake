@@ -23,6 +23,7 @@ uav_landing_add_gtest(temporal_matching_test test/core/temporal_matching_test.cp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(motion_tracker_test test/core/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(stripe_line_test test/core/stripe_line_test.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(integrity_test test/core/integrity_test.cpp)

@@ -1,0 +1,108 @@
+#include "line_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/core.hpp>
+
+#include "line_refinement.h"
+
+namespace uav_landing::line_fit {
+
+namespace {
+
+constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
+constexpr double kMinScale = 0.05;     // px, scale of the robust weights
+
+/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets, so that only the
+/// few in the middle one are put in order.
+double median(const Values& values) {
+  constexpr int kBuckets = 32;
+  constexpr double kNothing = 1e-30;
+  const double largest = values.maxCoeff();
+  if (!(largest > kNothing)) return largest;
+  const double scale = (kBuckets - 0.5) / largest;
+  std::array<int, kBuckets> counts{};
+  std::array<uchar, 2 * kMaxStations> bucket_of;
+  for (int i = 0; i < values.size(); ++i) {
+    bucket_of[i] = static_cast<uchar>(values[i] * scale);
+    ++counts[bucket_of[i]];
+  }
+  int rank = static_cast<int>(values.size() / 2), bucket = 0;
+  while (rank >= counts[bucket]) rank -= counts[bucket++];
+  std::array<double, 2 * kMaxStations> middle;
+  int count = 0;
+  for (int i = 0; i < values.size(); ++i) {
+    middle[count] = values[i];
+    count += bucket_of[i] == bucket ? 1 : 0;
+  }
+  std::nth_element(middle.begin(), middle.begin() + rank, middle.begin() + count);
+  return middle[rank];
+}
+
+Fit fitOnce(const Peaks& p) {
+  Fit f;
+  f.weight = p.weight.sum();
+  f.centre = (p.weight * p.along).sum() / f.weight;
+  f.offset = (p.weight * p.across).sum() / f.weight;
+  const Values x = p.along - f.centre, weighted = p.weight * x;
+  f.spread = (weighted * x).sum();
+  f.slope = (weighted * p.across).sum() / f.spread;
+  return f;
+}
+
+/// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
+/// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
+double stationVariance(const Peaks& peaks, const Fit& fit) {
+  const Values residuals = fit.residuals(peaks);
+  double squares = 0, products = 0, pairs = 0;
+  int used = 0;
+  for (int i = 0; i < peaks.size(); ++i) {
+    if (peaks.weight[i] <= 0) continue;
+    ++used;
+    const double r = residuals[i];
+    squares += peaks.weight[i] * r * r;
+    if (i == 0 || peaks.weight[i - 1] <= 0) continue;
+    const double w = std::sqrt(peaks.weight[i] * peaks.weight[i - 1]);
+    products += w * r * residuals[i - 1];
+    pairs += w;
+  }
+  const double variance = squares / fit.weight;
+  const double rho = pairs > 0 && variance > 0 ? std::clamp(products / pairs / variance, 0.0, 0.9) : 0;
+  return variance * used / std::max(used - 2, 1) * (1 + rho) / (1 - rho);
+}
+
+}  // namespace
+
+Fit fitRobustly(Peaks& peaks, double& scale) {
+  const Values base = (peaks.gradient / median(peaks.gradient)).square().min(1.0);
+  peaks.weight = base;
+  Fit fit = fitOnce(peaks);
+  for (int i = 0; i < 3; ++i) {
+    const Values off = fit.residuals(peaks).abs();
+    scale = std::max(1.4826 * median(off), kMinScale);
+    const double inverse = 1 / (4.685 * scale);
+    peaks.weight = base * (1 - (off * inverse).min(1.0).square()).square();
+    fit = fitOnce(peaks);
+  }
+  return fit;
+}
+
+LineSegment segmentOf(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign) {
+  int begin = 0, end = peaks.size() - 1;
+  while (peaks.weight[begin] <= 0) ++begin;
+  while (peaks.weight[end] <= 0) --end;
+  const double first = peaks.along[begin], last = peaks.along[end];
+  const auto point = [&](double along) -> Eigen::Vector2d {
+    return axis.point(along) + (fit.offset + fit.slope * (along - fit.centre)) * axis.across;
+  };
+  const double variance = stationVariance(peaks, fit);
+  const double off_centre = 0.5 * (first + last) - fit.centre;
+  const double angle_variance = variance / fit.spread + 12 * std::pow(kOffsetFloor / (last - first), 2);
+  const double offset_variance =
+      variance / fit.weight + off_centre * off_centre * variance / fit.spread + kOffsetFloor * kOffsetFloor;
+  const Eigen::Vector2d a = point(first), b = point(last);
+  return sign > 0 ? makeLineSegment(a, b, std::sqrt(offset_variance), std::sqrt(angle_variance))
+                  : makeLineSegment(b, a, std::sqrt(offset_variance), std::sqrt(angle_variance));
+}
+
+}  // namespace uav_landing::line_fit
