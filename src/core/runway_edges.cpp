@@ -121,10 +121,19 @@ class Search {
     return kGate * std::sqrt(a.variance + b.variance + differ.dot(axes_.covariance * differ));
   }
 
+  /// Whether two pairs' centres are farther apart than any tolerance between them: most are, and the trace
+  /// bounds what a covariance makes of a vector.
+  bool areApart(const MirroredPair& a, const MirroredPair& b) const {
+    constexpr double kSafe = 1.001;
+    const double most = a.variance + b.variance + spread_ * (a.by_rotation - b.by_rotation).squaredNorm();
+    return std::pow(a.centre - b.centre, 2) > kSafe * kGate * kGate * most;
+  }
+
   /// Every edge counts in one pair only, the one that fits best.
   Symmetry around(const MirroredPair& centre) const {
     std::vector<std::pair<double, const MirroredPair*>> near;
     for (const MirroredPair& pair : pairs_) {
+      if (areApart(pair, centre)) continue;
       const double miss = std::abs(pair.centre - centre.centre) / toleranceOf(pair, centre);
       if (miss <= 1) near.emplace_back(miss, &pair);
     }
@@ -143,6 +152,7 @@ class Search {
   }
 
   const GroundAxes& axes_;
+  const double spread_ = axes_.covariance.trace();
   std::vector<GroundEdge> edges_;
   std::vector<MirroredPair> pairs_;
 };

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "multiversion.h"
 #include "rotation.h"
 #include "vanishing_candidate.h"
 
@@ -36,6 +37,46 @@ Failure noVanishingPoint(const char* format, double a, double b = 0) {
   return {Reason::kNoVanishingPoint, text};
 }
 
+/// The lines' numbers that most attempts need, by column.
+struct LineColumns {
+  std::vector<double> middle_u, middle_v, along_u, along_v, across_u, across_v, top_u, top_v;
+  std::vector<double> half2, reach, tolerance2;  // half: length; reach: with the clearance
+
+  void add(const VanishingCandidate& line, double tolerance) {
+    middle_u.push_back(line.middle.x());
+    middle_v.push_back(line.middle.y());
+    along_u.push_back(line.along.x());
+    along_v.push_back(line.along.y());
+    across_u.push_back(line.line.x());
+    across_v.push_back(line.line.y());
+    top_u.push_back(line.top.x());
+    top_v.push_back(line.top.y());
+    half2.push_back(line.half * line.half);
+    reach.push_back(line.half + VanishingCandidate::kClearance);
+    tolerance2.push_back(tolerance * tolerance);
+  }
+};
+
+constexpr double kAbove = 2;  // instead of a fit, which is 1 at most
+
+/// How well each line passes through the homogeneous point (x, y, z): 1 when exactly, 0 when its ends miss it by
+/// the tolerance, kAbove when part of the line is above the horizon. As VanishingCandidate has it for one.
+UAV_LANDING_MULTIVERSION void fitLines(const LineColumns& lines, double x, double y, double z, int count,
+                                       double* __restrict fit) {
+  const double *mu = lines.middle_u.data(), *mv = lines.middle_v.data(), *au = lines.along_u.data(),
+               *av = lines.along_v.data(), *nu = lines.across_u.data(), *nv = lines.across_v.data(),
+               *tu = lines.top_u.data(), *tv = lines.top_v.data(), *half2 = lines.half2.data(),
+               *reach = lines.reach.data(), *tolerance2 = lines.tolerance2.data();
+  for (int i = 0; i < count; ++i) {
+    const double eu = x - z * mu[i], ev = y - z * mv[i];
+    const double ahead = std::abs(au[i] * eu + av[i] * ev), across = nu[i] * eu + nv[i] * ev;
+    const double miss2 = half2[i] * across * across / (across * across + ahead * ahead);
+    const double passing = ahead < reach[i] * z ? -1.0 : 1 - miss2 / tolerance2[i];
+    const double above = (y - z * tv[i]) - VanishingCandidate::kMaxHorizonSlope * std::abs(x - z * tu[i]);
+    fit[i] = above > 0 ? kAbove : passing;
+  }
+}
+
 class Search {
  public:
   Search(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
@@ -49,6 +90,13 @@ class Search {
         prior_normal ? Eigen::Vector3d(Kinv_.transpose() * *prior_normal) : Eigen::Vector3d::UnitY();
     horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();
     groupPieces();
+    for (const VanishingCandidate& line : lines_) {
+      columns_.add(line, toleranceOf(line));
+      turns_.push_back(toleranceOf(line) / line.half * perTurn(line));
+      impossible_.push_back(std::log1p(line.half / parameters_.ransac_tolerance));
+    }
+    fit_.resize(lines_.size());
+    agreeing_.resize(lines_.size());
   }
 
   Expected<VanishingPoint> run() {
@@ -111,12 +159,15 @@ class Search {
   /// within the tolerance at its ends. Texture seen at a grazing angle looks like lines along the horizon, so
   /// these pass near every point of it and say next to nothing; lines that rise towards it say much.
   double chance(const VanishingCandidate& line, const Eigen::Vector3d& V, double tolerance) const {
-    const double miss = tolerance * line.towards(V).norm() / (line.half * V.z());
+    const double turn = tolerance / line.half * perTurn(line) * line.towards(V).norm() * perPixel(V);
+    return std::min(1.0, 2 / M_PI * std::atan(turn));  // turn: on the ground, rad
+  }
+  /// Along the horizon a pixel is less of an angle the farther it is to the side. Over V.z.
+  double perPixel(const Eigen::Vector3d& V) const { return V.z() / (Kinv_ * V).squaredNorm(); }
+  /// Angle on the ground over that in the picture, rad / px.
+  double perTurn(const VanishingCandidate& line) const {
     const double sine = std::abs(line.along.x() * horizon_.y() - line.along.y() * horizon_.x());
-    // Along the horizon a pixel is less of an angle the farther it is to the side.
-    const double cosine = V.z() / (Kinv_ * V).norm();
-    const double turn = miss * cosine * cosine / (K_(0, 0) * std::max(sine, 1e-6));  // on the ground, rad
-    return std::min(1.0, 2 / M_PI * std::atan(turn));
+    return 1 / (K_(0, 0) * std::max(sine, 1e-6));
   }
 
   /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
@@ -133,24 +184,25 @@ class Search {
   /// Evidence of the lines that pass through, each weighted by how well, less that of those that do not and
   /// of those that could not be on the ground if this were its horizon. Lines that pass nearly everywhere do
   /// not count, however many they are; of the pieces of one edge only the best does.
-  double score(const Eigen::Vector3d& direction) const {
+  double score(const Eigen::Vector3d& direction) {
+    static const double kLikelyTurn = std::tan(0.5 * M_PI * kLikely);
     const Eigen::Vector3d V = K_ * direction;
-    std::vector<double> agreeing(lines_.size(), 0.0);  // by edge
+    fitLines(columns_, V.x(), V.y(), V.z(), count(), fit_.data());
+    const double per_pixel = perPixel(V);
+    std::fill(agreeing_.begin(), agreeing_.end(), 0.0);
     double impossible = 0;
     for (size_t i = 0; i < lines_.size(); ++i) {
-      const VanishingCandidate& line = lines_[i];
-      if (line.isAboveHorizon(V)) {
-        impossible += std::log1p(line.half / parameters_.ransac_tolerance);
+      if (fit_[i] <= 0) continue;
+      if (fit_[i] == kAbove) {
+        impossible += impossible_[i];
         continue;
       }
-      const double tolerance = toleranceOf(line);
-      const double fit = 1 - line.endMiss2(V) / (tolerance * tolerance);
-      if (fit <= 0) continue;
-      const double p = chance(line, V, tolerance);
-      double& best = agreeing[edge_[i]];
-      if (p < kLikely) best = std::max(best, fit * evidence(p));
+      const double turn = turns_[i] * lines_[i].towards(V).norm() * per_pixel;
+      if (turn >= kLikelyTurn) continue;
+      double& best = agreeing_[edge_[i]];
+      best = std::max(best, fit_[i] * evidence(2 / M_PI * std::atan(turn)));
     }
-    return std::accumulate(agreeing.begin(), agreeing.end(), -impossible);
+    return std::accumulate(agreeing_.begin(), agreeing_.end(), -impossible);
   }
 
   /// Numbers the edges that the lines are pieces of: lines that continue each other belong to one.
@@ -367,7 +419,12 @@ class Search {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  std::vector<size_t> edge_;  // per line, the edge it is a piece of
+  std::vector<size_t> edge_;         // per line, the edge it is a piece of
+  LineColumns columns_;
+  std::vector<double> turns_;        // angle on the ground by which a line may turn, over its distance from V
+  std::vector<double> impossible_;   // evidence against V of a line above its horizon
+  std::vector<double> fit_;          // of one attempt
+  std::vector<double> agreeing_;     // by edge
   Eigen::Vector2d horizon_;   // direction of the horizon in the image, unit
   double meetings_ = 0;       // pairs of lines that meet along the runway
 };
