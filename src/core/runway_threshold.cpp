@@ -57,9 +57,9 @@ UAV_LANDING_MULTIVERSION void project(const LineView& line, const Places& y, Pla
   const double dx = line.direction.x(), dy = line.direction.y(), dz = line.direction.z();
   const double fx = line.fx, fy = line.fy, cx = line.cx, cy = line.cy;
   for (int c = 0; c < kColumns; ++c) {
-    const double z = z0 + y[c] * dz;
-    const double column = fx * (x0 + y[c] * dx) / z + cx;
-    v[c] = fy * (y0 + y[c] * dy) / z + cy;
+    const double z = z0 + y[c] * dz, inverse = 1 / z;
+    const double column = fx * (x0 + y[c] * dx) * inverse + cx;
+    v[c] = fy * (y0 + y[c] * dy) * inverse + cy;
     u[c] = z > 0 ? column : -1;
   }
 }
@@ -160,9 +160,10 @@ double barContrast(const Across& pattern, double least) {
                                 [](float value) { return std::isfinite(value); });
   const std::ptrdiff_t count = end - known.begin();
   if (count < kLeastPicture * kColumns) return 0;
-  // Most of the runway is nearly of one grey.
-  const auto [darkest, lightest] = std::minmax_element(known.begin(), end);
-  if (*lightest - *darkest < least) return 0;
+  // Most of the runway is nearly of one grey: too few are lighter than the darkest by so much.
+  constexpr float kSafe = 0.999F;
+  const float lighter = *std::min_element(known.begin(), end) + kSafe * static_cast<float>(least);
+  if (std::count_if(known.begin(), end, [=](float value) { return value >= lighter; }) <= count / 8) return 0;
   const auto from_below = known.begin() + count / 8, from_above = end - 1 - count / 8;
   std::nth_element(known.begin(), from_below, end);
   std::nth_element(from_below, from_above, end);
