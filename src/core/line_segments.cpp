@@ -119,8 +119,9 @@ std::vector<RoughSegment> roughSegments(const cv::Mat& image, const cv::Mat& gro
                                         const ApproachAngleParameters& parameters) {
   if (parameters.hough_method != HoughMethod::kScanLines)
     return houghSegments(straightEdges(image, ground, parameters), min_length, parameters);
-  return SegmentScanner().find(
-      image, ground, {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
+  static thread_local SegmentScanner scanner;  // keeps its memory
+  return scanner.find(image, ground,
+                      {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
 }
 
 /// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same

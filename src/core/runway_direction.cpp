@@ -19,12 +19,13 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
 }
 
 // The mask without what lies above the horizon (K^-T n) or less than a margin below it, where the far end of
-// everything on the ground merges with what stands behind it.
-cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
+// everything on the ground merges with what stands behind it. Good until the next call.
+const cv::Mat& groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
+  static thread_local cv::Mat ground;  // keeps its memory
   const double margin = 0.01 * mask.rows;
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
   const double scale = line.head<2>().norm();
-  cv::Mat ground = mask.clone();
+  mask.copyTo(ground);
   keepHalfPlane(ground, line.x(), line.y(), line.z() - margin * scale);
   return ground;
 }

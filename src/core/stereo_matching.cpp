@@ -197,7 +197,8 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
   // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
   constexpr double kLeastDisparity = 0.3;
   const ShiftModel shift(level.rig, g);
-  cv::Mat mask = level.left_mask.clone();
+  static thread_local cv::Mat mask;  // keeps its memory
+  level.left_mask.copyTo(mask);
   keepHalfPlane(mask, shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity);
   // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
   keepHalfPlane(mask, 1 - shift.a, -shift.b, -shift.c);
