@@ -9,8 +9,12 @@
 namespace uav_landing {
 namespace {
 
-// Seconds after which texture and lines are others.
+// Seconds after which texture is another.
 constexpr double kCorrelationTime = 1.0;
+// The same of a vanishing direction: the lines of a runway far ahead are the same ones for longer, and are
+// misjudged by much the same (blur, ragged paint, which of them are found) until they are seen from much
+// nearer.
+constexpr double kLinesTime = 5.0;
 // Vertical disparities that a good lens calibration leaves, pixels, and how far from the middle of the image,
 // in focal lengths, they tell a roll.
 constexpr double kLensError = 0.03, kLensReach = 0.3;
@@ -153,7 +157,8 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
     rows(i, sloping.slope) = 1;
     values[i] = tips.row(i) * plane.g;
     noises[i] = noise;
-    inflations[i] = std::sqrt(std::max(1.0, ratio / gate));
+    const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
+    inflations[i] = std::sqrt(std::max(1.0, ratio / gate) * lasting);
   }
   Corrected corrected;
   corrected.plane = joint.plane;

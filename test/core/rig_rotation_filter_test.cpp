@@ -171,6 +171,22 @@ TEST(RigRotationFilter, DoesNotTakeTheRunwaysSlopeForAYaw) {
   EXPECT_LT(std::abs(rotation.w.y()), 0.03 / approach.rig.fx);
 }
 
+TEST(RigRotationFilter, DoesNotTakeLinesThatAreMisjudgedForSecondsForAYaw) {
+  // From 40 m down at 2 m/s; which lines are found changes twice.
+  Approach approach;
+  RigRotationFilter filter(approach.rig, 60);
+  double worst = 0;
+  for (int i = 0; i < 200; ++i) {
+    approach.slope = (i < 60 ? 0.15 : i < 130 ? -0.1 : 0) * kDegree;
+    const double height = 40 - 0.1 * i;
+    const GroundPlane plane = approach.frame(filter, i, height).plane;
+    const RigRotation rotation = filter.rotation();
+    worst = std::max(worst, std::abs(rotation.w.y()) / std::sqrt(rotation.covariance(1, 1)));
+    EXPECT_NEAR(pitchError(plane, approach.pitch), 0, 0.1 * kDegree) << i;
+  }
+  EXPECT_LT(worst, 1.0);
+}
+
 TEST(RigRotationFilter, DoesNotAverageAwayWhatAllFramesOfASecondShare) {
   Approach approach;
   RigRotationFilter once(approach.rig, 1e9), often(approach.rig, 1e9);
