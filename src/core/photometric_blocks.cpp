@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "multiversion.h"
+
 namespace uav_landing {
 namespace {
 
@@ -52,26 +54,85 @@ bool set(const cv::Mat& mask, double u, double v) {
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
 }
 
-// Grey levels of a row at x, x + step, ...: Catmull-Rom. The row must reach a pixel farther to the left and
-// two to the right. Two loops, because the second one becomes vector instructions.
-void sampleRow(const uchar* row, float x, float step, Lane& value) {
-  Lane a, b, c, d, t;
+// Catmull-Rom weights of four neighbours at t behind the second one.
+inline float cubic(float a, float b, float c, float d, float t) {
+  const float c1 = 0.5f * (c - a);
+  const float c2 = a - 2.5f * b + 2.f * c - 0.5f * d;
+  const float c3 = 0.5f * (d - a) + 1.5f * (b - c);
+  return b + t * (c1 + t * (c2 + t * c3));
+}
+
+// What a row of a block is interpolated from: value i lies t[i] (0 to 2) behind pixel i + 1. Floats, made for
+// all rows before any is interpolated, so that all columns are worked on at once.
+struct RowPixels {
+  static constexpr int kRead = kWidth + 8;  // more than the kWidth + 4 needed: whole vector registers
+  std::array<float, kRead> pixel;
+  Lane t;
+};
+
+// At the places x, x + step, ... of a row. Neighbouring places must be in neighbouring pixels, but for one
+// place from which on they are one further.
+inline void load(const uchar* row, float x, float step, RowPixels& out) {
+  const float last = x + step * static_cast<float>(kWidth - 1);
+  const int first = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
+  for (int i = 0; i < kWidth; ++i)
+    out.t[i] = x + step * static_cast<float>(i) - static_cast<float>(first + i);
+  row += first - 1;
+  for (int i = 0; i < RowPixels::kRead; ++i) out.pixel[i] = row[i];
+}
+
+inline void interpolate(const RowPixels& in, Lane& value) {
+  for (int i = 0; i < kWidth; ++i) {
+    // 1 where the pixels are those one further, else 0: arithmetic, exact for grey levels, is no branch.
+    const float next = static_cast<float>(static_cast<int>(in.t[i]));
+    const float* p = &in.pixel[i];
+    value[i] = cubic(p[0] + next * (p[1] - p[0]), p[1] + next * (p[2] - p[1]), p[2] + next * (p[3] - p[2]),
+                     p[3] + next * (p[4] - p[3]), in.t[i] - next);
+  }
+}
+
+// Grey levels of a row at any places x, x + step, ..., one by one.
+inline void sampleRow(const uchar* row, float x, float step, Lane& value) {
   for (int i = 0; i < kWidth; ++i) {
     const float place = x + step * static_cast<float>(i);
     const int column = static_cast<int>(place);
-    t[i] = place - static_cast<float>(column);
     const uchar* p = row + column;
-    a[i] = p[-1];
-    b[i] = p[0];
-    c[i] = p[1];
-    d[i] = p[2];
+    value[i] = cubic(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
   }
-  for (int i = 0; i < kWidth; ++i) {
-    const float c1 = 0.5f * (c[i] - a[i]);
-    const float c2 = a[i] - 2.5f * b[i] + 2.f * c[i] - 0.5f * d[i];
-    const float c3 = 0.5f * (d[i] - a[i]) + 1.5f * (b[i] - c[i]);
-    value[i] = b[i] + t[i] * (c1 + t[i] * (c2 + t[i] * c3));
+}
+
+// Sums over the columns of a block of what the warped right image r is, squared, and times the block's
+// values.
+struct BlockSums {
+  Lane r{}, squares{}, greys{}, slopes{};
+};
+
+// first: place of the block's first pixel in the first of the rows, which moves by down from row to row.
+// Counted from the grey level reference, so that floats are exact enough for the differences of sums.
+UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& rows, double first, double down, float step,
+                                         float reference, const float* grey, const float* slope) {
+  const auto start = [&](int y) { return static_cast<float>(first + down * y); };
+  const bool neighbours = std::abs(step - 1) * (kWidth - 1) < 0.99f;
+  std::array<RowPixels, kHeight> pixels;
+  if (neighbours)
+    for (int y = 0; y < kHeight; ++y) load(rows.ptr<uchar>(y), start(y), step, pixels[y]);
+  BlockSums sums;
+  for (int y = 0; y < kHeight; ++y, grey += kWidth, slope += kWidth) {
+    Lane values;
+    if (neighbours) {
+      interpolate(pixels[y], values);
+    } else {
+      sampleRow(rows.ptr<uchar>(y), start(y), step, values);
+    }
+    for (int i = 0; i < kWidth; ++i) {
+      const float value = values[i] - reference;
+      sums.r[i] += value;
+      sums.squares[i] += value * value;
+      sums.greys[i] += value * grey[i];
+      sums.slopes[i] += value * slope[i];
+    }
   }
+  return sums;
 }
 
 }  // namespace
@@ -219,25 +280,12 @@ void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) 
         std::max({begin, end, begin + down, end + down}) > right.cols - 1 - kMargin) {
       continue;
     }
-    // Counted from one of the grey levels, so that floats are exact enough for the differences of sums.
     const float reference = right.at<uchar>(block.v, static_cast<int>(begin));
-    Lane values, sums{}, squares{}, greys{}, slopes{};
-    for (int y = 0; y < kHeight; ++y) {
-      const double first = block.u - shift.at(block.u, block.v + y);
-      sampleRow(right.ptr<uchar>(block.v + y), static_cast<float>(first), step, values);
-      const float* grey = &block.grey[y * kWidth];
-      const float* slope = &block.slope[y * kWidth];
-      for (int x = 0; x < kWidth; ++x) {
-        const float value = values[x] - reference;
-        sums[x] += value;
-        squares[x] += value * value;
-        greys[x] += value * grey[x];
-        slopes[x] += value * slope[x];
-      }
-    }
-    const double total = sum(sums), grey = sum(greys);
+    const BlockSums sums = addUp(right.rowRange(block.v, block.v + kHeight), begin, -shift.b, step, reference,
+                                 block.grey.data(), block.slope.data());
+    const double total = sum(sums.r), grey = sum(sums.greys);
     const double explained = total * total / kPixels + grey * grey / block.grey_energy;
-    products_.push_back({&block, grey, sum(slopes), (sum(squares) - explained) / (kPixels - 2)});
+    products_.push_back({&block, grey, sum(sums.slopes), (sum(sums.squares) - explained) / (kPixels - 2)});
   }
 }
 
