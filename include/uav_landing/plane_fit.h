@@ -19,11 +19,12 @@ struct PlaneLimits {
 /// True when the plane lies below the camera with pitch and roll inside the limits.
 bool isPlausibleGround(const Eigen::Vector3d& g, const PlaneLimits& limits);
 
-/// A matched pixel with the disparities it may have (one, or several before the plane is known).
+/// A matched pixel with its disparity, or several that it may have before the plane is known.
 struct DisparitySample {
   double u = 0, v = 0;
-  double stddev = 0;  ///< pixels of disparity
-  std::vector<double> disparities;
+  double stddev = 0;             ///< pixels of disparity
+  double disparity = 0;          ///< pixels
+  std::vector<double> others{};  ///< further disparities that it may have instead; mostly none
 };
 
 /// Plane by consensus (MSAC over triples; fixed seed): the plausible plane with the most support. A pixel

@@ -51,7 +51,7 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
   std::nth_element(order.begin(), typical, middle, quieter);
   std::vector<double> residuals, ratios, magnitudes;
   for (const DisparitySample& sample : samples) {
-    residuals.push_back(sample.disparities.front() - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
+    residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
   }
   std::vector<double> sorted = residuals;
   const double offset = medianOf(sorted);

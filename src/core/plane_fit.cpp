@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <random>
 #include <string>
-#include <utility>
+
+#include "multiversion.h"
 
 namespace uav_landing {
 namespace {
@@ -29,58 +29,129 @@ struct Votes {
   double net() const { return agreeing - penalty; }
 };
 
-Votes votesFor(const StereoRig& rig, const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g,
-               double tolerance) {
-  Votes votes;
-  const double tens = rollOf(g) * 18.0 / M_PI;
-  votes.penalty = kRollPenalty * tens * tens;
-  for (const DisparitySample& sample : samples) {
-    const double expected = rig.fb() * g.dot(rig.ray(sample.u, sample.v));
+// Samples are worked on by as many at a time, which become vector instructions.
+constexpr size_t kLanes = 4;
+using Lanes = std::array<double, kLanes>;
+
+double sum(const Lanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
+
+size_t padded(size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+// The samples by columns, filled up to whole lanes with what has no vote.
+struct VoteColumns {
+  static constexpr double kNowhere = -1e18;
+
+  std::vector<double> x, y;  // derivatives of the disparity by the plane vector; by its third component: fb
+  std::vector<double> u, disparity;  // the first disparity
+  double fb, offset;
+  bool ambiguous = false;  // samples with several disparities
+
+  VoteColumns(const StereoRig& rig, const std::vector<DisparitySample>& samples)
+      : x(padded(samples.size()), 0),
+        y(x),
+        u(x.size(), kNowhere),
+        disparity(u),
+        fb(rig.fb()),
+        offset(rig.principalOffset()) {
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const Eigen::Vector3d row = fb * rig.ray(samples[i].u, samples[i].v);
+      x[i] = row.x();
+      y[i] = row.y();
+      u[i] = samples[i].u;
+      disparity[i] = samples[i].disparity;
+      ambiguous |= !samples[i].others.empty();
+    }
+  }
+};
+
+// A sample whose place in the right image is outside of it says nothing against the plane, whatever it
+// matched instead.
+UAV_LANDING_MULTIVERSION void addVotes(const VoteColumns& columns, const Eigen::Vector3d& g, double tolerance,
+                                       Votes& votes) {
+  const double gx = g.x(), gy = g.y(), constant = g.z() * columns.fb, offset = columns.offset;
+  const double unit = 1 / (tolerance * tolerance), far = 2 * tolerance;
+  const double *x = columns.x.data(), *y = columns.y.data(), *u = columns.u.data();
+  const double* disparity = columns.disparity.data();
+  Lanes agreeing{}, penalty{};
+  for (size_t i = 0; i < columns.x.size(); i += kLanes) {
+    for (size_t k = 0; k < kLanes; ++k) {
+      const double expected = gx * x[i + k] + gy * y[i + k] + constant;
+      const double residual = disparity[i + k] - expected, missing = 1 - residual * residual * unit;
+      const bool counts = expected >= kMinDisparity;
+      const bool seen = u[i + k] - expected >= offset;
+      const double price = residual < -far ? kBelowPenalty : kAbovePenalty;
+      agreeing[k] += (counts & (missing > 0)) ? missing : 0;
+      penalty[k] += (counts & seen & (missing <= 0)) ? price : 0;
+    }
+  }
+  votes.agreeing += sum(agreeing);
+  votes.penalty += sum(penalty);
+}
+
+// The same for samples that may have several disparities: the nearest one votes, and only when all are too
+// small does it lie below.
+void addAmbiguousVotes(const VoteColumns& columns, const std::vector<DisparitySample>& samples,
+                       const Eigen::Vector3d& g, double tolerance, Votes& votes) {
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double expected = g.x() * columns.x[i] + g.y() * columns.y[i] + g.z() * columns.fb;
     if (expected < kMinDisparity) continue;
-    double nearest = 1e9, largest = -1e9;
-    for (const double disparity : sample.disparities) {
+    double nearest = std::abs(samples[i].disparity - expected), largest = samples[i].disparity;
+    for (const double disparity : samples[i].others) {
       nearest = std::min(nearest, std::abs(disparity - expected));
       largest = std::max(largest, disparity);
     }
     const double ratio = nearest / tolerance;
     if (ratio < 1) {
       votes.agreeing += 1 - ratio * ratio;
-    } else if (sample.u - expected < rig.principalOffset()) {
-      // Its place in the right image is outside of it: what it matched instead says nothing against the
-      // plane.
-      continue;
-    } else if (largest < expected - 2 * tolerance) {
-      votes.penalty += kBelowPenalty;
-    } else {
-      votes.penalty += kAbovePenalty;
+    } else if (columns.u[i] - expected >= columns.offset) {
+      votes.penalty += largest < expected - 2 * tolerance ? kBelowPenalty : kAbovePenalty;
     }
   }
-  return votes;
 }
+
+// What a search for the plane has of the samples.
+struct Voters {
+  const StereoRig& rig;
+  const std::vector<DisparitySample>& samples;
+  VoteColumns columns{rig, samples};
+
+  Votes votesFor(const Eigen::Vector3d& g, double tolerance) const {
+    Votes votes;
+    const double tens = rollOf(g) * 18.0 / M_PI;
+    votes.penalty = kRollPenalty * tens * tens;
+    if (columns.ambiguous) {
+      addAmbiguousVotes(columns, samples, g, tolerance, votes);
+    } else {
+      addVotes(columns, g, tolerance, votes);
+    }
+    return votes;
+  }
+};
 
 // Uniform integer below n: std distributions differ between standard libraries, this does not.
 size_t below(std::mt19937& random, size_t n) { return random() % n; }
 
 // Least squares over what agrees with a new best plane (locally optimised RANSAC: Chum, Matas, Kittler 2003).
-void improve(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneLimits& limits,
-             Consensus& best) {
+void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const DisparitySample& sample : samples) {
-      const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
-      for (const double disparity : sample.disparities) {
+    for (size_t i = 0; i < voters.samples.size(); ++i) {
+      const Eigen::Vector3d row(voters.columns.x[i], voters.columns.y[i], voters.columns.fb);
+      const auto add = [&](double disparity) {
         const double ratio = (disparity - row.dot(best.g)) / limits.tolerance;
-        if (std::abs(ratio) >= 1) continue;
+        if (std::abs(ratio) >= 1) return;
         const double weight = 1 - ratio * ratio;
         information += weight * row * row.transpose();
         right += weight * row * disparity;
-      }
+      };
+      add(voters.samples[i].disparity);
+      for (const double disparity : voters.samples[i].others) add(disparity);
     }
     const Eigen::Vector3d g = information.ldlt().solve(right);
     if (!isPlausibleGround(g, limits)) return;
-    const Votes votes = votesFor(rig, samples, g, limits.tolerance);
+    const Votes votes = voters.votesFor(g, limits.tolerance);
     if (votes.net() <= best.score) return;
     best = {g, votes.agreeing, votes.net(), true};
   }
@@ -93,7 +164,8 @@ struct Draw {
   Draw(const StereoRig& rig, const std::vector<DisparitySample>& samples, std::mt19937& random) {
     const DisparitySample& sample = samples[below(random, samples.size())];
     ray = rig.ray(sample.u, sample.v);
-    disparity = sample.disparities[below(random, sample.disparities.size())];
+    const size_t choice = below(random, 1 + sample.others.size());
+    disparity = choice == 0 ? sample.disparity : sample.others[choice - 1];
   }
 };
 
@@ -120,55 +192,121 @@ Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySamp
   return {slope * gy, gy, a.disparity / rig.fb() - gy * ya};
 }
 
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+// Robust size of the residuals as a multiple of the claimed stddevs, at least 1. ratios: reordered.
+double scaleOf(std::vector<double>& ratios) {
+  constexpr double kPerMedian = 1.4826;
+  if (ratios.empty()) return 1;
+  const auto small =
+      std::count_if(ratios.begin(), ratios.end(), [](double r) { return kPerMedian * r <= 1; });
+  if (static_cast<size_t>(small) > ratios.size() / 2) return 1;  // the median is among them
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::max(1.0, kPerMedian * *middle);
 }
 
 struct NormalEquations {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double weighted_squares = 0, weights = 0;
+  double weighted_squares = 0;
   int count = 0;
 };
 
-// One reweighting step: Tukey weights of the residuals of g over scale times each sample's own stddev.
-NormalEquations accumulate(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                           const Eigen::Vector3d& g, double scale, std::vector<char>* agrees) {
-  constexpr double kTukey = 4.0;
-  NormalEquations sums;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const DisparitySample& sample = samples[i];
-    const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
-    const double residual = sample.disparities.front() - row.dot(g);
-    const double ratio = residual / (kTukey * scale * sample.stddev);
-    const bool inside = std::abs(ratio) < 1 && row.dot(g) > 0;
-    if (agrees) (*agrees)[i] = inside;
-    if (!inside) continue;
-    const double tukey = (1 - ratio * ratio) * (1 - ratio * ratio);
-    const double weight = tukey / (sample.stddev * sample.stddev);
-    sums.information += weight * row * row.transpose();
-    sums.right += weight * row * sample.disparities.front();
-    sums.weighted_squares += weight * residual * residual;
-    sums.weights += tukey;
-    ++sums.count;
+// The least squares problem by columns, filled up to whole lanes with samples of no weight.
+class PlaneProblem {
+ public:
+  PlaneProblem(const StereoRig& rig, const std::vector<DisparitySample>& samples)
+      : count_(samples.size()),
+        fb_(rig.fb()),
+        x_(padded(count_), 0),
+        y_(x_),
+        disparity_(x_),
+        precision_(x_),
+        expected_(x_),
+        weight_(x_) {
+    ratios_.reserve(count_);
+    for (size_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3d row = fb_ * rig.ray(samples[i].u, samples[i].v);
+      x_[i] = row.x();
+      y_[i] = row.y();
+      disparity_[i] = samples[i].disparity;
+      precision_[i] = 1 / samples[i].stddev;
+    }
   }
-  return sums;
-}
 
-// Robust size of the residuals as a multiple of the claimed stddevs, over samples near the plane. What stands
-// on the ground makes residuals positive only, so the negative ones alone tell the size of the ground's own.
-double residualScale(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                     const Eigen::Vector3d& g, double tolerance) {
-  std::vector<double> ratios;
-  for (const DisparitySample& sample : samples) {
-    const double residual = sample.disparities.front() - rig.fb() * g.dot(rig.ray(sample.u, sample.v));
-    if (residual <= 0 && residual > -2 * tolerance) ratios.push_back(-residual / sample.stddev);
+  // The disparities that a plane gives.
+  UAV_LANDING_MULTIVERSION void expect(const Eigen::Vector3d& g) {
+    const double gx = g.x(), gy = g.y(), constant = g.z() * fb_;
+    const double *x = x_.data(), *y = y_.data();
+    double* __restrict expected = expected_.data();
+    for (size_t i = 0; i < x_.size(); ++i) expected[i] = gx * x[i] + gy * y[i] + constant;
   }
-  if (ratios.empty()) return 1.0;
-  return std::max(1.0, 1.4826 * medianOf(ratios));
-}
+
+  // Robust size of the residuals as a multiple of the claimed stddevs, over samples near the plane. What
+  // stands on the ground makes residuals positive only, so the negative ones alone tell the size of the
+  // ground's own.
+  double residualScale(double tolerance) {
+    ratios_.clear();
+    for (size_t i = 0; i < count_; ++i) {
+      const double residual = disparity_[i] - expected_[i];
+      if (residual <= 0 && residual > -2 * tolerance) ratios_.push_back(-residual * precision_[i]);
+    }
+    return scaleOf(ratios_);
+  }
+
+  // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
+  UAV_LANDING_MULTIVERSION NormalEquations accumulate(double scale) {
+    constexpr double kTukey = 4.0;
+    const double unit = 1 / (kTukey * kTukey * scale * scale);
+    const double *x = x_.data(), *y = y_.data(), *precision = precision_.data();
+    const double *disparity = disparity_.data(), *expected = expected_.data();
+    double* __restrict weights = weight_.data();
+    Lanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
+    for (size_t i = 0; i < x_.size(); i += kLanes) {
+      for (size_t k = 0; k < kLanes; ++k) {
+        const double residual = disparity[i + k] - expected[i + k];
+        const double information = precision[i + k] * precision[i + k];
+        const double missing = 1 - residual * residual * information * unit;
+        const bool inside = (missing > 0) & (expected[i + k] > 0) & (information > 0);
+        const double weight = inside ? missing * missing * information : 0;
+        const double weight_x = weight * x[i + k], weight_y = weight * y[i + k];
+        weights[i + k] = weight;
+        count[k] += inside ? 1 : 0;
+        w[k] += weight;
+        wx[k] += weight_x;
+        wy[k] += weight_y;
+        wxx[k] += weight_x * x[i + k];
+        wxy[k] += weight_x * y[i + k];
+        wyy[k] += weight_y * y[i + k];
+        wd[k] += weight * disparity[i + k];
+        wxd[k] += weight_x * disparity[i + k];
+        wyd[k] += weight_y * disparity[i + k];
+        squares[k] += weight * residual * residual;
+      }
+    }
+    NormalEquations sums;
+    sums.information << sum(wxx), sum(wxy), fb_ * sum(wx),  //
+        sum(wxy), sum(wyy), fb_ * sum(wy),                  //
+        fb_ * sum(wx), fb_ * sum(wy), fb_ * fb_ * sum(w);
+    sums.right << sum(wxd), sum(wyd), fb_ * sum(wd);
+    sums.weighted_squares = sum(squares);
+    sums.count = static_cast<int>(sum(count));
+    return sums;
+  }
+
+  // Which samples had a weight.
+  std::vector<char> agreeing() const {
+    std::vector<char> agrees(count_);
+    for (size_t i = 0; i < count_; ++i) agrees[i] = weight_[i] > 0;
+    return agrees;
+  }
+
+ private:
+  size_t count_;
+  double fb_;
+  std::vector<double> x_, y_;  // derivatives of the disparity by the plane vector; by its third component: fb
+  std::vector<double> disparity_, precision_;  // precision: 1 / stddev
+  std::vector<double> expected_, weight_, ratios_;
+};
 
 // How much larger the covariance is than independent errors would make it. Surfaces are not planes, and their
 // undulations, like errors of texture, are common to neighbouring points: scores are summed over patches of
@@ -190,7 +328,7 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
     if (!agrees[i]) continue;
     const DisparitySample& sample = samples[i];
     const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
-    const double residual = sample.disparities.front() - row.dot(g);
+    const double residual = sample.disparity - row.dot(g);
     const int column = std::min(kColumns - 1, static_cast<int>(kColumns * sample.u / rig.size.width));
     const int line = std::min(kRows - 1, static_cast<int>(kRows * (sample.v - top) / (bottom - top + 1)));
     scores[line * kColumns + column] += row * (residual / (sample.stddev * sample.stddev * scale * scale));
@@ -219,20 +357,23 @@ double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>&
   for (size_t i = 0; i < samples.size(); ++i) {
     if (agrees[i]) largest = std::max(largest, row.dot(rig.ray(samples[i].u, samples[i].v)));
   }
-  std::map<std::pair<int, int>, Patch> patches;
+  const double side = static_cast<double>(rig.size.width) / kColumns, unit = 1 / g.norm();
+  const int rows = static_cast<int>(rig.size.height / side) + 1;
+  std::vector<Patch> patches(static_cast<size_t>(kColumns * rows));
   for (size_t i = 0; i < samples.size(); ++i) {
     const double expected = row.dot(rig.ray(samples[i].u, samples[i].v));
     if (!agrees[i] || expected < kNear * largest) continue;
-    const double height = (samples[i].disparities.front() - expected) / (g.norm() * expected);
-    const double side = static_cast<double>(rig.size.width) / kColumns;
-    Patch& patch = patches[{static_cast<int>(samples[i].u / side), static_cast<int>(samples[i].v / side)}];
+    const double height = unit * (samples[i].disparity - expected) / expected;
+    const int across = std::clamp(static_cast<int>(samples[i].u / side), 0, kColumns - 1);
+    const int down = std::clamp(static_cast<int>(samples[i].v / side), 0, rows - 1);
+    Patch& patch = patches[static_cast<size_t>(across * rows + down)];
     ++patch.count;
     patch.sum += height;
     patch.squares += height * height;
   }
   double scatter = 0, means = 0, of_scatter = 0;
   int points = 0, used = 0;
-  for (const auto& [place, patch] : patches) {
+  for (const Patch& patch : patches) {
     if (patch.count < kFewest) continue;
     ++used;
     points += patch.count;
@@ -260,6 +401,7 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   constexpr int kDrawsPerIteration = 20;
   Consensus best;
   if (samples.size() < 3) return best;
+  const Voters voters{rig, samples};
   std::mt19937 random(20100601u);
   int counted = 0;
   for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < iterations; ++draw) {
@@ -269,10 +411,10 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     const double slope = rig.fb() * g.y() / rig.fy;
     if (slope_range && (slope < slope_range->x() || slope > slope_range->y())) continue;
     ++counted;
-    const Votes votes = votesFor(rig, samples, g, limits.tolerance);
+    const Votes votes = voters.votesFor(g, limits.tolerance);
     if (best.found && votes.net() <= best.score) continue;
     best = {g, votes.agreeing, votes.net(), true};
-    improve(rig, samples, limits, best);
+    improve(voters, limits, best);
   }
   return best;
 }
@@ -280,14 +422,14 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
   constexpr int kIterations = 6;
-  PlaneFit fit;
-  fit.agrees.assign(samples.size(), 0);
   Eigen::Vector3d g = start;
   double scale = 1;
+  PlaneProblem problem(rig, samples);
   NormalEquations sums;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    scale = residualScale(rig, samples, g, limits.tolerance);
-    sums = accumulate(rig, samples, g, scale, &fit.agrees);
+    problem.expect(g);
+    scale = problem.residualScale(limits.tolerance);
+    sums = problem.accumulate(scale);
     if (sums.count < limits.min_points) {
       return tl::make_unexpected(Failure{
           Reason::kNoPlane, std::to_string(sums.count) + " of " + std::to_string(samples.size()) +
@@ -298,6 +440,8 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   if (!isPlausibleGround(g, limits)) {
     return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});
   }
+  PlaneFit fit;
+  fit.agrees = problem.agreeing();
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
   fit.plane.g = g;

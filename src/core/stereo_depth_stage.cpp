@@ -159,7 +159,7 @@ struct StereoDepthStage::Implementation {
 
   void fit(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
     for (const DisparitySample& sample : samples) {
-      result.points.push_back({sample.u, sample.v, sample.disparities.front(), sample.stddev, false});
+      result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     }
     if (result.failure) return;
     const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr);

@@ -112,15 +112,20 @@ std::vector<DisparitySample> candidates(const StereoLevel& level, const std::vec
   for (const cv::Point& corner : corners) {
     const double centre = corner.x - offset - (largest + kNearestToHorizon) / 2;
     if (!search.run(corner.x, corner.y, centre, steps, RowWarp{1.0, -slope})) continue;
-    DisparitySample sample{double(corner.x), double(corner.y), 0.5, {}};
+    std::vector<double> disparities;
     double strongest = -1;
     for (const RowCandidate& peak : search.peaks(kMinScore, kMostPeaks)) {
       strongest = std::max(strongest, peak.score);
       if (peak.score < kShareOfBest * strongest) break;
       if (!inside(level.right_mask, peak.position, corner.y)) continue;
-      sample.disparities.push_back(corner.x - peak.position - offset);
+      disparities.push_back(corner.x - peak.position - offset);
     }
-    if (!sample.disparities.empty()) samples.push_back(std::move(sample));
+    if (disparities.empty()) continue;
+    samples.push_back({double(corner.x),
+                       double(corner.y),
+                       0.5,
+                       disparities.front(),
+                       {disparities.begin() + 1, disparities.end()}});
   }
   return samples;
 }

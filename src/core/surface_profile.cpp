@@ -169,8 +169,7 @@ class ProfileFit {
   /// Takes the bend off the disparities and fits the plane to what is left.
   bool flatten(const Bend& bend, const PlaneLimits& limits, double bias_stddev) {
     for (size_t i = 0; i < given_.size(); ++i)
-      flattened_[i].disparities.front() =
-          given_[i].disparities.front() - byKinks(expected_[i], reaches_[i]).dot(bend.mean);
+      flattened_[i].disparity = given_[i].disparity - byKinks(expected_[i], reaches_[i]).dot(bend.mean);
     const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend.mean;
     Expected<PlaneFit> fit = refinePlane(rig_, flattened_, start, limits, bias_stddev);
     if (!fit) return false;
@@ -184,7 +183,7 @@ class ProfileFit {
     std::vector<double> ratios;
     for (size_t i = 0; i < given_.size(); ++i)
       if (plane_.agrees[i])
-        ratios.push_back(std::abs(flattened_[i].disparities.front() - disparity(i)) / flattened_[i].stddev);
+        ratios.push_back(std::abs(flattened_[i].disparity - disparity(i)) / flattened_[i].stddev);
     if (ratios.empty()) return;
     const auto middle = ratios.begin() + ratios.size() / 2;
     std::nth_element(ratios.begin(), middle, ratios.end());
@@ -239,7 +238,7 @@ class ProfileFit {
       const DisparitySample& sample = flattened_[i];
       const double information = 1 / (sample.stddev * sample.stddev * noise);
       const Eigen::Vector3d a = rig_.fb() * rig_.ray(sample.u, sample.v);
-      const double y = (given_[i].disparities.front() - disparity(i)) * information;
+      const double y = (given_[i].disparity - disparity(i)) * information;
       to_plane_ += information * a * a.transpose();
       right_plane += a * y;
       const int place = static_cast<int>(kBins * std::sqrt(expected_[i] / largest));
@@ -274,7 +273,7 @@ class ProfileFit {
     const Eigen::Vector3d n = plane_.plane.normal();
     const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
     for (size_t i = 0; i < given_.size(); ++i) {
-      const double bent = given_[i].disparities.front() - flattened_[i].disparities.front();
+      const double bent = given_[i].disparity - flattened_[i].disparity;
       expected_[i] = std::max(disparity(i) + bent, kLeastDisparity);
       reaches_[i] = rig_.fb() * forward.dot(rig_.ray(given_[i].u, given_[i].v));
     }

@@ -139,7 +139,7 @@ Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
   rows.reserve(count);
   for (size_t i = 0; i < count; ++i) {
     const DisparitySample& sample = samples[i * samples.size() / count];
-    const double column = sample.u - sample.disparities.front() - level.rig.principalOffset();
+    const double column = sample.u - sample.disparity - level.rig.principalOffset();
     addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), {column, sample.v}, warp,
            window_radius, rows);
   }

@@ -55,7 +55,7 @@ class Sampler {
   /// ground.
   void lift(std::vector<DisparitySample>& samples, double share) {
     for (DisparitySample& sample : samples)
-      if (uniform_(random_) < share) sample.disparities[0] *= 1.05 + 0.95 * uniform_(random_);
+      if (uniform_(random_) < share) sample.disparity *= 1.05 + 0.95 * uniform_(random_);
   }
 
   double normal() { return normal_(random_); }
@@ -110,8 +110,7 @@ TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
     EXPECT_NEAR(pitchOf(fit->plane.normal()), -6 * kDegree, 0.1 * kDegree) << seed;
     EXPECT_NEAR(rollOf(fit->plane.normal()), 4 * kDegree, 0.2 * kDegree) << seed;
     for (size_t i = 0; i < samples.size(); ++i) {
-      const double above =
-          samples[i].disparities[0] - rig().fb() * g.dot(rig().ray(samples[i].u, samples[i].v));
+      const double above = samples[i].disparity - rig().fb() * g.dot(rig().ray(samples[i].u, samples[i].v));
       EXPECT_FALSE(above > 2 && fit->agrees[i]) << above;
       EXPECT_FALSE(std::abs(above) < 0.2 && !fit->agrees[i]) << above;
     }
@@ -136,9 +135,11 @@ TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
   std::vector<DisparitySample> samples = sampler.ground(g, 200, 0.1);
   for (size_t i = 0; i < samples.size(); ++i) {
     // The true one anywhere among four, the others one period and more off, as zebra bars are.
-    const double true_disparity = samples[i].disparities[0];
-    samples[i].disparities = {true_disparity + 9, true_disparity + 18, true_disparity - 9};
-    samples[i].disparities.insert(samples[i].disparities.begin() + i % 4, true_disparity);
+    const double true_disparity = samples[i].disparity;
+    std::vector<double> all = {true_disparity + 9, true_disparity + 18, true_disparity - 9};
+    all.insert(all.begin() + i % 4, true_disparity);
+    samples[i].disparity = all.front();
+    samples[i].others.assign(all.begin() + 1, all.end());
   }
   // Three planes fit equally well. All of them are found below the camera; rows tell them apart only by where
   // disparity is zero, so the range of slopes must not decide either.
@@ -199,7 +200,7 @@ Nees simulate(const Eigen::Vector3d& g, int runs, double actual, double claimed,
     const double shift = common * sampler.normal();
     for (DisparitySample& sample : samples) {
       sample.stddev = claimed;
-      sample.disparities[0] += shift;
+      sample.disparity += shift;
     }
     const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), common);
     EXPECT_TRUE(fit);
@@ -272,9 +273,9 @@ TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
     // mean square, some hundred pixels long.
     const double wave = 2 * bumps * std::sin(flat[i].u / 30) * std::sin(flat[i].v / 25);
     const double expected = rig().fb() * g.dot(rig().ray(flat[i].u, flat[i].v));
-    uneven[i].disparities[0] += expected * (height / (height - wave) - 1);
+    uneven[i].disparity += expected * (height / (height - wave) - 1);
     // Matches that scatter three times as much as they claim are no bumps.
-    noisy[i].disparities[0] += 2 * (flat[i].disparities[0] - expected);
+    noisy[i].disparity += 2 * (flat[i].disparity - expected);
   }
   PlaneLimits limits = makeLimits();
   limits.tolerance = 2;

@@ -159,7 +159,7 @@ TEST(SurfaceProfile, WhatStandsOnTheGroundIsNoBend) {
   const test::Pose pose = poseAt(6);
   std::vector<DisparitySample> samples = look(parabola(1e9), pose, 0.05, random);
   for (DisparitySample& sample : samples)
-    if (uniform(random) < 0.2) sample.disparities[0] *= 1.05 + 0.95 * uniform(random);
+    if (uniform(random) < 0.2) sample.disparity *= 1.05 + 0.95 * uniform(random);
   const Fits fits = fit(samples, pose);
   EXPECT_NEAR(fits.profile.below.height(), 6, 0.02);
 }
