@@ -32,8 +32,7 @@ class PatchSearch {
   const cv::Mat& other_;
   int radius_;
   WindowTemplate template_;
-  std::vector<float> area_, scores_, cross_;
-  std::vector<double> sums_, squares_;
+  std::vector<float> area_, scores_;
 };
 
 /// Sub-pixel place by Gauss-Newton over (shift, gain, offset), with the reference's own gradient.

@@ -39,7 +39,7 @@ class RowSearch {
   std::vector<RowCandidate> peaks(double min_score, int count) const;
 
  private:
-  /// Values at start + i scale of a row, less the template's mean; NaN outside the image, 0 behind them.
+  /// Values at start + i scale of a row, less the template's mean; NaN outside the image, any behind them.
   void resample(const float* row, double start, int width, float* out) const;
   void scoreAll();
   double similarity(double cross, double sum, double squares) const;

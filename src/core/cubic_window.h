@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -78,5 +79,10 @@ inline void sampleCubicRow(const float* row, std::int32_t x, std::int32_t step_x
     cv::v_store(out + i, cv::v_reduce_sum4(a, b, c, d));
   }
 }
+
+/// Values of a float image at at + warp (dx, dy): rows dy = -radius to radius, stride (a multiple of four)
+/// values from dx = -radius on in each. Needs two pixels around all places and three behind them.
+void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
+                       int radius, int stride, float* out);
 
 }  // namespace uav_landing

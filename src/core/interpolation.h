@@ -4,6 +4,14 @@
 
 namespace uav_landing {
 
+/// Catmull-Rom interpolation at t (0 to 1) between b and c, with a before and d behind them.
+inline float cubicBetween(float a, float b, float c, float d, float t) {
+  const float c1 = 0.5f * (c - a);
+  const float c2 = a - 2.5f * b + 2.f * c - 0.5f * d;
+  const float c3 = 0.5f * (d - a) + 1.5f * (b - c);
+  return b + t * (c1 + t * (c2 + t * c3));
+}
+
 /// Catmull-Rom interpolation along a row: value and derivative by the column. Needs 1 <= x < cols - 2.
 inline float cubicAt(const float* row, float x, float* derivative) {
   const int i = static_cast<int>(x);

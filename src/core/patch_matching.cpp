@@ -7,18 +7,101 @@
 
 #include "cubic_window.h"
 #include "interpolation.h"
+#include "lanes.h"
+#include "multiversion.h"
 
 namespace uav_landing {
 namespace {
 
 // Values behind each resampled row that may be read but do not count.
-constexpr int kPadding = 3;
+constexpr int kPadding = kLanes - 1;
 
-// Sums over a window of the other image with the reference's value and gradient, all about their means.
-struct WindowSums {
-  Eigen::Vector2d gradient;   // other times gradient
-  double squares, reference;  // other times itself, times the reference
+constexpr int kLargestRadius = 15, kLargestStride = 32;
+constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
+
+int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
+int paddedCount(int radius) { return wholeLanes((2 * radius + 1) * strideOf(radius)); }
+
+// A window of the reference a, less the grey level in its middle, with its gradient x, y. Rows are filled up
+// to a multiple of four and all of it to one of kLanes with zeros.
+struct WindowPlanes {
+  alignas(32) std::array<float, kPlane> a, x, y;
+  float middle;
 };
+
+// Sums over a window of the reference and its gradient, and of their products.
+struct ReferenceSums {
+  double a, x, y, aa, ax, ay, xx, xy, yy;
+};
+
+// Sums over a window of the other image b, and of its products.
+struct OtherSums {
+  double b, bb, ba, bx, by;
+};
+
+void fillWithZeros(std::array<float, kPlane>& plane, int size, int stride, int count) {
+  for (int j = 0; j < size; ++j)
+    for (int i = size; i < stride; ++i) plane[j * stride + i] = 0;
+  for (int i = size * stride; i < count; ++i) plane[i] = 0;
+}
+
+UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius,
+                                         WindowPlanes& planes) {
+  const int size = 2 * radius + 1, stride = strideOf(radius), left = u - radius;
+  const int width = std::min(stride, image.cols - 1 - left);  // values behind the window do not matter
+  const float middle = planes.middle = image.at<float>(v, u);
+  for (int j = 0; j < size; ++j) {
+    const float* row = image.ptr<float>(v - radius + j) + left;
+    const float* above = image.ptr<float>(v - radius + j - 1) + left;
+    const float* below = image.ptr<float>(v - radius + j + 1) + left;
+    float *a = &planes.a[j * stride], *x = &planes.x[j * stride], *y = &planes.y[j * stride];
+    for (int i = 0; i < width; ++i) a[i] = row[i] - middle;
+    for (int i = 0; i < width; ++i) x[i] = -0.5f * (row[i + 1] - row[i - 1]);
+    for (int i = 0; i < width; ++i) y[i] = -0.5f * (below[i] - above[i]);
+  }
+  for (auto* plane : {&planes.a, &planes.x, &planes.y})
+    fillWithZeros(*plane, size, stride, paddedCount(radius));
+}
+
+UAV_LANDING_MULTIVERSION ReferenceSums addUp(const WindowPlanes& planes, int count) {
+  Lanes a1{}, x1{}, y1{}, aa{}, ax{}, ay{}, xx{}, xy{}, yy{};
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes a, x, y;
+    load(&planes.a[i], a);
+    load(&planes.x[i], x);
+    load(&planes.y[i], y);
+    a1 += a;
+    x1 += x;
+    y1 += y;
+    aa += a * a;
+    ax += a * x;
+    ay += a * y;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  return {sum(a1), sum(x1), sum(y1), sum(aa), sum(ax), sum(ay), sum(xx), sum(xy), sum(yy)};
+}
+
+// other: values of the other image, the reference's middle where they do not count.
+UAV_LANDING_MULTIVERSION OtherSums multiply(const WindowPlanes& planes, const float* other, int count) {
+  const float middle = planes.middle;
+  Lanes b1{}, bb{}, ba{}, bx{}, by{};
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes a, x, y, b;
+    load(&planes.a[i], a);
+    load(&planes.x[i], x);
+    load(&planes.y[i], y);
+    load(other + i, b);
+    b -= middle;
+    b1 += b;
+    bb += b * b;
+    ba += b * a;
+    bx += b * x;
+    by += b * y;
+  }
+  return {sum(b1), sum(bb), sum(ba), sum(bx), sum(by)};
+}
 
 // Shift and gain of: reference + gradient.shift = gain other + offset, by least squares.
 struct GainShift {
@@ -29,118 +112,94 @@ struct GainShift {
   Eigen::Matrix2d unit_covariance;  // of the shift, for residuals of variance 1
 };
 
-// A window of the reference with its gradient about their means, and all sums of it that do not depend on the
-// other image. Rows are filled up to a multiple of four with zeros.
+// A window of the reference with all sums of it that do not depend on the other image, about their means.
 class ReferenceWindow {
  public:
-  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius)
-      : radius_(radius), size_(2 * radius + 1), stride_((size_ + 3) / 4 * 4) {
-    float* out = values_.data();
-    float sums[3] = {0, 0, 0};
-    for (int dy = -radius; dy <= radius; ++dy, out += stride_) {
-      const float* above = reference.ptr<float>(v + dy - 1) + u - radius;
-      const float* row = reference.ptr<float>(v + dy) + u - radius;
-      const float* below = reference.ptr<float>(v + dy + 1) + u - radius;
-      float *gx = out + kPlane, *gy = gx + kPlane;
-      for (int i = 0; i < size_; ++i) {
-        out[i] = row[i];
-        gx[i] = -0.5f * (row[i + 1] - row[i - 1]);
-        gy[i] = -0.5f * (below[i] - above[i]);
-        sums[0] += out[i];
-        sums[1] += gx[i];
-        sums[2] += gy[i];
-      }
-    }
-    for (int k = 0; k < 3; ++k) subtract(values_.data() + k * kPlane, means_[k] = sums[k] / count());
-    const float *a = values_.data(), *gx = a + kPlane, *gy = gx + kPlane;
-    G_ << product(gx, gx), product(gx, gy), product(gx, gy), product(gy, gy);
-    right_ << product(gx, a), product(gy, a);
-    energy_ = product(a, a);
+  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : radius_(radius) {
+    loadWindow(reference, u, v, radius, planes_);
+    const ReferenceSums sums = addUp(planes_, paddedCount(radius));
+    mean_ = sums.a / count();
+    gradient_mean_ = Eigen::Vector2d(sums.x, sums.y) / count();
+    const Eigen::Vector2d& mean = gradient_mean_;
+    G_ << sums.xx - mean.x() * sums.x, sums.xy - mean.x() * sums.y,  //
+        sums.xy - mean.x() * sums.y, sums.yy - mean.y() * sums.y;
+    right_ << sums.ax - mean.x() * sums.a, sums.ay - mean.y() * sums.a;
+    energy_ = sums.aa - mean_ * sums.a;
     const double determinant = G_.determinant();
     usable_ = determinant > 1e-9 * G_.trace() * G_.trace();
     if (usable_) inverse_ = G_.inverse();
   }
 
   bool usable() const { return usable_; }
-  int count() const { return size_ * size_; }
+  int count() const { return (2 * radius_ + 1) * (2 * radius_ + 1); }
   double energy() const { return energy_; }
 
   // Best shift when the other image is looked at from `at`. The window must be inside by two pixels and
   // paddedReach().
   GainShift compare(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
-    return solve(sums(other, at, warp));
+    alignas(32) std::array<float, kPlane> values;
+    sampleCubicWindow(other, at, warp, radius_, strideOf(radius_), values.data());
+    const int size = 2 * radius_ + 1, stride = strideOf(radius_), padded = paddedCount(radius_);
+    for (int j = 0; j < size; ++j)
+      for (int i = size; i < stride; ++i) values[j * stride + i] = planes_.middle;
+    for (int i = size * stride; i < padded; ++i) values[i] = planes_.middle;
+    return solve(multiply(planes_, values.data(), padded));
   }
   // Places to the right of the centre that are looked at, those filled up included.
-  int paddedReach() const { return stride_ - radius_ - 1; }
+  int paddedReach() const { return strideOf(radius_) - radius_ - 1; }
 
  private:
-  static constexpr int kLargestRadius = 15, kLargestStride = 32;
-  static constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
-
-  void subtract(float* values, float mean) const {
-    for (int j = 0; j < size_; ++j, values += stride_) {
-      for (int i = 0; i < size_; ++i) values[i] -= mean;
-      for (int i = size_; i < stride_; ++i) values[i] = 0;
-    }
-  }
-
-  double product(const float* a, const float* b) const {
-    cv::v_float32x4 sum = cv::v_setzero_f32();
-    for (int i = 0; i < size_ * stride_; i += 4)
-      sum = cv::v_muladd(cv::v_load(a + i), cv::v_load(b + i), sum);
-    return cv::v_reduce_sum(sum);
-  }
-
-  WindowSums sums(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
-    using cv::v_float32x4;
-    alignas(16) float row[kLargestStride];
-    alignas(16) float counts[kLargestStride];
-    for (int i = 0; i < stride_; ++i) counts[i] = i < size_ ? 1.f : 0.f;
-    const v_float32x4 mean = cv::v_setall_f32(means_[0]);
-    v_float32x4 bx = cv::v_setzero_f32(), by = bx, bb = bx, b1 = bx, ba = bx;
-    const float* a = values_.data();
-    const std::int32_t step_x = CubicTable::fixed(warp(0, 0)), step_y = CubicTable::fixed(warp(1, 0));
-    for (int dy = -radius_; dy <= radius_; ++dy) {
-      const Eigen::Vector2d start = at + warp * Eigen::Vector2d(-radius_, dy);
-      sampleCubicLine(other, CubicTable::fixed(start.x()), CubicTable::fixed(start.y()), step_x, step_y,
-                      stride_, row);
-      for (int i = 0; i < stride_; i += 4, a += 4) {
-        const v_float32x4 b = (cv::v_load_aligned(row + i) - mean) * cv::v_load_aligned(counts + i);
-        bx = cv::v_muladd(b, cv::v_load(a + kPlane), bx);
-        by = cv::v_muladd(b, cv::v_load(a + 2 * kPlane), by);
-        bb = cv::v_muladd(b, b, bb);
-        b1 = b1 + b;
-        ba = cv::v_muladd(b, cv::v_load(a), ba);
-      }
-    }
-    // Reference and gradient have no mean, so that of the other image matters to its own square only.
-    const double sum = cv::v_reduce_sum(b1);
-    return {{cv::v_reduce_sum(bx), cv::v_reduce_sum(by)},
-            cv::v_reduce_sum(bb) - sum * sum / count(),
-            cv::v_reduce_sum(ba)};
-  }
-
-  GainShift solve(const WindowSums& sums) const {
+  GainShift solve(const OtherSums& sums) const {
     GainShift result;
-    const Eigen::Vector2d projected = inverse_ * sums.gradient;
-    const double left_over = sums.squares - sums.gradient.dot(projected);
-    if (!(left_over > 1e-9 * sums.squares)) return result;
-    result.gain = (sums.reference - projected.dot(right_)) / left_over;
-    result.shift = inverse_ * (right_ - sums.gradient * result.gain);
-    result.residual = std::max(0.0, energy_ - result.shift.dot(right_) - result.gain * sums.reference);
+    const Eigen::Vector2d gradient = Eigen::Vector2d(sums.bx, sums.by) - gradient_mean_ * sums.b;
+    const double squares = sums.bb - sums.b * sums.b / count(), reference = sums.ba - mean_ * sums.b;
+    const Eigen::Vector2d projected = inverse_ * gradient;
+    const double left_over = squares - gradient.dot(projected);
+    if (!(left_over > 1e-9 * squares)) return result;
+    result.gain = (reference - projected.dot(right_)) / left_over;
+    result.shift = inverse_ * (right_ - gradient * result.gain);
+    result.residual = std::max(0.0, energy_ - result.shift.dot(right_) - result.gain * reference);
     result.unit_covariance = inverse_ + projected * projected.transpose() / left_over;
     result.solved = result.gain > 0.1;
     return result;
   }
 
-  int radius_, size_, stride_;
+  int radius_;
   bool usable_ = false;
-  alignas(16) std::array<float, 3 * kPlane> values_;  // reference, gradient along u, along v
-  float means_[3];
+  WindowPlanes planes_;
+  double mean_;  // less the middle
+  Eigen::Vector2d gradient_mean_;
   Eigen::Matrix2d G_, inverse_;
   Eigen::Vector2d right_;
   double energy_ = 0;
 };
+
+// What the scores of kLanes neighbouring shifts are made of: products with the window, sums and squares.
+struct ShiftSums {
+  alignas(32) std::array<float, kLanes> cross, sums, squares;
+};
+
+// window: without its mean. area: values of the other image, whose first pixel is the first shift's.
+UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, int size, int stride,
+                                    ShiftSums& shifts) {
+  Lanes cross{}, sums{}, squares{};
+  for (int j = 0; j < size; ++j, area += stride) {
+    Lanes row_cross{}, row_sums{}, row_squares{};  // of their own, so that rows need not wait for each other
+    for (int i = 0; i < size; ++i) {
+      Lanes values;
+      load(area + i, values);
+      row_cross += *window++ * values;
+      row_sums += values;
+      row_squares += values * values;
+    }
+    cross += row_cross;
+    sums += row_sums;
+    squares += row_squares;
+  }
+  store(cross, shifts.cross.data());
+  store(sums, shifts.sums.data());
+  store(squares, shifts.squares.data());
+}
 
 bool windowInside(const cv::Mat& image, int u, int v, int radius) {
   return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
@@ -159,49 +218,33 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
         centre.y() + ry < other_.rows - 1)) {
     return false;
   }
+  // Less about the mean, so that floats are exact enough for the differences of sums.
+  const float mean = static_cast<float>(template_.mean);
   area_.assign(static_cast<size_t>(width + kPadding) * width, 0.f);
   for (int j = 0; j < width; ++j) {
     const Eigen::Vector2d start = centre + warp * Eigen::Vector2d(-reach, j - reach);
     float* out = area_.data() + static_cast<size_t>(j) * (width + kPadding);
     for (int i = 0; i < width; ++i) {
-      out[i] = linearAt(other_, start.x() + warp(0, 0) * i, start.y() + warp(1, 0) * i);
+      out[i] = linearAt(other_, start.x() + warp(0, 0) * i, start.y() + warp(1, 0) * i) - mean;
     }
   }
   return true;
 }
 
 void PatchSearch::score(int steps) {
-  const int size = 2 * radius_ + 1, count = 2 * steps + 1, width = size + 2 * steps;
-  const int padded = (count + kPadding) / 4 * 4;  // no remainder for vector instructions
+  const int size = 2 * radius_ + 1, count = 2 * steps + 1, stride = size + 2 * steps + kPadding;
   scores_.assign(static_cast<size_t>(count) * count, -1.f);
+  ShiftSums shifts;
   for (int j = 0; j < count; ++j) {
-    cross_.assign(padded, 0.f);
-    sums_.assign(width, 0.0);
-    squares_.assign(width, 0.0);
-    for (int dy = 0; dy < size; ++dy) {
-      const float* row = area_.data() + static_cast<size_t>(j + dy) * (width + kPadding);
-      for (int i = 0; i < width; ++i) {
-        sums_[i] += row[i];
-        squares_[i] += double(row[i]) * row[i];
+    for (int first = 0; first < count; first += kLanes) {
+      addUp(template_.values.data(), area_.data() + static_cast<size_t>(j) * stride + first, size, stride,
+            shifts);
+      for (int k = 0; k < std::min(kLanes, count - first); ++k) {
+        const double sum = shifts.sums[k], energy = shifts.squares[k] - sum * sum / (double(size) * size);
+        if (energy < 1e-3 * template_.energy) continue;
+        scores_[static_cast<size_t>(j) * count + first + k] =
+            static_cast<float>(shifts.cross[k] / std::sqrt(energy * template_.energy));
       }
-      const float* wanted = template_.values.data() + static_cast<size_t>(dy) * size;
-      for (int dx = 0; dx < size; ++dx) {
-        const float weight = wanted[dx];
-        const float* values = row + dx;
-        float* cross = cross_.data();
-        for (int i = 0; i < padded; ++i) cross[i] += weight * values[i];
-      }
-    }
-    for (int i = 0; i < count; ++i) {
-      double sum = 0, squares = 0;
-      for (int dx = 0; dx < size; ++dx) {
-        sum += sums_[i + dx];
-        squares += squares_[i + dx];
-      }
-      const double energy = squares - sum * sum / (double(size) * size);
-      if (energy < 1e-3 * template_.energy) continue;
-      scores_[static_cast<size_t>(j) * count + i] =
-          static_cast<float>(cross_[i] / std::sqrt(energy * template_.energy));
     }
   }
 }

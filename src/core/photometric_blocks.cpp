@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "interpolation.h"
 #include "multiversion.h"
 
 namespace uav_landing {
@@ -54,14 +55,6 @@ bool set(const cv::Mat& mask, double u, double v) {
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
 }
 
-// Catmull-Rom weights of four neighbours at t behind the second one.
-inline float cubic(float a, float b, float c, float d, float t) {
-  const float c1 = 0.5f * (c - a);
-  const float c2 = a - 2.5f * b + 2.f * c - 0.5f * d;
-  const float c3 = 0.5f * (d - a) + 1.5f * (b - c);
-  return b + t * (c1 + t * (c2 + t * c3));
-}
-
 // What a row of a block is interpolated from: value i lies t[i] (0 to 2) behind pixel i + 1. Floats, made for
 // all rows before any is interpolated, so that all columns are worked on at once.
 struct RowPixels {
@@ -86,8 +79,8 @@ inline void interpolate(const RowPixels& in, Lane& value) {
     // 1 where the pixels are those one further, else 0: arithmetic, exact for grey levels, is no branch.
     const float next = static_cast<float>(static_cast<int>(in.t[i]));
     const float* p = &in.pixel[i];
-    value[i] = cubic(p[0] + next * (p[1] - p[0]), p[1] + next * (p[2] - p[1]), p[2] + next * (p[3] - p[2]),
-                     p[3] + next * (p[4] - p[3]), in.t[i] - next);
+    value[i] = cubicBetween(p[0] + next * (p[1] - p[0]), p[1] + next * (p[2] - p[1]),
+                            p[2] + next * (p[3] - p[2]), p[3] + next * (p[4] - p[3]), in.t[i] - next);
   }
 }
 
@@ -97,7 +90,7 @@ inline void sampleRow(const uchar* row, float x, float step, Lane& value) {
     const float place = x + step * static_cast<float>(i);
     const int column = static_cast<int>(place);
     const uchar* p = row + column;
-    value[i] = cubic(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
+    value[i] = cubicBetween(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
   }
 }
 

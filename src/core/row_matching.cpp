@@ -9,12 +9,67 @@
 
 #include "cubic_window.h"
 #include "interpolation.h"
+#include "lanes.h"
+#include "multiversion.h"
 
 namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
-constexpr int kBlock = 8;  // positions scored at a time
+// Values between neighbouring pixels, by linear interpolation: value i lies start + drift i behind pixel i of
+// the row, 0 to 2.
+UAV_LANDING_MULTIVERSION void interpolate(const float* row, float start, float drift, float mean, int count,
+                                          float* __restrict out) {
+  for (int i = 0; i < count; ++i) {
+    const float behind = start + drift * static_cast<float>(i);
+    // 1 where it is behind the next pixel, else 0: arithmetic is no branch.
+    const float next = static_cast<float>(static_cast<int>(behind));
+    const float a = row[i], b = row[i + 1], c = row[i + 2];
+    const float first = a + next * (b - a), second = b + next * (c - b);
+    out[i] = first + (behind - next) * (second - first) - mean;
+  }
+}
+
+// Sums and sums of squares of the columns of a strip of rows.
+UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* __restrict sums,
+                                         float* __restrict squares) {
+  for (int i = 0; i < stride; ++i) sums[i] = squares[i] = 0;
+  for (int j = 0; j < rows; ++j, strip += stride)
+    for (int i = 0; i < stride; ++i) {
+      sums[i] += strip[i];
+      squares[i] += strip[i] * strip[i];
+    }
+}
+
+// What the scores at kLanes neighbouring positions of a strip are made of.
+struct BlockSums {
+  alignas(32) std::array<float, kLanes> cross, sums, squares;
+};
+
+// Products of a square window with what is below it, and sums of the strip's columns and squares there.
+UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, const float* column_sums,
+                                    const float* column_squares, int size, int stride, BlockSums& block) {
+  Lanes cross{}, sums{}, squares{};
+  for (int j = 0; j < size; ++j, strip += stride) {
+    Lanes row{};  // sums of their own, so that rows need not wait for each other
+    for (int i = 0; i < size; ++i) {
+      Lanes values;
+      load(strip + i, values);
+      row += *window++ * values;
+    }
+    cross += row;
+  }
+  for (int i = 0; i < size; ++i) {
+    Lanes values;
+    load(column_sums + i, values);
+    sums += values;
+    load(column_squares + i, values);
+    squares += values;
+  }
+  store(cross, block.cross.data());
+  store(sums, block.sums.data());
+  store(squares, block.squares.data());
+}
 
 }  // namespace
 
@@ -28,8 +83,8 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
   steps_ = steps;
   centre_ = centre;
   scale_ = warp.scale;
-  padded_ = (2 * steps + kBlock) / kBlock * kBlock;
-  stride_ = padded_ + size;
+  padded_ = wholeLanes(2 * steps + 1);
+  stride_ = wholeLanes(padded_ + size - 1);
   strip_.resize(static_cast<size_t>(stride_) * size);
   for (int dy = 0; dy < size; ++dy) {
     const double start = centre + warp.shear * (dy - radius_) - warp.scale * (radius_ + steps);
@@ -43,67 +98,34 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
 void RowSearch::resample(const float* row, double start, int width, float* out) const {
   const float mean = static_cast<float>(template_.mean);
   const double end = start + scale_ * (width - 1);
-  if (start >= 0 && end < other_.cols - 1.01) {
-    std::int32_t x = CubicTable::fixed(start);
-    const std::int32_t step = CubicTable::fixed(scale_);
-    for (int i = 0; i < width; ++i, x += step) {
-      const float* p = row + (x >> CubicTable::kFixedBits);
-      const float t =
-          static_cast<float>(x & CubicTable::kFractionMask) * (1.f / (1 << CubicTable::kFixedBits));
-      out[i] = p[0] + t * (p[1] - p[0]) - mean;
-    }
-  } else {
-    for (int i = 0; i < width; ++i) {
-      const double x = start + scale_ * i;
-      out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x)) - mean
-                                             : std::numeric_limits<float>::quiet_NaN();
-    }
+  const int first = static_cast<int>(std::floor(std::min(start, end - (width - 1))));
+  const bool neighbours = std::abs(scale_ - 1) * (stride_ - 1) < 0.99;
+  if (neighbours && first >= 0 && first + stride_ + 2 <= other_.cols) {
+    interpolate(row + first, static_cast<float>(start - first), static_cast<float>(scale_ - 1), mean, stride_,
+                out);
+    return;
+  }
+  for (int i = 0; i < width; ++i) {
+    const double x = start + scale_ * i;
+    out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x)) - mean
+                                           : std::numeric_limits<float>::quiet_NaN();
   }
   std::fill(out + width, out + stride_, 0.f);
 }
 
-// Positions are worked on in blocks that fit into registers: cross products with the template, and sum and
-// squares of what is under it.
 void RowSearch::scoreAll() {
-  using cv::v_float32x4;
   const int size = 2 * radius_ + 1, count = 2 * steps_ + 1;
-  column_sums_.assign(stride_, 0.f);
-  column_squares_.assign(stride_, 0.f);
-  for (int dy = 0; dy < size; ++dy) {
-    const float* row = strip_.data() + static_cast<size_t>(dy) * stride_;
-    for (int i = 0; i < stride_; ++i) {
-      column_sums_[i] += row[i];
-      column_squares_[i] += row[i] * row[i];
-    }
-  }
-  scores_.resize(padded_);
-  for (int first = 0; first < padded_; first += kBlock) {
-    v_float32x4 cross[2] = {cv::v_setzero_f32(), cv::v_setzero_f32()};
-    v_float32x4 sums[2] = {cross[0], cross[0]}, squares[2] = {cross[0], cross[0]};
-    const float* wanted = template_.values.data();
-    for (int dy = 0; dy < size; ++dy) {
-      const float* row = strip_.data() + static_cast<size_t>(dy) * stride_ + first;
-      for (int dx = 0; dx < size; ++dx) {
-        const v_float32x4 weight = cv::v_setall_f32(*wanted++);
-        cross[0] = cv::v_muladd(weight, cv::v_load(row + dx), cross[0]);
-        cross[1] = cv::v_muladd(weight, cv::v_load(row + dx + 4), cross[1]);
-      }
-    }
-    for (int dx = 0; dx < size; ++dx)
-      for (int k = 0; k < 2; ++k) {
-        sums[k] = sums[k] + cv::v_load(column_sums_.data() + first + dx + 4 * k);
-        squares[k] = squares[k] + cv::v_load(column_squares_.data() + first + dx + 4 * k);
-      }
-    float values[3][kBlock];
-    for (int k = 0; k < 2; ++k) {
-      cv::v_store(values[0] + 4 * k, cross[k]);
-      cv::v_store(values[1] + 4 * k, sums[k]);
-      cv::v_store(values[2] + 4 * k, squares[k]);
-    }
-    for (int k = 0; k < kBlock; ++k)
-      scores_[first + k] = static_cast<float>(similarity(values[0][k], values[1][k], values[2][k]));
-  }
+  column_sums_.resize(stride_);
+  column_squares_.resize(stride_);
+  addColumns(strip_.data(), size, stride_, column_sums_.data(), column_squares_.data());
   scores_.resize(count);
+  BlockSums block;
+  for (int first = 0; first < count; first += kLanes) {
+    addUp(template_.values.data(), strip_.data() + first, column_sums_.data() + first,
+          column_squares_.data() + first, size, stride_, block);
+    for (int k = 0; k < std::min(kLanes, count - first); ++k)
+      scores_[first + k] = static_cast<float>(similarity(block.cross[k], block.sums[k], block.squares[k]));
+  }
 }
 
 double RowSearch::similarity(double cross, double sum, double squares) const {
@@ -158,79 +180,113 @@ std::vector<RowCandidate> RowSearch::peaks(double min_score, int count) const {
 
 namespace {
 
-// A window of the reference and its change along the row, about their means, in rows filled up with zeros to
-// a multiple of four; with the sums that do not depend on the other image.
-struct RowWindow {
-  static constexpr int kLargestRadius = 15, kLargestStride = 32;
+constexpr int kLargestRadius = 15, kLargestStride = 32;
+constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
 
-  int size, stride;
-  double aa = 0, ag = 0, gg = 0;  // reference and gradient with themselves and each other
-  float mean = 0;
-  std::array<float, kLargestStride*(2 * kLargestRadius + 1)> value, gradient;
-
-  RowWindow(const cv::Mat& image, int u, int v, int radius)
-      : size(2 * radius + 1), stride((size + 3) / 4 * 4) {
-    float sum = 0, gradient_sum = 0;
-    for (int j = 0; j < size; ++j) {
-      const float* row = image.ptr<float>(v - radius + j) + u - radius;
-      float *a = &value[j * stride], *g = &gradient[j * stride];
-      for (int i = 0; i < size; ++i) {
-        a[i] = row[i];
-        g[i] = 0.5f * (row[i + 1] - row[i - 1]);
-        sum += a[i];
-        gradient_sum += g[i];
-      }
-    }
-    mean = sum / count();
-    const float gradient_mean = gradient_sum / count();
-    float sums[3] = {0, 0, 0};
-    for (int j = 0; j < size; ++j) {
-      float *a = &value[j * stride], *g = &gradient[j * stride];
-      std::fill(a + size, a + stride, 0.f);
-      std::fill(g + size, g + stride, 0.f);
-      for (int i = 0; i < size; ++i) {
-        a[i] -= mean;
-        g[i] -= gradient_mean;
-        sums[0] += a[i] * a[i];
-        sums[1] += a[i] * g[i];
-        sums[2] += g[i] * g[i];
-      }
-    }
-    aa = sums[0];
-    ag = sums[1];
-    gg = sums[2];
-  }
-  int count() const { return size * size; }
+// A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
+// up to a multiple of four, and all of it to one of kLanes, with zeros.
+struct RowPlanes {
+  int size, stride, count;  // count: with all zeros
+  float middle;
+  alignas(32) std::array<float, kPlane> value, gradient;
 };
 
-// Sums over a window of the other image: about its mean with itself, with the reference and its gradient.
+UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius, RowPlanes& planes) {
+  const int size = planes.size = 2 * radius + 1, stride = planes.stride = (size + 3) / 4 * 4;
+  planes.count = wholeLanes(size * stride);
+  const float middle = planes.middle = image.at<float>(v, u);
+  for (int j = 0; j < size; ++j) {
+    const float* row = image.ptr<float>(v - radius + j) + u - radius;
+    float *a = &planes.value[j * stride], *g = &planes.gradient[j * stride];
+    for (int i = 0; i < size; ++i) a[i] = row[i] - middle;
+    for (int i = 0; i < size; ++i) g[i] = 0.5f * (row[i + 1] - row[i - 1]);
+    for (int i = size; i < stride; ++i) a[i] = g[i] = 0;
+  }
+  for (int i = size * stride; i < planes.count; ++i) planes.value[i] = planes.gradient[i] = 0;
+}
+
+// Sums over a window of the values a, their gradient g and their products.
+struct RowWindowSums {
+  double a, g, aa, ag, gg;
+};
+
+UAV_LANDING_MULTIVERSION RowWindowSums addUp(const RowPlanes& planes) {
+  Lanes a1{}, g1{}, aa{}, ag{}, gg{};
+  for (int i = 0; i < planes.count; i += kLanes) {
+    Lanes a, g;
+    load(&planes.value[i], a);
+    load(&planes.gradient[i], g);
+    a1 += a;
+    g1 += g;
+    aa += a * a;
+    ag += a * g;
+    gg += g * g;
+  }
+  return {sum(a1), sum(g1), sum(aa), sum(ag), sum(gg)};
+}
+
+// Sums over a window b of the other image: itself, its square, and with the reference and its gradient.
+struct OtherSums {
+  double b, bb, ab, bg;
+};
+
+UAV_LANDING_MULTIVERSION OtherSums multiply(const RowPlanes& planes, const float* other) {
+  const float middle = planes.middle;
+  Lanes b1{}, bb{}, ab{}, bg{};
+  for (int i = 0; i < planes.count; i += kLanes) {
+    Lanes a, g, b;
+    load(&planes.value[i], a);
+    load(&planes.gradient[i], g);
+    load(other + i, b);
+    b -= middle;
+    b1 += b;
+    bb += b * b;
+    ab += b * a;
+    bg += b * g;
+  }
+  return {sum(b1), sum(bb), sum(ab), sum(bg)};
+}
+
+UAV_LANDING_MULTIVERSION void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp,
+                                         const RowPlanes& planes, float* out) {
+  const int radius = planes.size / 2;
+  const std::int32_t step = CubicTable::fixed(warp.scale);
+  for (int j = 0; j < planes.size; ++j, out += planes.stride) {
+    const double start = position + warp.shear * (j - radius) - warp.scale * radius;
+    sampleCubicRow(image.ptr<float>(v - radius + j), CubicTable::fixed(start), step, planes.stride, out);
+    for (int i = planes.size; i < planes.stride; ++i) out[i] = planes.middle;  // does not count
+  }
+  for (int i = planes.size * planes.stride; i < planes.count; ++i) *out++ = planes.middle;
+}
+
+// The reference's window with the sums that do not depend on the other image, about the means.
+struct RowWindow {
+  RowPlanes planes;
+  RowWindowSums sums;
+  double aa, ag, gg;
+
+  RowWindow(const cv::Mat& image, int u, int v, int radius) {
+    loadWindow(image, u, v, radius, planes);
+    sums = addUp(planes);
+    aa = sums.aa - sums.a * sums.a / count();
+    ag = sums.ag - sums.a * sums.g / count();
+    gg = sums.gg - sums.g * sums.g / count();
+  }
+  int count() const { return planes.size * planes.size; }
+};
+
+// Sums over a window of the other image, about the means: with itself, with the reference and its gradient.
 struct RowSums {
   double bb, ab, bg;
 };
 
 RowSums compareAlongRow(const RowWindow& window, const cv::Mat& other, int v, double position,
                         const RowWarp& warp) {
-  using cv::v_float32x4;
-  const int radius = window.size / 2;
-  alignas(16) float row[RowWindow::kLargestStride], inside[RowWindow::kLargestStride];
-  for (int i = 0; i < window.stride; ++i) inside[i] = i < window.size ? 1.f : 0.f;
-  const v_float32x4 mean = cv::v_setall_f32(window.mean);
-  v_float32x4 b1 = cv::v_setzero_f32(), bb = b1, ab = b1, bg = b1;
-  const float *a = window.value.data(), *g = window.gradient.data();
-  const std::int32_t step = CubicTable::fixed(warp.scale);
-  for (int dy = -radius; dy <= radius; ++dy) {
-    const double start = position + warp.shear * dy - warp.scale * radius;
-    sampleCubicRow(other.ptr<float>(v + dy), CubicTable::fixed(start), step, window.stride, row);
-    for (int i = 0; i < window.stride; i += 4, a += 4, g += 4) {
-      const v_float32x4 b = (cv::v_load_aligned(row + i) - mean) * cv::v_load_aligned(inside + i);
-      b1 = b1 + b;
-      bb = cv::v_muladd(b, b, bb);
-      ab = cv::v_muladd(b, cv::v_load(a), ab);
-      bg = cv::v_muladd(b, cv::v_load(g), bg);
-    }
-  }
-  const double sum = cv::v_reduce_sum(b1);
-  return {cv::v_reduce_sum(bb) - sum * sum / window.count(), cv::v_reduce_sum(ab), cv::v_reduce_sum(bg)};
+  alignas(32) std::array<float, kPlane> values;
+  sampleRows(other, v, position, warp, window.planes, values.data());
+  const OtherSums sums = multiply(window.planes, values.data());
+  const double mean = sums.b / window.count();
+  return {sums.bb - mean * sums.b, sums.ab - mean * window.sums.a, sums.bg - mean * window.sums.g};
 }
 
 }  // namespace
@@ -247,7 +303,7 @@ RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int
     return result;
   const RowWindow window(reference, u, v, radius);
   if (window.aa <= 0 || window.gg <= 0) return result;
-  const int padded = window.stride - radius - 1;
+  const int padded = window.planes.stride - radius - 1;
   const double reach = std::abs(warp.scale) * padded + std::abs(warp.shear) * radius;
   double x0 = position;
   for (int iteration = 0; iteration < kIterations; ++iteration) {

@@ -1,29 +1,59 @@
 #include "uav_landing/window_template.h"
 
+#include <algorithm>
+
+#include "lanes.h"
+#include "multiversion.h"
+
 namespace uav_landing {
+namespace {
+
+UAV_LANDING_MULTIVERSION double sumOf(const float* values, int count) {
+  Lanes lanes{};
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    Lanes value;
+    load(values + i, value);
+    lanes += value;
+  }
+  double total = sum(lanes);
+  for (; i < count; ++i) total += values[i];
+  return total;
+}
+
+// Takes the mean off; the sum of the squares of what is left.
+UAV_LANDING_MULTIVERSION double centre(float* values, int count, float mean) {
+  Lanes squares{};
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    Lanes value;
+    load(values + i, value);
+    value -= mean;
+    squares += value * value;
+    store(value, values + i);
+  }
+  double total = sum(squares);
+  for (; i < count; ++i) {
+    values[i] -= mean;
+    total += values[i] * values[i];
+  }
+  return total;
+}
+
+}  // namespace
 
 bool WindowTemplate::load(const cv::Mat& image, int u, int v, int radius) {
   constexpr double kMinContrast = 1.0;
   if (u < radius || v < radius || u + radius >= image.cols || v + radius >= image.rows) return false;
   const int size = 2 * radius + 1;
   values.resize(static_cast<size_t>(size) * size);
-  float* out = values.data();
-  float sum = 0;
-  for (int dy = 0; dy < size; ++dy, out += size) {
+  for (int dy = 0; dy < size; ++dy) {
     const float* row = image.ptr<float>(v - radius + dy) + u - radius;
-    for (int dx = 0; dx < size; ++dx) {
-      out[dx] = row[dx];
-      sum += row[dx];
-    }
+    std::copy(row, row + size, values.data() + static_cast<size_t>(dy) * size);
   }
-  const double count = static_cast<double>(values.size());
-  mean = sum / count;
-  float squares = 0;
-  for (float& value : values) {
-    value -= static_cast<float>(mean);
-    squares += value * value;
-  }
-  energy = squares;
+  const int count = size * size;
+  mean = sumOf(values.data(), count) / count;
+  energy = centre(values.data(), count, static_cast<float>(mean));
   return energy > kMinContrast * kMinContrast * count;
 }
 

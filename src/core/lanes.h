@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstring>
+
+namespace uav_landing {
+
+/// Eight floats that are worked on at once: one AVX register, or two of SSE or NEON. For sums over windows,
+/// which compilers do not vectorise by themselves, as that changes the order. Handed over by reference only:
+/// by value the registers would depend on the processor that a function is compiled for.
+using Lanes = float __attribute__((vector_size(32)));
+constexpr int kLanes = 8;
+
+inline void load(const float* from, Lanes& to) { std::memcpy(&to, from, sizeof(Lanes)); }
+inline void store(const Lanes& from, float* to) { std::memcpy(to, &from, sizeof(Lanes)); }
+
+inline float sum(const Lanes& lanes) {
+  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+}
+
+inline int wholeLanes(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+}  // namespace uav_landing
