@@ -5,6 +5,7 @@
 
 #include "uav_landing/attitude_filter.h"
 #include "uav_landing/consistency_tests.h"
+#include "uav_landing/ground_memory.h"
 #include "uav_landing/height_filter.h"
 #include "uav_landing/height_memory.h"
 #include "uav_landing/parameters.h"
@@ -90,7 +91,10 @@ class KalmanHeightStage {
   /// The published height against the one remembered.
   void testMemory(double T, const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                   LandingResult& result);
-  void reportProtection(LandingResult& result) const;
+  /// Carries on the ground that was in view, and adds that of this pair.
+  void rememberGround(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step,
+                      const Reconstruction& reconstruction);
+  void reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const;
   void refuse(LandingResult& result, const Failure& failure) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                              Reconstruction& reconstruction) const;
@@ -132,6 +136,7 @@ class KalmanHeightStage {
   int pairs_failed_ = 0, pairs_passed_ = 0;  // tests of one pair: failures before and passes since, up to 3
   HeightMemory memory_;
   SpeedMemory speed_;
+  GroundMemory ground_;
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s

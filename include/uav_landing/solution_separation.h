@@ -56,6 +56,8 @@ class SolutionSeparation {
   };
   /// height, variance: published, m, m^2.
   Level protectionLevel(double height, double variance) const;
+  /// The level, or that because of one more solution for the height (m, m^2), whichever is larger.
+  Level larger(const Level& level, double height, double solution, double variance, const char* source) const;
 
  private:
   struct Solution {

@@ -207,9 +207,26 @@ void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) co
   if (!result.failure) result.failure = failure;
 }
 
-void KalmanHeightStage::reportProtection(LandingResult& result) const {
+void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
+                                       const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction) {
+  if (!parameters_.integrity_monitor) return;
+  const double height = (filter_.initialised() ? filter_.state()[0] : reconstruction.height) -
+                        reconstruction.bend;  // above the plane ahead, which the motion is of
+  const Eigen::Vector3d& t = step.translation_over_height;
+  if (!t.allFinite() || !step.rotation.allFinite() || !(height > 0)) return ground_.reset();
+  ground_.move(rotationMatrix(step.rotation), t * height);
+  if (reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
+  const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
+                          reconstruction.plane.covariance};
+  ground_.look(rig_, stereo.points, plane, stereo.plane.g);
+}
+
+void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const {
   if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
-  const SolutionSeparation::Level level = separation_.protectionLevel(result.height, result.height_variance);
+  SolutionSeparation::Level level = separation_.protectionLevel(result.height, result.height_variance);
+  if (const std::optional<GroundMemory::Below> below = ground_.below(normal))
+    level = separation_.larger(level, result.height, below->height, below->variance, "surface_below");
   result.height_protection_level = level.bound;
   result.protection_source = level.source;
   result.height_alert_limit =

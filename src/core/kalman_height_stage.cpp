@@ -83,7 +83,8 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     reportHeight(result);
     testMemory(T, reconstruction, approach, result);
-    reportProtection(result);
+    rememberGround(stereo, approach.step, reconstruction);
+    reportProtection(reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n, result);
   }
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
   reportAngle(approach, publishedMotion(approach), corrected ? &reconstruction.plane : nullptr,
@@ -125,6 +126,7 @@ void KalmanHeightStage::reset() {
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   speed_.reset();
+  ground_.reset();
   last_stamp_.reset();
   lost_ = false;
 }

@@ -80,11 +80,16 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i]) continue;
     const HeightFilter& filter = solutions_[i]->filter;
-    const double without = std::sqrt(filter.ownCovariance()(0, 0) + solutions_[i]->common);
-    const double bound = std::abs(height - filter.state()[0]) + fault_factor_ * without;
-    if (!(bound <= level.bound)) level = {bound, toString(static_cast<FaultySource>(i))};
+    level = larger(level, height, filter.state()[0], filter.ownCovariance()(0, 0) + solutions_[i]->common,
+                   toString(static_cast<FaultySource>(i)));
   }
   return level;
+}
+
+SolutionSeparation::Level SolutionSeparation::larger(const Level& level, double height, double solution,
+                                                     double variance, const char* source) const {
+  const double bound = std::abs(height - solution) + fault_factor_ * std::sqrt(variance);
+  return bound <= level.bound ? level : Level{bound, source};
 }
 
 }  // namespace uav_landing

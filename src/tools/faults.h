@@ -23,6 +23,7 @@ struct Flight {
   CameraCalibration left, right;
   const CameraRig* rig = nullptr;  ///< null when not simulated: then nothing can be painted on the ground
   std::vector<Frame> frames;
+  double settled = 1.0;  ///< s at the start that do not count
 };
 
 /// A pair as it reaches the chain. images are the fault's own to change; time: s, of both stamps.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -19,6 +20,8 @@
 #include "progress_bar.h"
 #include "random_approach.h"
 #include "uav_landing/pipeline.h"
+#include "uav_landing/simulator/attitude.h"
+#include "uav_landing/simulator/ground_profile.h"
 
 namespace {
 
@@ -31,7 +34,6 @@ struct Options {
   int count = 10, frames = 70, pairs = 0;
 };
 
-constexpr double kSettled = 1.0;  // s at the start of a run that do not count
 constexpr const char* kHeader =
     "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
     "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_uncertain,"
@@ -67,8 +69,26 @@ SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& para
   return p;
 }
 
+/// Time from which on the ground below was in view before, by a whole matching window: what it is like before
+/// that changes no pixel that a run begins with.
+double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
+  constexpr int kMargin = 8;  // px
+  const Flight::Frame& first = flight.frames.front();
+  const SimulatedCamera& camera = flight.rig->left;
+  const int row = first.left.rows - 1 - kMargin;
+  const PixelRay& ray = camera.rays[static_cast<size_t>(row) * first.left.cols + first.left.cols / 2];
+  const Eigen::Vector3d direction = runwayFromOptical(first.pose.attitude) * Eigen::Vector3d(ray.x, ray.y, 1);
+  const Eigen::Vector3d& centre = first.pose.position;
+  const GroundProfile::Line ground = profile.seen(centre, direction);
+  const double way = (centre.z() - ground.at(centre.x())) / (ground.slope * direction.x() - direction.z());
+  const double nearest = centre.x() + way * direction.x();
+  const auto above = std::find_if(flight.frames.begin(), flight.frames.end(),
+                                  [&](const Flight::Frame& f) { return f.pose.position.x() >= nearest; });
+  return (above == flight.frames.end() ? flight.frames.back() : *above).time - first.time;
+}
+
 struct SimulatedFlight {
-  explicit SimulatedFlight(const ApproachSimulator& simulator) : rig(simulator.rig()) {
+  SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile) : rig(simulator.rig()) {
     flight.left = rig.left.calibration;
     flight.right = rig.right.calibration;
     flight.rig = &rig;
@@ -76,6 +96,7 @@ struct SimulatedFlight {
       ApproachSimulator::Frame frame = simulator.frame(i);
       flight.frames.push_back({frame.time, frame.left, frame.right, frame.truth, simulator.pose(frame.time)});
     }
+    if (!profile.flat()) flight.settled = std::max(flight.settled, timeOfKnownGround(flight, profile));
   }
   CameraRig rig;
   Flight flight;
@@ -89,7 +110,7 @@ std::string withoutCommas(std::string text) {
 std::unique_ptr<SimulatedFlight> simulate(const SimulatorParameters& drawn) {
   const Expected<ApproachSimulator> simulator = ApproachSimulator::create(drawn);
   if (!simulator) return nullptr;  // a scene that a fault has put in the aircraft's way
-  return std::make_unique<SimulatedFlight>(*simulator);
+  return std::make_unique<SimulatedFlight>(*simulator, GroundProfile(drawn.profile));
 }
 
 Flight readFlight(const std::string& folder) {
@@ -156,7 +177,7 @@ FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint6
     // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
     if (!pair.delivered) continue;
     const Pipeline::Output& output = pipeline->process(100 + pair.time, pair.left, pair.right);
-    if (now - flight.frames.front().time < kSettled) continue;
+    if (now - flight.frames.front().time < flight.settled) continue;
     const double height = trueHeight(flight, pair.time);
     score.take(output.landing, height, frame >= onset, now - last);
     if (observe) observe(now, output.landing, height, frame >= onset);
@@ -227,17 +248,19 @@ class Campaign {
     const SimulatorParameters drawn = drawFlight(seed, options_.frames, parameters_);
     const auto plain = simulate(drawn);
     if (!plain) return;
+    std::map<std::string, std::unique_ptr<SimulatedFlight>> others;  // by the faults that change the scene
     for (const Combination& faults : combinations(seed)) {
       SimulatorParameters changed = drawn;
-      bool rebuilt = false;
+      Combination builders;
       for (const Fault* fault : faults) {
         if (!fault->build) continue;
         fault->build(changed);
-        rebuilt = true;
+        builders.push_back(fault);
       }
-      const auto other = rebuilt ? simulate(changed) : nullptr;
-      if (rebuilt && !other) continue;
-      flyOne(rebuilt ? other->flight : plain->flight, "simulator", faults, seed);
+      const std::string name = nameOf(builders);
+      if (!builders.empty() && others.count(name) == 0) others[name] = simulate(changed);
+      const SimulatedFlight* flight = builders.empty() ? plain.get() : others[name].get();
+      if (flight != nullptr) flyOne(flight->flight, "simulator", faults, seed);
     }
   }
 

@@ -73,6 +73,25 @@ class ShortCampaignTest(unittest.TestCase):
                 self.assertLess(int(faulted["faulted_valid"]), int(faulted["faulted"]), name)
             self.assertLessEqual(float(faulted["time_to_alert_s"]), 0.35, name)
 
+    def fly(self, *options):
+        """Rows of a campaign by their faults."""
+        folder = Path(tempfile.mkdtemp(prefix="uav_landing_faults_"))
+        self.addCleanup(shutil.rmtree, str(folder))
+        result = run([PROGRAM, "--csv", folder / "rows.csv", "--count", 1, *options])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with (folder / "rows.csv").open() as file:
+            return {row["faults"]: row for row in csv.DictReader(file)}
+
+    def test_ground_that_slopes_below_the_aircraft_does_not_mislead(self):
+        row = self.fly("--first", 101, "--frames", 110, "--faults", "slope")["slope"]
+        self.assertEqual(row["misleading"], "0")
+        self.assertGreater(int(row["faulted_valid"]), 0.8 * int(row["faulted"]))
+
+    def test_a_frozen_scene_does_not_mislead_under_noise(self):
+        row = self.fly("--first", 1, "--frames", 60, "--faults", "none,frozen_both,noise", "--pairs", 4)["frozen_both+noise"]
+        self.assertEqual(row["misleading"], "0")
+        self.assertLess(int(row["faulted_valid"]), 0.3 * int(row["faulted"]))
+
     def test_an_unknown_fault_is_refused_by_its_name(self):
         result = run([PROGRAM, "--csv", "/tmp/none.csv", "--faults", "moon"])
         self.assertEqual(result.returncode, 1)

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "uav_landing/calibration.h"
+#include "uav_landing/ground_plane.h"
+#include "uav_landing/stage_results.h"
+
+namespace uav_landing {
+
+/// The nearest ground that was in view, carried along by the motion until the camera is above it: what the
+/// surface below is, where it is not that of the plane ahead. Where the ground never was in view nothing is
+/// known.
+class GroundMemory {
+ public:
+  /// Motion since the pair before: a point is at R x - t now. t: m.
+  void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
+  /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
+  /// known; measured: the plane of the points before that. Between pairs the last move() says where the path
+  /// goes.
+  void look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+            const GroundPlane& plane, const Eigen::Vector3d& measured);
+
+  struct Below {
+    double height = 0, variance = 0;  ///< m, m^2
+  };
+  /// The height above the ground straight below, as it was when in view. normal: of the ground.
+  std::optional<Below> below(const Eigen::Vector3d& normal) const;
+  void reset() { *this = GroundMemory(); }
+
+ private:
+  struct Patch {
+    Eigen::Vector3d at;   // m, camera frame now
+    double variance = 0;  // of its height, m^2, when seen
+    double reach = 0;     // of the strip to this side of it, m
+    double flown = 0;     // since, m
+  };
+  std::deque<Patch> patches_;  // nearest first
+  Eigen::Vector3d motion_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,113 @@
+#include "uav_landing/ground_memory.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+// In multiples of the height.
+constexpr double kHalfWidth = 0.35;    // of the strip below the path
+constexpr double kLength = 0.5;        // of the strip that one pair is asked about
+constexpr double kSpacing = 0.1;       // between patches
+constexpr double kLargestGap = 0.5;    // between patches that are ground without a step
+constexpr double kMostOff = 0.15;      // by which ground may differ from the plane
+constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no direction
+constexpr size_t kFewest = 5;          // points that make a patch
+// 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
+constexpr double kDirectionError = 0.15 * M_PI / 180;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct GroundPoint {
+  double ahead, height, stddev;  // m
+};
+
+/// Variance of the median of the heights: by their scatter, or by what they claim.
+double medianVariance(const std::vector<GroundPoint>& points, double middle) {
+  std::vector<double> off, claimed;
+  for (const GroundPoint& point : points) {
+    off.push_back(std::abs(point.height - middle));
+    claimed.push_back(point.stddev);
+  }
+  const double stddev = std::max(1.4826 * median(off), median(claimed));
+  return 0.5 * M_PI * stddev * stddev / points.size();
+}
+
+}  // namespace
+
+void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
+  motion_ = t;
+  for (Patch& patch : patches_) {
+    patch.at = R * patch.at - t;
+    patch.flown += t.norm();
+  }
+}
+
+void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                        const GroundPlane& plane, const Eigen::Vector3d& measured) {
+  const Eigen::Vector3d n = plane.normal();
+  const double h = plane.height();
+  const Eigen::Vector3d along = motion_ - n.dot(motion_) * n;
+  if (!(along.norm() > kLeastMotion * h)) return;
+  const Eigen::Vector3d ahead = along.normalized(), side = n.cross(ahead);
+  const auto distance = [&](const Patch& patch) { return ahead.dot(patch.at); };
+  // One that has been passed stays, to know the ground up to there.
+  while (patches_.size() > 1 && distance(patches_[1]) < 0) patches_.pop_front();
+
+  std::vector<GroundPoint> strip;
+  double nearest = INFINITY;
+  for (const StereoDepthResult::Point& point : points) {
+    const Eigen::Vector3d ray = rig.ray(point.u, point.v);
+    const double expected = rig.fb() * measured.dot(ray), inverse = plane.g.dot(ray);
+    if (!(expected > 0 && inverse > 0 && point.disparity > 0)) continue;
+    const double ratio = expected / point.disparity;  // of its depth to the plane's
+    if (std::abs(ratio - 1) > kMostOff) continue;
+    const Eigen::Vector3d at = ratio / inverse * ray;
+    if (std::abs(side.dot(at)) > kHalfWidth * h) continue;
+    strip.push_back({ahead.dot(at), n.dot(at), h * point.disparity_stddev / point.disparity});
+    nearest = std::min(nearest, strip.back().ahead);
+  }
+  const auto far = [&](const GroundPoint& point) { return point.ahead > nearest + kLength * h; };
+  strip.erase(std::remove_if(strip.begin(), strip.end(), far), strip.end());
+  if (strip.size() < kFewest) return;
+  std::vector<double> distances, heights;
+  for (const GroundPoint& point : strip) {
+    distances.push_back(point.ahead);
+    heights.push_back(point.height);
+  }
+  const double place = median(distances), height = median(heights);
+  if (!patches_.empty() && place < distance(patches_.back()) + kSpacing * h) return;
+  patches_.push_back({place * ahead + height * n, medianVariance(strip, height), place - nearest, 0});
+}
+
+std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& normal) const {
+  const Eigen::Vector3d along = motion_ - normal.dot(motion_) * normal;
+  if (!(along.norm() > 0)) return std::nullopt;
+  const Eigen::Vector3d ahead = along.normalized();
+  const auto uncertain = [](const Patch& patch) {
+    return patch.variance + std::pow(kDirectionError * patch.flown, 2);
+  };
+  if (!patches_.empty()) {
+    const Patch& first = patches_.front();
+    const double distance = ahead.dot(first.at);
+    if (distance > 0 && distance <= first.reach) return Below{normal.dot(first.at), uncertain(first)};
+  }
+  for (size_t i = 1; i < patches_.size(); ++i) {
+    const Patch &a = patches_[i - 1], &b = patches_[i];
+    const double from = ahead.dot(a.at), to = ahead.dot(b.at);
+    if (from > 0 || to < 0) continue;
+    const double height_a = normal.dot(a.at), height_b = normal.dot(b.at);
+    if (to - from > kLargestGap * std::max(height_a, height_b)) return std::nullopt;
+    const double share = to > from ? -from / (to - from) : 0;
+    return Below{height_a + share * (height_b - height_a), std::max(uncertain(a), uncertain(b))};
+  }
+  return std::nullopt;
+}
+
+}  // namespace uav_landing

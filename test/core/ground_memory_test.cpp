@@ -1,0 +1,105 @@
+#include "uav_landing/ground_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kPitch = -10 * kDegree;
+using Surface = std::function<double(double)>;  // elevation over distance, m
+
+StereoRig makeRig() {
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 500;
+  rig.cx = rig.cx_right = 320;
+  rig.cy = 240;
+  rig.baseline = 1.0;
+  return rig;
+}
+
+/// The pair of a camera at this place over a surface.
+std::vector<StereoDepthResult::Point> look(const StereoRig& rig, double x, double z, const Surface& surface) {
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  std::vector<StereoDepthResult::Point> points;
+  for (int v = 200; v < 480; v += 10) {
+    for (int u = 10; u < 640; u += 20) {
+      const Eigen::Vector3d ray = rig.ray(u, v);
+      const double a = forward.dot(ray), b = down.dot(ray);
+      if (b < 0.02) continue;
+      double depth = z / b;
+      for (int i = 0; i < 50; ++i) depth = (z - surface(x + a * depth)) / b;
+      points.push_back({double(u), double(v), rig.fb() / depth, 0.1, true});
+    }
+  }
+  return points;
+}
+
+/// Flies 60 m from a height of 12 m, sinking by 1 m in 20 m, always with the plane z = 0 for the ground
+/// ahead. Calls see(x, z, memory) after each pair.
+template <class See>
+void fly(const Surface& surface, See&& see) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  GroundMemory memory;
+  for (double x = 0; x <= 60; ++x) {
+    const double z = 12 - x / 20;
+    if (x > 0) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20);
+    GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
+    memory.look(rig, look(rig, x, z, surface), plane, plane.g);
+    see(x, z, memory.below(down));
+  }
+}
+
+// The lowest row looks down by 10 + atan(230 / 500) = 34.7 deg: the nearest ground in view from 12 m is 17.3
+// m ahead. The strip is half a height long, its middle some 3 m farther.
+constexpr double kFirstSeen = 17.3;
+
+TEST(GroundMemory, KnowsTheHeightAboveGroundThatSlopesAndIsNoLongerInView) {
+  // Rises by 1.5 deg up to x = 40, then flat.
+  const Surface slope = [](double x) { return std::tan(1.5 * kDegree) * std::min(0.0, x - 40); };
+  int known = 0;
+  fly(slope, [&](double x, double z, const std::optional<GroundMemory::Below>& below) {
+    if (x < kFirstSeen) {
+      EXPECT_FALSE(below) << "never in view, " << x;
+      return;
+    }
+    if (x < 24) return;
+    ASSERT_TRUE(below) << x;
+    ++known;
+    EXPECT_NEAR(below->height, z - slope(x), 0.03) << x;
+    // 0.15 deg of some 20 m.
+    EXPECT_GT(std::sqrt(below->variance), 0.03);
+    EXPECT_LT(std::sqrt(below->variance), 0.12);
+  });
+  EXPECT_GT(known, 30);
+}
+
+TEST(GroundMemory, IsThePlaneWhereTheGroundIs) {
+  fly([](double) { return 0; },
+      [](double x, double z, const std::optional<GroundMemory::Below>& below) {
+        if (x > 24) {
+          ASSERT_TRUE(below);
+          EXPECT_NEAR(below->height, z, 1e-6);
+        }
+      });
+}
+
+TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  GroundMemory memory;
+  const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
+  const auto points = look(rig, 0, 12, [](double) { return 0; });
+  for (int i = 0; i < 50; ++i) memory.look(rig, points, plane, plane.g);
+  EXPECT_FALSE(memory.below(down)) << "nobody knows where the path goes";
+}
+
+}  // namespace
+}  // namespace uav_landing
