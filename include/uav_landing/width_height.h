@@ -20,18 +20,29 @@ class WidthHeight {
 
   /// Of one pair. ratio, variance: width over height as seen. Nothing before a width is known.
   std::optional<Estimate> height(double ratio, double variance) const;
-  /// A pair with a height by stereo (m, m^2) that is believed.
+  /// Whether the edges seen are those that the width was learned from, rather than, for instance, the other
+  /// sides of the lines along the runway: by the height (m, m^2) that is expected without this pair. Of a
+  /// known width always.
+  bool isSame(double ratio, double variance, double height, double height_variance) const;
+  /// A pair with a height by stereo (m, m^2) that is believed. Other edges take the place of those before
+  /// when some pairs in a row saw them.
   void learn(double ratio, double variance, double height, double height_variance);
   /// Whether the width does not depend on stereo.
   bool independent() const { return known_; }
   void reset();
 
  private:
+  struct Width {
+    double mean = 0, variance = 0;  // m, m^2
+    int pairs = 0;                  // in a row that agree
+  };
+  static Width seen(double ratio, double variance, double height, double height_variance);
+  static bool agree(const Width& a, const Width& b);
+  static void merge(const Width& seen, Width& width);
+
   bool known_;
   double known_width_;
-  std::optional<double> width_;  // m
-  double variance_ = 0;          // m^2
-  int learned_ = 0;              // pairs in a row that agree
+  std::optional<Width> width_, other_;  // other_: seen by the last pairs in the place of the edges of width_
 };
 
 }  // namespace uav_landing

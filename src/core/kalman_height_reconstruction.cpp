@@ -54,7 +54,11 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   constexpr double kAgreement = 3;  // sigma
   width_variance_ = 0;
   if (runway.failure) return;
-  const std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
+  std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
+  if (filter_.initialised() && confirmations_ >= kConfirmations &&
+      !width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
+                     filter_.ownCovariance()(0, 0) + commonVariance(filter_.state()[0])))
+    seen.reset();
   if (seen) {
     result.width_height = seen->height + reconstruction.bend;
     result.width_height_variance = seen->variance + modelVariance(seen->height);

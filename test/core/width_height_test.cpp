@@ -40,11 +40,29 @@ TEST(WidthHeight, LearnedFromManyEqualHeightsIsNoBetterThanOneOfThem) {
   EXPECT_NEAR(std::sqrt(estimate->variance), 0.2, 1e-3);
 }
 
-TEST(WidthHeight, OtherEdgesStartLearningAnew) {
+TEST(WidthHeight, EdgesThatWereNotLearnedFromAreTold) {
   WidthHeight width(0);
   for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
-  width.learn(3.3, 1e-8, 15, 1e-4);
-  EXPECT_FALSE(width.height(3.3, 1e-8));
+  // Lines 1.2 m inside of both edges of 45 m: 5 %.
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4));
+  EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4));
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16)) << "as far as the height is known";
+  EXPECT_TRUE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4)) << "a known width is not doubted";
+}
+
+TEST(WidthHeight, AnotherEdgeInBetweenDoesNotMakeForgetTheOnesBefore) {
+  WidthHeight width(0);
+  for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
+  for (int i = 0; i < 4; ++i) width.learn(2.84, 1e-8, 15, 1e-4);
+  width.learn(3, 1e-8, 15, 1e-4);
+  width.learn(2.84, 1e-8, 15, 1e-4);
+  ASSERT_TRUE(width.height(3, 1e-8));
+  EXPECT_NEAR(width.height(3, 1e-8)->height, 15, 1e-9);
+}
+
+TEST(WidthHeight, OtherEdgesAreLearnedWhenSomePairsInARowSawThem) {
+  WidthHeight width(0);
+  for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
   for (int i = 0; i < 5; ++i) width.learn(3.3, 1e-8, 15, 1e-4);
   ASSERT_TRUE(width.height(3.3, 1e-8));
   EXPECT_NEAR(width.height(3.3, 1e-8)->height, 15, 1e-9);
