@@ -7,7 +7,7 @@ import numpy as np
 from . import kept
 from .campaign import fly, number
 from .markdown import DASH, table
-from .programs import ROOT
+from .programs import ROOT, pending
 
 SIGMAS_95 = 1.959964
 NOISE, HEIGHTS = (1, 2, 5), (3, 10, 30)
@@ -100,7 +100,8 @@ def plot(cells):
     axes[1][len(QUANTITIES) // 2].set_xlabel("height, noise in grey levels")
     figure.tight_layout()
     IMAGE.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(str(IMAGE), dpi=80)
+    with pending(IMAGE) as temporary:
+        figure.savefig(temporary, dpi=80)
     plt.close(figure)
 
 

@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 
 from .markdown import table
+from .programs import pending
 
 TITLE = "## Campaign\n"
 # Nothing in the images or between the sources tells these: docs/integrity.md says why.
@@ -179,4 +180,5 @@ class Campaign:
         left.invert_yaxis()
         right.set_xlabel("frames with a valid height, %")
         figure.tight_layout()
-        figure.savefig(str(file), dpi=80)
+        with pending(file) as temporary:
+            figure.savefig(temporary, dpi=80)

@@ -2,8 +2,9 @@
 
 import datetime
 import json
+from pathlib import Path
 
-from .programs import WORK
+from .programs import WORK, pending
 
 
 def path(section):
@@ -14,7 +15,8 @@ def keep(section, results):
     """Keeps the results of a section, with today's date."""
     path(section).parent.mkdir(parents=True, exist_ok=True)
     content = {"measured": datetime.datetime.now().strftime("%Y-%m-%d %H:%M"), "results": results}
-    path(section).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    with pending(path(section)) as temporary:
+        Path(temporary).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 def recall(section):

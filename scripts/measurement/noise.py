@@ -5,7 +5,7 @@ import csv
 from . import kept
 from .campaign import number
 from .markdown import table
-from .programs import DEVEL, ROOT, WORK, run
+from .programs import DEVEL, ROOT, WORK, pending, run
 
 PROGRAM = "measure_noise_bound"
 IMAGE = ROOT / "docs/images/noise.png"
@@ -49,7 +49,8 @@ def plot(rows):
     axes[0].legend(title="height; dashed: bound", loc="lower right", fontsize=8, framealpha=0.6)
     figure.tight_layout()
     IMAGE.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(str(IMAGE), dpi=80)
+    with pending(IMAGE) as temporary:
+        figure.savefig(temporary, dpi=80)
     plt.close(figure)
 
 

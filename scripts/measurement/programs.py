@@ -6,6 +6,9 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "src/tools"))
+from evaluation.pending_file import pending  # noqa: E402,F401 (stands beside evaluate)
+
 WORK = ROOT / "build" / "accuracy"
 DEVEL = ROOT / "build" / "devel"
 DEADLINE = 7200  # s, for one program
