@@ -66,14 +66,19 @@ class RigChange {
   };
   /// Against the mean of the pairs before; none for the first ones.
   std::optional<Innovation> compare(const RigRotation& measured) const;
-  /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds.
+  /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds; what
+  /// comes then is learned anew.
   void learn(double T, const RigRotation& measured, bool agrees);
+  /// False while another rotation than before is not yet known for long enough to be the rig's: that of
+  /// images that do not belong together changes.
+  bool settled() const;
   void reset() { *this = RigChange(); }
 
  private:
   Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
   double learned_ = 0, disagreed_ = 0;  // s
+  bool anew_ = false;                   // after another rotation
 };
 
 }  // namespace uav_landing

@@ -86,7 +86,8 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   if (const auto change = rig_change_.compare(stereo.vertical_rotation))
     tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
   const bool bent = tests_.failed(Consistency::kRigRotation);
-  if (bent || pairs_failed_ == 0) rig_change_.learn(T, stereo.vertical_rotation, !bent);
+  if (bent || pairs_failed_ == 0 || !rig_change_.settled())
+    rig_change_.learn(T, stereo.vertical_rotation, !bent);
   testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
@@ -126,6 +127,10 @@ std::string KalmanHeightStage::problemOfPair() {
     pairs_failed_ = std::min(pairs_failed_ + 1, kConfirmations);
     pairs_passed_ = 0;
     return toString(test);
+  }
+  if (!rig_change_.settled()) {
+    pairs_passed_ = 0;
+    return "rig_rotation: another one than before is not known for long enough";
   }
   if (pairs_failed_ == 0) return "";
   // Among pairs of a lasting fault some pass by chance: as many in a row are asked for as failed.

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kMemory = 2.0;                // s that the mean is of
 constexpr double kFirst = 0.4;                 // s before there is anything to compare with
-constexpr double kPatience = 3.0;              // s of something else, after which that is the rig
+constexpr double kPatience = 3.0;              // s of something else, after which that may be the rig
+constexpr double kSettled = 1.0;               // s of it without a change, after which it is
 constexpr double kMostDisorder = 2.0;          // stddev of a pair over that of the pairs before
 constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
 
@@ -35,12 +36,15 @@ std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measu
   return Innovation{value(measured) - mean_, covariance_ + axes * ratios.asDiagonal() * axes.transpose()};
 }
 
+bool RigChange::settled() const { return !anew_ || learned_ >= kSettled; }
+
 void RigChange::learn(double T, const RigRotation& measured, bool agrees) {
   if (!measured.known()) return;
   if (!agrees) {
     disagreed_ += T;
-    if (disagreed_ < kPatience) return;
+    if (settled() && disagreed_ < kPatience) return;
     reset();
+    anew_ = true;
   }
   disagreed_ = 0;
   const double share = learned_ > 0 ? std::clamp(T / std::min(learned_ + T, kMemory), 0.0, 1.0) : 1.0;

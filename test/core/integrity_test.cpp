@@ -203,6 +203,29 @@ TEST(RigChange, SeesASuddenBendButNotAConstantError) {
   EXPECT_FALSE(failed(rotation(0.1, -0.05)));
 }
 
+TEST(RigChange, AnotherRotationIsTheRigsOnceItStaysTheSameForASecond) {
+  RigChange change;
+  const auto learn = [&](const RigRotation& measured) {
+    const auto innovation = change.compare(measured);
+    const bool agrees = !innovation || innovation->difference.norm() < 0.03 * kDegree;
+    change.learn(0.05, measured, agrees);
+  };
+  for (int i = 0; i < 40; ++i) learn(rotation(0.1, 0));
+  EXPECT_TRUE(change.settled());
+  // Images that do not belong together: it changes all the time.
+  double settled = 0;
+  for (int i = 0; i < 400; ++i) {
+    learn(rotation(0.1, 0.2 + 0.01 * (i % 37)));
+    if (i > 70) settled += change.settled();
+  }
+  EXPECT_EQ(settled, 0);
+  // A bend: for long it contradicts, then it must stay.
+  double waited = 0;
+  for (; !change.settled() && waited < 10; waited += 0.05) learn(rotation(0.1, 0.2));
+  EXPECT_GE(waited, 1 - 1e-6);
+  EXPECT_LT(waited, 2.1);
+}
+
 TEST(RigChange, APairThatLooksExactByChanceIsNotMoreSoThanThePairsBefore) {
   RigChange change;
   const auto withStddev = [](double rz_deg, double stddev_deg) {
