@@ -50,6 +50,18 @@ std::string nameOf(const Combination& faults) {
   return name;
 }
 
+/// What is painted on the ground is painted on a plane: on ground of another shape it would be a picture of
+/// that plane, and not of the ground that the height is above.
+bool exclude(const Fault& a, const Fault& b) {
+  const auto bends = [](const Fault& fault) {
+    SimulatorParameters changed;
+    if (fault.build) fault.build(changed);
+    return !GroundProfile(changed.profile).flat();
+  };
+  const auto paints = [](const Fault& fault) { return fault.needs_scene && fault.spoil; };
+  return (bends(a) && paints(b)) || (bends(b) && paints(a));
+}
+
 /// A rig and heights that a small image can do: 320 x 240 with a baseline of 2 m, as good as 640 x 480 with 1
 /// m.
 SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters) {
@@ -238,6 +250,7 @@ class Campaign {
       const Fault* first = faults_[static_cast<size_t>(random.uniform(1, count))];
       const Fault* second = faults_[static_cast<size_t>(random.uniform(1, count))];
       if (first == second || first->name == "none" || second->name == "none") continue;
+      if (exclude(*first, *second)) continue;
       if (first->place > second->place) std::swap(first, second);
       all.push_back({first, second});
     }
