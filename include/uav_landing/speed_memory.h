@@ -27,7 +27,7 @@ class SpeedMemory {
   /// slow down while its pictures stand still. After half a minute of it nothing is known.
   void learn(const Step& step, bool agrees);
   /// A pair that tells nothing of the motion. duration: s.
-  void skip(double duration) { since_ += duration; }
+  void skip(double duration) { since_ += contradicted_ > 0 ? 0 : duration; }
   void reset() { *this = SpeedMemory(max_deceleration_); }
 
  private:

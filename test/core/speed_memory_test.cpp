@@ -52,6 +52,15 @@ TEST(SpeedMemory, StampsThatAreLateAreNotAStandstill) {
   }
 }
 
+TEST(SpeedMemory, APairWithoutMotionDoesNotMakeAStandstillBelievable) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.1, 1);
+  EXPECT_GT(fly(memory, 0.1, 0), 4.4);
+  for (int i = 0; i < 50; ++i) memory.skip(0.1);
+  EXPECT_GT(fly(memory, 0.1, 0), 4.4);
+  EXPECT_LT(fly(memory, 0.1, 1), 0);
+}
+
 TEST(SpeedMemory, NothingIsSaidWhereItMayHaveStoppedUnseen) {
   SpeedMemory memory(3);
   for (int i = 0; i < 5; ++i) fly(memory, 0.1, 0.1);
