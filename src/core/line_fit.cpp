@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "line_refinement.h"
+#include "multiversion.h"
 
 namespace uav_landing::line_fit {
 
@@ -13,25 +14,32 @@ namespace {
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 
-/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets, so that only the
-/// few in the middle one are put in order.
-double median(const Values& values) {
-  constexpr int kBuckets = 32;
-  constexpr double kNothing = 1e-30;
-  const double largest = values.maxCoeff();
-  if (!(largest > kNothing)) return largest;
-  const double scale = (kBuckets - 0.5) / largest;
-  std::array<int, kBuckets> counts{};
-  std::array<uchar, 2 * kMaxStations> bucket_of;
-  for (int i = 0; i < values.size(); ++i) {
-    bucket_of[i] = static_cast<uchar>(values[i] * scale);
-    ++counts[bucket_of[i]];
+/// Buckets of the numbers, all that are beyond the last one in that.
+constexpr int kBuckets = 32;
+UAV_LANDING_MULTIVERSION void shareOut(const double* __restrict values, int count, double scale,
+                                       uchar* __restrict bucket_of) {
+  for (int i = 0; i < count; ++i) {
+    const double bucket = values[i] * scale;
+    bucket_of[i] = static_cast<uchar>(static_cast<int>(bucket < kBuckets - 1 ? bucket : kBuckets - 1));
   }
-  int rank = static_cast<int>(values.size() / 2), bucket = 0;
+}
+
+/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets up to twice the
+/// mean, which the median never exceeds, so that only the few in the middle bucket are put in order.
+double median(const Values& values) {
+  constexpr double kNothing = 1e-30;
+  const double mean = values.mean();
+  if (!(mean > kNothing)) return mean;
+  std::array<uchar, 2 * kMaxStations> bucket_of;
+  const int size = static_cast<int>(values.size());
+  shareOut(values.data(), size, 0.5 * kBuckets / mean, bucket_of.data());
+  std::array<int, kBuckets> counts{};
+  for (int i = 0; i < size; ++i) ++counts[bucket_of[i]];
+  int rank = size / 2, bucket = 0;
   while (rank >= counts[bucket]) rank -= counts[bucket++];
   std::array<double, 2 * kMaxStations> middle;
   int count = 0;
-  for (int i = 0; i < values.size(); ++i) {
+  for (int i = 0; i < size; ++i) {
     middle[count] = values[i];
     count += bucket_of[i] == bucket ? 1 : 0;
   }

@@ -24,37 +24,81 @@ constexpr double kMinShare = 0.4;    // gradient of the other side, of this one'
 constexpr double kMinSupport = 0.6;  // share of the stations that must show the other side
 constexpr double kMaxScatter = 0.6;  // px
 
-/// Gradient across the line, positive towards the line's brighter side, at pixels around it.
+/// What is seen across the line at one station.
 struct Profile {
-  std::array<double, 2 * kReach + 3> gradient;  // from -kReach - 1
-  cv::Point centre;
+  static constexpr int kHalf = kReach + 1;
 
-  double at(int k) const { return gradient[k + kReach + 1]; }
-  /// Extremum at pixel k and its neighbours, px from the centre.
+  std::array<int, 2 * kHalf + 1> gradient;
+  int station, centre;  // row and column of the middle, or the other way round
+
+  /// Twice the gradient along the row or column, k pixels from the middle, positive towards the line's
+  /// brighter side.
+  int at(int k) const { return gradient[k + kHalf]; }
+  /// Extremum at pixel k and its neighbours, px from the middle.
   double peak(int k) const {
-    const double curvature = at(k - 1) - 2 * at(k) + at(k + 1);
+    const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
     return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
+  }
+  /// Where the gradient has a minimum of at most -least: bit k + kHalf for pixel k, |k| <= kReach.
+  unsigned minima(int least) const {
+    unsigned bits = 0;
+    for (int i = 1; i < 2 * kHalf; ++i) {
+      const int here = gradient[i];
+      const bool is_minimum = (here <= -least) & (here <= gradient[i - 1]) & (here <= gradient[i + 1]);
+      bits |= static_cast<unsigned>(is_minimum) << i;
+    }
+    return bits;
   }
 };
 
-std::optional<Profile> profileAt(const cv::Mat& image, const cv::Mat& ground, const Axis& axis, int sign,
-                                 int station) {
-  constexpr int kMargin = kReach + 2;
-  const int centre =
-      cvRound(axis.point((station - axis.origin[axis.major]) / axis.along[axis.major])[axis.minor]);
-  const int size = axis.minor == 0 ? image.cols : image.rows;
-  const int length = axis.major == 0 ? image.cols : image.rows;
-  if (centre < kMargin || centre >= size - kMargin || station < 0 || station >= length) return std::nullopt;
-  Profile profile;
-  profile.centre = axis.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
-  if (ground.at<uchar>(profile.centre) == 0) return std::nullopt;
-  const uchar* middle = image.ptr<uchar>(profile.centre.y) + profile.centre.x;
-  const std::ptrdiff_t step = axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step);
-  const double scale = 0.5 * sign / axis.across[axis.minor];
-  for (int k = -kReach - 1; k <= kReach + 1; ++k)
-    profile.gradient[k + kReach + 1] = scale * (middle[(k + 1) * step] - middle[(k - 1) * step]);
-  return profile;
-}
+/// Looks at the pixels across one line.
+class Profiles {
+ public:
+  /// sign: of the gradient across the line that is its own.
+  Profiles(const cv::Mat& image, const cv::Mat& ground, const Axis& axis, int sign)
+      : image_(image),
+        ground_(ground),
+        axis_(axis),
+        sign_(axis.across[axis.minor] < 0 ? -sign : sign),
+        size_(axis.minor == 0 ? image.cols : image.rows),
+        length_(axis.major == 0 ? image.cols : image.rows),
+        neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
+        slope_(axis.along[axis.minor] / axis.along[axis.major]) {}
+
+  std::optional<Profile> at(int station) const {
+    constexpr int kMargin = kReach + 2;
+    const int centre = cvRound(axis_.origin[axis_.minor] + slope_ * (station - axis_.origin[axis_.major]));
+    if (centre < kMargin || centre >= size_ - kMargin || station < 0 || station >= length_)
+      return std::nullopt;
+    const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
+    if (ground_.at<uchar>(pixel) == 0) return std::nullopt;
+    constexpr int kPixels = 2 * Profile::kHalf + 3;
+    const uchar* first = image_.ptr<uchar>(pixel.y) + pixel.x - neighbour_ * (kPixels / 2);
+    std::array<int, kPixels> grey;
+    for (int i = 0; i < kPixels; ++i) grey[i] = sign_ * first[i * neighbour_];
+    Profile profile;
+    for (int i = 0; i + 2 < kPixels; ++i) profile.gradient[i] = grey[i + 2] - grey[i];
+    profile.station = station;
+    profile.centre = centre;
+    return profile;
+  }
+  /// Of a place this many pixels from the profile's middle: distances along and across the line.
+  Eigen::Vector2d place(const Profile& profile, double k) const {
+    const double major = profile.station - axis_.origin[axis_.major];
+    const double minor = profile.centre + k - axis_.origin[axis_.minor];
+    return {axis_.along[axis_.major] * major + axis_.along[axis_.minor] * minor,
+            axis_.across[axis_.major] * major + axis_.across[axis_.minor] * minor};
+  }
+  /// Across the line, grey/px.
+  double gradient(int twice) const { return 0.5 * twice / std::abs(axis_.across[axis_.minor]); }
+
+ private:
+  const cv::Mat &image_, &ground_;
+  const Axis& axis_;
+  int sign_, size_, length_;
+  std::ptrdiff_t neighbour_;
+  double slope_;
+};
 
 /// The edge at one station and, to each side, the nearest edge of the other sign; pixels across the line.
 struct Station {
@@ -63,29 +107,24 @@ struct Station {
   std::array<double, 2> other_gradient;
 };
 
-std::optional<Station> stationOf(const Profile& profile, const Axis& axis) {
+std::optional<Station> stationOf(const Profiles& profiles, const Profile& profile) {
   int own = 0;
   for (int k = -kOffLine; k <= kOffLine; ++k)
     if (profile.at(k) > profile.at(own)) own = k;
-  const double strength = profile.at(own);
+  const int strength = profile.at(own);
   if (!(strength > 0) || profile.at(own - 1) > strength || profile.at(own + 1) > strength)
     return std::nullopt;
-  const auto place = [&](double k) {
-    Eigen::Vector2d p(profile.centre.x, profile.centre.y);
-    p[axis.minor] += k;
-    return Eigen::Vector2d(p - axis.origin);
-  };
-  const Eigen::Vector2d edge = place(profile.peak(own));
-  Station station{axis.along.dot(edge), axis.across.dot(edge), strength, {NAN, NAN}, {0, 0}};
+  const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
+  Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
+  const unsigned minima = profile.minima(static_cast<int>(std::ceil(kMinShare * strength)));
+  const auto isMinimum = [&](int k) { return (minima >> (k + Profile::kHalf) & 1U) != 0; };
   for (const int side : {0, 1}) {
     const int step = side == 0 ? -1 : 1;
-    for (int k = own + step; std::abs(k) <= kReach; k += step) {
-      const double here = -profile.at(k);
-      if (here < kMinShare * strength || here < -profile.at(k - 1) || here < -profile.at(k + 1)) continue;
-      station.other[side] = axis.across.dot(place(profile.peak(k)));
-      station.other_gradient[side] = here;
-      break;
-    }
+    int k = own + step;
+    while (std::abs(k) <= kReach && !isMinimum(k)) k += step;
+    if (std::abs(k) > kReach) continue;
+    station.other[side] = profiles.place(profile, profile.peak(k)).y();
+    station.other_gradient[side] = profiles.gradient(-profile.at(k));
   }
   return station;
 }
@@ -115,6 +154,19 @@ std::optional<int> narrowSide(const std::vector<Station>& stations) {
   return close[0] >= close[1] ? 0 : 1;
 }
 
+/// Of a line that reaches this far to both sides of its middle.
+std::vector<Station> stationsAlong(const Profiles& profiles, const Axis& axis, double half) {
+  std::vector<Station> stations;
+  const int first = static_cast<int>(std::ceil(axis.point(-half)[axis.major]));
+  const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
+  const int step = std::max(1, (last - first) / kStations);
+  stations.reserve(2 * kStations);
+  for (int at = first; at <= last; at += step)
+    if (const auto profile = profiles.at(at))
+      if (const auto station = stationOf(profiles, *profile)) stations.push_back(*station);
+  return stations;
+}
+
 struct Replacement {
   LineSegment line;
   bool middle;  // of a stripe
@@ -124,14 +176,8 @@ std::optional<Replacement> replacementOf(const cv::Mat& image, const cv::Mat& gr
                                          const LineSegment& line) {
   const Axis axis(line.middle(), line.b - line.a);
   const int sign = axis.across.dot(line.line.head<2>()) >= 0 ? 1 : -1;
-  const double half = 0.5 * line.length();
-  const int first = static_cast<int>(std::ceil(axis.point(-half)[axis.major]));
-  const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
-  std::vector<Station> stations;
-  const int step = std::max(1, (last - first) / kStations);
-  for (int at = first; at <= last; at += step)
-    if (const auto profile = profileAt(image, ground, axis, sign, at))
-      if (const auto station = stationOf(*profile, axis)) stations.push_back(*station);
+  const Profiles profiles(image, ground, axis, sign);
+  const std::vector<Station> stations = stationsAlong(profiles, axis, 0.5 * line.length());
   const std::optional<int> side = narrowSide(stations);
   if (!side) return std::nullopt;
 
