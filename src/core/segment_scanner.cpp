@@ -80,7 +80,6 @@ UAV_LANDING_MULTIVERSION void markStarts(const short* __restrict across, const s
 /// lower one four times turns rows into columns.
 void transpose(const cv::Mat& image, cv::Mat& transposed) {
   constexpr int kBlock = 16;
-  transposed.create(image.cols, image.rows, CV_8UC1);
   const int rows = image.rows - image.rows % kBlock, columns = image.cols - image.cols % kBlock;
   for (int v = 0; v < rows; v += kBlock)
     for (int u = 0; u < columns; u += kBlock) {
@@ -114,17 +113,22 @@ class Ground {
   std::ptrdiff_t along_row_, to_next_row_;
 };
 
+/// A mono8 image in memory that only grows.
+cv::Mat imageIn(std::vector<uchar>& memory, int rows, int columns) {
+  memory.resize(std::max(memory.size(), static_cast<size_t>(rows) * columns));
+  return cv::Mat(rows, columns, CV_8UC1, memory.data());
+}
+
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
 class SteepEdges {
  public:
-  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, cv::Mat& taken)
+  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, std::vector<uchar>& taken)
       : image_(image),
         ground_(ground),
         limits_(limits),
-        taken_(taken),
         spacing_(std::max(1, static_cast<int>(limits.min_length * M_SQRT1_2 / kScansPerLine))),
         least_(static_cast<int>(std::ceil(limits.low / 2))) {
-    taken_.create(image.rows / spacing_ + 1, image.cols, CV_8UC1);
+    taken_ = imageIn(taken, image.rows / spacing_ + 1, image.cols);
     taken_.setTo(0);
   }
 
@@ -253,7 +257,7 @@ class SteepEdges {
   const cv::Mat& image_;
   const Ground ground_;
   const EdgeLimits& limits_;
-  cv::Mat& taken_;
+  cv::Mat taken_;
   int spacing_;  // of the scan rows
   int least_;    // Sobel response across an edge: it may lie at 45 degrees
 };
@@ -267,8 +271,9 @@ std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::M
       .scan(across_, along_, starts_, [&](double u0, double v0, double u1, double v1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
       });
-  transpose(image, transposed_);
-  SteepEdges(transposed_, Ground(ground, true), limits, taken_)
+  cv::Mat transposed = imageIn(transposed_, image.cols, image.rows);
+  transpose(image, transposed);
+  SteepEdges(transposed, Ground(ground, true), limits, taken_)
       .scan(across_, along_, starts_, [&](double v0, double u0, double v1, double u1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {0, sign}});
       });

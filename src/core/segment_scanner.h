@@ -28,10 +28,9 @@ class SegmentScanner {
   std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
 
  private:
-  cv::Mat transposed_;
-  std::vector<short> across_, along_;  // of one row
+  std::vector<uchar> transposed_, taken_;  // images
+  std::vector<short> across_, along_;      // of one row
   std::vector<uchar> starts_;
-  cv::Mat taken_;
 };
 
 }  // namespace uav_landing
