@@ -153,13 +153,15 @@ void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig
   const double highest = shift.b > 0 ? std::min(horizon(0), horizon(left.cols - 1)) : 0;
   first_row_ = static_cast<int>(std::clamp<double>(std::ceil(highest), kMargin, left.rows - 1));
   if (left.rows - first_row_ < kHeight + kMargin) return;
-  cv::Sobel(left.rowRange(first_row_, left.rows), gradient_, CV_16S, 1, 0);
+  gradient_.create(left.size(), CV_16S);
+  cv::Mat ground = gradient_.rowRange(first_row_, left.rows);
+  cv::Sobel(left.rowRange(first_row_, left.rows), ground, CV_16S, 1, 0);
   for (int v = first_row_; v + kHeight + kMargin <= left.rows; v += kHeight) {
     for (int u = kMargin; u + kWidth + kMargin <= left.cols; u += kWidth) {
       if (!usable(rig, shift, u, v)) continue;
       std::array<int, kWidth> sums{}, squares{};
       for (int y = 0; y < kHeight; ++y) {
-        const short* row = gradient_.ptr<short>(v - first_row_ + y) + u;
+        const short* row = gradient_.ptr<short>(v + y) + u;
         for (int x = 0; x < kWidth; ++x) {
           sums[x] += row[x];
           squares[x] += row[x] * row[x];
@@ -210,7 +212,7 @@ bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidat
   Lane grey_sum{}, slope_sum{};
   for (int y = 0; y < kHeight; ++y) {
     const uchar* grey = left.ptr<uchar>(candidate.v + y) + candidate.u;
-    const short* gradient = gradient_.ptr<short>(candidate.v - first_row_ + y) + candidate.u;
+    const short* gradient = gradient_.ptr<short>(candidate.v + y) + candidate.u;
     for (int x = 0; x < kWidth; ++x) {
       block.grey[y * kWidth + x] = grey[x];
       block.slope[y * kWidth + x] = gradient[x] / kSobelScale;

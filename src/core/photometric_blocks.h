@@ -62,7 +62,7 @@ class PhotometricBlocks {
   void multiply(const cv::Mat& right, const ShiftModel& shift);
 
   cv::Mat left_mask_, right_mask_;
-  cv::Mat gradient_;  // CV_16S, Sobel along the row
+  cv::Mat gradient_;  // CV_16S, Sobel along the row, where there may be ground
   int first_row_ = 0;
   std::vector<Candidate> candidates_;
   std::vector<Block> blocks_;

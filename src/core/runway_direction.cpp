@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "image_memory.h"
 #include "stripe_line.h"
 #include "uav_landing/ground_direction.h"
 #include "uav_landing/half_plane.h"
@@ -20,12 +21,12 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
 
 // The mask without what lies above the horizon (K^-T n) or less than a margin below it, where the far end of
 // everything on the ground merges with what stands behind it. Good until the next call.
-const cv::Mat& groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
-  static thread_local cv::Mat ground;  // keeps its memory
+cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
+  static thread_local ImageMemory memory;
   const double margin = 0.01 * mask.rows;
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
   const double scale = line.head<2>().norm();
-  mask.copyTo(ground);
+  cv::Mat ground = memory.copyOf(mask);
   keepHalfPlane(ground, line.x(), line.y(), line.z() - margin * scale);
   return ground;
 }

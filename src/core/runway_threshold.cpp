@@ -67,14 +67,15 @@ UAV_LANDING_MULTIVERSION void project(const LineView& line, const Places& y, Pla
 /// The runway as seen from above, one row for each pixel of distance.
 class TopView {
  public:
+  /// rows: memory for the rows, kept by the caller.
   TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
-          const RunwayCrossSection& runway)
-      : image_(image), mask_(mask), rig_(rig), axes_(axes), step_(1 / rig.fy) {
+          const RunwayCrossSection& runway, std::vector<Across>& rows)
+      : image_(image), mask_(mask), rig_(rig), axes_(axes), step_(1 / rig.fy), rows_(rows) {
     for (int c = 0; c < kColumns; ++c)
       across_[c] = runway.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway.width;
     // Stations lie evenly in the inverse of the distance, as pixels do.
     const double farthest = std::min(kFarthest, std::sqrt(kFootprint * runway.width / step_));
-    rows_.reserve(image.rows + image.cols);  // more pixels than any line through the picture has
+    rows_.clear();
     bool begun = false;
     for (int k = 0;; ++k) {
       const double inverse = 1 / kNearest - k * step_;
@@ -130,7 +131,7 @@ class TopView {
   double step_;
   Places across_;  // left of the camera, in heights
   std::vector<double> inverse_;
-  std::vector<Across> rows_;
+  std::vector<Across>& rows_;
 };
 
 double meanOf(const Across& row) {
@@ -396,7 +397,8 @@ tl::unexpected<Failure> noThreshold(const Parts&... parts) {
 
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway) {
-  const TopView view(image, mask, rig, axes, runway);
+  static thread_local std::vector<Across> rows;  // keep their memory
+  const TopView view(image, mask, rig, axes, runway, rows);
   const std::optional<Bars> bars = findBars(view);
   if (!bars) return noThreshold("no threshold bars in the picture");
   const double begin = view.distance(bars->begin);

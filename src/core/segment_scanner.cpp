@@ -113,22 +113,16 @@ class Ground {
   std::ptrdiff_t along_row_, to_next_row_;
 };
 
-/// A mono8 image in memory that only grows.
-cv::Mat imageIn(std::vector<uchar>& memory, int rows, int columns) {
-  memory.resize(std::max(memory.size(), static_cast<size_t>(rows) * columns));
-  return cv::Mat(rows, columns, CV_8UC1, memory.data());
-}
-
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
 class SteepEdges {
  public:
-  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, std::vector<uchar>& taken)
+  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, ImageMemory& taken)
       : image_(image),
         ground_(ground),
         limits_(limits),
         spacing_(std::max(1, static_cast<int>(limits.min_length * M_SQRT1_2 / kScansPerLine))),
         least_(static_cast<int>(std::ceil(limits.low / 2))) {
-    taken_ = imageIn(taken, image.rows / spacing_ + 1, image.cols);
+    taken_ = taken.image({image.cols, image.rows / spacing_ + 1});
     taken_.setTo(0);
   }
 
@@ -271,7 +265,7 @@ std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::M
       .scan(across_, along_, starts_, [&](double u0, double v0, double u1, double v1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
       });
-  cv::Mat transposed = imageIn(transposed_, image.cols, image.rows);
+  cv::Mat transposed = transposed_.image({image.rows, image.cols});
   transpose(image, transposed);
   SteepEdges(transposed, Ground(ground, true), limits, taken_)
       .scan(across_, along_, starts_, [&](double v0, double u0, double v1, double u1, double sign) {

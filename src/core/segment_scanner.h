@@ -4,6 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "image_memory.h"
+
 namespace uav_landing {
 
 /// A straight edge to about a pixel.
@@ -28,8 +30,8 @@ class SegmentScanner {
   std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
 
  private:
-  std::vector<uchar> transposed_, taken_;  // images
-  std::vector<short> across_, along_;      // of one row
+  ImageMemory transposed_, taken_;
+  std::vector<short> across_, along_;  // of one row
   std::vector<uchar> starts_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "image_memory.h"
 #include "shift_model.h"
 #include "uav_landing/corners.h"
 #include "uav_landing/half_plane.h"
@@ -202,8 +203,8 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
   // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
   constexpr double kLeastDisparity = 0.3;
   const ShiftModel shift(level.rig, g);
-  static thread_local cv::Mat mask;  // keeps its memory
-  level.left_mask.copyTo(mask);
+  static thread_local ImageMemory memory;
+  cv::Mat mask = memory.copyOf(level.left_mask);
   keepHalfPlane(mask, shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity);
   // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
   keepHalfPlane(mask, 1 - shift.a, -shift.b, -shift.c);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace uav_landing {
+
+/// Memory for images of changing sizes that only grows, where cv::Mat::create() would take new one for each
+/// size.
+class ImageMemory {
+ public:
+  /// A mono8 image, of anything, good until the next call.
+  cv::Mat image(const cv::Size& size) {
+    bytes_.resize(std::max(bytes_.size(), static_cast<size_t>(size.area())));
+    return cv::Mat(size, CV_8UC1, bytes_.data());
+  }
+  /// A copy of a mono8 image, good until the next call.
+  cv::Mat copyOf(const cv::Mat& other) {
+    cv::Mat copy = image(other.size());
+    other.copyTo(copy);
+    return copy;
+  }
+
+ private:
+  std::vector<uchar> bytes_;
+};
+
+}  // namespace uav_landing
