@@ -269,11 +269,39 @@ PatchSearch::Best PatchSearch::run(int u, int v, const Eigen::Vector2d& centre, 
   return best;
 }
 
+// Gauss-Newton steps, which all fall short by about the same share: how far one moves the place is seen by
+// the next, and each is made longer by that (secant method). Then few are needed, and what the last one
+// leaves has no direction of its own.
+class SecantSteps {
+ public:
+  // The step to make where Gauss-Newton wants this one.
+  Eigen::Vector2d next(const Eigen::Vector2d& wanted) {
+    constexpr double kLongest = 1.0, kLeast = 0.4, kMost = 1.5;
+    if (made_.squaredNorm() > 0)
+      share_ = std::clamp(made_.dot(wanted_ - wanted) / made_.squaredNorm(), kLeast, kMost);
+    wanted_ = wanted;
+    made_ = wanted / share_;
+    made_ /= std::max(1.0, made_.norm() / kLongest);
+    ++count_;
+    return made_;
+  }
+  // The place is good to less than 0.001 px: a single step leaves a tenth of itself, a secant step much less.
+  bool converged() const {
+    constexpr double kShort = 0.004, kShortSecant = 0.03;
+    const double length = wanted_.norm();
+    return length < kShort || (count_ > 1 && length < kShortSecant && (made_ - wanted_).norm() < kShort);
+  }
+
+ private:
+  int count_ = 0;
+  double share_ = 0.9;  // of the distance that a step moves; about as much where textures are smoothed alike
+  Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
+};
+
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
   constexpr int kIterations = 12;
-  // A step leaves about a tenth of itself, so after one this long the place is good to less than 0.001 px.
-  constexpr double kConverged = 0.004, kMaxDrift = 2.0;
+  constexpr double kMaxDrift = 2.0;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
   constexpr double kIndependent = 0.25;
   PatchRefinement result;
@@ -284,6 +312,7 @@ PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int 
   const double reach_y = std::abs(warp(1, 0)) * window.paddedReach() + std::abs(warp(1, 1)) * radius;
   const double max_drift = kMaxDrift * std::sqrt(std::abs(warp.determinant()));
   Eigen::Vector2d at = position;
+  SecantSteps steps;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     if (!(at.x() - reach_x >= 2 && at.y() - reach_y >= 2 && at.x() + reach_x < other.cols - 3 &&
           at.y() + reach_y < other.rows - 3)) {
@@ -291,10 +320,9 @@ PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int 
     }
     const GainShift found = window.compare(other, at, warp);
     if (!found.solved) return result;
-    const double length = found.shift.norm();
-    at -= warp * found.shift / std::max(1.0, length);
+    at -= warp * steps.next(found.shift);
     if ((at - position).norm() > max_drift) return result;
-    if (length < kConverged) {
+    if (steps.converged()) {
       const double noise = found.residual / (window.count() - 4) / kIndependent;
       result.covariance = noise * warp * found.unit_covariance * warp.transpose();
       result.score = std::sqrt(std::max(0.0, 1 - found.residual / std::max(1e-9, window.energy())));
