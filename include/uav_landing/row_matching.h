@@ -39,8 +39,9 @@ class RowSearch {
   std::vector<RowCandidate> peaks(double min_score, int count) const;
 
  private:
-  /// Values at start + i scale of a row, less the template's mean; NaN outside the image, any behind them.
-  void resample(const float* row, double start, int width, float* out) const;
+  /// Fills the strip with the values around all positions, less the template's mean; NaN outside the image,
+  /// any behind the width.
+  void resample(int v, int width, const RowWarp& warp);
   void scoreAll();
   double similarity(double cross, double sum, double squares) const;
   RowCandidate interpolated(int index) const;

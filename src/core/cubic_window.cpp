@@ -14,33 +14,57 @@ constexpr int kMostColumns = 56, kMostRows = 31;
 // A line of places that is nearly along the rows, by the pixels' columns that it crosses: between them along
 // the columns first, all columns at a time, and then along the line.
 struct Crossings {
-  int first, top;     // column and row of the image where they begin; the row above is read, too
-  float down, slope;  // rows from top to the line at the first column, and by column
-  double start;       // columns from the first one to the first place
+  int first, top;  // column and row of the image where they begin; the row above is read, too
+  float down;      // rows from top to the line at the first column
+  float start;     // columns from the first one to the first place
 };
 
-// False when the line is too steep or too near the image's border for that.
-bool cross(const cv::Mat& image, double x, double y, const Eigen::Vector2d& step, int count, int columns,
-           Crossings& line) {
-  line.first = std::min(static_cast<int>(x) - 1, image.cols - columns);
-  if (line.first < 0) return false;
-  line.start = x - line.first;
-  const double slope = step.y() / step.x(), start = y - slope * line.start;
-  const double end = start + slope * (columns - 1);
-  line.top = static_cast<int>(std::min(start, end));
-  line.down = static_cast<float>(start - line.top);
-  line.slope = static_cast<float>(slope);
-  const double last = line.start + step.x() * (count - 1) + 2;
-  return std::min(start, end) >= 1 && line.top + 3 < image.rows && std::max(start, end) - line.top < 1.999 &&
-         last < columns;
-}
+// Such lines, one for each row of a window.
+struct NearRows {
+  Eigen::Vector2d begin, by_row;  // first place of the first row, and what it moves by from row to row
+  double step, slope, rise;       // columns between places, rows by column and over all columns
+  int columns;
+
+  NearRows(const Eigen::Vector2d& at, const Eigen::Matrix2d& warp, int radius, int stride)
+      : begin(at - radius * (warp.col(0) + warp.col(1))),
+        by_row(warp.col(1)),
+        step(warp(0, 0)),
+        slope(warp(1, 0) / step),
+        columns(wholeLanes(static_cast<int>(1.999 + step * (stride - 1)) + 3)) {
+    rise = slope * (columns - 1);
+  }
+
+  Crossings at(int row) const {
+    Crossings line;
+    const double x = begin.x() + by_row.x() * row, y = begin.y() + by_row.y() * row;
+    line.first = static_cast<int>(x) - 1;
+    line.start = static_cast<float>(x - line.first);
+    const double left = y - slope * (x - line.first);
+    line.top = static_cast<int>(std::min(left, left + rise));
+    line.down = static_cast<float>(left - line.top);
+    return line;
+  }
+
+  // Whether a line has all it needs inside the image and crosses at most two of its rows.
+  bool fits(const cv::Mat& image, int row) const {
+    const double x = begin.x() + by_row.x() * row, left = begin.y() + by_row.y() * row - 2 * std::abs(slope);
+    return x >= 1 && x + columns <= image.cols && left + std::min(rise, 0.0) >= 1 &&
+           left + 4 * std::abs(slope) + std::max(rise, 0.0) + 4 < image.rows && std::abs(rise) < 0.999;
+  }
+};
 
 // The image at the crossings.
-inline void interpolateDown(const cv::Mat& image, const Crossings& line, int columns, float* __restrict out) {
+inline void interpolateDown(const cv::Mat& image, const Crossings& line, float slope, int columns,
+                            float* __restrict out) {
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
   const float* p = image.ptr<float>(line.top - 1) + line.first;
-  const float down = line.down, slope = line.slope;
+  const float down = line.down;
   const float *p0 = p, *p1 = p + stride, *p2 = p + 2 * stride, *p3 = p + 3 * stride, *p4 = p + 4 * stride;
+  if (std::max(down, down + slope * static_cast<float>(columns - 1)) < 1) {
+    for (int i = 0; i < columns; ++i)
+      out[i] = cubicBetween(p0[i], p1[i], p2[i], p3[i], down + slope * static_cast<float>(i));
+    return;
+  }
   for (int i = 0; i < columns; ++i) {
     const float below = down + slope * static_cast<float>(i);
     // Behind the next row: 1, else 0. Arithmetic instead of a choice, so that no branch keeps columns apart.
@@ -51,28 +75,56 @@ inline void interpolateDown(const cv::Mat& image, const Crossings& line, int col
   }
 }
 
+// Whether of places by this step each is in the next column or, from one of them on, in the one after that or
+// still the same.
+bool inNeighbouringColumns(double step, int count) {
+  return std::abs(step - 1) * (wholeLanes(count) - 1) < 0.99;
+}
+
+// Values at start, start + step, ... of such places.
+inline void interpolateAlong(const float* row, float start, float step, int count, float* __restrict out) {
+  const float drift = step - 1;
+  const int first = static_cast<int>(std::min(start, start + drift * static_cast<float>(count - 1)));
+  const float begin = start - static_cast<float>(first);
+  const float* p = row + first - 1;
+  for (int i = 0; i < count; ++i) {
+    const float behind = begin + drift * static_cast<float>(i);
+    const float next = static_cast<float>(static_cast<int>(behind));
+    const float a0 = p[i], a1 = p[i + 1], a2 = p[i + 2], a3 = p[i + 3], a4 = p[i + 4];
+    out[i] = cubicBetween(a0 + next * (a1 - a0), a1 + next * (a2 - a1), a2 + next * (a3 - a2),
+                          a3 + next * (a4 - a3), behind - next);
+  }
+}
+
 UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::Vector2d& at,
                                              const Eigen::Matrix2d& warp, int radius, int stride,
                                              float* out) {
-  const Eigen::Vector2d step = warp.col(0);
-  if (!(step.x() > 0.1 && step.x() * stride < kMostColumns - kLanes - 4) || 2 * radius + 1 > kMostRows)
+  if (!(warp(0, 0) > 0.1 && warp(0, 0) * stride < kMostColumns - kLanes - 6) || 2 * radius + 1 > kMostRows)
     return false;
-  const int needed = static_cast<int>(step.x() * (stride - 1)) + 5;
-  const int columns = wholeLanes(needed);
+  const NearRows lines(at, warp, radius, stride);
+  const int size = 2 * radius + 1, columns = lines.columns;
+  if (!lines.fits(image, 0) || !lines.fits(image, size - 1)) return false;
   std::array<float, kMostColumns * kMostRows> values;
-  std::array<double, kMostRows> starts;
+  std::array<float, kMostRows> starts;
+  const float slope = static_cast<float>(lines.slope);
   // All rows before any is read again: what was just written piece by piece is not yet there to be read.
-  for (int j = 0; j < 2 * radius + 1; ++j) {
-    Crossings line;
-    const Eigen::Vector2d place = at + warp * Eigen::Vector2d(-radius, j - radius);
-    if (!cross(image, place.x(), place.y(), step, stride, columns, line)) return false;
+  for (int j = 0; j < size; ++j) {
+    const Crossings line = lines.at(j);
     starts[j] = line.start;
-    interpolateDown(image, line, columns, &values[j * kMostColumns]);
+    interpolateDown(image, line, slope, columns, &values[j * kMostColumns]);
+    values[j * kMostColumns + columns] = 0;  // is read, and taken times zero
   }
-  const std::int32_t fixed_step = CubicTable::fixed(step.x());
-  for (int j = 0; j < 2 * radius + 1; ++j)
-    sampleCubicRow(&values[j * kMostColumns], CubicTable::fixed(starts[j]), fixed_step, stride,
-                   out + j * stride);
+  const bool neighbours = inNeighbouringColumns(lines.step, stride);
+  const float step = static_cast<float>(lines.step);
+  const std::int32_t fixed_step = CubicTable::fixed(lines.step);
+  for (int j = 0; j < size; ++j, out += stride) {
+    const float* row = &values[j * kMostColumns];
+    if (neighbours) {
+      interpolateAlong(row, starts[j], step, wholeLanes(stride), out);
+    } else {
+      sampleCubicRow(row, CubicTable::fixed(starts[j]), fixed_step, stride, out);
+    }
+  }
   return true;
 }
 

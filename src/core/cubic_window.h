@@ -81,7 +81,8 @@ inline void sampleCubicRow(const float* row, std::int32_t x, std::int32_t step_x
 }
 
 /// Values of a float image at at + warp (dx, dy): rows dy = -radius to radius, stride (a multiple of four)
-/// values from dx = -radius on in each. Needs two pixels around all places and three behind them.
+/// values from dx = -radius on in each, and up to eight of no meaning behind the last. Needs two pixels
+/// around all places and three behind them.
 void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
                        int radius, int stride, float* out);
 

@@ -66,7 +66,8 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
   const double factor = std::min(robustStddev(ratios), kLargestFactor), scatter = robustStddev(magnitudes);
   const double of_noise = factor * samples[*typical].stddev;
   const double common = std::sqrt(std::max(0.0, scatter * scatter - of_noise * of_noise));
-  for (DisparitySample& sample : samples) sample.stddev = std::hypot(factor * sample.stddev, common);
+  for (DisparitySample& sample : samples)
+    sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common * common);
 }
 
 }  // namespace
@@ -140,7 +141,8 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     }
     calibrate(own.rig, g, own.samples);
     if (step == 0) {
-      for (DisparitySample& sample : own.samples) sample.stddev = std::hypot(sample.stddev, kStartStddev);
+      for (DisparitySample& sample : own.samples)
+        sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
     }
     Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
     own.agreeing = fit ? fit->count : 0;

@@ -206,7 +206,8 @@ void PhotometricBlocks::pick(int count) {
   std::for_each(order.begin(), end, [](Candidate* candidate) { candidate->chosen = true; });
 }
 
-bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const {
+UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate,
+                                                           Block& block) const {
   block.u = candidate.u;
   block.v = candidate.v;
   Lane grey_sum{}, slope_sum{};

@@ -245,11 +245,14 @@ class PlaneProblem {
   // stands on the ground makes residuals positive only, so the negative ones alone tell the size of the
   // ground's own.
   double residualScale(double tolerance) {
-    ratios_.clear();
+    ratios_.resize(count_);
+    size_t used = 0;
     for (size_t i = 0; i < count_; ++i) {
       const double residual = disparity_[i] - expected_[i];
-      if (residual <= 0 && residual > -2 * tolerance) ratios_.push_back(-residual * precision_[i]);
+      ratios_[used] = -residual * precision_[i];
+      used += (residual <= 0) & (residual > -2 * tolerance);  // no branch: half of them are, at random
     }
+    ratios_.resize(used);
     return scaleOf(ratios_);
   }
 

@@ -16,17 +16,39 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
-// Values between neighbouring pixels, by linear interpolation: value i lies start + drift i behind pixel i of
-// the row, 0 to 2.
-UAV_LANDING_MULTIVERSION void interpolate(const float* row, float start, float drift, float mean, int count,
-                                          float* __restrict out) {
-  for (int i = 0; i < count; ++i) {
-    const float behind = start + drift * static_cast<float>(i);
-    // 1 where it is behind the next pixel, else 0: arithmetic is no branch.
-    const float next = static_cast<float>(static_cast<int>(behind));
-    const float a = row[i], b = row[i + 1], c = row[i + 2];
-    const float first = a + next * (b - a), second = b + next * (c - b);
-    out[i] = first + (behind - next) * (second - first) - mean;
+// Rows of places of which each is in the column after that of the one before or, from one of them on, in the
+// one after that or still the same: row j at start + j by_row, and on by step.
+struct PlaceRows {
+  double start, by_row, step;
+  int count;
+
+  double at(int row) const { return start + by_row * row; }
+  // Where the columns are counted from.
+  double least(double place) const { return std::min(place, place + (step - 1) * (count - 1)); }
+  bool possible() const { return std::abs(step - 1) * (count - 1) < 0.99; }
+  bool inside(int row, int columns) const {
+    return least(at(row)) >= 0 && least(at(row)) + count + 2 <= columns;
+  }
+};
+
+// Values at the places in the image's rows from v on, less the mean, by linear interpolation.
+UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
+                                          float mean, float* __restrict out) {
+  const float drift = static_cast<float>(places.step - 1);
+  const int count = places.count;
+  for (int j = 0; j < rows; ++j, out += count) {
+    const double place = places.at(j);
+    const int first = static_cast<int>(places.least(place));
+    const float start = static_cast<float>(place - first);
+    const float* row = image.ptr<float>(v + j) + first;
+    for (int i = 0; i < count; ++i) {
+      const float behind = start + drift * static_cast<float>(i);
+      // 1 where it is behind the next pixel, else 0: arithmetic is no branch.
+      const float next = static_cast<float>(static_cast<int>(behind));
+      const float a = row[i], b = row[i + 1], c = row[i + 2];
+      const float before = a + next * (b - a), after = b + next * (c - b);
+      out[i] = before + (behind - next) * (after - before) - mean;
+    }
   }
 }
 
@@ -86,31 +108,30 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
   padded_ = wholeLanes(2 * steps + 1);
   stride_ = wholeLanes(padded_ + size - 1);
   strip_.resize(static_cast<size_t>(stride_) * size);
-  for (int dy = 0; dy < size; ++dy) {
-    const double start = centre + warp.shear * (dy - radius_) - warp.scale * (radius_ + steps);
-    resample(other_.ptr<float>(v - radius_ + dy), start, width,
-             strip_.data() + static_cast<size_t>(dy) * stride_);
-  }
+  resample(v, width, warp);
   scoreAll();
   return true;
 }
 
-void RowSearch::resample(const float* row, double start, int width, float* out) const {
+void RowSearch::resample(int v, int width, const RowWarp& warp) {
+  const int size = 2 * radius_ + 1;
   const float mean = static_cast<float>(template_.mean);
-  const double end = start + scale_ * (width - 1);
-  const int first = static_cast<int>(std::floor(std::min(start, end - (width - 1))));
-  const bool neighbours = std::abs(scale_ - 1) * (stride_ - 1) < 0.99;
-  if (neighbours && first >= 0 && first + stride_ + 2 <= other_.cols) {
-    interpolate(row + first, static_cast<float>(start - first), static_cast<float>(scale_ - 1), mean, stride_,
-                out);
+  const PlaceRows places{centre_ - warp.shear * radius_ - scale_ * (radius_ + steps_), warp.shear, scale_,
+                         stride_};
+  if (places.possible() && places.inside(0, other_.cols) && places.inside(size - 1, other_.cols)) {
+    interpolate(other_, v - radius_, places, size, mean, strip_.data());
     return;
   }
-  for (int i = 0; i < width; ++i) {
-    const double x = start + scale_ * i;
-    out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x)) - mean
-                                           : std::numeric_limits<float>::quiet_NaN();
+  for (int j = 0; j < size; ++j) {
+    const float* row = other_.ptr<float>(v - radius_ + j);
+    float* out = strip_.data() + static_cast<size_t>(j) * stride_;
+    for (int i = 0; i < width; ++i) {
+      const double x = places.at(j) + scale_ * i;
+      out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x)) - mean
+                                             : std::numeric_limits<float>::quiet_NaN();
+    }
+    std::fill(out + width, out + stride_, 0.f);
   }
-  std::fill(out + width, out + stride_, 0.f);
 }
 
 void RowSearch::scoreAll() {
