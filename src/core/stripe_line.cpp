@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <opencv2/core/hal/intrin.hpp>
 #include <optional>
 
 #include "line_fit.h"
@@ -27,8 +29,9 @@ constexpr double kMaxScatter = 0.6;  // px
 /// What is seen across the line at one station.
 struct Profile {
   static constexpr int kHalf = kReach + 1;
+  static constexpr int kPixels = 2 * kHalf + 3, kPadded = 32;  // across; filled up to whole vectors
 
-  std::array<int, 2 * kHalf + 1> gradient;
+  std::array<short, kPadded + 2> gradient;
   int station, centre;  // row and column of the middle, or the other way round
 
   /// Twice the gradient along the row or column, k pixels from the middle, positive towards the line's
@@ -39,17 +42,21 @@ struct Profile {
     const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
     return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
   }
-  /// Where the gradient has a minimum of at most -least: bit k + kHalf for pixel k, |k| <= kReach.
+  /// Where the gradient has a minimum of at most -least: bit k + kHalf - 1 for pixel k, |k| <= kReach; bits
+  /// beyond mean nothing.
   unsigned minima(int least) const {
-    unsigned bits = 0;
-    for (int i = 1; i < 2 * kHalf; ++i) {
-      const int here = gradient[i];
-      const bool is_minimum = (here <= -least) & (here <= gradient[i - 1]) & (here <= gradient[i + 1]);
-      bits |= static_cast<unsigned>(is_minimum) << i;
+    alignas(16) std::array<schar, kPadded> is_minimum;
+    const short highest = static_cast<short>(-least);
+    for (int i = 0; i < kPadded; ++i) {
+      const short before = gradient[i], here = gradient[i + 1], after = gradient[i + 2];
+      is_minimum[i] = static_cast<schar>((here <= highest) & (here <= before) & (here <= after) ? -1 : 0);
     }
-    return bits;
+    return static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data()))) |
+           static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data() + kPadded / 2)))
+               << (kPadded / 2);
   }
 };
+static_assert(Profile::kPixels <= Profile::kPadded, "all of a profile is in it");
 
 /// Looks at the pixels across one line.
 class Profiles {
@@ -65,22 +72,25 @@ class Profiles {
         neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
         slope_(axis.along[axis.minor] / axis.along[axis.major]) {}
 
-  std::optional<Profile> at(int station) const {
-    constexpr int kMargin = kReach + 2;
+  /// False where the line is not on the ground, or too near the border.
+  bool look(int station, Profile& profile) const {
     const int centre = cvRound(axis_.origin[axis_.minor] + slope_ * (station - axis_.origin[axis_.major]));
-    if (centre < kMargin || centre >= size_ - kMargin || station < 0 || station >= length_)
-      return std::nullopt;
+    constexpr int kMargin = Profile::kPixels / 2;
+    if (centre < kMargin || centre >= size_ - kMargin || station < 0 || station >= length_) return false;
     const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
-    if (ground_.at<uchar>(pixel) == 0) return std::nullopt;
-    constexpr int kPixels = 2 * Profile::kHalf + 3;
-    const uchar* first = image_.ptr<uchar>(pixel.y) + pixel.x - neighbour_ * (kPixels / 2);
-    std::array<int, kPixels> grey;
-    for (int i = 0; i < kPixels; ++i) grey[i] = sign_ * first[i * neighbour_];
-    Profile profile;
-    for (int i = 0; i + 2 < kPixels; ++i) profile.gradient[i] = grey[i + 2] - grey[i];
+    if (ground_.at<uchar>(pixel) == 0) return false;
+    std::array<uchar, Profile::kPadded + 4> grey{};
+    const uchar* first = image_.ptr<uchar>(pixel.y) + pixel.x - neighbour_ * kMargin;
+    if (neighbour_ == 1)
+      std::memcpy(grey.data(), first, Profile::kPixels);
+    else
+      for (int i = 0; i < Profile::kPixels; ++i) grey[i] = first[i * neighbour_];
+    const short sign = static_cast<short>(sign_);
+    for (int i = 0; i < Profile::kPadded + 2; ++i)
+      profile.gradient[i] = static_cast<short>(sign * (grey[i + 2] - grey[i]));
     profile.station = station;
     profile.centre = centre;
-    return profile;
+    return true;
   }
   /// Of a place this many pixels from the profile's middle: distances along and across the line.
   Eigen::Vector2d place(const Profile& profile, double k) const {
@@ -117,7 +127,7 @@ std::optional<Station> stationOf(const Profiles& profiles, const Profile& profil
   const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
   Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
   const unsigned minima = profile.minima(static_cast<int>(std::ceil(kMinShare * strength)));
-  const auto isMinimum = [&](int k) { return (minima >> (k + Profile::kHalf) & 1U) != 0; };
+  const auto isMinimum = [&](int k) { return (minima >> (k + kReach) & 1U) != 0; };
   for (const int side : {0, 1}) {
     const int step = side == 0 ? -1 : 1;
     int k = own + step;
@@ -161,9 +171,10 @@ std::vector<Station> stationsAlong(const Profiles& profiles, const Axis& axis, d
   const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
   const int step = std::max(1, (last - first) / kStations);
   stations.reserve(2 * kStations);
+  Profile profile;
   for (int at = first; at <= last; at += step)
-    if (const auto profile = profiles.at(at))
-      if (const auto station = stationOf(profiles, *profile)) stations.push_back(*station);
+    if (profiles.look(at, profile))
+      if (const auto station = stationOf(profiles, profile)) stations.push_back(*station);
   return stations;
 }
 
