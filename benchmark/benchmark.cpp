@@ -12,10 +12,12 @@
 #include <stdexcept>
 
 #include "command_line.h"
+#include "heap.h"
 #include "image_allocations.h"
 #include "paper_pipeline.h"
 #include "peers.h"
 #include "pending_file.h"
+#include "resources.h"
 #include "sequences.h"
 #include "uav_landing/parameter_file.h"
 #include "uav_landing/pipeline.h"
@@ -51,7 +53,10 @@ struct Measurement {
   std::string sequence;
   cv::Size size;
   std::vector<std::pair<std::string, Times>> programs, stages;
-  double image_allocations = 0;  // a pair, in the second half: the first one fills the memory
+  // A pair, in the second half: the first one fills the memory. Image-sized ones, and all by operator new.
+  double image_allocations = 0, allocations = 0;
+  double peak_memory = 0;                // MB
+  std::vector<double> pairs_per_second;  // of 1, 2, ... chains side by side
 
   static Times& of(std::vector<std::pair<std::string, Times>>& all, const std::string& name) {
     for (auto& [known, times] : all)
@@ -77,6 +82,8 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
   Measurement result;
   result.sequence = sequence.name;
   result.size = sequence.left.imageSize();
+  result.peak_memory = peakMemory(sequence, parameters);
+  result.pairs_per_second = pairsPerSecond(sequence, parameters);
   double last = sequence.pairs.front().stamp;
   for (size_t i = 0; i < sequence.pairs.size(); ++i) {
     const Sequence::Pair& pair = sequence.pairs[i];
@@ -87,9 +94,14 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
       if (i >= kWarmUp) Measurement::of(result.programs, name).ms.push_back(ms);
     };
     {
-      const ImageAllocations allocations(static_cast<size_t>(result.size.area()) / 2);
+      const size_t image = static_cast<size_t>(result.size.area()) / 2;
+      const ImageAllocations matrices(image);
+      const HeapCounter heap(image);
       run("uav_landing", [&] { chain->process(pair.stamp, pair.left, pair.right); });
-      if (2 * i >= sequence.pairs.size()) result.image_allocations += allocations.count();
+      if (2 * i >= sequence.pairs.size()) {
+        result.image_allocations += static_cast<double>(matrices.count()) + static_cast<double>(heap.large());
+        result.allocations += static_cast<double>(heap.count());
+      }
     }
     run("the paper, literally", [&] { paper.process(pair.left, pair.right, pair.stamp - last); });
     run("rectify + StereoBM + plane", [&] { block.process(pair.left, pair.right); });
@@ -104,7 +116,9 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
     if (i < kWarmUp) continue;
     for (const auto& [part, ms] : output.parts.parts()) Measurement::of(result.stages, part).ms.push_back(ms);
   }
-  result.image_allocations /= static_cast<double>(sequence.pairs.size() / 2);
+  const double counted = static_cast<double>(sequence.pairs.size() / 2);
+  result.image_allocations /= counted;
+  result.allocations /= counted;
   return result;
 }
 
@@ -145,7 +159,11 @@ void print(const Measurement& m) {
   }
   std::cout << "\n| stage, ms | median | 99 % | worst | |\n|---|---|---|---|---|\n";
   for (const auto& [name, times] : m.stages) printRow(name, times, "");
-  std::cout << "\nImage-sized allocations a pair: " << m.image_allocations << "\n" << std::flush;
+  std::cout << "\nImage-sized allocations a pair: " << m.image_allocations
+            << "; all by operator new: " << m.allocations << "\nPeak memory of a chain: " << m.peak_memory
+            << " MB\nPairs a second of chains side by side:";
+  for (const double rate : m.pairs_per_second) std::cout << " " << rate;
+  std::cout << "\n" << std::flush;
 }
 
 void writeJson(const std::string& path, const std::vector<Measurement>& measurements) {
@@ -165,7 +183,12 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
     const Measurement& m = measurements[i];
     out << (i > 0 ? ",\n" : "\n") << "{\"name\": \"" << m.sequence << "\", \"width\": " << m.size.width
         << ", \"height\": " << m.size.height << ", \"image_allocations\": " << m.image_allocations
-        << ", \"programs\": {";
+        << ", \"allocations\": " << m.allocations
+        << ", \"peak_memory_mb\": " << (std::isfinite(m.peak_memory) ? std::to_string(m.peak_memory) : "null")
+        << ", \"pairs_per_second\": [";
+    for (size_t k = 0; k < m.pairs_per_second.size(); ++k)
+      out << (k > 0 ? ", " : "") << m.pairs_per_second[k];
+    out << "], \"programs\": {";
     list(m.programs);
     out << "}, \"stages\": {";
     list(m.stages);

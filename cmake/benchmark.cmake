@@ -2,7 +2,8 @@
 option(UAV_LANDING_BENCHMARK "build the benchmark" ON)
 if(UAV_LANDING_BENCHMARK)
   add_executable(benchmark
-    benchmark/benchmark.cpp benchmark/paper_pipeline.cpp benchmark/peers.cpp benchmark/sequences.cpp)
+    benchmark/benchmark.cpp benchmark/heap.cpp benchmark/paper_pipeline.cpp benchmark/peers.cpp
+    benchmark/resources.cpp benchmark/sequences.cpp)
   target_compile_definitions(benchmark PRIVATE UAV_LANDING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(benchmark PRIVATE uav_landing_tools)
   install(TARGETS benchmark RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

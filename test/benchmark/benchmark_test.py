@@ -1,5 +1,6 @@
 import json
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,10 @@ class BenchmarkTest(unittest.TestCase):
                     self.assertLessEqual(times["median"], times["percentile_99"])
                     self.assertLessEqual(times["percentile_99"], times["worst"])
                 self.assertIn("rectify", sequence["stages"])
+                self.assertGreater(sequence["allocations"], sequence["image_allocations"])
+                # Two images in 8 bit and two in float at least.
+                self.assertGreater(sequence["peak_memory_mb"], 10 * sequence["width"] * sequence["height"] / 2**20)
+                self.assertEqual(len(sequence["pairs_per_second"]), min(4, os.cpu_count()))
             small, large = (s["programs"]["uav_landing"]["median"] for s in measured["sequences"])
             self.assertAlmostEqual(measured["growth"], math.log(large / small) / math.log(4), delta=1e-3)
             subprocess.run([sys.executable, str(SOURCE_DIR / "benchmark/plot"), str(numbers), str(picture)], check=True)
