@@ -19,8 +19,8 @@ class GroundMemory {
   /// Motion since the pair before: a point is at R x - t now. t: m.
   void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
-  /// known; measured: the plane of the points before that. Between pairs the last move() says where the path
-  /// goes.
+  /// known; measured: the plane of the points before that. Where the path goes is the direction of
+  /// the last moves together.
   void look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
             const GroundPlane& plane, const Eigen::Vector3d& measured);
 
@@ -38,8 +38,8 @@ class GroundMemory {
     double reach = 0;     // of the strip to this side of it, m
     double flown = 0;     // since, m
   };
-  std::deque<Patch> patches_;  // nearest first
-  Eigen::Vector3d motion_ = Eigen::Vector3d::Zero();
+  std::deque<Patch> patches_;                       // nearest first
+  Eigen::Vector3d path_ = Eigen::Vector3d::Zero();  // m, over the last pairs: a single one can be wrong
 };
 
 }  // namespace uav_landing

@@ -24,10 +24,14 @@ class SpeedMemory {
   /// enough: late stamps make steps look longer or shorter than they were. None where it may have stopped.
   std::optional<Shortfall> compare(const Step& step) const;
   /// A step that agrees, as compared. One that does not leaves the speed as it was: the aircraft does not
-  /// slow down while its pictures stand still. After half a minute of it nothing is known.
+  /// slow down while its pictures stand still. After that as many steps in a row (up to three) must be long
+  /// enough, whatever their variance: pictures that change seem to move now and then. After half a minute
+  /// nothing is known.
   void learn(const Step& step, bool agrees);
+  /// The last steps known stood still, and no motion has been seen since.
+  bool stands() const { return still_ > 0; }
   /// A pair that tells nothing of the motion. duration: s.
-  void skip(double duration) { since_ += contradicted_ > 0 ? 0 : duration; }
+  void skip(double duration) { since_ += still_ > 0 ? 0 : duration; }
   void reset() { *this = SpeedMemory(max_deceleration_); }
 
  private:
@@ -36,8 +40,9 @@ class SpeedMemory {
   };
   double max_deceleration_;
   std::optional<Speed> before_, last_;
-  double since_ = 0;         // s, since the last known step
-  double contradicted_ = 0;  // s
+  double since_ = 0;           // s, since the last known step
+  double contradicted_ = 0;    // s
+  int still_ = 0, moved_ = 0;  // steps that stood still, up to three, and those in a row since that did not
 };
 
 }  // namespace uav_landing

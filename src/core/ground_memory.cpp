@@ -14,6 +14,7 @@ constexpr double kSpacing = 0.1;       // between patches
 constexpr double kLargestGap = 0.5;    // between patches that are ground without a step
 constexpr double kMostOff = 0.15;      // by which ground may differ from the plane
 constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no direction
+constexpr double kPathKept = 0.8;      // share of the path that counts on the next pair: of five pairs
 constexpr size_t kFewest = 5;          // points that make a patch
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
 constexpr double kDirectionError = 0.15 * M_PI / 180;
@@ -42,7 +43,7 @@ double medianVariance(const std::vector<GroundPoint>& points, double middle) {
 }  // namespace
 
 void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
-  motion_ = t;
+  path_ = kPathKept * (R * path_) + t;
   for (Patch& patch : patches_) {
     patch.at = R * patch.at - t;
     patch.flown += t.norm();
@@ -53,7 +54,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
                         const GroundPlane& plane, const Eigen::Vector3d& measured) {
   const Eigen::Vector3d n = plane.normal();
   const double h = plane.height();
-  const Eigen::Vector3d along = motion_ - n.dot(motion_) * n;
+  const Eigen::Vector3d along = path_ - n.dot(path_) * n;
   if (!(along.norm() > kLeastMotion * h)) return;
   const Eigen::Vector3d ahead = along.normalized(), side = n.cross(ahead);
   const auto distance = [&](const Patch& patch) { return ahead.dot(patch.at); };
@@ -87,7 +88,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
 }
 
 std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& normal) const {
-  const Eigen::Vector3d along = motion_ - normal.dot(motion_) * normal;
+  const Eigen::Vector3d along = path_ - normal.dot(path_) * normal;
   if (!(along.norm() > 0)) return std::nullopt;
   const Eigen::Vector3d ahead = along.normalized();
   const auto uncertain = [](const Patch& patch) {

@@ -132,6 +132,7 @@ std::string KalmanHeightStage::problemOfPair() {
     pairs_passed_ = 0;
     return "rig_rotation: another one than before is not known for long enough";
   }
+  if (speed_.stands()) return "standstill: no motion has been seen since for long enough";
   if (pairs_failed_ == 0) return "";
   // Among pairs of a lasting fault some pass by chance: as many in a row are asked for as failed.
   if (++pairs_passed_ >= pairs_failed_) {

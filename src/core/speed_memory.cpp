@@ -1,10 +1,13 @@
 #include "uav_landing/speed_memory.h"
 
+#include <algorithm>
+
 namespace uav_landing {
 namespace {
 
 constexpr double kShare = 0.3;      // of the expected way that is enough
 constexpr double kPatience = 30.0;  // s
+constexpr int kSteps = 3;           // that are asked for at most
 
 }  // namespace
 
@@ -18,12 +21,17 @@ std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const Step& step) con
 }
 
 void SpeedMemory::learn(const Step& step, bool agrees) {
-  if (!agrees) {
+  if (!agrees) still_ = std::min(still_ + 1, kSteps);
+  if (still_ > 0) {
+    const std::optional<Shortfall> shortfall = compare(step);
+    const bool moved = agrees && shortfall && shortfall->difference <= 0;
+    moved_ = moved ? moved_ + 1 : 0;
     contradicted_ += step.duration;
-    if (contradicted_ > kPatience) reset();
-    return;
+    if (contradicted_ > kPatience) return reset();
+    if (moved_ < still_) return;
   }
   contradicted_ = since_ = 0;
+  still_ = moved_ = 0;
   before_ = last_;
   last_ = Speed{step.way / step.duration, step.variance / (step.duration * step.duration)};
 }

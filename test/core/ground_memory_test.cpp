@@ -91,6 +91,25 @@ TEST(GroundMemory, IsThePlaneWhereTheGroundIs) {
       });
 }
 
+TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
+  const auto points = look(rig, 0, 12, [](double) { return 0; });
+  GroundMemory memory;
+  for (int x = 0; x < 40; ++x) {
+    memory.move(Eigen::Matrix3d::Identity(), forward);
+    memory.look(rig, points, plane, plane.g);
+  }
+  ASSERT_TRUE(memory.below(down));
+  // Noise makes one picture seem to go backwards, by more than the distance between patches, 2 m.
+  memory.move(Eigen::Matrix3d::Identity(), -2.5 * forward);
+  const std::optional<GroundMemory::Below> below = memory.below(down);
+  ASSERT_TRUE(below);
+  EXPECT_NEAR(below->height, 12, 1e-6);
+}
+
 TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
   const StereoRig rig = makeRig();
   const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);

@@ -61,6 +61,26 @@ TEST(SpeedMemory, APairWithoutMotionDoesNotMakeAStandstillBelievable) {
   EXPECT_LT(fly(memory, 0.1, 1), 0);
 }
 
+TEST(SpeedMemory, NoiseThatSeemsToMoveNowAndThenIsNotMotion) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.1, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_GT(fly(memory, 0.1, 0), 4.4);
+  // Of 0.3 (10 - 0.3) m/s for 0.1 s, 0.29 m: hardly short, then long enough, then still again.
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(fly(memory, 0.1, 0.27) > 4.4);
+    EXPECT_FALSE(fly(memory, 0.1, 0.3) > 4.4);
+    EXPECT_TRUE(memory.stands());
+    EXPECT_GT(fly(memory, 0.1, 0), 4.4);
+  }
+  for (int i = 0; i < 10; ++i) fly(memory, 0.1, 0.27);
+  EXPECT_TRUE(memory.stands()) << "no step is long enough";
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(memory.stands());
+    fly(memory, 0.1, 1);
+  }
+  EXPECT_FALSE(memory.stands());
+}
+
 TEST(SpeedMemory, NothingIsSaidWhereItMayHaveStoppedUnseen) {
   SpeedMemory memory(3);
   for (int i = 0; i < 5; ++i) fly(memory, 0.1, 0.1);
