@@ -34,8 +34,10 @@ class GrowingLine {
     svu_ += v * u;
     suu_ += u * u;
     const double svv = svv_ + kSlopePrior, svu = svu_ + kSlopePrior * first_slope_;
-    slope_ = (n_ * svu - sv_ * su_) / (n_ * svv - sv_ * sv_);
-    offset_ = (su_ - slope_ * sv_) / n_;
+    // One division for both: the next station waits for it.
+    const double determinant = n_ * svv - sv_ * sv_, inverse = 1 / (n_ * determinant);
+    slope_ = (n_ * svu - sv_ * su_) * (n_ * inverse);
+    offset_ = (su_ - slope_ * sv_) * (determinant * inverse);
   }
   double at(double v) const { return offset_ + slope_ * v; }
   double slope() const { return slope_; }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kReach = 12;     // px to both sides of the line, where its other side is looked for
 constexpr int kOffLine = 1;    // px by which the edge may be off its line
-constexpr int kStations = 80;  // rows or columns looked at, roughly
+constexpr int kStations = 40;  // rows or columns looked at, roughly
 constexpr int kMinStations = 6;
 constexpr double kApart = 4.0;       // px between sides that do not disturb each other, at blurs up to 1.3 px
 constexpr double kBlur = 0.8;        // px, 1 sigma: by how much it misplaces a side that cannot be mended
