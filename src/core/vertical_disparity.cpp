@@ -8,6 +8,7 @@
 #include <string>
 
 #include "interpolation.h"
+#include "multiversion.h"
 #include "uav_landing/patch_matching.h"
 #include "uav_landing/rig_rotation.h"
 
@@ -127,6 +128,31 @@ Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
   return rotation;
 }
 
+// A row of the image seen aslant: place down the image by column.
+struct SlantedRow {
+  double first, slope, lowest;  // at the first column, per column, largest place
+
+  double at(int column) const { return std::clamp(first + slope * column, 1.0, lowest); }
+};
+
+// Columns begin .. end - 1 of a slanted row between the same four rows of the image.
+UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stride, SlantedRow row, int whole,
+                                                 int begin, int end, float* __restrict out) {
+  const float *a = above, *b = a + stride, *c = b + stride, *d = c + stride;
+  for (int u = begin; u < end; ++u) {
+    const double place = row.first + row.slope * u;
+    const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
+    float weights[4];
+    cubicWeights(static_cast<float>(inside - whole), weights);
+    out[u] = weights[0] * a[u] + weights[1] * b[u] + weights[2] * c[u] + weights[3] * d[u];
+  }
+}
+
+void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int end, float* out) {
+  const int whole = static_cast<int>(row.at(begin));
+  interpolateColumns(image.ptr<float>(whole - 1), image.step1(), row, whole, begin, end, out);
+}
+
 }  // namespace
 
 Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
@@ -176,22 +202,18 @@ double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) 
 }
 
 void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
+  constexpr int kSpan = 32;  // columns that mostly come from the same rows
   out.create(right.size(), CV_32F);
   for (int v = 0; v < out.rows; ++v) {
     // Linear in the column.
     const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
     const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
-    const double slope = (last - first) / (out.cols - 1);
-    float* to = out.ptr<float>(v);
-    for (int u = 0; u < out.cols; ++u) {
-      const double row = std::clamp(first + slope * u, 1.0, right.rows - 2.001);
-      const int i = static_cast<int>(row);
-      float weights[4];
-      cubicWeights(static_cast<float>(row - i), weights);
-      const float* from = right.ptr<float>(i - 1) + u;
-      const size_t stride = right.step1();
-      to[u] = weights[0] * from[0] + weights[1] * from[stride] + weights[2] * from[2 * stride] +
-              weights[3] * from[3 * stride];
+    const SlantedRow row{first, (last - first) / (out.cols - 1), right.rows - 2.001};
+    for (int begin = 0; begin < out.cols; begin += kSpan) {
+      const int end = std::min(begin + kSpan, out.cols);
+      const bool same = static_cast<int>(row.at(begin)) == static_cast<int>(row.at(end - 1));
+      const int step = same ? end - begin : 1;
+      for (int u = begin; u < end; u += step) interpolateRow(right, row, u, u + step, out.ptr<float>(v));
     }
   }
 }
