@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "interpolation.h"
 #include "multiversion.h"
@@ -21,9 +22,9 @@ constexpr float kSobelScale = 8.f;
 constexpr double kSlopeNoise = 0.1875;
 // Squares of grey levels in a block below which it shows nothing.
 constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
-// Variance of the residuals over that of the noise in one image: the right one's loses some in interpolation
-// (0.64 of it is left half-way between two pixels).
-constexpr double kResidualPerNoise = 1.8;
+// Variance of the noise in the right image after interpolation over that before (0.64 of it is left half-way
+// between two pixels).
+constexpr double kInterpolated = 0.8;
 // The variance that a block of nothing but noise may show, over the lower quartile: three sigma of
 // chi-square.
 constexpr double kNoiseScatter = 1.45;
@@ -285,23 +286,46 @@ void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) 
   }
 }
 
+double PhotometricBlocks::Products::varianceAt(double gain) const {
+  const double energy = block->grey_energy, beside_own = variance * (kPixels - 2);
+  return (beside_own + grey * grey / energy - 2 * gain * grey + gain * gain * energy) / (kPixels - 1);
+}
+
+std::optional<PhotometricBlocks::Photometry> PhotometricBlocks::photometry() const {
+  constexpr int kRounds = 3;
+  std::vector<double> variances(products_.size());
+  Photometry found{1, 0, 0};
+  for (int round = 0; round < kRounds; ++round) {
+    // Blocks have their own gains while the common one is not known. That of a block of nothing but noise is
+    // about none, so its residuals lack the left image's noise: alone they would make the noise half as large
+    // as it is.
+    std::transform(products_.begin(), products_.end(), variances.begin(), [&](const Products& products) {
+      return round == 0 ? products.variance : products.varianceAt(found.gain);
+    });
+    // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the
+    // noise.
+    found.residual = lowerQuartileOf(variances);
+    found.noise = found.residual / (found.gain * found.gain + kInterpolated);
+    // The noise of the left image makes its squares larger than what both images have in common.
+    double in_common = 0, squares = 0;
+    for (const Products& products : products_) {
+      in_common += products.grey;
+      squares += products.block->grey_energy - found.noise * kPixels;
+    }
+    found.gain = in_common / squares;
+    if (!(squares > 0 && found.gain > kLeastGain)) return std::nullopt;
+  }
+  return found;
+}
+
 int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches) {
   matches.clear();
   multiply(right, shift);
   if (products_.empty()) return 0;
-  std::vector<double> variances;
-  for (const Products& products : products_) variances.push_back(products.variance);
-  // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the noise.
-  const double noise = lowerQuartileOf(variances) / kResidualPerNoise;
-  // The noise of the left image makes its squares larger than what both images have in common.
+  const std::optional<Photometry> common_to_all = photometry();
+  if (!common_to_all) return 0;
+  const auto [gain, noise, residual] = *common_to_all;
   const double grey_noise = noise * kPixels, slope_noise = noise * kPixels * kSlopeNoise;
-  double grey_products = 0, grey_squares = 0;
-  for (const Products& products : products_) {
-    grey_products += products.grey;
-    grey_squares += products.block->grey_energy - grey_noise;
-  }
-  const double gain = grey_products / grey_squares;
-  if (!(grey_squares > 0 && gain > kLeastGain)) return 0;
   int informative = 0;
   for (const Products& products : products_) {
     const Block& block = *products.block;
@@ -317,7 +341,7 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     ++informative;
     // What the right image has beside noise: the part that is like the block, and the rest.
     const double alike = products.grey * products.grey / block.grey_energy * (common / block.grey_energy);
-    const double other = kPixels * std::max(0.0, variance - kNoiseScatter * kResidualPerNoise * noise);
+    const double other = kPixels * std::max(0.0, variance - kNoiseScatter * residual);
     if (alike < kLeastCorrelation * (alike + other)) continue;
     matches.push_back({block.centre_u, block.centre_v, score / response,
                        std::sqrt(variance * energy) / response,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "shift_model.h"
@@ -54,12 +55,20 @@ class PhotometricBlocks {
     const Block* block;
     double grey, slope;  // sums of grey r, slope r
     double variance;     // of r's grey levels beside the best gain and offset
+    /// The same beside this gain and the best offset.
+    double varianceAt(double gain) const;
+  };
+  // Of the right image over the left one; variance of the noise in one image, and of residuals that are only
+  // noise.
+  struct Photometry {
+    double gain, noise, residual;
   };
   bool usable(const StereoRig& rig, const ShiftModel& shift, int u, int v) const;
   void findCandidates(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift);
   void pick(int count);
   bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const;
   void multiply(const cv::Mat& right, const ShiftModel& shift);
+  std::optional<Photometry> photometry() const;
 
   cv::Mat left_mask_, right_mask_;
   cv::Mat gradient_;  // CV_16S, Sobel along the row, where there may be ground

@@ -133,6 +133,15 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
   EXPECT_GT(sum / kPairs, 1.0);
 }
 
+TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {
+  Scene scene;
+  scene.ground.line_offset = 1;
+  scene.render({0.2, 90, 5}, {0.2, 90, 5});
+  const Expected<PlaneFit> above = scene.refine(scene.off(0.4, 0)), below = scene.refine(scene.off(-0.4, 0));
+  ASSERT_TRUE(above && below);
+  EXPECT_LT((above->plane.g - below->plane.g).norm() * scene.rig.fb(), 0.22) << "of 0.8 px";
+}
+
 /// Between two painted lines the camera sees one lean to the left and one to the right.
 TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesThatItIsTold) {
   Scene scene;
