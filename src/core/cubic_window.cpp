@@ -10,6 +10,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kMostColumns = 56, kMostRows = 31;
+constexpr int kBefore = 4;  // values before the first column of a row
 
 // A line of places that is nearly along the rows, by the pixels' columns that it crosses: between them along
 // the columns first, all columns at a time, and then along the line.
@@ -111,14 +112,15 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
   for (int j = 0; j < size; ++j) {
     const Crossings line = lines.at(j);
     starts[j] = line.start;
-    interpolateDown(image, line, slope, columns, &values[j * kMostColumns]);
-    values[j * kMostColumns + columns] = 0;  // is read, and taken times zero
+    float* row = &values[j * kMostColumns + kBefore];
+    interpolateDown(image, line, slope, columns, row);
+    row[-1] = row[columns] = 0;  // are read, and taken times zero
   }
   const bool neighbours = inNeighbouringColumns(lines.step, stride);
   const float step = static_cast<float>(lines.step);
   const std::int32_t fixed_step = CubicTable::fixed(lines.step);
   for (int j = 0; j < size; ++j, out += stride) {
-    const float* row = &values[j * kMostColumns];
+    const float* row = &values[j * kMostColumns + kBefore];
     if (neighbours) {
       interpolateAlong(row, starts[j], step, wholeLanes(stride), out);
     } else {

@@ -71,5 +71,28 @@ TEST(SampleCubic, WritesWholeBlocksOfFour) {
   }
 }
 
+/// Leaves numbers behind that would be seen in everything that reads memory it never wrote.
+__attribute__((noinline)) float spoilStack() {
+  volatile float left_over[20000];
+  for (volatile float& value : left_over) value = NAN;
+  return left_over[7];
+}
+
+TEST(SampleCubicWindow, ReadsNothingThatIsNotTheImage) {
+  const cv::Mat image = polynomialImage();
+  const int radius = 5, stride = 12;
+  for (const double step : {0.95, 0.993, 1.0, 1.007, 1.05})
+    for (double x = 20; x < 21; x += 0.06) {
+      const Eigen::Matrix2d warp = Eigen::Vector2d(step, 1).asDiagonal();
+      std::vector<float> out(stride * (2 * radius + 1) + 8);
+      EXPECT_TRUE(std::isnan(spoilStack()));
+      sampleCubicWindow(image, {x, 20.3}, warp, radius, stride, out.data());
+      for (int j = 0; j <= 2 * radius; ++j)
+        for (int i = 0; i <= 2 * radius; ++i)
+          EXPECT_NEAR(out[j * stride + i], polynomial(x + (i - radius) * step, 20.3 + j - radius), kTolerance)
+              << step << ' ' << x << ' ' << i << ' ' << j;
+    }
+}
+
 }  // namespace
 }  // namespace uav_landing
