@@ -56,23 +56,14 @@ struct NearRows {
 
 // The image at the crossings.
 inline void interpolateDown(const cv::Mat& image, const Crossings& line, float slope, int columns,
-                            float* __restrict out) {
+                            float* out) {
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
   const float* p = image.ptr<float>(line.top - 1) + line.first;
-  const float down = line.down;
-  const float *p0 = p, *p1 = p + stride, *p2 = p + 2 * stride, *p3 = p + 3 * stride, *p4 = p + 4 * stride;
-  if (std::max(down, down + slope * static_cast<float>(columns - 1)) < 1) {
-    for (int i = 0; i < columns; ++i)
-      out[i] = cubicBetween(p0[i], p1[i], p2[i], p3[i], down + slope * static_cast<float>(i));
-    return;
-  }
-  for (int i = 0; i < columns; ++i) {
-    const float below = down + slope * static_cast<float>(i);
-    // Behind the next row: 1, else 0. Arithmetic instead of a choice, so that no branch keeps columns apart.
-    const float next = static_cast<float>(static_cast<int>(below));
-    const float t = below - next, a0 = p0[i], a1 = p1[i], a2 = p2[i], a3 = p3[i], a4 = p4[i];
-    out[i] = cubicBetween(a0 + next * (a1 - a0), a1 + next * (a2 - a1), a2 + next * (a3 - a2),
-                          a3 + next * (a4 - a3), t);
+  Lanes t, values;
+  progress(line.down, slope, t);
+  for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
+    cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride, p + 4 * stride}, t, values);
+    store(values, out + i);
   }
 }
 
@@ -88,12 +79,11 @@ inline void interpolateAlong(const float* row, float start, float step, int coun
   const int first = static_cast<int>(std::min(start, start + drift * static_cast<float>(count - 1)));
   const float begin = start - static_cast<float>(first);
   const float* p = row + first - 1;
-  for (int i = 0; i < count; ++i) {
-    const float behind = begin + drift * static_cast<float>(i);
-    const float next = static_cast<float>(static_cast<int>(behind));
-    const float a0 = p[i], a1 = p[i + 1], a2 = p[i + 2], a3 = p[i + 3], a4 = p[i + 4];
-    out[i] = cubicBetween(a0 + next * (a1 - a0), a1 + next * (a2 - a1), a2 + next * (a3 - a2),
-                          a3 + next * (a4 - a3), behind - next);
+  Lanes t, values;
+  progress(begin, drift, t);
+  for (int i = 0; i < count; i += kLanes, p += kLanes, t += kLanes * drift) {
+    cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+    store(values, out + i);
   }
 }
 

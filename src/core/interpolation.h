@@ -2,6 +2,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "lanes.h"
+
 namespace uav_landing {
 
 /// Catmull-Rom interpolation at t (0 to 1) between b and c, with a before and d behind them.
@@ -10,6 +12,22 @@ inline float cubicBetween(float a, float b, float c, float d, float t) {
   const float c2 = a - 2.5f * b + 2.f * c - 0.5f * d;
   const float c3 = 0.5f * (d - a) + 1.5f * (b - c);
   return b + t * (c1 + t * (c2 + t * c3));
+}
+
+/// The same for eight places, each between the second and the third of five neighbours, or the third and the
+/// fourth where t, counted from the second, is 1 to 2. from: where the neighbours of all places begin.
+inline void cubicBetween(const float* const (&from)[5], const Lanes& t, Lanes& out) {
+  Lanes p0, p1, p2, p3, p4;
+  load(from[0], p0);
+  load(from[1], p1);
+  load(from[2], p2);
+  load(from[3], p3);
+  load(from[4], p4);
+  const auto next = t >= 1;
+  const Lanes a = next ? p1 : p0, b = next ? p2 : p1, c = next ? p3 : p2, d = next ? p4 : p3;
+  const Lanes behind = next ? t - 1 : t, rise = c - b;
+  const Lanes c1 = 0.5f * (c - a), c3 = 0.5f * (d - a) - 1.5f * rise, c2 = rise - c1 - c3;
+  out = b + behind * (c1 + behind * (c2 + behind * c3));
 }
 
 /// Catmull-Rom interpolation along a row: value and derivative by the column. Needs 1 <= x < cols - 2.

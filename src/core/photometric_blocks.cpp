@@ -56,12 +56,12 @@ bool set(const cv::Mat& mask, double u, double v) {
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
 }
 
-// What a row of a block is interpolated from: value i lies t[i] (0 to 2) behind pixel i + 1. Floats, made for
-// all rows before any is interpolated, so that all columns are worked on at once.
+// What a row of a block is interpolated from: the first value lies begin (0 to 2) behind the second pixel,
+// each further one a step behind the last. Floats, made for all rows before any is interpolated.
 struct RowPixels {
-  static constexpr int kRead = kWidth + 8;  // more than the kWidth + 4 needed: whole vector registers
+  static constexpr int kRead = kWidth + kLanes;  // more than the kWidth + 4 needed: whole vector registers
   std::array<float, kRead> pixel;
-  Lane t;
+  float begin;
 };
 
 // At the places x, x + step, ... of a row. Neighbouring places must be in neighbouring pixels, but for one
@@ -69,19 +69,18 @@ struct RowPixels {
 inline void load(const uchar* row, float x, float step, RowPixels& out) {
   const float last = x + step * static_cast<float>(kWidth - 1);
   const int first = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
-  for (int i = 0; i < kWidth; ++i)
-    out.t[i] = x + step * static_cast<float>(i) - static_cast<float>(first + i);
+  out.begin = x - static_cast<float>(first);
   row += first - 1;
   for (int i = 0; i < RowPixels::kRead; ++i) out.pixel[i] = row[i];
 }
 
-inline void interpolate(const RowPixels& in, Lane& value) {
-  for (int i = 0; i < kWidth; ++i) {
-    // 1 where the pixels are those one further, else 0: arithmetic, exact for grey levels, is no branch.
-    const float next = static_cast<float>(static_cast<int>(in.t[i]));
+inline void interpolate(const RowPixels& in, float step, Lane& value) {
+  for (int i = 0; i < kWidth; i += kLanes) {
     const float* p = &in.pixel[i];
-    value[i] = cubicBetween(p[0] + next * (p[1] - p[0]), p[1] + next * (p[2] - p[1]),
-                            p[2] + next * (p[3] - p[2]), p[3] + next * (p[4] - p[3]), in.t[i] - next);
+    Lanes t, values;
+    progress(in.begin + (step - 1) * static_cast<float>(i), step - 1, t);
+    cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+    store(values, &value[i]);
   }
 }
 
@@ -114,7 +113,7 @@ UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& rows, double first, doub
   for (int y = 0; y < kHeight; ++y, grey += kWidth, slope += kWidth) {
     Lane values;
     if (neighbours) {
-      interpolate(pixels[y], values);
+      interpolate(pixels[y], step, values);
     } else {
       sampleRow(rows.ptr<uchar>(y), start(y), step, values);
     }

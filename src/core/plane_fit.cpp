@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "lanes.h"
 #include "multiversion.h"
 
 namespace uav_landing {
@@ -29,13 +30,7 @@ struct Votes {
   double net() const { return agreeing - penalty; }
 };
 
-// Samples are worked on by as many at a time, which become vector instructions.
-constexpr size_t kLanes = 4;
-using Lanes = std::array<double, kLanes>;
-
-double sum(const Lanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
-
-size_t padded(size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+size_t padded(size_t count) { return (count + kDoubleLanes - 1) / kDoubleLanes * kDoubleLanes; }
 
 // The samples by columns, filled up to whole lanes with what has no vote.
 struct VoteColumns {
@@ -68,21 +63,23 @@ struct VoteColumns {
 // matched instead.
 UAV_LANDING_MULTIVERSION void addVotes(const VoteColumns& columns, const Eigen::Vector3d& g, double tolerance,
                                        Votes& votes) {
-  const double gx = g.x(), gy = g.y(), constant = g.z() * columns.fb, offset = columns.offset;
+  const double gx = g.x(), gy = g.y(), constant = g.z() * columns.fb;
   const double unit = 1 / (tolerance * tolerance), far = 2 * tolerance;
-  const double *x = columns.x.data(), *y = columns.y.data(), *u = columns.u.data();
-  const double* disparity = columns.disparity.data();
-  Lanes agreeing{}, penalty{};
-  for (size_t i = 0; i < columns.x.size(); i += kLanes) {
-    for (size_t k = 0; k < kLanes; ++k) {
-      const double expected = gx * x[i + k] + gy * y[i + k] + constant;
-      const double residual = disparity[i + k] - expected, missing = 1 - residual * residual * unit;
-      const bool counts = expected >= kMinDisparity;
-      const bool seen = u[i + k] - expected >= offset;
-      const double price = residual < -far ? kBelowPenalty : kAbovePenalty;
-      agreeing[k] += (counts & (missing > 0)) ? missing : 0;
-      penalty[k] += (counts & seen & (missing <= 0)) ? price : 0;
-    }
+  const DoubleLanes none{}, below = none + kBelowPenalty, above = none + kAbovePenalty;
+  DoubleLanes agreeing{}, penalty{};
+  for (size_t i = 0; i < columns.x.size(); i += kDoubleLanes) {
+    DoubleLanes x, y, u, disparity;
+    load(&columns.x[i], x);
+    load(&columns.y[i], y);
+    load(&columns.u[i], u);
+    load(&columns.disparity[i], disparity);
+    const DoubleLanes expected = gx * x + gy * y + constant, residual = disparity - expected;
+    const DoubleLanes missing = 1 - residual * residual * unit;
+    const auto counts = expected >= kMinDisparity;
+    const auto seen = u - expected >= columns.offset;
+    const DoubleLanes price = residual < -far ? below : above;
+    agreeing += (counts & (missing > 0)) ? missing : none;
+    penalty += (counts & seen & (missing <= 0)) ? price : none;
   }
   votes.agreeing += sum(agreeing);
   votes.penalty += sum(penalty);
@@ -260,31 +257,32 @@ class PlaneProblem {
   UAV_LANDING_MULTIVERSION NormalEquations accumulate(double scale) {
     constexpr double kTukey = 4.0;
     const double unit = 1 / (kTukey * kTukey * scale * scale);
-    const double *x = x_.data(), *y = y_.data(), *precision = precision_.data();
-    const double *disparity = disparity_.data(), *expected = expected_.data();
-    double* __restrict weights = weight_.data();
-    Lanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
-    for (size_t i = 0; i < x_.size(); i += kLanes) {
-      for (size_t k = 0; k < kLanes; ++k) {
-        const double residual = disparity[i + k] - expected[i + k];
-        const double information = precision[i + k] * precision[i + k];
-        const double missing = 1 - residual * residual * information * unit;
-        const bool inside = (missing > 0) & (expected[i + k] > 0) & (information > 0);
-        const double weight = inside ? missing * missing * information : 0;
-        const double weight_x = weight * x[i + k], weight_y = weight * y[i + k];
-        weights[i + k] = weight;
-        count[k] += inside ? 1 : 0;
-        w[k] += weight;
-        wx[k] += weight_x;
-        wy[k] += weight_y;
-        wxx[k] += weight_x * x[i + k];
-        wxy[k] += weight_x * y[i + k];
-        wyy[k] += weight_y * y[i + k];
-        wd[k] += weight * disparity[i + k];
-        wxd[k] += weight_x * disparity[i + k];
-        wyd[k] += weight_y * disparity[i + k];
-        squares[k] += weight * residual * residual;
-      }
+    const DoubleLanes none{}, one = none + 1;
+    DoubleLanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
+    for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
+      DoubleLanes x, y, precision, disparity, expected;
+      load(&x_[i], x);
+      load(&y_[i], y);
+      load(&precision_[i], precision);
+      load(&disparity_[i], disparity);
+      load(&expected_[i], expected);
+      const DoubleLanes residual = disparity - expected, information = precision * precision;
+      const DoubleLanes missing = 1 - residual * residual * information * unit;
+      const auto inside = (missing > 0) & (expected > 0) & (information > 0);
+      const DoubleLanes weight = inside ? missing * missing * information : none;
+      const DoubleLanes weight_x = weight * x, weight_y = weight * y;
+      store(weight, &weight_[i]);
+      count += inside ? one : none;
+      w += weight;
+      wx += weight_x;
+      wy += weight_y;
+      wxx += weight_x * x;
+      wxy += weight_x * y;
+      wyy += weight_y * y;
+      wd += weight * disparity;
+      wxd += weight_x * disparity;
+      wyd += weight_y * disparity;
+      squares += weight * residual * residual;
     }
     NormalEquations sums;
     sums.information << sum(wxx), sum(wxy), fb_ * sum(wx),  //

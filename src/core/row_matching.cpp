@@ -33,7 +33,7 @@ struct PlaceRows {
 
 // Values at the places in the image's rows from v on, less the mean, by linear interpolation.
 UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
-                                          float mean, float* __restrict out) {
+                                          float mean, float* out) {
   const float drift = static_cast<float>(places.step - 1);
   const int count = places.count;
   for (int j = 0; j < rows; ++j, out += count) {
@@ -41,13 +41,16 @@ UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const Pla
     const int first = static_cast<int>(places.least(place));
     const float start = static_cast<float>(place - first);
     const float* row = image.ptr<float>(v + j) + first;
-    for (int i = 0; i < count; ++i) {
-      const float behind = start + drift * static_cast<float>(i);
-      // 1 where it is behind the next pixel, else 0: arithmetic is no branch.
-      const float next = static_cast<float>(static_cast<int>(behind));
-      const float a = row[i], b = row[i + 1], c = row[i + 2];
-      const float before = a + next * (b - a), after = b + next * (c - b);
-      out[i] = before + (behind - next) * (after - before) - mean;
+    Lanes behind;
+    progress(start, drift, behind);
+    for (int i = 0; i < count; i += kLanes, behind += kLanes * drift) {
+      Lanes a, b, c;
+      load(row + i, a);
+      load(row + i + 1, b);
+      load(row + i + 2, c);
+      const auto next = behind >= 1;
+      const Lanes before = next ? b : a, after = next ? c : b, t = next ? behind - 1 : behind;
+      store(before + t * (after - before) - mean, out + i);
     }
   }
 }
