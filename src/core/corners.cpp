@@ -18,12 +18,22 @@ struct Candidate {
   short x, y;
 };
 
-/// Appends the maxima of a row inside the mask and returns the end. Every pixel is written and only the end
-/// tells which ones stay: where maxima are a processor cannot guess. There must be room for all.
+/// Appends the maxima of a row inside the mask and returns the end. There must be room for all of the row:
+/// every pixel of a block with a maximum is written and only the end tells which ones stay, as where they are
+/// a processor cannot guess.
 Candidate* addMaxima(const float* maxima, const uchar* allowed, int columns, int row, Candidate* end) {
-  for (int u = 2; u + 2 < columns; ++u) {
-    *end = {maxima[u], static_cast<short>(u), static_cast<short>(row)};
-    end += static_cast<int>(maxima[u] > 0) & static_cast<int>(allowed[u] != 0);
+  constexpr int kBlock = 4;  // most are without a maximum
+  for (int begin = 0; begin < columns; begin += kBlock) {
+    const int stop = std::min(begin + kBlock, columns);
+    if (stop == begin + kBlock) {
+      std::uint64_t bits[2];
+      std::memcpy(bits, maxima + begin, sizeof(bits));
+      if ((bits[0] | bits[1]) == 0) continue;
+    }
+    for (int u = begin; u < stop; ++u) {
+      *end = {maxima[u], static_cast<short>(u), static_cast<short>(row)};
+      end += static_cast<int>(maxima[u] > 0) & static_cast<int>(allowed[u] != 0);
+    }
   }
   return end;
 }
