@@ -202,7 +202,7 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
 
 struct Options {
   std::string config = UAV_LANDING_SOURCE_DIR "/config/simulator/full_scale.yaml", parameters, json;
-  std::vector<int> widths = {320, 640, 1280};
+  std::vector<int> widths = {320, 640, 1280, 2560};
   std::vector<std::string> datasets;
   int pairs = 60;
 };
