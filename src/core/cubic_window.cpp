@@ -55,8 +55,8 @@ struct NearRows {
 };
 
 // The image at the crossings.
-inline void interpolateDown(const cv::Mat& image, const Crossings& line, float slope, int columns,
-                            float* out) {
+[[gnu::always_inline]] inline void interpolateDown(const cv::Mat& image, const Crossings& line, float slope,
+                                                   int columns, float* out) {
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
   const float* p = image.ptr<float>(line.top - 1) + line.first;
   Lanes t, values;
@@ -74,7 +74,8 @@ bool inNeighbouringColumns(double step, int count) {
 }
 
 // Values at start, start + step, ... of such places.
-inline void interpolateAlong(const float* row, float start, float step, int count, float* __restrict out) {
+[[gnu::always_inline]] inline void interpolateAlong(const float* row, float start, float step, int count,
+                                                    float* __restrict out) {
   const float drift = step - 1;
   const int first = static_cast<int>(std::min(start, start + drift * static_cast<float>(count - 1)));
   const float begin = start - static_cast<float>(first);
@@ -85,6 +86,23 @@ inline void interpolateAlong(const float* row, float start, float step, int coun
     cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
     store(values, out + i);
   }
+}
+
+UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, double start, double by_row,
+                                               double step, int rows, int stride, float* out) {
+  const int count = wholeLanes(stride);
+  const double last = start + by_row * (rows - 1), drift = (step - 1) * (count - 1);
+  if (!inNeighbouringColumns(step, stride) || !(std::min(start, last) + std::min(drift, 0.0) >= 1) ||
+      !(std::max(start, last) + count + 3 < image.cols)) {
+    return false;
+  }
+  for (int j = 0; j < rows; ++j, out += stride) {
+    const double x = start + by_row * j;
+    const int first = static_cast<int>(x + std::min(drift, 0.0));
+    interpolateAlong(image.ptr<float>(v + j) + first, static_cast<float>(x - first), static_cast<float>(step),
+                     count, out);
+  }
+  return true;
 }
 
 UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::Vector2d& at,
@@ -104,7 +122,7 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
     starts[j] = line.start;
     float* row = &values[j * kMostColumns + kBefore];
     interpolateDown(image, line, slope, columns, row);
-    row[-1] = row[columns] = 0;  // are read, and taken times zero
+    row[-1] = row[columns] = 0;  // are read, but not chosen
   }
   const bool neighbours = inNeighbouringColumns(lines.step, stride);
   const float step = static_cast<float>(lines.step);
@@ -131,6 +149,15 @@ void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Ei
     sampleCubicLine(image, CubicTable::fixed(start.x()), CubicTable::fixed(start.y()), step_x, step_y, stride,
                     out);
   }
+}
+
+void sampleCubicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
+                     int stride, float* out) {
+  if (sampleNeighbours(image, v, start, by_row, step, rows, stride, out)) return;
+  const std::int32_t fixed_step = CubicTable::fixed(step);
+  for (int j = 0; j < rows; ++j)
+    sampleCubicRow(image.ptr<float>(v + j), CubicTable::fixed(start + by_row * j), fixed_step, stride,
+                   out + j * stride);
 }
 
 }  // namespace uav_landing

@@ -86,4 +86,10 @@ inline void sampleCubicRow(const float* row, std::int32_t x, std::int32_t step_x
 void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
                        int radius, int stride, float* out);
 
+/// Values along the rows from v on of a float image: of row j from start + j by_row, by step, stride (a
+/// multiple of four) in each, and up to eight of no meaning behind the last. Needs a column before all places
+/// and two behind.
+void sampleCubicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
+                     int stride, float* out);
+
 }  // namespace uav_landing

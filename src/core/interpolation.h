@@ -16,7 +16,7 @@ inline float cubicBetween(float a, float b, float c, float d, float t) {
 
 /// The same for eight places, each between the second and the third of five neighbours, or the third and the
 /// fourth where t, counted from the second, is 1 to 2. from: where the neighbours of all places begin.
-inline void cubicBetween(const float* const (&from)[5], const Lanes& t, Lanes& out) {
+[[gnu::always_inline]] inline void cubicBetween(const float* const (&from)[5], const Lanes& t, Lanes& out) {
   Lanes p0, p1, p2, p3, p4;
   load(from[0], p0);
   load(from[1], p1);

@@ -10,15 +10,19 @@ namespace uav_landing {
 using Lanes = float __attribute__((vector_size(32)));
 constexpr int kLanes = 8;
 
-inline void load(const float* from, Lanes& to) { std::memcpy(&to, from, sizeof(Lanes)); }
-inline void store(const Lanes& from, float* to) { std::memcpy(to, &from, sizeof(Lanes)); }
+[[gnu::always_inline]] inline void load(const float* from, Lanes& to) {
+  std::memcpy(&to, from, sizeof(Lanes));
+}
+[[gnu::always_inline]] inline void store(const Lanes& from, float* to) {
+  std::memcpy(to, &from, sizeof(Lanes));
+}
 
 /// start, start + step, ...
-inline void progress(float start, float step, Lanes& to) {
+[[gnu::always_inline]] inline void progress(float start, float step, Lanes& to) {
   to = start + step * Lanes{0, 1, 2, 3, 4, 5, 6, 7};
 }
 
-inline float sum(const Lanes& lanes) {
+[[gnu::always_inline]] inline float sum(const Lanes& lanes) {
   return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
@@ -26,9 +30,15 @@ inline float sum(const Lanes& lanes) {
 using DoubleLanes = double __attribute__((vector_size(32)));
 constexpr int kDoubleLanes = 4;
 
-inline void load(const double* from, DoubleLanes& to) { std::memcpy(&to, from, sizeof(DoubleLanes)); }
-inline void store(const DoubleLanes& from, double* to) { std::memcpy(to, &from, sizeof(DoubleLanes)); }
-inline double sum(const DoubleLanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
+[[gnu::always_inline]] inline void load(const double* from, DoubleLanes& to) {
+  std::memcpy(&to, from, sizeof(DoubleLanes));
+}
+[[gnu::always_inline]] inline void store(const DoubleLanes& from, double* to) {
+  std::memcpy(to, &from, sizeof(DoubleLanes));
+}
+[[gnu::always_inline]] inline double sum(const DoubleLanes& lanes) {
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
 
 inline int wholeLanes(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 

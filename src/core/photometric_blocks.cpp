@@ -66,7 +66,7 @@ struct RowPixels {
 
 // At the places x, x + step, ... of a row. Neighbouring places must be in neighbouring pixels, but for one
 // place from which on they are one further.
-inline void load(const uchar* row, float x, float step, RowPixels& out) {
+[[gnu::always_inline]] inline void load(const uchar* row, float x, float step, RowPixels& out) {
   const float last = x + step * static_cast<float>(kWidth - 1);
   const int first = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
   out.begin = x - static_cast<float>(first);
@@ -74,7 +74,7 @@ inline void load(const uchar* row, float x, float step, RowPixels& out) {
   for (int i = 0; i < RowPixels::kRead; ++i) out.pixel[i] = row[i];
 }
 
-inline void interpolate(const RowPixels& in, float step, Lane& value) {
+[[gnu::always_inline]] inline void interpolate(const RowPixels& in, float step, Lane& value) {
   for (int i = 0; i < kWidth; i += kLanes) {
     const float* p = &in.pixel[i];
     Lanes t, values;

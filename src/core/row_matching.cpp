@@ -271,16 +271,15 @@ UAV_LANDING_MULTIVERSION OtherSums multiply(const RowPlanes& planes, const float
   return {sum(b1), sum(bb), sum(ab), sum(bg)};
 }
 
-UAV_LANDING_MULTIVERSION void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp,
-                                         const RowPlanes& planes, float* out) {
+void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp, const RowPlanes& planes,
+                float* out) {
   const int radius = planes.size / 2;
-  const std::int32_t step = CubicTable::fixed(warp.scale);
-  for (int j = 0; j < planes.size; ++j, out += planes.stride) {
-    const double start = position + warp.shear * (j - radius) - warp.scale * radius;
-    sampleCubicRow(image.ptr<float>(v - radius + j), CubicTable::fixed(start), step, planes.stride, out);
-    for (int i = planes.size; i < planes.stride; ++i) out[i] = planes.middle;  // does not count
-  }
-  for (int i = planes.size * planes.stride; i < planes.count; ++i) *out++ = planes.middle;
+  const double start = position - warp.shear * radius - warp.scale * radius;
+  sampleCubicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
+  // What does not count.
+  for (int j = 0; j < planes.size; ++j)
+    for (int i = planes.size; i < planes.stride; ++i) out[j * planes.stride + i] = planes.middle;
+  for (int i = planes.size * planes.stride; i < planes.count; ++i) out[i] = planes.middle;
 }
 
 // The reference's window with the sums that do not depend on the other image, about the means.

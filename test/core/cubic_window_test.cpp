@@ -71,6 +71,21 @@ TEST(SampleCubic, WritesWholeBlocksOfFour) {
   }
 }
 
+TEST(SampleCubicRows, IsExactForParabolasNearAndFarFromTheBorder) {
+  const cv::Mat image = polynomialImage();
+  for (const double step : {0.7, 0.95, 1.0, 1.06, 1.4})
+    for (const double start : {1.5, 12.3, 30.0})
+      for (const double by_row : {-0.1, 0.3}) {
+        if (start + 4 * by_row + 11 * step + 2 >= image.cols) continue;
+        std::vector<float> out(5 * 12 + 8, -1e9F);
+        sampleCubicRows(image, 20, start, by_row, step, 5, 12, out.data());
+        for (int j = 0; j < 5; ++j)
+          for (int i = 0; i < 12; ++i)
+            EXPECT_NEAR(out[j * 12 + i], polynomial(start + j * by_row + i * step, 20 + j), kTolerance)
+                << step << ' ' << start << ' ' << by_row << ' ' << j << ' ' << i;
+      }
+}
+
 /// Leaves numbers behind that would be seen in everything that reads memory it never wrote.
 __attribute__((noinline)) float spoilStack() {
   volatile float left_over[20000];
