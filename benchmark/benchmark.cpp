@@ -53,7 +53,7 @@ struct Measurement {
   std::string sequence;
   cv::Size size;
   std::vector<std::pair<std::string, Times>> programs, stages;
-  // A pair, in the second half: the first one fills the memory. Image-sized ones, and all by operator new.
+  // A pair, in the last quarter: those before fill the memory. Image-sized ones, and all by operator new.
   double image_allocations = 0, allocations = 0;
   double peak_memory = 0;                // MB
   std::vector<double> pairs_per_second;  // of 1, 2, ... chains side by side
@@ -84,6 +84,7 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
   result.size = sequence.left.imageSize();
   result.peak_memory = peakMemory(sequence, parameters);
   result.pairs_per_second = pairsPerSecond(sequence, parameters);
+  const size_t counted = sequence.pairs.size() / 4;
   double last = sequence.pairs.front().stamp;
   for (size_t i = 0; i < sequence.pairs.size(); ++i) {
     const Sequence::Pair& pair = sequence.pairs[i];
@@ -98,7 +99,7 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
       const ImageAllocations matrices(image);
       const HeapCounter heap(image);
       run("uav_landing", [&] { chain->process(pair.stamp, pair.left, pair.right); });
-      if (2 * i >= sequence.pairs.size()) {
+      if (i + counted >= sequence.pairs.size()) {
         result.image_allocations += static_cast<double>(matrices.count()) + static_cast<double>(heap.large());
         result.allocations += static_cast<double>(heap.count());
       }
@@ -116,9 +117,8 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
     if (i < kWarmUp) continue;
     for (const auto& [part, ms] : output.parts.parts()) Measurement::of(result.stages, part).ms.push_back(ms);
   }
-  const double counted = static_cast<double>(sequence.pairs.size() / 2);
-  result.image_allocations /= counted;
-  result.allocations /= counted;
+  result.image_allocations /= static_cast<double>(counted);
+  result.allocations /= static_cast<double>(counted);
   return result;
 }
 

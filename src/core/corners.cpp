@@ -40,10 +40,9 @@ Candidate* addMaxima(const float* maxima, const uchar* allowed, int columns, int
 
 /// Local maxima of the Harris response inside the mask, by rows, with a response of at least quality times
 /// the strongest one.
-std::vector<Candidate> localMaxima(const cv::Mat& image, const cv::Mat& mask, double quality,
-                                   double harris_k) {
+void findMaxima(const cv::Mat& image, const cv::Mat& mask, double quality, double harris_k,
+                std::vector<Candidate>& maxima) {
   HarrisRows harris(image, harris_k);
-  std::vector<Candidate> maxima;
   size_t count = 0;
   for (int v = 2; v + 2 < image.rows; ++v) {
     harris.compute(v);
@@ -59,14 +58,13 @@ std::vector<Candidate> localMaxima(const cv::Mat& image, const cv::Mat& mask, do
   maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
                               [threshold](const Candidate& c) { return c.response < threshold; }),
                maxima.end());
-  return maxima;
 }
 
 /// Strongest first, equals as they come: digit by digit of the response's bits, which are in the order of
-/// positive numbers.
-void sortByResponse(std::vector<Candidate>& candidates) {
+/// positive numbers. sorted: memory to work in.
+void sortByResponse(std::vector<Candidate>& candidates, std::vector<Candidate>& sorted) {
   constexpr int kBits = 11, kDigits = 1 << kBits;
-  std::vector<Candidate> sorted(candidates.size());
+  sorted.resize(candidates.size());
   const auto digit = [](const Candidate& candidate, int shift) {
     std::uint32_t bits;
     std::memcpy(&bits, &candidate.response, sizeof(bits));
@@ -137,8 +135,9 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
                                    double min_distance, double harris_k) {
   const cv::Rect area = cv::boundingRect(mask);
   if (area.width < 7 || area.height < 7) return {};
-  std::vector<Candidate> maxima = localMaxima(image(area), mask(area), quality, harris_k);
-  sortByResponse(maxima);
+  static thread_local std::vector<Candidate> maxima, memory;  // kept, as there are many
+  findMaxima(image(area), mask(area), quality, harris_k, maxima);
+  sortByResponse(maxima, memory);
 
   // Rank within cells first, so that strong markings do not take all corners, then by strength.
   Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
