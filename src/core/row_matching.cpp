@@ -16,6 +16,7 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
+
 // Rows of places of which each is in the column after that of the one before or, from one of them on, in the
 // one after that or still the same: row j at start + j by_row, and on by step.
 struct PlaceRows {
