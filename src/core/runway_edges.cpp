@@ -18,10 +18,12 @@ constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edg
 constexpr double kLeastMargin = 1.4;      // evidence over that of any other symmetry
 constexpr double kLeastWidth = 0.3;       // heights: narrower is a stripe
 constexpr double kOtherWidth =
-    1.5;                           // ratio between the widths of two pairs that are not the sides of one line
-constexpr double kUnbroken = 0.9;  // share of an edge's length that is seen
-constexpr double kSameExtent = 0.4;     // log of the ratio of their extents
-constexpr double kSameBeginning = 0.3;  // log of the ratio of the distances where two edges begin
+    1.5;  // ratio between the widths of two pairs that are not the sides of one line
+constexpr double kHalfTolerance = 0.15;  // of a pair's width: between marks and edges side by side
+constexpr double kFarTolerance = 0.01;   // rad about the vanishing point, by which a thin far line may be off
+constexpr double kUnbroken = 0.9;        // share of an edge's length that is seen
+constexpr double kSameExtent = 0.4;      // log of the ratio of their extents
+constexpr double kSameBeginning = 0.3;   // log of the ratio of the distances where two edges begin
 
 /// An edge and its counterpart on the other side.
 struct MirroredPair {
@@ -88,6 +90,12 @@ class Search {
   static bool isUnbroken(const GroundEdge& edge) {
     return edge.extent >= kUnbroken * std::log(edge.far / edge.near);
   }
+  /// Whether one edge of the pair seems to be the centre line of a wider runway: halfway between the other
+  /// one and a long edge beyond it. With such edges beyond both, the pair is the middle of what is symmetric.
+  bool isHalf(const MirroredPair& pair) const {
+    const double left = edges_[pair.left].lateral, right = edges_[pair.right].lateral;
+    return hasLongEdge(2 * left - right, pair) != hasLongEdge(2 * right - left, pair);
+  }
   /// Whether both edges begin at the same distance, or neither within the picture.
   bool beginAlike(const MirroredPair& pair) const {
     const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
@@ -114,6 +122,15 @@ class Search {
             0.25 * (l.variance + r.variance) + std::pow(kAsymmetry * width, 2),
             0.5 * (l.by_rotation + r.by_rotation),
             std::min(l.extent, r.extent)};
+  }
+
+  /// Whether an edge, long beside the pair's, lies there.
+  bool hasLongEdge(double lateral, const MirroredPair& pair) const {
+    const double tolerance = kHalfTolerance * pair.width + kFarTolerance * (1 + lateral * lateral);
+    return std::any_of(edges_.begin(), edges_.end(), [&](const GroundEdge& edge) {
+      return edge.extent >= std::max(kLong * pair.extent, kLeastExtent) &&
+             std::abs(edge.lateral - lateral) < tolerance;
+    });
   }
 
   double toleranceOf(const MirroredPair& a, const MirroredPair& b) const {
@@ -197,6 +214,8 @@ Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::
   if (best == found.end())
     return tl::make_unexpected(noRunway(text("none of ", edges.size(), " edges are those of the runway")));
   const MirroredPair& outermost = *outermostPair(*best, width, longest);
+  if (width <= 0 && search.isHalf(outermost))
+    return tl::make_unexpected(noRunway("the runway reaches as far again beyond its seeming edges"));
   if (!expected) {
     if (width <= 0 && !hasTwoWidths(*best) && !search.areTwoLines(*best) && !search.isStrip(outermost))
       return tl::make_unexpected(noRunway("one pair of lines alone does not make a runway"));

@@ -84,6 +84,45 @@ TEST(RunwayEdges, AnEdgeLineAndTheCentreLineAreNoRunway) {
   EXPECT_EQ(findRunwayEdges(level(1e-4), edges, 0, std::nullopt).error().reason, Reason::kNoRunway);
 }
 
+/// A runway from 1 to -3 whose centre line at -1 looks as long as its edge line at 1. Of the far edge line
+/// only one side is seen, so that it has no counterpart.
+std::vector<GroundEdge> halfOfARunway(double far = -2.85) {
+  std::vector<GroundEdge> edges;
+  addStripe(edges, 1, 0.05, 2.0);
+  addStripe(edges, -1, 0.05, 1.8);
+  edges.push_back(edge(far, false, 1.2));
+  return edges;
+}
+
+TEST(RunwayEdges, NorAreTheyWhenTheOtherEdgeIsSeenAsFarBeyond) {
+  EXPECT_EQ(findRunwayEdges(level(1e-4), halfOfARunway(), 0, std::nullopt).error().reason, Reason::kNoRunway);
+  std::vector<GroundEdge> mirrored;
+  for (const GroundEdge& e : halfOfARunway())
+    mirrored.push_back(edge(-e.lateral, !e.brighter_left, e.extent));
+  EXPECT_EQ(findRunwayEdges(level(1e-4), mirrored, 0, std::nullopt).error().reason, Reason::kNoRunway);
+  // Where it was believed before, too.
+  EXPECT_FALSE(findRunwayEdges(level(1e-4), halfOfARunway(), 0, ExpectedCentre{0, 0.1}));
+}
+
+TEST(RunwayEdges, TwoLinesOfTheKnownWidthAreTheRunwayWhateverIsBeyond) {
+  const auto found = findRunwayEdges(level(1e-4), halfOfARunway(), 2.05, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->centre, 0, 1e-6);
+}
+
+TEST(RunwayEdges, OtherLinesBeyondDoNotHideTheRunway) {
+  for (const double beyond : {-1.5, -2.4, -4.5}) {
+    const auto found = findRunwayEdges(level(1e-4), halfOfARunway(beyond), 0, std::nullopt);
+    ASSERT_TRUE(found) << beyond << ": " << found.error().message();
+    EXPECT_NEAR(found->centre, 0, 1e-6);
+  }
+  std::vector<GroundEdge> edges = halfOfARunway();
+  edges.push_back(edge(2.85, false, 1.2));  // as far beyond the other side, and both of one polarity
+  const auto found = findRunwayEdges(level(1e-4), edges, 0, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->centre, 0, 1e-6);
+}
+
 TEST(RunwayEdges, ADarkStripThatBeginsInThePictureIsOne) {
   std::vector<GroundEdge> edges{edge(1.5, true), edge(-0.5, false)};
   EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt)) << "it may begin anywhere";
