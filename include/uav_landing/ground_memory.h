@@ -16,7 +16,8 @@ namespace uav_landing {
 /// known.
 class GroundMemory {
  public:
-  /// Motion since the pair before: a point is at R x - t now. t: m.
+  /// Motion since the pair before: a point is at R x - t now. t: m; the usual one is taken for a step that is
+  /// several times as long.
   void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
   /// known; measured: the plane of the points before that. Where the path goes is the direction of
@@ -40,6 +41,7 @@ class GroundMemory {
   };
   std::deque<Patch> patches_;                       // nearest first
   Eigen::Vector3d path_ = Eigen::Vector3d::Zero();  // m, over the last pairs: a single one can be wrong
+  double steps_ = 0;                                // that the path is of
 };
 
 }  // namespace uav_landing

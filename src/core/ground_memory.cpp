@@ -15,6 +15,7 @@ constexpr double kLargestGap = 0.5;    // between patches that are ground withou
 constexpr double kMostOff = 0.15;      // by which ground may differ from the plane
 constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no direction
 constexpr double kPathKept = 0.8;      // share of the path that counts on the next pair: of five pairs
+constexpr double kLongestStep = 5;     // over the mean step of the path: a longer one is wrong
 constexpr size_t kFewest = 5;          // points that make a patch
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
 constexpr double kDirectionError = 0.15 * M_PI / 180;
@@ -43,10 +44,16 @@ double medianVariance(const std::vector<GroundPoint>& points, double middle) {
 }  // namespace
 
 void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
-  path_ = kPathKept * (R * path_) + t;
+  const Eigen::Vector3d before = R * path_, usual = steps_ > 0 ? before / steps_ : t;
+  const double longest = kLongestStep * usual.norm();
+  const bool wrong = longest > 0 && t.norm() > longest;
+  const Eigen::Vector3d step = wrong ? usual : t;
+  // As long as can be believed: a speed that did change is after some pairs.
+  path_ = kPathKept * before + (wrong ? Eigen::Vector3d(longest * t.normalized()) : t);
+  steps_ = kPathKept * steps_ + 1;
   for (Patch& patch : patches_) {
-    patch.at = R * patch.at - t;
-    patch.flown += t.norm();
+    patch.at = R * patch.at - step;
+    patch.flown += step.norm();
   }
 }
 

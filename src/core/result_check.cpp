@@ -12,6 +12,8 @@ namespace {
 // Wider than anything that flies, narrow enough that no square or product of them leaves the range of
 // numbers.
 constexpr double kLeastHeight = 1e-3, kLargestHeight = 1e5;  // m
+constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the picture: no ground rises like a wall
+constexpr double kLargestTurn = 0.5;   // rad between two images that still show the same
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
 constexpr double kLargestVariance = 1e9;  // in squares of the units below: says "unknown" in numbers
@@ -64,7 +66,7 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
 }
 
 void keepMotion(ApproachAngleResult::Motion& motion) {
-  const bool possible = motion.rotation.norm() <= M_PI &&
+  const bool possible = motion.rotation.norm() <= kLargestTurn &&
                         motion.translation_over_height.norm() <= kLargestRatio &&
                         motion.duration >= kShortestStep && motion.duration <= kLongestStep &&
                         isCovariance<6>(motion.covariance);
@@ -113,7 +115,7 @@ void keepRunway(ApproachAngleResult::Runway& runway) {
 std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result) {
   const Eigen::Vector3d& g = result.plane.g;
   const double size = g.norm();
-  if (!(size >= 1 / kLargestHeight && size <= 1 / kLeastHeight && g.y() > 0))
+  if (!(size >= 1 / kLargestHeight && size <= 1 / kLeastHeight && g.y() > kSteepest * size))
     return text("plane: ", g.x(), ", ", g.y(), ", ", g.z(), " is no ground below the camera");
   if (!isCovariance<3>(result.plane.covariance) ||
       !(result.plane.covariance.trace() >= std::pow(kLeastRelative * size, 2)))

@@ -59,8 +59,8 @@ struct LineColumns {
 
 constexpr double kAbove = 2;  // instead of a fit, which is 1 at most
 
-/// How well each line passes through the homogeneous point (x, y, z): 1 when exactly, 0 when its ends miss it by
-/// the tolerance, kAbove when part of the line is above the horizon. As VanishingCandidate has it for one.
+/// How well each line passes through the homogeneous point (x, y, z): 1 when exactly, 0 when its ends miss it
+/// by the tolerance, kAbove when part of the line is above the horizon. As VanishingCandidate has it for one.
 UAV_LANDING_MULTIVERSION void fitLines(const LineColumns& lines, double x, double y, double z, int count,
                                        double* __restrict fit) {
   const double *mu = lines.middle_u.data(), *mv = lines.middle_v.data(), *au = lines.along_u.data(),
@@ -419,14 +419,14 @@ class Search {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  std::vector<size_t> edge_;         // per line, the edge it is a piece of
+  std::vector<size_t> edge_;  // per line, the edge it is a piece of
   LineColumns columns_;
-  std::vector<double> turns_;        // angle on the ground by which a line may turn, over its distance from V
-  std::vector<double> impossible_;   // evidence against V of a line above its horizon
-  std::vector<double> fit_;          // of one attempt
-  std::vector<double> agreeing_;     // by edge
-  Eigen::Vector2d horizon_;   // direction of the horizon in the image, unit
-  double meetings_ = 0;       // pairs of lines that meet along the runway
+  std::vector<double> turns_;       // angle on the ground by which a line may turn, over its distance from V
+  std::vector<double> impossible_;  // evidence against V of a line above its horizon
+  std::vector<double> fit_;         // of one attempt
+  std::vector<double> agreeing_;    // by edge
+  Eigen::Vector2d horizon_;         // direction of the horizon in the image, unit
+  double meetings_ = 0;             // pairs of lines that meet along the runway
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ std::vector<StereoDepthResult::Point> look(const StereoRig& rig, double x, doubl
 /// Flies 60 m from a height of 12 m, sinking by 1 m in 20 m, always with the plane z = 0 for the ground
 /// ahead. Calls see(x, z, memory) after each pair.
 template <class See>
-void fly(const Surface& surface, See&& see) {
+void flyMemory(const Surface& surface, See&& see) {
   const StereoRig rig = makeRig();
   const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
   const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
@@ -53,8 +53,16 @@ void fly(const Surface& surface, See&& see) {
     if (x > 0) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20);
     GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
     memory.look(rig, look(rig, x, z, surface), plane, plane.g);
-    see(x, z, memory.below(down));
+    see(x, z, memory);
   }
+}
+
+/// The same with see(x, z, what is below).
+template <class See>
+void fly(const Surface& surface, See&& see) {
+  flyMemory(surface, [&](double x, double z, const GroundMemory& memory) {
+    see(x, z, memory.below(normalFromPitchRoll(kPitch, 0)));
+  });
 }
 
 // The lowest row looks down by 10 + atan(230 / 500) = 34.7 deg: the nearest ground in view from 12 m is 17.3
@@ -108,6 +116,20 @@ TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
   const std::optional<GroundMemory::Below> below = memory.below(down);
   ASSERT_TRUE(below);
   EXPECT_NEAR(below->height, 12, 1e-6);
+}
+
+TEST(GroundMemory, TakesTheUsualStepForOneThatCannotBe) {
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  int known = 0;
+  const auto jump = [&](double x, double z, GroundMemory memory) {
+    if (x < 24) return;
+    memory.move(Eigen::Matrix3d::Identity(), -z * down);
+    ++known;
+    ASSERT_TRUE(memory.below(down));
+    EXPECT_NEAR(memory.below(down)->height, z - 1.0 / 20, 0.01) << "sunk as in the pairs before";
+  };
+  flyMemory([](double) { return 0; }, jump);
+  EXPECT_GT(known, 30);
 }
 
 TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
