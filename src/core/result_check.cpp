@@ -13,7 +13,7 @@ namespace {
 // numbers.
 constexpr double kLeastHeight = 1e-3, kLargestHeight = 1e5;  // m
 constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the picture: no ground rises like a wall
-constexpr double kLargestTurn = 0.5;   // rad between two images that still show the same
+constexpr double kFastestTurn = 6;  // rad/s: one roll a second
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
 constexpr double kLargestVariance = 1e9;  // in squares of the units below: says "unknown" in numbers
@@ -66,7 +66,7 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
 }
 
 void keepMotion(ApproachAngleResult::Motion& motion) {
-  const bool possible = motion.rotation.norm() <= kLargestTurn &&
+  const bool possible = motion.rotation.norm() <= std::min(M_PI, kFastestTurn * motion.duration) &&
                         motion.translation_over_height.norm() <= kLargestRatio &&
                         motion.duration >= kShortestStep && motion.duration <= kLongestStep &&
                         isCovariance<6>(motion.covariance);
