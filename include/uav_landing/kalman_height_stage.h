@@ -10,6 +10,7 @@
 #include "uav_landing/height_memory.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/position_filter.h"
+#include "uav_landing/recovery.h"
 #include "uav_landing/rig_rotation_filter.h"
 #include "uav_landing/solution_separation.h"
 #include "uav_landing/speed_memory.h"
@@ -94,6 +95,8 @@ class KalmanHeightStage {
   /// Carries on the ground that was in view, and adds that of this pair.
   void rememberGround(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
+  /// No height after contradictions before nothing has contradicted for recovery_time.
+  void awaitRecovery(double T, LandingResult& result);
   void reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const;
   void refuse(LandingResult& result, const Failure& failure) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
@@ -136,6 +139,7 @@ class KalmanHeightStage {
   int pairs_failed_ = 0, pairs_passed_ = 0;  // tests of one pair: failures before and passes since, up to 3
   HeightMemory memory_;
   SpeedMemory speed_;
+  Recovery recovery_;
   GroundMemory ground_;
   Timings timings_;
 

@@ -241,6 +241,7 @@ struct KalmanHeightParameters {
   double fault_probability = 1e-3;
   double false_alarm_rate = 1e-5;
   double max_deceleration = 3.0;
+  double recovery_time = 1.0;
   double alert_limit = 0.15;
   double alert_limit_relative = 0.05;
   double unwatched_scale_error = 0.02;
@@ -302,6 +303,9 @@ struct KalmanHeightParameters {
     v.number("max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
              "by which the aircraft can lose speed over the ground: a picture that stands still sooner is "
              "that of a camera that hangs");
+    v.number("recovery_time", recovery_time, 0.0, 60.0, "s",
+             "after contradictions that took the height away none may come for this long before it is valid "
+             "again; 0: it is as soon as the tests pass");
     v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
              "the height is not valid when its protection level exceeds this and alert_limit_relative");
     v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height", "see alert_limit");

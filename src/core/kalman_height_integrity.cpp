@@ -208,6 +208,23 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
                   std::max(parameters_.alert_limit, parameters_.alert_limit_relative * scale));
 }
 
+void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
+  if (!parameters_.integrity_monitor) return;
+  const bool contradicted = result.rejected || tests_.failed(Consistency::kSinkRate);
+  Recovery::Pair pair = Recovery::Pair::kSilent;
+  if (contradicted)
+    pair = Recovery::Pair::kContradicts;
+  else if (result.status == Status::kTracking)
+    pair = Recovery::Pair::kAgrees;
+  // What is missing without a contradiction is no fault.
+  const bool outdated = consecutive_rejections_ > 0 && result.stamp - last_accepted_ > parameters_.max_age;
+  recovery_.follow(std::min(T, parameters_.max_age), pair, outdated || tests_.failed(Consistency::kSinkRate));
+  if (!recovery_.pending()) return;
+  refuse(result,
+         {Reason::kInconsistent, text("after contradictions nothing has contradicted for ", recovery_.quiet(),
+                                      " s only, ", parameters_.recovery_time, " s needed")});
+}
+
 void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) const {
   result.height_valid = false;
   if (!result.failure) result.failure = failure;

@@ -60,7 +60,8 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       width_(parameters.known_runway_width),
       separation_(parameters),
       tests_(parameters.false_alarm_rate),
-      speed_(parameters.max_deceleration) {}
+      speed_(parameters.max_deceleration),
+      recovery_(parameters.recovery_time) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
@@ -83,6 +84,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     reportHeight(result);
     testMemory(T, reconstruction, approach, result);
+    awaitRecovery(T, result);
     rememberGround(stereo, approach.step, reconstruction);
     reportProtection(reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n, result);
   }
@@ -126,6 +128,7 @@ void KalmanHeightStage::reset() {
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   speed_.reset();
+  recovery_.reset();
   ground_.reset();
   last_stamp_.reset();
   lost_ = false;

@@ -7,6 +7,7 @@
 #include "uav_landing/consistency_tests.h"
 #include "uav_landing/height_memory.h"
 #include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/recovery.h"
 #include "uav_landing/region_planes.h"
 #include "uav_landing/solution_separation.h"
 
@@ -345,6 +346,54 @@ TEST(KalmanHeightIntegrity, AsManyPairsInARowMustPassAsFailedBefore) {
     EXPECT_TRUE(accepted(0.9)) << failures;
     EXPECT_TRUE(accepted(0.9)) << failures;
   }
+}
+
+TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayIsBelievedAfterASecondWithoutAny) {
+  for (const double recovery_time : {1.0, 0.0}) {
+    KalmanHeightParameters parameters;
+    parameters.recovery_time = recovery_time;
+    KalmanHeightStage stage(makeRig(), parameters);
+    double stamp = 1;
+    const auto valid = [&](double agreement) {
+      StereoDepthResult stereo = stereoAt(stamp, 10);
+      stereo.row_agreement = agreement;
+      const LandingResult result = stage.process(stereo, levelFlight(stamp, 10));
+      stamp += 0.05;
+      return result.height_valid;
+    };
+    for (int i = 0; i < 20; ++i) valid(0.9);
+    // A short burst does not take the height away.
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(valid(0.4));
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(valid(0.9));
+    for (int i = 0; i < 10; ++i) valid(0.4);
+    // The fault goes on: in between pairs pass by chance.
+    int believed = 0;
+    for (int burst = 0; burst < 4; ++burst) {
+      for (int i = 0; i < 10; ++i) believed += valid(0.9);
+      for (int i = 0; i < 10; ++i) believed += valid(0.4);
+    }
+    if (recovery_time > 0)
+      EXPECT_EQ(believed, 0);
+    else
+      EXPECT_GT(believed, 0);
+    // Of the pairs that pass the first two are still left out.
+    int until = 1;
+    while (!valid(0.9) && until < 60) ++until;
+    EXPECT_EQ(until, recovery_time > 0 ? 22 : 3);
+  }
+}
+
+TEST(Recovery, NeedsPairsThatAgreeAndNotOnlyTimeWithoutAny) {
+  Recovery recovery(1.0);
+  recovery.follow(0.1, Recovery::Pair::kContradicts, false);
+  EXPECT_FALSE(recovery.pending()) << "the height was not lost";
+  recovery.follow(0.1, Recovery::Pair::kContradicts, true);
+  for (int i = 0; i < 20; ++i) recovery.follow(0.1, Recovery::Pair::kSilent, false);
+  EXPECT_TRUE(recovery.pending());
+  for (int i = 0; i < 9; ++i) recovery.follow(0.1, Recovery::Pair::kAgrees, false);
+  EXPECT_TRUE(recovery.pending());
+  recovery.follow(0.1, Recovery::Pair::kAgrees, false);
+  EXPECT_FALSE(recovery.pending());
 }
 
 TEST(KalmanHeightIntegrity, AnImuThatContradictsTheGroundsNormalIsNamedAndOneThatAgreesIsNot) {
