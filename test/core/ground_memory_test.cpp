@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "support/rigs.h"
+
 namespace uav_landing {
 namespace {
 
@@ -12,15 +14,7 @@ constexpr double kDegree = M_PI / 180;
 constexpr double kPitch = -10 * kDegree;
 using Surface = std::function<double(double)>;  // elevation over distance, m
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 1.0;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// The pair of a camera at this place over a surface.
 std::vector<StereoDepthResult::Point> look(const StereoRig& rig, double x, double z, const Surface& surface) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/rigs.h"
 #include "uav_landing/kalman_height_stage.h"
 
 namespace uav_landing {
@@ -88,15 +89,7 @@ TEST(SpeedMemory, NothingIsSaidWhereItMayHaveStoppedUnseen) {
   EXPECT_TRUE(std::isnan(fly(memory, 0.1, 0))) << "1 m/s within 0.4 s";
 }
 
-StereoRig makeRig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 1.0;
-  return rig;
-}
+StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// A pair of a flight of 20 m/s at 10 m, or of one whose picture stands still.
 LandingResult flyPair(KalmanHeightStage& stage, double stamp, bool still) {
