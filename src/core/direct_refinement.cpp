@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "median.h"
 #include "photometric_blocks.h"
 #include "uav_landing/rig_rotation.h"
 #include "uav_landing/stage_results.h"
@@ -30,14 +31,6 @@ constexpr double kLargestShift = 1.5;
 constexpr double kLeastShare = 0.5;
 // By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
 constexpr double kLargestFactor = 2.0;
-
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double robustStddev(std::vector<double>& magnitudes) { return 1.4826 * medianOf(magnitudes); }
 
 // Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "median.h"
+
 namespace uav_landing {
 namespace {
 
@@ -20,12 +22,6 @@ constexpr size_t kFewest = 5;          // points that make a patch
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
 constexpr double kDirectionError = 0.15 * M_PI / 180;
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct GroundPoint {
   double ahead, height, stddev;  // m
 };
@@ -37,7 +33,7 @@ double medianVariance(const std::vector<GroundPoint>& points, double middle) {
     off.push_back(std::abs(point.height - middle));
     claimed.push_back(point.stddev);
   }
-  const double stddev = std::max(1.4826 * median(off), median(claimed));
+  const double stddev = std::max(robustStddev(off), medianOf(claimed));
   return 0.5 * M_PI * stddev * stddev / points.size();
 }
 
@@ -89,7 +85,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
     distances.push_back(point.ahead);
     heights.push_back(point.height);
   }
-  const double place = median(distances), height = median(heights);
+  const double place = medianOf(distances), height = medianOf(heights);
   if (!patches_.empty() && place < distance(patches_.back()) + kSpacing * h) return;
   patches_.push_back({place * ahead + height * n, medianVariance(strip, height), place - nearest, 0});
 }

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "median.h"
+
 namespace uav_landing {
 namespace {
 
@@ -17,9 +19,7 @@ double residualScale(const StereoRig& rig, const std::vector<StereoDepthResult::
   for (const StereoDepthResult::Point& point : points)
     if (point.on_plane) sizes.push_back(std::abs(residualOf(rig, point, g)));
   if (sizes.empty()) return 1;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(1.0, 1.4826 * *middle);
+  return std::max(1.0, robustStddev(sizes));
 }
 
 }  // namespace

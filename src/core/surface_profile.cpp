@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "median.h"
+
 namespace uav_landing {
 namespace {
 
@@ -185,9 +187,7 @@ class ProfileFit {
       if (plane_.agrees[i])
         ratios.push_back(std::abs(flattened_[i].disparity - disparity(i)) / flattened_[i].stddev);
     if (ratios.empty()) return;
-    const auto middle = ratios.begin() + ratios.size() / 2;
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    const double factor = std::min(1.0, 1.4826 * *middle);
+    const double factor = std::min(1.0, robustStddev(ratios));
     for (DisparitySample& sample : flattened_) sample.stddev *= factor;
   }
 

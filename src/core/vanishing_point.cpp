@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "median.h"
 #include "multiversion.h"
 #include "rotation.h"
 #include "vanishing_candidate.h"
@@ -285,9 +286,7 @@ class Search {
   /// Robust scale of normalised residuals, not below 1: lines are not better than they say.
   static double robustScale(std::vector<double> residuals) {
     for (double& r : residuals) r = std::abs(r);
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return std::max(1.0, 1.4826 * *middle);
+    return std::max(1.0, robustStddev(residuals));
   }
 
   /// One Gauss-Newton step on the sphere. information: of the direction along the tangents B.

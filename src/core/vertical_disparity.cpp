@@ -8,6 +8,7 @@
 #include <string>
 
 #include "interpolation.h"
+#include "median.h"
 #include "multiversion.h"
 #include "uav_landing/patch_matching.h"
 #include "uav_landing/rig_rotation.h"
@@ -58,9 +59,7 @@ double residualScale(const std::vector<RowShift>& rows, const Eigen::Vector3d& w
   std::vector<double> ratios;
   for (const RowShift& row : rows)
     ratios.push_back(std::abs(row.shift - row.by_rotation.dot(w)) / row.stddev);
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::max(1.0, 1.4826 * *middle);
+  return std::max(1.0, robustStddev(ratios));
 }
 
 // Weight of a row by Tukey's function of its residual; 0 for outliers.
