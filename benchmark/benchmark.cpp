@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -19,6 +18,7 @@
 #include "pending_file.h"
 #include "resources.h"
 #include "sequences.h"
+#include "times.h"
 #include "uav_landing/parameter_file.h"
 #include "uav_landing/pipeline.h"
 
@@ -28,25 +28,6 @@ using namespace uav_landing;
 using namespace uav_landing::benchmark;
 
 constexpr size_t kWarmUp = 3;  // pairs whose times do not count: first search, buffers
-
-/// CPU time of this process, ms: other processes do not count.
-double cpuMilliseconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-struct Times {
-  std::vector<double> ms;
-
-  double quantile(double share) const {
-    std::vector<double> sorted = ms;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[std::min(sorted.size() - 1,
-                           static_cast<size_t>(share * static_cast<double>(sorted.size())))];
-  }
-  double median() const { return quantile(0.5); }
-};
 
 /// What was measured on one sequence. Names in order of their first appearance.
 struct Measurement {

@@ -4,10 +4,17 @@ if(UAV_LANDING_BENCHMARK)
   add_executable(benchmark
     benchmark/benchmark.cpp benchmark/heap.cpp benchmark/paper_pipeline.cpp benchmark/peers.cpp
     benchmark/resources.cpp benchmark/sequences.cpp)
-  target_compile_definitions(benchmark PRIVATE UAV_LANDING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_link_libraries(benchmark PRIVATE uav_landing_tools)
-  install(TARGETS benchmark RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-  if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
-    file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/benchmark ${PROJECT_SOURCE_DIR}/bin/benchmark SYMBOLIC)
-  endif()
+  add_executable(nodelet_benchmark
+    benchmark/copied_bytes.cpp benchmark/heap.cpp benchmark/nodelet_benchmark.cpp benchmark/nodelet_chain.cpp
+    benchmark/sequences.cpp)
+  # The compiler must not take the copies for the C library's own while it builds their replacement.
+  set_source_files_properties(benchmark/copied_bytes.cpp PROPERTIES COMPILE_OPTIONS -fno-builtin)
+  foreach(program benchmark nodelet_benchmark)
+    target_compile_definitions(${program} PRIVATE UAV_LANDING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${program} PRIVATE uav_landing_tools)
+    install(TARGETS ${program} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+    if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
+      file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
+    endif()
+  endforeach()
 endif()

@@ -26,8 +26,9 @@ namespace uav_landing {
 /// Height by reconstruction and Kalman filter; the landing estimate and what is made of it.
 ///
 /// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, runway_width, runway_length,
-/// drop_frames and the common ones of NodeParameters. Subscribes stereo_depth, approach_angle,
-/// {left,right}/camera_info, /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate
+/// drop_frames and the common ones of NodeParameters. Subscribes stereo_depth, approach_angle and
+/// {left,right}/camera_info, without publish_tf only while somebody wants the output; /tf_static (lever arm)
+/// and /tf (parents of frames). Publishes landing_estimate
 /// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
 /// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
 /// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. markers
@@ -56,10 +57,10 @@ class KalmanHeightNodelet : public StageNodelet {
         });
 
     ros::NodeHandle& handle = getNodeHandle();
-    estimate_publisher_ = handle.advertise<LandingEstimate>(kLandingEstimate, kStageQueue);
-    range_publisher_ = handle.advertise<sensor_msgs::Range>("height", kStageQueue);
-    pose_publisher_ = handle.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", kStageQueue);
-    marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("markers", 1);
+    estimate_publisher_ = advertise<LandingEstimate>(kLandingEstimate, kStageQueue);
+    range_publisher_ = advertise<sensor_msgs::Range>("height", kStageQueue);
+    pose_publisher_ = advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", kStageQueue);
+    marker_publisher_ = advertise<visualization_msgs::MarkerArray>("markers", 1);
     if (node_.publish_tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
 
     tf_static_subscriber_ = handle.subscribe<tf2_msgs::TFMessage>(
@@ -73,8 +74,18 @@ class KalmanHeightNodelet : public StageNodelet {
                                           [this](const ros::WallTimerEvent&) { guard([&] { checkAge(); }); });
   }
 
-  // The transform is an output that nobody subscribes by name, so the chain always runs.
-  bool wanted() const override { return true; }
+  template <class Message>
+  ros::Publisher advertise(const std::string& topic, uint32_t queue) {
+    return getNodeHandle().advertise<Message>(topic, queue, onConnection(), onConnection());
+  }
+
+  // Who listens to the transform cannot be told, so with it the chain always runs.
+  bool wanted() const override {
+    return broadcaster_ || estimate_publisher_.getNumSubscribers() + range_publisher_.getNumSubscribers() +
+                                   pose_publisher_.getNumSubscribers() +
+                                   marker_publisher_.getNumSubscribers() >
+                               0;
+  }
   void subscribe() override {
     feed<0, StereoDepth>(kStereoDepth, *pairing_, subscribers_);
     feed<1, ApproachAngle>(kApproachAngle, *pairing_, subscribers_);

@@ -47,7 +47,9 @@ struct NodeParameters {
         "frame of the aircraft that is estimated; empty: base_link if static tf knows it, else the rectified "
         "left camera (kalman_height)");
     v.text("runway_frame", runway_frame, "frame of the estimate (kalman_height)");
-    v.flag("publish_tf", publish_tf, "broadcast runway_frame to the estimated frame (kalman_height)");
+    v.flag("publish_tf", publish_tf,
+           "broadcast runway_frame to the estimated frame; if not, the chain rests while nobody subscribes "
+           "its output (kalman_height)");
     v.number("runway_width", runway_width, 0.1, 200.0, "m", "of the runway as drawn (kalman_height markers)");
     v.number("runway_length", runway_length, 0.1, 10000.0, "m",
              "of the runway as drawn (kalman_height markers)");

@@ -1,4 +1,5 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
+#include <sensor_msgs/Range.h>
 #include <uav_landing/ApproachAngle.h>
 #include <uav_landing/LandingEstimate.h>
 #include <uav_landing/StereoDepth.h>
@@ -63,6 +64,19 @@ TEST_F(ChainTest, EveryPairOfADescentHasItsEstimate) {
   ASSERT_TRUE(overlay.waitFor(1));
   EXPECT_EQ(overlay.messages()[0]->encoding, "bgr8");
   EXPECT_GE(overlay.messages()[0]->width, 640u);
+}
+
+TEST_F(ChainTest, WithoutTheTransformItRestsWhileNobodyWantsItsOutput) {
+  setParameter("kalman_height", "publish_tf", false);
+  for (const char* nodelet : {"rectify", "stereo_depth", "approach_angle", "kalman_height"}) load(nodelet);
+  ASSERT_TRUE(eventually([&] { return cameras_.connected(); }));
+  estimates_.leave();
+  EXPECT_TRUE(eventually([&] { return cameras_.unconnected(); })) << "the only subscriber left";
+  {
+    const Listener<sensor_msgs::Range> height("/uav_landing/height");
+    EXPECT_TRUE(eventually([&] { return cameras_.connected(); })) << "another output";
+  }
+  EXPECT_TRUE(eventually([&] { return cameras_.unconnected(); }));
 }
 
 TEST_F(ChainTest, WhenBehindTheNewestPairIsServedAndTheRestCounted) {

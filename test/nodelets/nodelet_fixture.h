@@ -69,6 +69,8 @@ class Listener {
     messages_.clear();
   }
   bool connected() const { return subscriber_.getNumPublishers() > 0; }
+  /// Nothing comes any more.
+  void leave() { subscriber_.shutdown(); }
 
  private:
   mutable std::mutex mutex_;
