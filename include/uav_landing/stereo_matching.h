@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "uav_landing/parameters.h"
-#include "uav_landing/plane_fit.h"
+#include "uav_landing/plane_consensus.h"
 #include "uav_landing/rectification.h"
 
 namespace uav_landing {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/plane_fit.h"
+#include "uav_landing/disparity_sample.h"
 #include "uav_landing/stage_results.h"
 #include "uav_landing/stereo_matching.h"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstring>
 
 namespace uav_landing {
@@ -41,5 +42,8 @@ constexpr int kDoubleLanes = 4;
 }
 
 inline int wholeLanes(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
+inline size_t wholeDoubleLanes(size_t count) {
+  return (count + kDoubleLanes - 1) / kDoubleLanes * kDoubleLanes;
+}
 
 }  // namespace uav_landing

@@ -5,9 +5,11 @@
 #include "uav_landing/direct_refinement.h"
 #include "uav_landing/image_check.h"
 #include "uav_landing/match_image.h"
+#include "uav_landing/plane_consensus.h"
 #include "uav_landing/plane_fit.h"
 #include "uav_landing/stereo_matching.h"
 #include "uav_landing/surface_profile.h"
+#include "uav_landing/surface_variance.h"
 #include "uav_landing/vertical_disparity.h"
 
 namespace uav_landing {
@@ -176,7 +178,7 @@ struct StereoDepthStage::Implementation {
     }
     result.plane = plane->plane;
     result.residual_stddev = plane->residual_stddev;
-    result.surface_variance = plane->surface_variance;
+    result.surface_variance = surfaceVariance(model.rig, samples, *plane);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
   }

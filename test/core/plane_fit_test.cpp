@@ -8,6 +8,8 @@
 
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
+#include "uav_landing/plane_consensus.h"
+#include "uav_landing/surface_variance.h"
 
 namespace uav_landing {
 namespace {
@@ -283,9 +285,9 @@ TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
   const Expected<PlaneFit> of_uneven = refinePlane(rig(), uneven, g, limits, 0);
   const Expected<PlaneFit> of_noisy = refinePlane(rig(), noisy, g, limits, 0);
   ASSERT_TRUE(of_flat && of_uneven && of_noisy);
-  EXPECT_NEAR(of_flat->surface_variance, 0, std::pow(0.25 * bumps, 2));
-  EXPECT_NEAR(of_noisy->surface_variance, 0, std::pow(0.4 * bumps, 2));
-  EXPECT_NEAR(std::sqrt(of_uneven->surface_variance), bumps, 0.4 * bumps);
+  EXPECT_NEAR(surfaceVariance(rig(), flat, *of_flat), 0, std::pow(0.25 * bumps, 2));
+  EXPECT_NEAR(surfaceVariance(rig(), noisy, *of_noisy), 0, std::pow(0.4 * bumps, 2));
+  EXPECT_NEAR(std::sqrt(surfaceVariance(rig(), uneven, *of_uneven)), bumps, 0.4 * bumps);
 }
 
 TEST(RefinePlane, SaysWhyThereIsNone) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace uav_landing {
+
+/// What a ground plane must look like to be believed.
+struct PlaneLimits {
+  double max_roll = 0;   ///< rad
+  double max_pitch = 0;  ///< rad
+  int min_points = 0;
+  double tolerance = 1.0;  ///< pixels of disparity in the consensus step
+};
+
+/// True when the plane lies below the camera with pitch and roll inside the limits.
+bool isPlausibleGround(const Eigen::Vector3d& g, const PlaneLimits& limits);
+
+}  // namespace uav_landing
