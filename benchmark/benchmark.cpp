@@ -231,10 +231,5 @@ int main(int argc, char** argv) {
   app.add_option("--json", options.json, "file to write the numbers to");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);
-  try {
-    if (const Failure failure = run(options)) return inputUnusable(app, failure.detail);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, error.what());
-  }
-  return kDone;
+  return exitStatusOf(app, "", [&] { return run(options); });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <iostream>
 #include <optional>
 #include <regex>
@@ -35,6 +36,18 @@ inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv)
 inline int inputUnusable(const CLI::App& app, const std::string& message) {
   std::cerr << app.get_name() << ": " << message << '\n';
   return kInputUnusable;
+}
+
+/// Does a program's work, which returns a Failure or throws, and returns the exit status. file: of what is
+/// thrown, which does not name it; "" when the text is enough.
+template <class Work>
+int exitStatusOf(const CLI::App& app, const std::string& file, Work&& work) {
+  try {
+    if (const Failure failure = work()) return inputUnusable(app, failure.detail);
+  } catch (const std::exception& error) {
+    return inputUnusable(app, (file.empty() ? "" : file + ": ") + error.what());
+  }
+  return kDone;
 }
 
 /// The chain's parameters from --config, the defaults when it was not given.

@@ -1,7 +1,5 @@
 // Turns a dataset folder into a bag: images, calibration and truth.
 
-#include <exception>
-
 #include "command_line.h"
 #include "dataset.h"
 #include "stereo_bag_writer.h"
@@ -39,10 +37,5 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(isCameraName());
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
-  try {
-    if (const Failure failure = convert(folder, output, camera)) return inputUnusable(app, failure.detail);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, output + ": " + error.what());
-  }
-  return kDone;
+  return exitStatusOf(app, output, [&] { return convert(folder, output, camera); });
 }

@@ -2,7 +2,6 @@
 // and counts what was available, what was misleading and how long until it was noticed.
 
 #include <algorithm>
-#include <exception>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -340,11 +339,11 @@ class Campaign {
   std::ofstream file_, trace_;
 };
 
-int run(const CLI::App& app, const Options& options) {
+Failure run(const Options& options) {
   const Expected<Parameters> parameters = parametersOf(options.config);
-  if (!parameters) return inputUnusable(app, parameters.error().detail);
+  if (!parameters) return parameters.error();
   Campaign(options, *parameters).run();
-  return kDone;
+  return {};
 }
 
 }  // namespace
@@ -377,9 +376,5 @@ int main(int argc, char** argv) {
     return kWrongUsage;
   }
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once
-  try {
-    return run(app, options);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, error.what());
-  }
+  return exitStatusOf(app, "", [&] { return run(options); });
 }

@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
@@ -208,10 +207,5 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
-  try {
-    if (const Failure failure = run(options)) return inputUnusable(app, failure.detail);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, options.output + ": " + error.what());
-  }
-  return kDone;
+  return exitStatusOf(app, options.output, [&] { return run(options); });
 }

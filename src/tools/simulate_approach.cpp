@@ -1,7 +1,6 @@
 // Renders an approach with ground truth into a bag and, if wanted, into a dataset folder; or publishes it.
 
 #include <cmath>
-#include <exception>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -128,11 +127,8 @@ int main(int argc, char** argv) {
   std::vector<char*> own;
   for (std::string& argument : arguments) own.push_back(argument.data());
   if (const auto status = parseCommandLine(app, static_cast<int>(own.size()), own.data())) return *status;
-  try {
+  return exitStatusOf(app, options.live ? "" : options.output, [&] {
     if (options.live) ros::init(argc, argv, "simulate_approach");
-    if (const Failure failure = run(options)) return inputUnusable(app, failure.detail);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, (options.live ? "" : options.output + ": ") + error.what());
-  }
-  return kDone;
+    return run(options);
+  });
 }

@@ -2,7 +2,6 @@
 // estimate.
 
 #include <cmath>
-#include <exception>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <vector>
@@ -93,16 +92,16 @@ void flyApproaches(const Options& options, const Parameters& parameters, Campaig
   }
 }
 
-int run(const CLI::App& app, const Options& options) {
+Failure run(const Options& options) {
   const Expected<Parameters> parameters = parametersOf(options.config);
-  if (!parameters) return inputUnusable(app, parameters.error().detail);
+  if (!parameters) return parameters.error();
   CampaignCsv csv(options.csv);
   if (options.kind == "snippets")
     flySnippets(options, *parameters, csv);
   else
     flyApproaches(options, *parameters, csv);
   csv.finish();
-  return kDone;
+  return {};
 }
 
 }  // namespace
@@ -135,9 +134,5 @@ int main(int argc, char** argv) {
   app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once
-  try {
-    return run(app, options);
-  } catch (const std::exception& error) {
-    return inputUnusable(app, error.what());
-  }
+  return exitStatusOf(app, "", [&] { return run(options); });
 }
