@@ -49,10 +49,18 @@ std::array<Instrument, 4> instruments(const LandingResult& landing) {
   }};
 }
 
+const cv::Scalar kGreen(90, 220, 90), kAmber(40, 180, 255), kRed(70, 70, 255);
+
 cv::Scalar statusColour(const LandingResult& landing) {
-  const cv::Scalar green(90, 220, 90), amber(40, 180, 255), red(70, 70, 255);
-  if (landing.status == Status::kTracking) return landing.valid() ? green : amber;
-  return landing.status == Status::kLost ? red : amber;
+  if (landing.status == Status::kTracking) return landing.valid() ? kGreen : kAmber;
+  return landing.status == Status::kLost ? kRed : kAmber;
+}
+
+/// "PROTECTION LEVEL 0.07 of 0.60 m".
+std::string protectionLevel(const LandingResult& landing) {
+  if (!std::isfinite(landing.height_protection_level)) return "PROTECTION LEVEL -";
+  return "PROTECTION LEVEL " + formatted("%.2f", landing.height_protection_level) + " of " +
+         formatted("%.2f m", landing.height_alert_limit);
 }
 
 }  // namespace
@@ -71,7 +79,12 @@ cv::Mat drawInstrumentStrip(const LandingResult& landing, int width) {
 
   std::string status = toString(landing.status);
   if (landing.failure) status += ": " + landing.failure.message();
-  const double room = width - pixels(20);
+  const std::string level = protectionLevel(landing);
+  const int level_width = textWidth(level, 0.34 * unit);
+  drawText(strip, {width - pixels(10) - level_width, pixels(54)}, level, 0.34 * unit,
+           landing.height_protection_level > landing.height_alert_limit ? kAmber : colour::kLabel);
+
+  const double room = width - pixels(30) - level_width;
   const double font_scale =
       std::min(0.42 * unit, 0.42 * unit * room / std::max(1, textWidth(status, 0.42 * unit)));
   drawText(strip, {pixels(10), pixels(54)}, status, font_scale, statusColour(landing));

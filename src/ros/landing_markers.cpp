@@ -130,6 +130,7 @@ std::string numbers(const LandingResult& estimate) {
       "   sink rate " + number("%.2f m/s", estimate.height_valid ? -estimate.vertical_speed : kUnknown, "-");
   text += "\napproach " +
           number("%.2f deg", estimate.angle_valid ? estimate.approach_angle / kDegree : kUnknown, "-");
+  text += "   protection level " + number("%.2f m", estimate.height_protection_level, "-");
   if (estimate.failure) text += "\n" + estimate.failure.message();
   return text;
 }

@@ -157,8 +157,31 @@ TEST_F(Overlay, StripShowsStatusAndReasonOfAnInvalidEstimate) {
   EXPECT_EQ(cv::norm(good.rowRange(0, 480), bad.rowRange(0, 480), cv::NORM_INF), 0);
 }
 
+TEST_F(Overlay, StripShowsTheProtectionLevelInAnotherColourWhenItIsAboveTheAlertLimit) {
+  const auto corner = [](const cv::Mat& picture) {
+    return picture(cv::Rect(picture.cols / 2, 480 + 42, picture.cols / 2, 20)).clone();
+  };
+  landing.height_protection_level = 0.2;
+  landing.height_alert_limit = 0.5;
+  const cv::Mat within = corner(draw());
+  landing.height_protection_level = 0.4;
+  EXPECT_GT(cv::norm(within, corner(draw()), cv::NORM_INF), 0) << "another level";
+  landing.height_protection_level = 0.2;
+  landing.height_alert_limit = 0.1;
+  const auto reddest = [](const cv::Mat& picture) {
+    std::vector<cv::Mat> channels;
+    cv::split(picture, channels);
+    double most = 0;
+    cv::minMaxLoc(channels[2] - channels[0], nullptr, &most);
+    return most;
+  };
+  EXPECT_LT(reddest(within), 60);
+  EXPECT_GT(reddest(corner(draw())), 120);
+}
+
 TEST_F(Overlay, LongReasonStaysInsideTheStrip) {
   landing.failure = {Reason::kInputInvalid, std::string(300, 'W')};
+  landing.height_protection_level = landing.height_alert_limit = kUnknown;
   const cv::Mat picture = draw();
   const cv::Mat margin = picture(cv::Rect(picture.cols - 4, 480, 4, picture.rows - 480));
   const cv::Mat panel(margin.size(), margin.type(),
