@@ -1,6 +1,7 @@
 // docs/bad_configurations.md, line by line: the message, that nothing is half started, and that the others go
 // on.
 #include <uav_landing/LandingEstimate.h>
+#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cstdio>
@@ -84,7 +85,7 @@ TEST_F(BadConfigurationsTest, ParametersOutOfPlace) { expectRefusals("Parameters
 TEST_F(BadConfigurationsTest, ParametersOfTheNodelets) { expectRefusals("Parameters of the nodelets alone"); }
 
 TEST_F(BadConfigurationsTest, FilesAsAWhole) {
-  const std::string path = std::string(std::tmpnam(nullptr)) + ".yaml";
+  const std::string path = testing::TempDir() + "bad_configuration_" + std::to_string(getpid()) + ".yaml";
   for (const BadConfiguration& row : badConfigurations("Files")) {
     SCOPED_TRACE(row.given);
     std::ofstream(path) << row.given;
