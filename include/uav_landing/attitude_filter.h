@@ -25,18 +25,24 @@ class AttitudeFilter {
   };
 
   /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair. step:
-  /// from the previous pair; without one the filter starts anew. A normal that contradicts the ones before
-  /// (another surface was taken for the ground) is left out and agrees is false; when that goes on for half
-  /// a second, the filter starts anew from it.
+  /// from the previous pair; without one the filter starts anew, but not before the normal has been compared
+  /// with those before by what a camera turns. A normal that contradicts the ones before (another surface was
+  /// taken for the ground) is left out and agrees is false; when that goes on for three seconds, the filter
+  /// starts anew from it, and at once as long as fewer than three pairs in a row have agreed.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step);
-  void reset() { estimate_.reset(); }
+  /// A pair without a normal.
+  void carry(double stamp, const ApproachAngleResult::Motion& step);
+  void reset();
 
  private:
-  bool predict(double stamp, const ApproachAngleResult::Motion& step);
+  enum class Prediction { kNone, kTurned, kGuessed };
+  Prediction predict(double stamp, const ApproachAngleResult::Motion& step);
+  Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
 
   std::optional<Estimate> estimate_;
   double stamp_ = 0, agreed_ = 0;  // s
+  int agreements_ = 0;             // in a row since the start, up to three
 };
 
 }  // namespace uav_landing

@@ -19,6 +19,9 @@ class GroundMemory {
   /// Motion since the pair before: a point is at R x - t now. t: m; the usual one is taken for a step that is
   /// several times as long.
   void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
+  /// A step of which the motion is not known: the usual one. R: rotation since the pair before as far as it
+  /// is known, its error in pitch and roll: 1 sigma, rad. Some such steps in a row, and nothing is known.
+  void coast(const Eigen::Matrix3d& R, double turn_stddev);
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
   /// known; measured: the plane of the points before that. Where the path goes is the direction of
   /// the last moves together.
@@ -42,6 +45,7 @@ class GroundMemory {
   std::deque<Patch> patches_;                       // nearest first
   Eigen::Vector3d path_ = Eigen::Vector3d::Zero();  // m, over the last pairs: a single one can be wrong
   double steps_ = 0;                                // that the path is of
+  int coasts_ = 0;                                  // steps in a row that are not known
 };
 
 }  // namespace uav_landing

@@ -87,6 +87,8 @@ class KalmanHeightStage {
                       const Reconstruction& reconstruction);
   /// The ground's normal by stereo alone against the imu's direction of gravity.
   void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
+  /// The first test of this pair alone that failed.
+  std::optional<Consistency> failedTestOfPair() const;
   /// Why the pair is left out, or "".
   std::string problemOfPair();
   /// The published height against the one remembered.
@@ -115,6 +117,7 @@ class KalmanHeightStage {
   void followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction);
   void followSurface(double surface_variance);
 
+  LandingResult withoutStamp(LandingResult result) const;
   Failure followTime(double stamp);
   void filterHeight(double stamp, const Reconstruction& reconstruction,
                     const ApproachAngleResult::Motion& step, LandingResult& result);
@@ -137,10 +140,12 @@ class KalmanHeightStage {
   ConsistencyTests tests_;
   RigChange rig_change_;
   int pairs_failed_ = 0, pairs_passed_ = 0;  // tests of one pair: failures before and passes since, up to 3
+  bool confirming_ = false;                  // this pair passed, but has been left out for those that failed
   HeightMemory memory_;
   SpeedMemory speed_;
   Recovery recovery_;
   GroundMemory ground_;
+  std::optional<Eigen::Vector3d> last_normal_;  // of the ground on the pair before
   Timings timings_;
 
   std::optional<double> last_stamp_;  ///< s

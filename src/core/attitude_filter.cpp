@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "rotation.h"
@@ -11,7 +12,11 @@ namespace {
 
 constexpr double kMemory = 1.0;          // s
 constexpr double kStampRounding = 1e-3;  // s
-constexpr double kPatience = 0.5;        // s, with normals that contradict
+constexpr double kPatience = 3.0;        // s, with normals that contradict
+// Pairs in a row that agree make a normal that others are measured by.
+constexpr int kConfirmed = 3;
+// 1 sigma of the camera's angular velocity where no step tells the rotation, rad/s.
+constexpr double kTurnRate = 5 * M_PI / 180;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
@@ -19,44 +24,77 @@ Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transp
 
 }  // namespace
 
-bool AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
-  if (!estimate_ || step.failure || !step.rotation.allFinite() || !step.covariance.allFinite()) return false;
+AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
+  const double T = stamp - stamp_;
+  stamp_ = stamp;
+  if (!estimate_ || !(T > 0)) return Prediction::kNone;
+  Eigen::Matrix3d& covariance = estimate_->covariance;
   // A step that spans another time is not the way from the last normal to this one.
-  if (!(std::abs(stamp - stamp_ - step.duration) <= kStampRounding)) return false;
-  const Eigen::Matrix3d R = rotationMatrix(step.rotation);
-  estimate_->normal = R * estimate_->normal;
-  const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
-  estimate_->covariance = std::exp(step.duration / kMemory) * R * estimate_->covariance * R.transpose() +
-                          by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
-  return true;
+  const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
+                     std::abs(T - step.duration) <= kStampRounding;
+  const double faded = std::exp(T / kMemory);
+  if (known) {
+    const Eigen::Matrix3d R = rotationMatrix(step.rotation);
+    estimate_->normal = R * estimate_->normal;
+    const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
+    covariance = (faded * R * covariance * R.transpose()).eval() +
+                 by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+    return Prediction::kTurned;
+  }
+  if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
+  const Eigen::Vector3d& n = estimate_->normal;
+  covariance =
+      faded * covariance + std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  return Prediction::kGuessed;
+}
+
+void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step) {
+  if (predict(stamp, step) == Prediction::kNone) reset();
+}
+
+void AttitudeFilter::reset() {
+  estimate_.reset();
+  agreements_ = 0;
 }
 
 AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
                                                 const Eigen::Matrix3d& covariance,
                                                 const ApproachAngleResult::Motion& step) {
-  const bool predicted = predict(stamp, step);
-  stamp_ = stamp;
-  if (predicted) {
-    const Eigen::Matrix<double, 3, 2> basis = tangents(estimate_->normal);
-    const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
-    const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
-    const Eigen::Matrix2d measured = symmetric(basis.transpose() * covariance * basis), S = P + measured;
-    const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
-    estimate_->ratio = innovation.dot(allowed.inverse() * innovation);
-    estimate_->agrees = estimate_->ratio <= kGate;
-    if (estimate_->agrees) {
-      agreed_ = stamp;
-      const Eigen::Matrix2d gain = P * S.inverse();
-      estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
-      // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
-      const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
-      const Eigen::Matrix2d joint = kept * P * kept.transpose() + gain * measured * gain.transpose();
-      estimate_->covariance = basis * joint * basis.transpose();
-      return *estimate_;
-    }
-    if (stamp - agreed_ < kPatience) return *estimate_;
+  const Prediction predicted = predict(stamp, step);
+  if (predicted == Prediction::kNone) return start(normal, covariance);
+  const Eigen::Matrix<double, 3, 2> basis = tangents(estimate_->normal);
+  const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
+  const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
+  const Eigen::Matrix2d measured = symmetric(basis.transpose() * covariance * basis), S = P + measured;
+  const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
+  estimate_->ratio = innovation.dot(allowed.inverse() * innovation);
+  estimate_->agrees = estimate_->ratio <= kGate;
+  if (!estimate_->agrees) {
+    // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
+    if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience) return start(normal, covariance);
+    return *estimate_;
   }
   agreed_ = stamp;
+  agreements_ = std::min(agreements_ + 1, kConfirmed);
+  if (predicted == Prediction::kGuessed) {
+    // A guess is good enough to contradict, but nothing to average with.
+    estimate_->normal = normal;
+    estimate_->covariance = covariance;
+    return *estimate_;
+  }
+  const Eigen::Matrix2d gain = P * S.inverse();
+  estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
+  // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
+  const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
+  const Eigen::Matrix2d joint = kept * P * kept.transpose() + gain * measured * gain.transpose();
+  estimate_->covariance = basis * joint * basis.transpose();
+  return *estimate_;
+}
+
+AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
+                                               const Eigen::Matrix3d& covariance) {
+  agreed_ = stamp_;
+  agreements_ = 1;
   estimate_ = Estimate{normal, covariance, kUnknown, true};
   return *estimate_;
 }

@@ -19,6 +19,8 @@ constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no dir
 constexpr double kPathKept = 0.8;      // share of the path that counts on the next pair: of five pairs
 constexpr double kLongestStep = 5;     // over the mean step of the path: a longer one is wrong
 constexpr size_t kFewest = 5;          // points that make a patch
+constexpr int kMostCoasts = 3;         // pairs without a motion in a row
+constexpr double kClimbChange = 0.05;  // 1 sigma of the climb on a step that is not known, of its length
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
 constexpr double kDirectionError = 0.15 * M_PI / 180;
 
@@ -44,12 +46,24 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
   const double longest = kLongestStep * usual.norm();
   const bool wrong = longest > 0 && t.norm() > longest;
   const Eigen::Vector3d step = wrong ? usual : t;
+  coasts_ = 0;
   // As long as can be believed: a speed that did change is after some pairs.
   path_ = kPathKept * before + (wrong ? Eigen::Vector3d(longest * t.normalized()) : t);
   steps_ = kPathKept * steps_ + 1;
   for (Patch& patch : patches_) {
     patch.at = R * patch.at - step;
     patch.flown += step.norm();
+  }
+}
+
+void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev) {
+  if (!(steps_ > 0) || ++coasts_ > kMostCoasts) return reset();
+  path_ = R * path_;
+  const Eigen::Vector3d step = path_ / steps_;
+  for (Patch& patch : patches_) {
+    patch.at = R * patch.at - step;
+    patch.flown += step.norm();
+    patch.variance += std::pow(turn_stddev * patch.at.norm(), 2) + std::pow(kClimbChange * step.norm(), 2);
   }
 }
 

@@ -1,6 +1,7 @@
 // The integrity part of KalmanHeightStage: what a pair says with each source left out, and the protection
 // level.
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +18,9 @@ namespace {
 constexpr double kWidthTolerance = 0.02;
 // Share of the matches along the rows that must hold across the rows.
 constexpr double kLeastRowAgreement = 0.5;
+// 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, and
+// where these are not known either. rad
+constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 0.25 * M_PI / 180;
 
 }  // namespace
 
@@ -74,6 +78,7 @@ void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const A
 void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                                  const ApproachAngleResult& approach, Reconstruction& reconstruction,
                                  LandingResult& result) {
+  confirming_ = false;
   if (!parameters_.integrity_monitor) return;
   if (stereo.left_repeated || stereo.right_repeated) tests_.addRatio(Consistency::kRepeatedImage, 1, 1, 0);
   // Reported alone: on real streets a tenth of the blocks is enough, so that no share is a limit.
@@ -105,6 +110,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   if (reconstruction.failure) return;
   const std::string problem = problemOfPair();
   if (problem.empty()) return;
+  confirming_ = !failedTestOfPair() && rig_change_.settled();
   reconstruction.failure = {Reason::kInconsistent, problem};
   result.raw_height = reconstruction.height;
   result.raw_height_variance = reconstruction.variance;
@@ -119,14 +125,19 @@ void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePri
              basis.transpose() * (plane.normalCovariance() + imu.normal_covariance) * basis);
 }
 
-std::string KalmanHeightStage::problemOfPair() {
+std::optional<Consistency> KalmanHeightStage::failedTestOfPair() const {
   for (const Consistency test :
        {Consistency::kRepeatedImage, Consistency::kRowAgreement, Consistency::kRigRotation,
-        Consistency::kStandstill, Consistency::kImageRegions}) {
-    if (!tests_.failed(test)) continue;
+        Consistency::kStandstill, Consistency::kImageRegions})
+    if (tests_.failed(test)) return test;
+  return std::nullopt;
+}
+
+std::string KalmanHeightStage::problemOfPair() {
+  if (const std::optional<Consistency> test = failedTestOfPair()) {
     pairs_failed_ = std::min(pairs_failed_ + 1, kConfirmations);
     pairs_passed_ = 0;
-    return toString(test);
+    return toString(*test);
   }
   if (!rig_change_.settled()) {
     pairs_passed_ = 0;
@@ -210,11 +221,12 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
 
 void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
   if (!parameters_.integrity_monitor) return;
-  const bool contradicted = result.rejected || tests_.failed(Consistency::kSinkRate);
+  // A pair that passes, but not as long as others failed, is left out and contradicts nothing.
+  const bool contradicted = (result.rejected && !confirming_) || tests_.failed(Consistency::kSinkRate);
   Recovery::Pair pair = Recovery::Pair::kSilent;
   if (contradicted)
     pair = Recovery::Pair::kContradicts;
-  else if (result.status == Status::kTracking)
+  else if (confirming_ || result.status == Status::kTracking)
     pair = Recovery::Pair::kAgrees;
   // What is missing without a contradiction is no fault.
   const bool outdated = consecutive_rejections_ > 0 && result.stamp - last_accepted_ > parameters_.max_age;
@@ -237,8 +249,17 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   const double height = (filter_.initialised() ? filter_.state()[0] : reconstruction.height) -
                         reconstruction.bend;  // above the plane ahead, which the motion is of
   const Eigen::Vector3d& t = step.translation_over_height;
-  if (!t.allFinite() || !step.rotation.allFinite() || !(height > 0)) return ground_.reset();
-  ground_.move(rotationMatrix(step.rotation), t * height);
+  const std::optional<Eigen::Vector3d> before = last_normal_;
+  last_normal_.reset();
+  if (reconstruction.plane.valid()) last_normal_ = reconstruction.normal.mean;
+  if (t.allFinite() && step.rotation.allFinite() && height > 0) {
+    ground_.move(rotationMatrix(step.rotation), t * height);
+  } else if (before && last_normal_) {
+    ground_.coast(Eigen::Quaterniond::FromTwoVectors(*before, *last_normal_).toRotationMatrix(),
+                  kTurnByNormals);
+  } else {
+    ground_.coast(Eigen::Matrix3d::Identity(), kTurnUnknown);
+  }
   if (reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
   const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
                           reconstruction.plane.covariance};

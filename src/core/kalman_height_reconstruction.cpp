@@ -174,19 +174,14 @@ void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruct
 void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult& approach,
                                         Reconstruction& reconstruction, LandingResult& result) {
   const GroundPlane& plane = reconstruction.plane;
-  if (!plane.valid()) return;
+  const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
+  if (!plane.valid()) return attitude_.carry(stamp, turn);
   Reconstruction::Normal& average = reconstruction.normal;
   average = {plane.normal(), plane.normalCovariance()};
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
-  const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
-  AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn);
-  if (!estimate.agrees && confirmations_ < kConfirmations) {
-    // Nothing yet that says which of the two normals is the ground's.
-    attitude_.reset();
-    estimate = attitude_.update(stamp, plane.normal(), own, turn);
-  }
+  const AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn);
   average = {estimate.normal, estimate.covariance + common};
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
   if (std::isfinite(estimate.ratio))

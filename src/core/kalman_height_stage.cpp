@@ -71,6 +71,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   tests_.begin();
   LandingResult result;
   result.stamp = stereo.stamp;
+  if (!std::isfinite(stereo.stamp)) return withoutStamp(result);
   const double T = last_stamp_ ? stereo.stamp - *last_stamp_ : 0;
   Reconstruction reconstruction = reconstruct(stereo, approach);
   {
@@ -106,6 +107,14 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   return result;
 }
 
+// A pair of no time says nothing, and what is known stays as it is.
+LandingResult KalmanHeightStage::withoutStamp(LandingResult result) const {
+  result.failure = {Reason::kInputInvalid, "the stamp is not a finite number"};
+  result.status = filter_.initialised() ? Status::kCoasting : lost_ ? Status::kLost : Status::kSearching;
+  result.resets = resets_;
+  return result;
+}
+
 LandingResult KalmanHeightStage::timeout(double stamp) {
   if (last_stamp_ && filter_.initialised() && stamp - *last_stamp_ > parameters_.reset_timeout) loseTrack();
   LandingResult result;
@@ -130,6 +139,7 @@ void KalmanHeightStage::reset() {
   speed_.reset();
   recovery_.reset();
   ground_.reset();
+  last_normal_.reset();
   last_stamp_.reset();
   lost_ = false;
 }
@@ -162,7 +172,6 @@ void KalmanHeightStage::reportRig(LandingResult& result) const {
 }
 
 Failure KalmanHeightStage::followTime(double stamp) {
-  if (!std::isfinite(stamp)) return {Reason::kInputInvalid, "the stamp is not a finite number"};
   const std::optional<double> last = last_stamp_;
   const double T = last ? stamp - *last : 0;
   if (last && (T <= 0 || T > parameters_.reset_timeout)) {
@@ -204,7 +213,7 @@ void KalmanHeightStage::loseTrack() {
 void KalmanHeightStage::filterHeight(double stamp, const Reconstruction& reconstruction,
                                      const ApproachAngleResult::Motion& step, LandingResult& result) {
   result.points_height = reconstruction.points_height;
-  const bool measured = !reconstruction.failure && result.failure.reason != Reason::kInputInvalid;
+  const bool measured = !reconstruction.failure;
   if (measured) {
     result.raw_height = reconstruction.height;
     result.raw_height_variance = reconstruction.variance;

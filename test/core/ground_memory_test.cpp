@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "support/rigs.h"
 
@@ -35,16 +37,18 @@ std::vector<StereoDepthResult::Point> look(const StereoRig& rig, double x, doubl
 }
 
 /// Flies 60 m from a height of 12 m, sinking by 1 m in 20 m, always with the plane z = 0 for the ground
-/// ahead. Calls see(x, z, memory) after each pair.
+/// ahead. Calls see(x, z, memory) after each pair. without_motion: places at which nobody knows the step.
 template <class See>
-void flyMemory(const Surface& surface, See&& see) {
+void flyMemory(const Surface& surface, See&& see, const std::vector<double>& without_motion = {}) {
   const StereoRig rig = makeRig();
   const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
   const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
   GroundMemory memory;
   for (double x = 0; x <= 60; ++x) {
     const double z = 12 - x / 20;
-    if (x > 0) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20);
+    const bool known = std::find(without_motion.begin(), without_motion.end(), x) == without_motion.end();
+    if (x > 0 && known) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20);
+    if (x > 0 && !known) memory.coast(Eigen::Matrix3d::Identity(), 0.1 * kDegree);
     GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
     memory.look(rig, look(rig, x, z, surface), plane, plane.g);
     see(x, z, memory);
@@ -134,6 +138,33 @@ TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
   const auto points = look(rig, 0, 12, [](double) { return 0; });
   for (int i = 0; i < 50; ++i) memory.look(rig, points, plane, plane.g);
   EXPECT_FALSE(memory.below(down)) << "nobody knows where the path goes";
+}
+
+TEST(GroundMemory, APairWithoutAMotionCostsCertaintyAndNotTheMemory) {
+  const Surface slope = [](double x) { return std::tan(1.5 * kDegree) * std::min(0.0, x - 40); };
+  std::vector<double> usual;
+  fly(slope, [&](double x, double, const std::optional<GroundMemory::Below>& below) {
+    if (x >= 31 && x <= 34) usual.push_back(below->variance);
+  });
+  size_t i = 0;
+  const auto see = [&](double x, double z, const GroundMemory& memory) {
+    if (x < 31 || x > 34) return;
+    const std::optional<GroundMemory::Below> below = memory.below(normalFromPitchRoll(kPitch, 0));
+    ASSERT_TRUE(below) << x;
+    EXPECT_NEAR(below->height, z - slope(x), 0.03) << x;
+    // 0.1 deg of at least the way left to the nearest patch, some 10 m below and 0 m ahead.
+    EXPECT_GT(below->variance, usual[i++] + 0.5 * std::pow(0.1 * kDegree * 10, 2)) << x;
+  };
+  flyMemory(slope, see, {30, 31});
+}
+
+TEST(GroundMemory, ForgetsWhereTheMotionStaysUnknown) {
+  flyMemory([](double) { return 0.0; },
+            [](double x, double, const GroundMemory& memory) {
+              if (x < 29 || x > 33) return;
+              EXPECT_EQ(memory.below(normalFromPitchRoll(kPitch, 0)).has_value(), x < 33) << x;
+            },
+            {30, 31, 32, 33});
 }
 
 }  // namespace

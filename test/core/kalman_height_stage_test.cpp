@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include "support/rigs.h"
 
@@ -278,6 +280,36 @@ TEST(KalmanHeightStage, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBefor
   EXPECT_NEAR(result.roll, roll, 0.1 * kDegree);
   stamp += kStep;
   EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
+}
+
+TEST(KalmanHeightStage, ABadPairDoesNotEraseWhatIsKnownOfTheGround) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto noStamp = [&](KalmanHeightStage& stage, double) {
+    return stage.process(stereoAt(nan, 10), withoutTurning(nan));
+  };
+  const auto noMotion = [&](KalmanHeightStage& stage, double stamp) {
+    ApproachAngleResult approach = withoutTurning(stamp);
+    approach.step.rotation.setConstant(nan);
+    approach.step.translation_over_height.setConstant(nan);
+    return stage.process(stereoAt(stamp, 10), approach);
+  };
+  const auto noPlane = [&](KalmanHeightStage& stage, double stamp) {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.plane.g.setConstant(nan);
+    return stage.process(stereo, withoutTurning(stamp));
+  };
+  const std::vector<std::function<LandingResult(KalmanHeightStage&, double)>> bad = {noStamp, noMotion,
+                                                                                     noPlane};
+  for (size_t i = 0; i < bad.size(); ++i) {
+    KalmanHeightStage stage(makeRig(), {});
+    double stamp = 0;
+    for (; stamp < 1; stamp += kStep) stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
+    bad[i](stage, stamp);
+    if (i > 0) stamp += kStep;
+    const LandingResult result =
+        stage.process(stereoAt(stamp, 10.02, -0.1, 0.05 + 4 * kDegree), withoutTurning(stamp));
+    EXPECT_NE(failedTests(result.tests).find("tilt"), std::string::npos) << i;
+  }
 }
 
 TEST(KalmanHeightStage, RecoversWithinTheTimeoutFromAWrongHeightItLockedOn) {
