@@ -253,7 +253,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, const RotationPrior* rotation) {
   constexpr int kIterations = 8;
-  constexpr double kConverged = 1e-6;  // rad and shares of the height: a thousandth of a pixel
+  constexpr double kConverged = 1e-5;  // rad and shares of the height: a hundredth of a pixel
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
                                                                    " corners followed, at least " +

@@ -285,9 +285,10 @@ class SecantSteps {
     ++count_;
     return made_;
   }
-  // The place is good to less than 0.001 px: a single step leaves a tenth of itself, a secant step much less.
+  // The place is good to about 0.002 px, little beside what matches are known to: a single step leaves a
+  // tenth of itself, a secant step much less.
   bool converged() const {
-    constexpr double kShort = 0.004, kShortSecant = 0.03;
+    constexpr double kShort = 0.02, kShortSecant = 0.1;
     const double length = wanted_.norm();
     return length < kShort || (count_ > 1 && length < kShortSecant && (made_ - wanted_).norm() < kShort);
   }

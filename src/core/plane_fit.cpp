@@ -168,6 +168,7 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
   constexpr int kIterations = 6;
+  constexpr double kConverged = 1e-5;  // of the height, and rad: far less than what pixels tell
   Eigen::Vector3d g = start;
   double scale = 1;
   PlaneProblem problem(rig, samples);
@@ -181,7 +182,9 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
           Reason::kNoPlane, std::to_string(sums.count) + " of " + std::to_string(samples.size()) +
                                 " matches agree, at least " + std::to_string(limits.min_points) + " needed"});
     }
+    const Eigen::Vector3d before = g;
     g = sums.information.ldlt().solve(sums.right);
+    if ((g - before).norm() < kConverged * g.norm()) break;
   }
   if (!isPlausibleGround(g, limits)) {
     return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});
