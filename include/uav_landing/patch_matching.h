@@ -32,6 +32,7 @@ class PatchSearch {
   const cv::Mat& other_;
   int radius_;
   WindowTemplate template_;
+  int stride_ = 0;  // of the rows of the area
   std::vector<float> area_, scores_;
 };
 

@@ -55,10 +55,10 @@ struct NearRows {
 };
 
 // The image at the crossings.
-[[gnu::always_inline]] inline void interpolateDown(const cv::Mat& image, const Crossings& line, float slope,
-                                                   int columns, float* out) {
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
-  const float* p = image.ptr<float>(line.top - 1) + line.first;
+[[gnu::always_inline]] inline void interpolateDown(const float* image, std::ptrdiff_t stride,
+                                                   const Crossings& line, float slope, int columns,
+                                                   float* out) {
+  const float* p = image + (line.top - 1) * stride + line.first;
   Lanes t, values;
   progress(line.down, slope, t);
   for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
@@ -67,22 +67,19 @@ struct NearRows {
   }
 }
 
-// Whether of places by this step each is in the next column or, from one of them on, in the one after that or
-// still the same.
-bool inNeighbouringColumns(double step, int count) {
-  return std::abs(step - 1) * (wholeLanes(count) - 1) < 0.99;
-}
+// Whether of kLanes places by this step each is in the next column or, from one of them on, in the one after
+// that or still the same.
+bool inNeighbouringColumns(double step) { return std::abs(step - 1) * (kLanes - 1) < 0.99; }
 
 // Values at start, start + step, ... of such places.
 [[gnu::always_inline]] inline void interpolateAlong(const float* row, float start, float step, int count,
                                                     float* __restrict out) {
   const float drift = step - 1;
-  const int first = static_cast<int>(std::min(start, start + drift * static_cast<float>(count - 1)));
-  const float begin = start - static_cast<float>(first);
-  const float* p = row + first - 1;
-  Lanes t, values;
-  progress(begin, drift, t);
-  for (int i = 0; i < count; i += kLanes, p += kLanes, t += kLanes * drift) {
+  for (int i = 0; i < count; i += kLanes, start += step * kLanes) {
+    const int first = static_cast<int>(std::min(start, start + drift * (kLanes - 1)));
+    const float* p = row + first - 1;
+    Lanes t, values;
+    progress(start - static_cast<float>(first), drift, t);
     cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
     store(values, out + i);
   }
@@ -92,8 +89,8 @@ UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, doub
                                                double step, int rows, int stride, float* out) {
   const int count = wholeLanes(stride);
   const double last = start + by_row * (rows - 1), drift = (step - 1) * (count - 1);
-  if (!inNeighbouringColumns(step, stride) || !(std::min(start, last) + std::min(drift, 0.0) >= 1) ||
-      !(std::max(start, last) + count + 3 < image.cols)) {
+  if (!inNeighbouringColumns(step) || !(std::min(start, last) + std::min(drift, 0.0) >= 1) ||
+      !(std::max(start, last) + std::max(drift, 0.0) + count + 3 < image.cols)) {
     return false;
   }
   for (int j = 0; j < rows; ++j, out += stride) {
@@ -116,15 +113,16 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
   std::array<float, kMostColumns * kMostRows> values;
   std::array<float, kMostRows> starts;
   const float slope = static_cast<float>(lines.slope);
+  const std::ptrdiff_t image_stride = static_cast<std::ptrdiff_t>(image.step1());
   // All rows before any is read again: what was just written piece by piece is not yet there to be read.
   for (int j = 0; j < size; ++j) {
     const Crossings line = lines.at(j);
     starts[j] = line.start;
     float* row = &values[j * kMostColumns + kBefore];
-    interpolateDown(image, line, slope, columns, row);
+    interpolateDown(image.ptr<float>(), image_stride, line, slope, columns, row);
     row[-1] = row[columns] = 0;  // are read, but not chosen
   }
-  const bool neighbours = inNeighbouringColumns(lines.step, stride);
+  const bool neighbours = inNeighbouringColumns(lines.step);
   const float step = static_cast<float>(lines.step);
   const std::int32_t fixed_step = CubicTable::fixed(lines.step);
   for (int j = 0; j < size; ++j, out += stride) {

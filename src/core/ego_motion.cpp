@@ -265,7 +265,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
-  WhitenedRows rows;
+  static thread_local WhitenedRows rows;  // kept, as they are large
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.assign(problem, state);
     Normal sums = rows.accumulate(result.inliers);

@@ -6,15 +6,11 @@
 #include <cmath>
 
 #include "cubic_window.h"
-#include "interpolation.h"
 #include "lanes.h"
 #include "multiversion.h"
 
 namespace uav_landing {
 namespace {
-
-// Values behind each resampled row that may be read but do not count.
-constexpr int kPadding = kLanes - 1;
 
 constexpr int kLargestRadius = 15, kLargestStride = 32;
 constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
@@ -45,19 +41,48 @@ void fillWithZeros(std::array<float, kPlane>& plane, int size, int stride, int c
   for (int i = size * stride; i < count; ++i) plane[i] = 0;
 }
 
+// One row of a window and its gradient.
+struct WindowRow {
+  float *a, *x, *y;
+};
+
+// row: of the image from the window's first column on; by stride to the next one.
+[[gnu::always_inline]] inline void loadLanes(const float* row, std::ptrdiff_t stride, float middle,
+                                             const WindowRow& out) {
+  Lanes value, before, after, above, below;
+  load(row, value);
+  load(row - 1, before);
+  load(row + 1, after);
+  load(row - stride, above);
+  load(row + stride, below);
+  store(value - middle, out.a);
+  store(-0.5f * (after - before), out.x);
+  store(-0.5f * (below - above), out.y);
+}
+
+[[gnu::always_inline]] inline void loadOne(const float* row, std::ptrdiff_t stride, float middle,
+                                           const WindowRow& out) {
+  *out.a = *row - middle;
+  *out.x = -0.5f * (row[1] - row[-1]);
+  *out.y = -0.5f * (row[stride] - row[-stride]);
+}
+
 UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius,
                                          WindowPlanes& planes) {
-  const int size = 2 * radius + 1, stride = strideOf(radius), left = u - radius;
-  const int width = std::min(stride, image.cols - 1 - left);  // values behind the window do not matter
+  const int size = 2 * radius + 1, stride = strideOf(radius);
+  const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(image.step1());
   const float middle = planes.middle = image.at<float>(v, u);
   for (int j = 0; j < size; ++j) {
-    const float* row = image.ptr<float>(v - radius + j) + left;
-    const float* above = image.ptr<float>(v - radius + j - 1) + left;
-    const float* below = image.ptr<float>(v - radius + j + 1) + left;
-    float *a = &planes.a[j * stride], *x = &planes.x[j * stride], *y = &planes.y[j * stride];
-    for (int i = 0; i < width; ++i) a[i] = row[i] - middle;
-    for (int i = 0; i < width; ++i) x[i] = -0.5f * (row[i + 1] - row[i - 1]);
-    for (int i = 0; i < width; ++i) y[i] = -0.5f * (below[i] - above[i]);
+    const float* row = image.ptr<float>(v - radius + j) + u - radius;
+    const auto at = [&](int i) {
+      return WindowRow{&planes.a[j * stride + i], &planes.x[j * stride + i], &planes.y[j * stride + i]};
+    };
+    // The last lanes of a row end where it does, so that nothing outside the image is read.
+    for (int i = 0; size >= kLanes && i < size; i += kLanes) {
+      const int first = std::min(i, size - kLanes);
+      loadLanes(row + first, step, middle, at(first));
+    }
+    for (int i = 0; size < kLanes && i < size; ++i) loadOne(row + i, step, middle, at(i));
   }
   for (auto* plane : {&planes.a, &planes.x, &planes.y})
     fillWithZeros(*plane, size, stride, paddedCount(radius));
@@ -201,6 +226,10 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, int 
   store(squares, shifts.squares.data());
 }
 
+UAV_LANDING_MULTIVERSION void subtract(float mean, std::vector<float>& values) {
+  for (float& value : values) value -= mean;
+}
+
 bool windowInside(const cv::Mat& image, int u, int v, int radius) {
   return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
 }
@@ -211,33 +240,29 @@ PatchSearch::PatchSearch(const cv::Mat& reference, const cv::Mat& other, int rad
     : reference_(reference), other_(other), radius_(radius) {}
 
 bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps) {
-  const int reach = radius_ + steps, width = 2 * reach + 1;
-  const double rx = std::abs(warp(0, 0)) * reach + std::abs(warp(0, 1)) * reach;
-  const double ry = std::abs(warp(1, 0)) * reach + std::abs(warp(1, 1)) * reach;
-  if (!(centre.x() - rx >= 0 && centre.y() - ry >= 0 && centre.x() + rx < other_.cols - 1 &&
-        centre.y() + ry < other_.rows - 1)) {
+  const int reach = radius_ + steps, rows = 2 * reach + 1;
+  stride_ = (wholeLanes(2 * steps + 1) + 2 * radius_ + 3) / 4 * 4;
+  const int padded_reach = stride_ - reach - 1;
+  const double rx = std::abs(warp(0, 0)) * padded_reach + std::abs(warp(0, 1)) * reach;
+  const double ry = std::abs(warp(1, 0)) * padded_reach + std::abs(warp(1, 1)) * reach;
+  if (!(centre.x() - rx >= 2 && centre.y() - ry >= 2 && centre.x() + rx < other_.cols - 3 &&
+        centre.y() + ry < other_.rows - 3)) {
     return false;
   }
+  area_.resize(wholeLanes(stride_ * rows) + kLanes);
+  sampleCubicWindow(other_, centre, warp, reach, stride_, area_.data());
   // Less about the mean, so that floats are exact enough for the differences of sums.
-  const float mean = static_cast<float>(template_.mean);
-  area_.assign(static_cast<size_t>(width + kPadding) * width, 0.f);
-  for (int j = 0; j < width; ++j) {
-    const Eigen::Vector2d start = centre + warp * Eigen::Vector2d(-reach, j - reach);
-    float* out = area_.data() + static_cast<size_t>(j) * (width + kPadding);
-    for (int i = 0; i < width; ++i) {
-      out[i] = linearAt(other_, start.x() + warp(0, 0) * i, start.y() + warp(1, 0) * i) - mean;
-    }
-  }
+  subtract(static_cast<float>(template_.mean), area_);
   return true;
 }
 
 void PatchSearch::score(int steps) {
-  const int size = 2 * radius_ + 1, count = 2 * steps + 1, stride = size + 2 * steps + kPadding;
+  const int size = 2 * radius_ + 1, count = 2 * steps + 1;
   scores_.assign(static_cast<size_t>(count) * count, -1.f);
   ShiftSums shifts;
   for (int j = 0; j < count; ++j) {
     for (int first = 0; first < count; first += kLanes) {
-      addUp(template_.values.data(), area_.data() + static_cast<size_t>(j) * stride + first, size, stride,
+      addUp(template_.values.data(), area_.data() + static_cast<size_t>(j) * stride_ + first, size, stride_,
             shifts);
       for (int k = 0; k < std::min(kLanes, count - first); ++k) {
         const double sum = shifts.sums[k], energy = shifts.squares[k] - sum * sum / (double(size) * size);

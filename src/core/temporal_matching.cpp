@@ -59,6 +59,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
   const PointWarp plane_warp(rig, predicted, normal);
   PatchSearch coarse(now.coarse, then.coarse, radius), fine(now.fine, then.fine, radius);
   std::vector<TemporalMatch> matches;
+  matches.reserve(corners.size());
   for (const TrackedCorner& corner : corners) {
     const Eigen::Vector2d x(corner.u, corner.v);
     LocalWarp local;
