@@ -13,7 +13,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kLargestRadius = 15, kLargestStride = 32;
-constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
+constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
 
 int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
 int paddedCount(int radius) { return wholeLanes((2 * radius + 1) * strideOf(radius)); }
@@ -34,12 +34,6 @@ struct ReferenceSums {
 struct OtherSums {
   double b, bb, ba, bx, by;
 };
-
-void fillWithZeros(std::array<float, kPlane>& plane, int size, int stride, int count) {
-  for (int j = 0; j < size; ++j)
-    for (int i = size; i < stride; ++i) plane[j * stride + i] = 0;
-  for (int i = size * stride; i < count; ++i) plane[i] = 0;
-}
 
 // One row of a window and its gradient.
 struct WindowRow {
@@ -72,6 +66,7 @@ UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int
   const int size = 2 * radius + 1, stride = strideOf(radius);
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(image.step1());
   const float middle = planes.middle = image.at<float>(v, u);
+  const Lanes none{};
   for (int j = 0; j < size; ++j) {
     const float* row = image.ptr<float>(v - radius + j) + u - radius;
     const auto at = [&](int i) {
@@ -83,9 +78,9 @@ UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int
       loadLanes(row + first, step, middle, at(first));
     }
     for (int i = 0; size < kLanes && i < size; ++i) loadOne(row + i, step, middle, at(i));
+    // What fills the row up; where the next one begins, that comes after.
+    for (float* end : {at(size).a, at(size).x, at(size).y}) store(none, end);
   }
-  for (auto* plane : {&planes.a, &planes.x, &planes.y})
-    fillWithZeros(*plane, size, stride, paddedCount(radius));
 }
 
 UAV_LANDING_MULTIVERSION ReferenceSums addUp(const WindowPlanes& planes, int count) {

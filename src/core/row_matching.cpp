@@ -206,7 +206,7 @@ std::vector<RowCandidate> RowSearch::peaks(double min_score, int count) const {
 namespace {
 
 constexpr int kLargestRadius = 15, kLargestStride = 32;
-constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1);
+constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
 
 // A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
 // up to a multiple of four, and all of it to one of kLanes, with zeros.
@@ -220,14 +220,28 @@ UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int
   const int size = planes.size = 2 * radius + 1, stride = planes.stride = (size + 3) / 4 * 4;
   planes.count = wholeLanes(size * stride);
   const float middle = planes.middle = image.at<float>(v, u);
+  const Lanes none{};
   for (int j = 0; j < size; ++j) {
     const float* row = image.ptr<float>(v - radius + j) + u - radius;
     float *a = &planes.value[j * stride], *g = &planes.gradient[j * stride];
-    for (int i = 0; i < size; ++i) a[i] = row[i] - middle;
-    for (int i = 0; i < size; ++i) g[i] = 0.5f * (row[i + 1] - row[i - 1]);
-    for (int i = size; i < stride; ++i) a[i] = g[i] = 0;
+    // The last lanes of a row end where it does, so that nothing outside the image is read.
+    for (int i = 0; size >= kLanes && i < size; i += kLanes) {
+      const int first = std::min(i, size - kLanes);
+      Lanes value, before, after;
+      load(row + first, value);
+      load(row + first - 1, before);
+      load(row + first + 1, after);
+      store(value - middle, a + first);
+      store(0.5f * (after - before), g + first);
+    }
+    for (int i = 0; size < kLanes && i < size; ++i) {
+      a[i] = row[i] - middle;
+      g[i] = 0.5f * (row[i + 1] - row[i - 1]);
+    }
+    // What fills the row up; where the next one begins, that comes after.
+    store(none, a + size);
+    store(none, g + size);
   }
-  for (int i = size * stride; i < planes.count; ++i) planes.value[i] = planes.gradient[i] = 0;
 }
 
 // Sums over a window of the values a, their gradient g and their products.
