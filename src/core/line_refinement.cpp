@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRadius = 3;  // px to both sides, first pass
 constexpr int kMinStations = 6;
-constexpr int kFewStations = 24;     // looked at in the first pass, roughly
+constexpr int kFewStations = 80;  // looked at in the first pass, roughly: fewer are led astray by heavy noise
 constexpr double kMinSupport = 0.6;  // share of stations that must show the edge
 constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; more is no straight edge
 constexpr int kGrowStep = 2;         // rows or columns
