@@ -15,10 +15,13 @@
 #include "uav_landing/solution_separation.h"
 #include "uav_landing/speed_memory.h"
 #include "uav_landing/stage_results.h"
+#include "uav_landing/stamp_scatter.h"
 #include "uav_landing/timings.h"
 #include "uav_landing/width_height.h"
 
 namespace uav_landing {
+
+struct VerticalSpeed;
 
 /// Post-processing for one pair (paper 3.2, 3.3): reconstruction, eqs (4) (5), height filter, eqs (6)-(8),
 /// status and validity.
@@ -85,6 +88,10 @@ class KalmanHeightStage {
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
+  /// Adds to the height's variance what it changes by between the stamp and the time of the images.
+  void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);
+  /// The vertical speed by motion, uncertain by what the stamps are wrong by as well.
+  VerticalSpeed withStamps(VerticalSpeed speed) const;
   /// The ground's normal by stereo alone against the imu's direction of gravity.
   void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
   /// The first test of this pair alone that failed.
@@ -143,6 +150,7 @@ class KalmanHeightStage {
   bool confirming_ = false;                  // this pair passed, but has been left out for those that failed
   HeightMemory memory_;
   SpeedMemory speed_;
+  StampScatter stamps_;
   Recovery recovery_;
   GroundMemory ground_;
   std::optional<Eigen::Vector3d> last_normal_;  // of the ground on the pair before

@@ -114,7 +114,8 @@ std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& no
   if (!patches_.empty()) {
     const Patch& first = patches_.front();
     const double distance = ahead.dot(first.at);
-    if (distance > 0 && distance <= first.reach) return Below{normal.dot(first.at), uncertain(first)};
+    if (distance > 0 && distance <= first.reach + kSpacing * normal.dot(first.at))
+      return Below{normal.dot(first.at), uncertain(first)};
   }
   for (size_t i = 1; i < patches_.size(); ++i) {
     const Patch &a = patches_[i - 1], &b = patches_[i];

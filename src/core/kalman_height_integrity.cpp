@@ -201,7 +201,7 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
   const bool level_known = normal.allFinite() && !tests_.failed(Consistency::kTilt);
   if (!approach.step.failure && level_known && std::isfinite(scale) && scale > 0) {
     const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
-    speed = verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev);
+    speed = withStamps(verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev));
     velocity = approach.step.translation_over_height.norm() * scale / approach.step.duration;
   }
   if (T > 0) memory_.carry(T, speed.speed, speed.variance, velocity);

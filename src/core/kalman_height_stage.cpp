@@ -61,6 +61,7 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       separation_(parameters),
       tests_(parameters.false_alarm_rate),
       speed_(parameters.max_deceleration),
+      stamps_(parameters.max_deceleration),
       recovery_(parameters.recovery_time) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
@@ -78,6 +79,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     const ScopedTimer timer(timings_, "kalman_filter");
     result.failure = followTime(stereo.stamp);
     averageAttitude(stereo.stamp, approach, reconstruction, result);
+    followStamps(approach.step, reconstruction);
     useWidth(approach.runway, reconstruction, result);
     leaveOutSources(stereo, approach, reconstruction);
     testPair(T, stereo, approach, reconstruction, result);
@@ -137,6 +139,7 @@ void KalmanHeightStage::reset() {
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   speed_.reset();
+  stamps_.reset();
   recovery_.reset();
   ground_.reset();
   last_normal_.reset();
@@ -266,11 +269,28 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   }
 }
 
+void KalmanHeightStage::followStamps(const ApproachAngleResult::Motion& step,
+                                     Reconstruction& reconstruction) {
+  const double height = filter_.initialised() ? filter_.state()[0] : reconstruction.height;
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  stamps_.follow(step.duration, step.translation_over_height.norm() * height,
+                 height * height * covariance.trace());
+  if (!filter_.initialised() || !(step.duration > 0)) return;
+  // A duration has the errors of two stamps in it.
+  const double stamp_variance = 0.5 * stamps_.ofDuration() * step.duration * step.duration;
+  reconstruction.variance += std::pow(filter_.state()[1], 2) * stamp_variance;
+}
+
+VerticalSpeed KalmanHeightStage::withStamps(VerticalSpeed speed) const {
+  speed.variance += speed.speed * speed.speed * stamps_.ofDuration();
+  return speed;
+}
+
 void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
                                     const ApproachAngleResult::Motion& step) {
-  const VerticalSpeed measured =
-      verticalSpeed(step, reconstruction.below, reconstruction.height - reconstruction.bend,
-                    reconstruction.variance, parameters_.height_model_error, parameters_.acceleration_stddev);
+  const VerticalSpeed measured = withStamps(verticalSpeed(
+      step, reconstruction.below, reconstruction.height - reconstruction.bend, reconstruction.variance,
+      parameters_.height_model_error, parameters_.acceleration_stddev));
   filter_.updateSpeed(measured.speed, measured.variance);
   separation_.updateSpeed(measured.speed, measured.variance);
 }
