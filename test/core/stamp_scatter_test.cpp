@@ -5,6 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "support/rigs.h"
+#include "uav_landing/kalman_height_stage.h"
+
 namespace uav_landing {
 namespace {
 
@@ -56,6 +59,48 @@ TEST(StampScatter, StandingStillTellsNothing) {
   StampScatter scatter(3);
   for (int i = 0; i < 100; ++i) scatter.follow(kStep, std::abs(0.01 * normal(random)), 1e-4);
   EXPECT_EQ(scatter.ofDuration(), 0);
+}
+
+/// How many of the heights, which are all true, are refused in 10 s of a flight of 20 m/s that sinks by 2 m/s
+/// and whose stamps are late by up to 0.04 s at random.
+int refusedWithLateStamps(const KalmanHeightParameters& parameters) {
+  constexpr double kPitch = -4 * M_PI / 180, kSink = 2;
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  KalmanHeightStage stage(test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0), parameters);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> late(0, 0.04);
+  double before = 0;
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    StereoDepthResult stereo;
+    const double height = 30 - kSink * kStep * i;
+    stereo.stamp = 1 + kStep * i + (i < 40 ? 0 : late(random));
+    stereo.plane.g = down / height;
+    const double relative = 0.01 / height;
+    stereo.plane.covariance = std::pow(relative / height, 2) * Eigen::Matrix3d::Identity();
+    ApproachAngleResult approach;
+    approach.stamp = stereo.stamp;
+    approach.n = down;
+    approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    approach.step.duration = i > 0 ? stereo.stamp - before : kStep;
+    approach.step.rotation.setZero();
+    approach.step.translation_over_height = kStep * (kSpeed * forward + kSink * down) / height;
+    approach.step.covariance = 1e-8 * Matrix6d::Identity();
+    approach.step.angle = std::atan(kSink / kSpeed);
+    approach.step.angle_variance = 1e-6;
+    refused += stage.process(stereo, approach).rejected;
+    before = stereo.stamp;
+  }
+  return refused;
+}
+
+TEST(KalmanHeightStamps, TrueHeightsAreNotRefusedForStampsThatAreLate) {
+  EXPECT_EQ(refusedWithLateStamps({}), 0);
+  // An aircraft that may change its speed at will says nothing of the stamps.
+  KalmanHeightParameters parameters;
+  parameters.max_deceleration = 1000;
+  EXPECT_GT(refusedWithLateStamps(parameters), 10);
 }
 
 }  // namespace
