@@ -24,7 +24,6 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
-    std::vector<TemporalMatch> step_matches;
     /// Variances of the two angles that come from the matches alone, the normal taken as exact. rad^2
     double step_match_variance = kUnknown, window_match_variance = kUnknown;
   };
@@ -39,6 +38,8 @@ class MotionTracker {
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   void reset();
+  /// Corners followed to the frame before by the last process(), those that contradict the motion included.
+  const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
 
  private:
   struct Frame {
@@ -56,7 +57,7 @@ class MotionTracker {
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   Expected<MotionEstimate> followFrom(const Frame& now, const CameraMotion& predicted,
                                       const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                                      const Corners& corners, const RotationPrior* rotation, Result& result);
+                                      const Corners& corners, const RotationPrior* rotation);
   Expected<MotionEstimate> estimate(const std::vector<TemporalMatch>& matches, const Eigen::Vector3d& normal,
                                     const Eigen::Matrix3d& covariance, const CameraMotion& start,
                                     const RotationPrior* rotation) const;
@@ -74,6 +75,7 @@ class MotionTracker {
   ApproachAngleParameters parameters_;
   std::deque<Frame> past_;  // oldest first
   std::vector<MatchImage> spare_;
+  std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;
   PathAngleFilter filter_;

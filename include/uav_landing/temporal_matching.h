@@ -22,10 +22,11 @@ struct TemporalMatchOptions {
 };
 
 /// Stage 6's image velocity field: finds corners of the image now in the image then, with windows warped as
-/// the ground plane (unit normal n) and the predicted motion say.
+/// the ground plane (unit normal n) and the predicted motion say. memory: a list that is no longer needed.
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
-                                         const TemporalMatchOptions& options);
+                                         const TemporalMatchOptions& options,
+                                         std::vector<TemporalMatch> memory = {});
 
 }  // namespace uav_landing

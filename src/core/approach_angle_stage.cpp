@@ -198,7 +198,7 @@ struct ApproachAngleStage::Implementation {
     const MotionEstimate& estimate = *motion.step_estimate;
     const bool vote = parameters.foe_method == FoeMethod::kSlidingWindow;
     const Expected<FocusOfExpansion> foe =
-        vote ? foeSlidingWindow(model.rig, motion.step_matches,
+        vote ? foeSlidingWindow(model.rig, tracker.stepMatches(),
                                 parameters.remove_rotation ? estimate.motion.R : Eigen::Matrix3d::Identity())
              : foeFromMotion(model.rig, estimate.motion.t, estimate.covariance.block<3, 3>(3, 3));
     if (!foe) {

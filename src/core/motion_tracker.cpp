@@ -109,6 +109,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
                                              const Corners& all_corners, Timings& timings,
                                              const AttitudePrior& imu) {
   Result result;
+  step_matches_.clear();
   const Corners corners = thinned(all_corners, static_cast<size_t>(parameters_.corner_count));
   Frame now;
   {
@@ -134,11 +135,9 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const RotationPrior* rotation, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
-  const auto good = [&] {
-    return estimate && estimate->inlier_count >= kLeastShare * result.step_matches.size();
-  };
+  const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * step_matches_.size(); };
   for (const CameraMotion& predicted : predictions(duration, rotation)) {
-    estimate = followFrom(now, predicted, normal, covariance, corners, rotation, result);
+    estimate = followFrom(now, predicted, normal, covariance, corners, rotation);
     if (good()) break;
   }
   std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
@@ -146,9 +145,9 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
   for (const Eigen::Matrix3d& R : rotations) {
     if (good()) break;
     const CameraMotion first = searchFirst(now, normal, corners, R);
-    estimate = followFrom(now, first, normal, covariance, corners, rotation, result);
+    estimate = followFrom(now, first, normal, covariance, corners, rotation);
   }
-  result.step = describe(estimate, duration, result.step_matches.size(), &result.step_match_variance);
+  result.step = describe(estimate, duration, step_matches_.size(), &result.step_match_variance);
   if (!estimate) return;
   result.step_estimate = *estimate;
   last_duration_ = duration;
@@ -171,7 +170,7 @@ std::vector<CameraMotion> MotionTracker::predictions(double duration, const Rota
 Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const CameraMotion& predicted,
                                                    const Eigen::Vector3d& normal,
                                                    const Eigen::Matrix3d& covariance, const Corners& corners,
-                                                   const RotationPrior* rotation, Result& result) {
+                                                   const RotationPrior* rotation) {
   // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
   // moves on as it did, so a small one comes first.
   constexpr size_t kScouts = 60;
@@ -190,8 +189,9 @@ Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const Camer
     if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * matches.size()))
       break;
   }
-  result.step_matches = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0));
-  return estimate(result.step_matches, normal, covariance, start, rotation);
+  step_matches_ = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0),
+                                std::move(step_matches_));
+  return estimate(step_matches_, normal, covariance, start, rotation);
 }
 
 Expected<MotionEstimate> MotionTracker::estimate(const std::vector<TemporalMatch>& matches,
@@ -253,12 +253,12 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     // Lengths change from units of the previous height to those of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, matchOptions(0));
+    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
+                                    matchOptions(0), std::move(window_matches_));
     const Expected<MotionEstimate> estimate =
-        estimateMotion(rig_, matches, normal, covariance, predicted, parameters_.min_matches);
+        estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;
-    result.window = describe(estimate, duration, matches.size(), &result.window_match_variance);
+    result.window = describe(estimate, duration, window_matches_.size(), &result.window_match_variance);
     return;
   }
   result.window = result.step;

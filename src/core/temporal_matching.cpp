@@ -54,11 +54,13 @@ bool visible(const cv::Mat& mask, const Eigen::Vector2d& x) {
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
-                                         const TemporalMatchOptions& options) {
+                                         const TemporalMatchOptions& options,
+                                         std::vector<TemporalMatch> memory) {
   const int factor = now.factor, radius = options.window_radius;
   const PointWarp plane_warp(rig, predicted, normal);
   PatchSearch coarse(now.coarse, then.coarse, radius), fine(now.fine, then.fine, radius);
-  std::vector<TemporalMatch> matches;
+  std::vector<TemporalMatch> matches = std::move(memory);
+  matches.clear();
   matches.reserve(corners.size());
   for (const TrackedCorner& corner : corners) {
     const Eigen::Vector2d x(corner.u, corner.v);
