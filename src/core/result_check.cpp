@@ -128,7 +128,7 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return text("disparity_bias_stddev: ", result.disparity_bias_stddev,
                 " px is not part of plane_covariance");
   // The noise of an unbiased variance makes it negative, but not by much.
-  constexpr double kLeastSurface = -1e-3, kLargestSurface = 1;
+  constexpr double kLeastSurface = -1e-2, kLargestSurface = 1;
   const double surface = result.surface_variance * size * size;
   if (!std::isnan(surface) && !(surface >= kLeastSurface && surface <= kLargestSurface))
     return text("surface_variance: ", result.surface_variance, " m^2 at a height of ", 1 / size, " m");

@@ -178,7 +178,7 @@ struct StereoDepthStage::Implementation {
     }
     result.plane = plane->plane;
     result.residual_stddev = plane->residual_stddev;
-    result.surface_variance = surfaceVariance(model.rig, samples, *plane);
+    result.surface_variance = surfaceVariance(model.rig, samples, *plane, 2 * parameters.window_radius + 1);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
   }
