@@ -32,6 +32,20 @@ constexpr double kLeastShare = 0.5;
 // By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
 constexpr double kLargestFactor = 2.0;
 
+// The error (pixels) with which the size of the residuals is as claimed. scale: of the residuals over what is
+// claimed with an error assumed.
+template <class Scale>
+double commonError(Scale&& scale) {
+  constexpr int kHalvings = 8;
+  if (scale(0.0) <= 1) return 0;
+  double low = 0, high = kLargestShift;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (scale(middle) > 1 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 // Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor
 // shows in the noisier half of the samples, the error in the other.
@@ -39,26 +53,24 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
   std::vector<size_t> order(samples.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto quieter = [&](size_t a, size_t b) { return samples[a].stddev < samples[b].stddev; };
-  const auto middle = order.begin() + order.size() / 2, typical = order.begin() + order.size() / 4;
+  const auto middle = order.begin() + order.size() / 2;
   std::nth_element(order.begin(), middle, order.end(), quieter);
-  std::nth_element(order.begin(), typical, middle, quieter);
-  std::vector<double> residuals, ratios, magnitudes;
+  std::vector<double> residuals, ratios;
   for (const DisparitySample& sample : samples) {
     residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
   }
   std::vector<double> sorted = residuals;
   const double offset = medianOf(sorted);
-  for (auto i = order.begin(); i != order.end(); ++i) {
-    const double magnitude = std::abs(residuals[*i] - offset);
-    if (i < middle) {
-      magnitudes.push_back(magnitude);
-    } else {
-      ratios.push_back(magnitude / samples[*i].stddev);
-    }
-  }
-  const double factor = std::min(robustStddev(ratios), kLargestFactor), scatter = robustStddev(magnitudes);
-  const double of_noise = factor * samples[*typical].stddev;
-  const double common = std::sqrt(std::max(0.0, scatter * scatter - of_noise * of_noise));
+  const auto ratioBeside = [&](size_t i, double factor, double common) {
+    return std::abs(residuals[i] - offset) / std::hypot(factor * samples[i].stddev, common);
+  };
+  for (auto i = middle; i != order.end(); ++i) ratios.push_back(ratioBeside(*i, 1, 0));
+  const double factor = std::min(robustStddev(ratios), kLargestFactor);
+  const double common = commonError([&](double assumed) {
+    ratios.clear();
+    for (auto i = order.begin(); i != middle; ++i) ratios.push_back(ratioBeside(*i, factor, assumed));
+    return robustStddev(ratios);
+  });
   for (DisparitySample& sample : samples)
     sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common * common);
 }
@@ -81,15 +93,17 @@ struct DirectRefinement::Implementation {
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const Eigen::Vector3d& rows) {
     const ShiftModel shift(rig, g);
     informative = blocks.compare(right, shift, matches);
+    const double density = 1 - shift.a;  // of right pixels over left ones
     samples.clear();
     leaks.clear();
     for (const PhotometricBlocks::Match& match : matches) {
       if (!(std::abs(match.shift) < kLargestShift)) continue;
-      // The right pixel that the warp puts on u belongs to the left pixel u + shift.
-      const double disparity = shift.at(match.u, match.v) + match.shift - rig.principalOffset();
+      // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a
+      // place that has the error of the shift in it would pull the plane.
+      const double disparity = shift.at(match.u, match.v) + match.shift * density - rig.principalOffset();
       const double column = match.u - shift.at(match.u, match.v);
-      leaks.push_back(-match.lean * verticalDisparityByRotation(rig, column, match.v));
-      samples.push_back({match.u + match.shift, match.v, match.stddev, {disparity - leaks.back().dot(rows)}});
+      leaks.push_back(-density * match.lean * verticalDisparityByRotation(rig, column, match.v));
+      samples.push_back({match.u, match.v, density * match.stddev, {disparity - leaks.back().dot(rows)}});
     }
   }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "interpolation.h"
+#include "median.h"
 #include "multiversion.h"
 
 namespace uav_landing {
@@ -37,12 +38,34 @@ constexpr double kLeastGain = 0.2;
 // Variance of rounding to whole grey levels in two images.
 constexpr double kLeastVariance = 1.0 / 6.0;
 
+// The lower quartile of the variances that blocks of noise show, over their mean (chi-square).
+constexpr double kQuartile = 0.915;
+// Sum of the products of Sobel's kernel, as a derivative, and the one of fourth order; variance per pixel of
+// the products of what they make of noise with a variance of 1, summed over a block.
+constexpr double kProductNoise = 1.0 / 3, kProductScatter = 0.505;
+// Of the usual signal over the noise: less cannot be told from none.
+constexpr double kLeastUsual = 0.05;
+
 using Lane = std::array<float, kWidth>;
 
 float sum(const Lane& lane) {
   float total = 0;
   for (const float value : lane) total += value;
   return total;
+}
+
+// What of a signal measured with normal errors was there: the mean by Bayes' rule. A signal is positive, and
+// strong ones are rare but not unheard of (density 1 / (usual + signal)^2, its logarithm taken as linear near
+// what was measured). Among many blocks with next to nothing to see, noise makes some look as if they had;
+// believed, they would be weighted, and claim to know, as much as that.
+double signalBehind(double measured, double stddev, double usual) {
+  constexpr double kCertain = 6;
+  const double most_likely = measured - 2 * stddev * stddev / (usual + std::max(measured, 0.0));
+  const double z = most_likely / stddev;
+  if (z > kCertain) return most_likely;
+  if (z < -kCertain) return -stddev / z;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI);
+  return most_likely + stddev * density / (0.5 * std::erfc(-z / std::sqrt(2.0)));
 }
 
 double lowerQuartileOf(std::vector<double>& values) {
@@ -178,6 +201,14 @@ void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig
   }
 }
 
+double PhotometricBlocks::usualEnergy() const {
+  if (candidates_.empty()) return 0;
+  std::vector<double> energies;
+  energies.reserve(candidates_.size());
+  for (const Candidate& candidate : candidates_) energies.push_back(candidate.energy);
+  return medianOf(energies) / (kSobelScale * kSobelScale);
+}
+
 // The strongest block of each cell of a coarse grid, so that every part of the ground has a say, and then the
 // strongest of all.
 void PhotometricBlocks::pick(int count) {
@@ -222,17 +253,22 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
     }
   }
   const float grey_mean = sum(grey_sum) / kPixels, slope_mean = sum(slope_sum) / kPixels;
-  Lane grey_squares{}, squares{}, products{}, downs{}, down_greys{}, down_slopes{};
+  Lane grey_squares{}, squares{}, products{}, downs{}, down_greys{}, down_slopes{}, along_greys{},
+      along_slopes{};
   for (int y = 0; y < kHeight; ++y) {
     float* grey = &block.grey[y * kWidth];
     float* slope = &block.slope[y * kWidth];
     const auto row = [&](int down) { return left.ptr<uchar>(candidate.v + y + down) + candidate.u; };
-    const uchar *above2 = row(-2), *above = row(-1), *below = row(1), *below2 = row(2);
+    const uchar *above2 = row(-2), *above = row(-1), *own = row(0), *below = row(1), *below2 = row(2);
     for (int x = 0; x < kWidth; ++x) {
       // Of fourth order: the difference of two neighbours would see too little of a sharp edge.
       const float down = static_cast<float>(8 * (below[x] - above[x]) - (below2[x] - above2[x])) / 12.f;
+      const float along =
+          static_cast<float>(8 * (own[x + 1] - own[x - 1]) - (own[x + 2] - own[x - 2])) / 12.f;
       grey[x] -= grey_mean;
       slope[x] -= slope_mean;
+      along_greys[x] += along * grey[x];
+      along_slopes[x] += along * slope[x];
       grey_squares[x] += grey[x] * grey[x];
       products[x] += grey[x] * slope[x];
       squares[x] += slope[x] * slope[x];
@@ -246,6 +282,8 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
   block.both = sum(products);
   block.down_grey = sum(down_greys);
   block.down_slope = sum(down_slopes);
+  block.along_grey = sum(along_greys);
+  block.along_slope = sum(along_slopes);
   float along = 0;
   for (int x = 0; x < kWidth; ++x) along += squares[x] * static_cast<float>(x);
   block.centre_u = static_cast<float>(block.u) + along / block.slope_energy;
@@ -256,6 +294,7 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
 void PhotometricBlocks::choose(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift,
                                int count) {
   findCandidates(left, rig, shift);
+  usual_energy_ = usualEnergy();
   pick(count);
   blocks_.clear();
   blocks_.reserve(count);
@@ -304,7 +343,7 @@ std::optional<PhotometricBlocks::Photometry> PhotometricBlocks::photometry() con
     // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the
     // noise.
     found.residual = lowerQuartileOf(variances);
-    found.noise = found.residual / (found.gain * found.gain + kInterpolated);
+    found.noise = found.residual / kQuartile / (found.gain * found.gain + kInterpolated);
     // The noise of the left image makes its squares larger than what both images have in common.
     double in_common = 0, squares = 0;
     for (const Products& products : products_) {
@@ -325,6 +364,9 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
   if (!common_to_all) return 0;
   const auto [gain, noise, residual] = *common_to_all;
   const double grey_noise = noise * kPixels, slope_noise = noise * kPixels * kSlopeNoise;
+  const double product_noise = noise * kPixels * kProductNoise;
+  const double product_stddev = noise * std::sqrt(kPixels * kProductScatter);
+  const double usual = std::max(usual_energy_ - slope_noise, kLeastUsual * slope_noise);
   int informative = 0;
   for (const Products& products : products_) {
     const Block& block = *products.block;
@@ -333,7 +375,10 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     // The derivative less what of it looks like a gain: slope - mixed grey.
     const double mixed = block.both / common;
     const double energy = block.slope_energy - 2 * mixed * block.both + mixed * mixed * block.grey_energy;
-    const double signal = block.slope_energy - slope_noise - mixed * block.both, response = gain * signal;
+    // What a shift by a pixel does to the score.
+    const double signal =
+        signalBehind(block.along_slope - mixed * block.along_grey - product_noise, product_stddev, usual);
+    const double response = gain * signal;
     if (signal < kLeastShareOfSlope * energy) continue;
     const double score = products.slope - mixed * products.grey;
     const double variance = std::max(products.variance - score * score / energy / kPixels, kLeastVariance);

@@ -46,9 +46,11 @@ class PhotometricBlocks {
     int u, v;                               // first pixel
     float centre_u, centre_v;               // where its gradients are
     float grey_energy, slope_energy, both;  // sums of grey^2, slope^2, grey slope
-    float down_grey, down_slope;            // sums of (derivative down the column) times grey, slope
-    std::array<float, kPixels> grey;        // without their mean
-    std::array<float, kPixels> slope;       // derivative along the row without its mean
+    // Sums of the exact derivatives along the row and down the column times grey, slope.
+    float along_grey, along_slope;
+    float down_grey, down_slope;       // sums of (derivative down the column) times grey, slope
+    std::array<float, kPixels> grey;   // without their mean
+    std::array<float, kPixels> slope;  // derivative along the row without its mean
   };
   // What the warped right image r has in common with a block.
   struct Products {
@@ -65,6 +67,7 @@ class PhotometricBlocks {
   };
   bool usable(const StereoRig& rig, const ShiftModel& shift, int u, int v) const;
   void findCandidates(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift);
+  double usualEnergy() const;
   void pick(int count);
   bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const;
   void multiply(const cv::Mat& right, const ShiftModel& shift);
@@ -73,6 +76,7 @@ class PhotometricBlocks {
   cv::Mat left_mask_, right_mask_;
   cv::Mat gradient_;  // CV_16S, Sobel along the row, where there may be ground
   int first_row_ = 0;
+  double usual_energy_ = 0;  // of the candidates, the median: sum of slope^2, with its noise
   std::vector<Candidate> candidates_;
   std::vector<Block> blocks_;
   std::vector<Products> products_;
