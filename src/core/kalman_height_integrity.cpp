@@ -226,7 +226,8 @@ void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
   Recovery::Pair pair = Recovery::Pair::kSilent;
   if (contradicted)
     pair = Recovery::Pair::kContradicts;
-  else if (confirming_ || result.status == Status::kTracking)
+  else if ((confirming_ || result.status == Status::kTracking) &&
+           !tests_.failed(Consistency::kVanishingPoint))  // says that what was contradicted is still wrong
     pair = Recovery::Pair::kAgrees;
   // What is missing without a contradiction is no fault.
   const bool outdated = consecutive_rejections_ > 0 && result.stamp - last_accepted_ > parameters_.max_age;

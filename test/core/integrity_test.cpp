@@ -384,6 +384,29 @@ TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayIsBelievedAfterASec
   }
 }
 
+TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayWaitsForTheVanishingPointToAgree) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 1;
+  const auto valid = [&](double agreement, double off) {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.row_agreement = agreement;
+    ApproachAngleResult approach = levelFlight(stamp, 10);
+    approach.vanishing_direction = {0, -std::sin(4 * kDegree + off), std::cos(4 * kDegree + off)};
+    approach.vanishing_covariance = 1e-6 * Eigen::Matrix3d::Identity();
+    const LandingResult result = stage.process(stereo, approach);
+    EXPECT_EQ(result.tests[static_cast<int>(Consistency::kVanishingPoint)].failed(), off > 0);
+    stamp += 0.05;
+    return result.height_valid;
+  };
+  for (int i = 0; i < 20; ++i) valid(0.9, 0);
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(valid(0.9, i < 10 ? 2 * kDegree : 0)) << "alone it is left out";
+  for (int i = 0; i < 10; ++i) valid(0.4, 0);
+  for (int i = 0; i < 30; ++i) EXPECT_FALSE(valid(0.9, 2 * kDegree)) << i;
+  int until = 1;
+  while (!valid(0.9, 0) && until < 60) ++until;
+  EXPECT_EQ(until, 20);
+}
+
 TEST(Recovery, NeedsPairsThatAgreeAndNotOnlyTimeWithoutAny) {
   Recovery recovery(1.0);
   recovery.follow(0.1, Recovery::Pair::kContradicts, false);
