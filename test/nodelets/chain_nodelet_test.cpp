@@ -29,7 +29,8 @@ class ChainTest : public NodeletTest {
     // The first pairs may be lost while the stages connect to each other.
     ASSERT_TRUE(eventually([&] {
       cameras_.publishUniform(scene_, warm_up_ += 0.01, 0);
-      return estimates_.waitFor([](const auto& e) { return e.reason.rfind("uniform_image", 0) == 0; });
+      return estimates_.waitFor([](const auto& e) { return e.reason.rfind("uniform_image", 0) == 0; },
+                                std::chrono::milliseconds(200));
     }));
   }
 

@@ -52,9 +52,10 @@ class Listener {
     return came_.wait_for(lock, kDeadline, [&] { return messages_.size() >= count; });
   }
   /// True when a message with this property has come.
-  bool waitFor(const std::function<bool(const Message&)>& property) {
+  bool waitFor(const std::function<bool(const Message&)>& property,
+               std::chrono::milliseconds deadline = kDeadline) {
     std::unique_lock<std::mutex> lock(mutex_);
-    return came_.wait_for(lock, kDeadline, [&] {
+    return came_.wait_for(lock, deadline, [&] {
       for (const Pointer& message : messages_)
         if (property(*message)) return true;
       return false;
