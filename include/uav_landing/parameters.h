@@ -152,7 +152,8 @@ struct ApproachAngleParameters {
     v.flag("refine_lines", refine_lines, "fit each line to the gradient along it to sub-pixel");
     v.flag("stripe_centres", stripe_centres,
            "for the vanishing point, take the middle of a stripe so narrow that blur pushes its sides apart");
-    v.number("ransac_iterations", ransac_iterations, 10, 10000, "", "pairs of lines tried");
+    v.number("ransac_iterations", ransac_iterations, 10, 10000, "",
+             "most pairs of lines tried; fewer where many lines agree");
     v.number("ransac_tolerance", ransac_tolerance, 0.1, 20.0, "px",
              "distance by which a line's far end may miss the vanishing point's line");
     v.number("min_lines", min_lines, 2, 100, "lines",
