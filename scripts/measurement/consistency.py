@@ -22,6 +22,10 @@ The table shows which share of the errors is within the claimed 95 % interval, a
 (Wilson) of that share; then the ratio of errors to claimed standard deviations, root mean square: 1 when the claim is true,
 less when it is too cautious. Counted are the valid ones; *n* is the number of them for height and lateral.
 
+The ground is flat here and the estimator does not know. From 30 m most of the height's claim is for a bend of the surface
+between the ground seen and the ground below (`slope_change_deg`), so that the height must be found too cautious; the roll's
+claim from 10 m on is mostly for what vertical disparities leave open of the rig's rotation.
+
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
 
 """
