@@ -324,6 +324,26 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
   EXPECT_NEAR(shared, 0, 0.03 * error * error);
 }
 
+TEST(RefinePlane, TakesTheScatterOfFarMatchesForNoBumps) {
+  // From 12 m up the heights of matches near the camera scatter by centimetres, those of far ones, of faint
+  // texture besides, by half a metre: their patches must not count like the near ones.
+  const Eigen::Vector3d g = plane(12, -4, 0);
+  double square = 0;
+  constexpr int kScenes = 20;
+  for (int scene = 0; scene < kScenes; ++scene) {
+    Sampler sampler(200 + scene);
+    std::vector<DisparitySample> samples = sampler.ground(g, 800, 0);
+    for (DisparitySample& sample : samples) {
+      sample.stddev = 0.5 * std::pow(10 / sample.disparity, 2);
+      sample.disparity += sample.stddev * sampler.normal();
+    }
+    const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), 0);
+    ASSERT_TRUE(fit);
+    square += std::pow(surfaceVariance(rig(), samples, *fit, 1), 2) / kScenes;
+  }
+  EXPECT_LT(std::pow(square, 0.25), 0.08);
+}
+
 TEST(RefinePlane, SaysWhyThereIsNone) {
   const Eigen::Vector3d g = plane(6, -6, 0);
   Sampler sampler(13);
