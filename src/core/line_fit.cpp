@@ -13,31 +13,32 @@ namespace {
 
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
+constexpr double kTukey = 4.685;       // scales: 95 % as good as least squares when the errors are normal
 
 /// Buckets of the numbers, all that are beyond the last one in that.
 constexpr int kBuckets = 32;
-UAV_LANDING_MULTIVERSION void shareOut(const double* __restrict values, int count, double scale,
+UAV_LANDING_MULTIVERSION void shareOut(const float* __restrict values, int count, float scale,
                                        uchar* __restrict bucket_of) {
   for (int i = 0; i < count; ++i) {
-    const double bucket = values[i] * scale;
+    const float bucket = values[i] * scale;
     bucket_of[i] = static_cast<uchar>(static_cast<int>(bucket < kBuckets - 1 ? bucket : kBuckets - 1));
   }
 }
 
 /// Of values >= 0, the upper one of two in the middle. They are shared out among buckets up to twice the
 /// mean, which the median never exceeds, so that only the few in the middle bucket are put in order.
-double median(const Values& values) {
-  constexpr double kNothing = 1e-30;
-  const double mean = values.mean();
+float median(const Values& values) {
+  constexpr float kNothing = 1e-30F;
+  const float mean = values.mean();
   if (!(mean > kNothing)) return mean;
   std::array<uchar, 2 * kMaxStations> bucket_of;
   const int size = static_cast<int>(values.size());
-  shareOut(values.data(), size, 0.5 * kBuckets / mean, bucket_of.data());
+  shareOut(values.data(), size, 0.5F * kBuckets / mean, bucket_of.data());
   std::array<int, kBuckets> counts{};
   for (int i = 0; i < size; ++i) ++counts[bucket_of[i]];
   int rank = size / 2, bucket = 0;
   while (rank >= counts[bucket]) rank -= counts[bucket++];
-  std::array<double, 2 * kMaxStations> middle;
+  std::array<float, 2 * kMaxStations> middle;
   int count = 0;
   for (int i = 0; i < size; ++i) {
     middle[count] = values[i];
@@ -56,6 +57,17 @@ Fit fitOnce(const Peaks& p) {
   f.spread = (weighted * x).sum();
   f.slope = (weighted * p.across).sum() / f.spread;
   return f;
+}
+
+Values weightsByGradient(const Peaks& p) { return (p.gradient / median(p.gradient)).square().min(1.0F); }
+
+/// Fit with weights by how far the peaks are off a line.
+Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale) {
+  const Values off = line.residuals(peaks).abs();
+  scale = std::max(1.4826 * median(off), kMinScale);
+  const float inverse = static_cast<float>(1 / (kTukey * scale));
+  peaks.weight = base * (1 - (off * inverse).min(1.0F).square()).square();
+  return fitOnce(peaks);
 }
 
 /// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
@@ -82,17 +94,17 @@ double stationVariance(const Peaks& peaks, const Fit& fit) {
 }  // namespace
 
 Fit fitRobustly(Peaks& peaks, double& scale) {
-  const Values base = (peaks.gradient / median(peaks.gradient)).square().min(1.0);
+  const Values base = weightsByGradient(peaks);
   peaks.weight = base;
   Fit fit = fitOnce(peaks);
-  for (int i = 0; i < 3; ++i) {
-    const Values off = fit.residuals(peaks).abs();
-    scale = std::max(1.4826 * median(off), kMinScale);
-    const double inverse = 1 / (4.685 * scale);
-    peaks.weight = base * (1 - (off * inverse).min(1.0).square()).square();
-    fit = fitOnce(peaks);
-  }
+  for (int i = 0; i < 3; ++i) fit = reweighted(peaks, base, fit, scale);
   return fit;
+}
+
+Fit refit(Peaks& peaks, double& scale) {
+  const Values base = weightsByGradient(peaks);
+  const Fit fit = reweighted(peaks, base, Fit(), scale);
+  return reweighted(peaks, base, fit, scale);
 }
 
 LineSegment segmentOf(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign) {

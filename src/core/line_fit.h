@@ -18,7 +18,7 @@ struct Peak {
 };
 
 /// Of a value at each station; in the memory of the function that has it.
-using Values = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kMaxStations, 1>;
+using Values = Eigen::Array<float, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kMaxStations, 1>;
 
 /// The peaks along a line and their weights.
 struct Peaks {
@@ -34,9 +34,9 @@ struct Peaks {
     weight.resize(size);
   }
   void set(int i, const Peak& peak) {
-    along[i] = peak.along;
-    across[i] = peak.across;
-    gradient[i] = peak.gradient;
+    along[i] = static_cast<float>(peak.along);
+    across[i] = static_cast<float>(peak.across);
+    gradient[i] = static_cast<float>(peak.gradient);
   }
 };
 
@@ -58,7 +58,7 @@ struct Axis {
 
 /// Weighted straight line across = offset + slope (along - centre).
 struct Fit {
-  double centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
+  float centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
 
   Values residuals(const Peaks& p) const { return p.across - offset - slope * (p.along - centre); }
 };
@@ -67,6 +67,9 @@ struct Fit {
 /// removes stations at which something else was taken for the edge; their weight is 0 then. scale: robust
 /// 1 sigma of the peaks about the line, px. There must be a peak.
 Fit fitRobustly(Peaks& peaks, double& scale);
+
+/// The same where the axis already is such a line, through fewer peaks: starts from that.
+Fit refit(Peaks& peaks, double& scale);
 
 /// The segment between the first and the last peak used. sign: +1 when it is brighter towards `across`.
 LineSegment segmentOf(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign);

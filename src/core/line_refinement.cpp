@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kRadius = 3;  // px to both sides, first pass
 constexpr int kMinStations = 6;
+constexpr int kFewStations = 80;  // looked at in the first pass, roughly: fewer are led astray by heavy noise
 constexpr double kMinSupport = 0.6;  // share of stations that must show the edge
 constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; more is no straight edge
 constexpr int kGrowStep = 2;         // rows or columns
@@ -120,13 +121,13 @@ std::optional<Peak> findPeak(const EdgeSampler& sampler, int station, const Edge
   return sampler.peak(*sample, best + 0.5 * (before - after) / (before - 2 * g(best) + after), g(best));
 }
 
-/// Peaks at the rows or columns between two distances along the line.
-void collect(const EdgeSampler& sampler, double from, double to, const EdgeKind& kind, int reach,
+/// Peaks at so many rows or columns, or all, between two distances along the line.
+void collect(const EdgeSampler& sampler, double from, double to, int most, const EdgeKind& kind, int reach,
              Peaks& peaks) {
   const Axis& axis = sampler.axis();
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
-  const int step = std::max(1, (last - first) / kMaxStations);
+  const int step = std::max(1, (last - first) / most);
   peaks.stations = 0;
   peaks.resize(2 * kMaxStations);
   int count = 0;
@@ -192,22 +193,26 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
   double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
   const EdgeKind kind{axis.across.dot(rough.brighter) >= 0 ? 1 : -1, min_gradient};
   Peaks peaks;
-  for (const int reach : {2, 1}) {
-    const EdgeSampler sampler(image, ground, axis);
-    collect(sampler, from, to, kind, reach, peaks);
-    if (peaks.size() < kMinStations) return std::nullopt;
-    double scale = 0;
-    const Fit fit = fitRobustly(peaks, scale);
+  double scale = 0;
+  const auto isLine = [&] {
     const auto used = (peaks.weight > 0).count();
-    if (used < kMinStations || used < kMinSupport * peaks.stations || scale > kMaxScatter)
-      return std::nullopt;
-    if (reach == 1) return segmentOf(axis, peaks, fit, kind.sign);
-    axis = Axis(axis.point(fit.centre) + fit.offset * axis.across, axis.along + fit.slope * axis.across);
-    const EdgeSampler refined(image, ground, axis);
-    from = grow(refined, from - fit.centre, -kGrowStep, kind);
-    to = grow(refined, to - fit.centre, kGrowStep, kind);
-  }
-  return std::nullopt;
+    return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
+  };
+  collect(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, 2, peaks);
+  if (peaks.size() < kMinStations) return std::nullopt;
+  const Fit coarse = fitRobustly(peaks, scale);
+  if (!isLine()) return std::nullopt;
+
+  axis =
+      Axis(axis.point(coarse.centre) + coarse.offset * axis.across, axis.along + coarse.slope * axis.across);
+  const EdgeSampler sampler(image, ground, axis);
+  from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
+  to = grow(sampler, to - coarse.centre, kGrowStep, kind);
+  collect(sampler, from, to, kMaxStations, kind, 1, peaks);
+  if (peaks.size() < kMinStations) return std::nullopt;
+  const Fit fit = refit(peaks, scale);
+  if (!isLine()) return std::nullopt;
+  return segmentOf(axis, peaks, fit, kind.sign);
 }
 
 }  // namespace uav_landing

@@ -47,6 +47,7 @@ TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig
   for (int k = 0;; ++k) {
     const double inverse = 1 / kNearest - k * step_;
     if (inverse <= 1 / farthest) break;
+    if (!begun && !mayBeSeen(1 / inverse)) continue;
     rows_.emplace_back();
     if (sample(1 / inverse, rows_.back())) {
       begun = true;
@@ -56,6 +57,30 @@ TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig
       if (begun) break;
     }
   }
+}
+
+/// Quick: a row of which neither this nor that quarter's end is in the picture has not enough of it there, as
+/// what is there hangs together.
+bool TopView::mayBeSeen(double x) const {
+  const auto isSeen = [&](int c) {
+    const Eigen::Vector3d point = x * axes_.forward + axes_.down + across_[c] * axes_.left;
+    const double u = rig_.fx * point.x() + rig_.cx * point.z(), v = rig_.fy * point.y() + rig_.cy * point.z();
+    return point.z() > 0 && u >= 0 && v >= 0 && u < image_.cols * point.z() && v < image_.rows * point.z();
+  };
+  return isSeen(kColumns / 4) || isSeen(kColumns - 1 - kColumns / 4);
+}
+
+inline float TopView::greyAt(double u, double v) const {
+  // Beside the camera pixels are farther out than an int can say.
+  if (!(u >= 0 && v >= 0 && u < image_.cols - 1 && v < image_.rows - 1))
+    return std::numeric_limits<float>::quiet_NaN();
+  const int i = static_cast<int>(v), j = static_cast<int>(u);
+  if (mask_.at<uchar>(i, j) == 0) return std::numeric_limits<float>::quiet_NaN();
+  const float s = static_cast<float>(u - j), t = static_cast<float>(v - i);
+  const uchar *above = image_.ptr<uchar>(i) + j, *below = above + image_.step;
+  const float upper = static_cast<float>(above[0]) + s * static_cast<float>(above[1] - above[0]);
+  const float lower = static_cast<float>(below[0]) + s * static_cast<float>(below[1] - below[0]);
+  return upper + t * (lower - upper);
 }
 
 bool TopView::sample(double x, Across& row) const {
@@ -68,18 +93,6 @@ bool TopView::sample(double x, Across& row) const {
     inside += std::isnan(row[c]) ? 0 : 1;
   }
   return inside >= kLeastPicture * kColumns;
-}
-
-float TopView::greyAt(double u, double v) const {
-  // Beside the camera pixels are farther out than an int can say.
-  if (!(u >= 0 && v >= 0 && u < image_.cols - 1 && v < image_.rows - 1))
-    return std::numeric_limits<float>::quiet_NaN();
-  const int i = static_cast<int>(v), j = static_cast<int>(u);
-  if (mask_.at<uchar>(i, j) == 0) return std::numeric_limits<float>::quiet_NaN();
-  const double s = u - j, t = v - i;
-  const uchar *above = image_.ptr<uchar>(i) + j, *below = image_.ptr<uchar>(i + 1) + j;
-  return static_cast<float>((1 - t) * ((1 - s) * above[0] + s * above[1]) +
-                            t * ((1 - s) * below[0] + s * below[1]));
 }
 
 TopView::Across TopView::blockAround(int k) const {

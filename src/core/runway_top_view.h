@@ -37,6 +37,7 @@ class TopView {
  private:
   using Places = std::array<double, kColumns>;
 
+  bool mayBeSeen(double x) const;
   bool sample(double x, Across& row) const;
   float greyAt(double u, double v) const;
 

@@ -15,6 +15,9 @@ namespace uav_landing {
 namespace {
 
 constexpr double kRunwayShare = 0.25;  // of the lines, that are along the runway
+// Attempts end when this many pairs of lines that agree with the best direction must have been drawn, most
+// likely: not every one of them meets where it should.
+constexpr double kPairsOfBest = 20;
 
 /// The lines' numbers that most attempts need, by column.
 struct LineColumns {
@@ -74,6 +77,7 @@ class Score {
   /// of those that could not be on the ground if this were its horizon. Lines that pass nearly everywhere do
   /// not count, however many they are; of the pieces of one edge only the best does.
   double of(const Eigen::Vector3d& direction) {
+    length_ = 0;
     static const double kLikelyTurn = std::tan(0.5 * M_PI * kLikelyChance);
     const Eigen::Vector3d V = lines_.K() * direction;
     fitLines(columns_, V.x(), V.y(), V.z(), lines_.count(), fit_.data());
@@ -88,11 +92,14 @@ class Score {
       }
       const double turn = turns_[i] * lines_.all()[i].towards(V).norm() * per_pixel;
       if (turn >= kLikelyTurn) continue;
+      length_ += lines_.all()[i].half;
       double& best = agreeing_[edge_[i]];
       best = std::max(best, fit_[i] * evidence(2 / M_PI * std::atan(turn)));
     }
     return std::accumulate(agreeing_.begin(), agreeing_.end(), -impossible);
   }
+  /// Half the length of the lines that spoke for the last direction.
+  double halfLength() const { return length_; }
 
  private:
   /// Log-likelihood ratio of a line that passes, where a share of the lines does because they are the
@@ -123,6 +130,7 @@ class Score {
   std::vector<double> impossible_;  // evidence against V of a line above its horizon
   std::vector<double> fit_;         // of one attempt
   std::vector<double> agreeing_;    // by edge
+  double length_ = 0;
 };
 
 /// Draws lines, the longer the likelier.
@@ -140,6 +148,10 @@ class LineDraw {
     return static_cast<int>(std::lower_bound(cumulative_.begin(), cumulative_.end(), place) -
                             cumulative_.begin());
   }
+  /// How many draws make kPairsOfBest pairs of lines that are half as long as this in all.
+  double enough(double half_length) const {
+    return kPairsOfBest * std::pow(cumulative_.back() / half_length, 2);
+  }
 
  private:
   std::vector<double> cumulative_;
@@ -151,7 +163,7 @@ class LineDraw {
 std::optional<VanishingConsensus> findConsensus(const VanishingLines& lines) {
   Score score(lines);
   VanishingConsensus best{};
-  double best_score = std::numeric_limits<double>::lowest();
+  double best_score = std::numeric_limits<double>::lowest(), best_length = 0;
   int tried = 0, meetings = 0;
   const auto attempt = [&](int i, int j) {
     if (i == j) return;
@@ -162,6 +174,7 @@ std::optional<VanishingConsensus> findConsensus(const VanishingLines& lines) {
     const double s = score.of(direction);
     if (s <= best_score) return;
     best_score = s;
+    best_length = score.halfLength();
     best.direction = direction;
   };
   const int count = lines.count(), pairs = count * (count - 1) / 2;
@@ -172,7 +185,7 @@ std::optional<VanishingConsensus> findConsensus(const VanishingLines& lines) {
     best.meetings = meetings;
   } else {
     LineDraw draw(lines);
-    for (int k = 0; k < iterations; ++k) {
+    for (int k = 0; k < iterations && k < draw.enough(best_length); ++k) {
       const int i = draw.next(), j = draw.next();
       attempt(i, j);
     }
