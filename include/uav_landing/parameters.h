@@ -301,9 +301,10 @@ struct KalmanHeightParameters {
              "with integrity_risk even then");
     v.number("false_alarm_rate", false_alarm_rate, 1e-12, 0.1, "per test and pair",
              "probability that a test fails without a fault, as far as the claimed variances are true");
-    v.number("max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
-             "by which the aircraft can lose speed over the ground: a picture that stands still sooner is "
-             "that of a camera that hangs");
+    v.number(
+        "max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
+        "by which the aircraft can change its speed over the ground: a picture that stands still sooner is "
+        "that of a camera that hangs, a speed that seems to jump says that stamps are wrong");
     v.number("recovery_time", recovery_time, 0.0, 60.0, "s",
              "after contradictions that took the height away none may come for this long before it is valid "
              "again; 0: it is as soon as the tests pass");
