@@ -153,8 +153,9 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
   const auto list = [&out](const std::vector<std::pair<std::string, Times>>& all) {
     const char* separator = "";
     for (const auto& [name, times] : all) {
-      out << separator << "\"" << name << "\": {\"median\": " << times.median()
-          << ", \"percentile_99\": " << times.quantile(0.99) << ", \"worst\": " << times.quantile(1) << "}";
+      out << separator << "\"" << name << "\": {";
+      times.write(out);
+      out << "}";
       separator = ", ";
     }
   };

@@ -59,9 +59,9 @@ struct Cost {
               << " |\n";
   }
   void write(std::ostream& out, const char* name) const {
-    out << "\"" << name << "\": {\"median\": " << times.median()
-        << ", \"percentile_99\": " << times.quantile(0.99) << ", \"worst\": " << times.quantile(1)
-        << ", \"image_allocations\": " << perPair(image_allocations)
+    out << "\"" << name << "\": {";
+    times.write(out);
+    out << ", \"image_allocations\": " << perPair(image_allocations)
         << ", \"allocations\": " << perPair(allocations) << ", \"copied_bytes\": " << perPair(copied) << "}";
   }
 };

@@ -1,5 +1,6 @@
 #include "nodelet_chain.h"
 
+#include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
 
 #include <boost/make_shared.hpp>
@@ -33,14 +34,7 @@ std_msgs::Header header(const std::string& frame, const ros::Time& stamp) {
 }
 
 sensor_msgs::ImagePtr toImage(const cv::Mat& image, const std_msgs::Header& header) {
-  const auto message = boost::make_shared<sensor_msgs::Image>();
-  message->header = header;
-  message->width = static_cast<uint32_t>(image.cols);
-  message->height = static_cast<uint32_t>(image.rows);
-  message->step = message->width;
-  message->encoding = sensor_msgs::image_encodings::MONO8;
-  message->data.assign(image.datastart, image.dataend);
-  return message;
+  return cv_bridge::CvImage(header, sensor_msgs::image_encodings::MONO8, image).toImageMsg();
 }
 
 }  // namespace

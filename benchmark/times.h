@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <ctime>
+#include <ostream>
 #include <vector>
 
 namespace uav_landing {
@@ -19,6 +20,12 @@ struct Times {
                            static_cast<size_t>(share * static_cast<double>(sorted.size())))];
   }
   double median() const { return quantile(0.5); }
+
+  /// As members of a JSON object.
+  void write(std::ostream& out) const {
+    out << "\"median\": " << median() << ", \"percentile_99\": " << quantile(0.99)
+        << ", \"worst\": " << quantile(1);
+  }
 };
 
 /// CPU time of this process, ms: other processes do not count.

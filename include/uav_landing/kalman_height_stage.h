@@ -85,6 +85,10 @@ class KalmanHeightStage {
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);
   void testRegions(const Reconstruction& reconstruction);
+  /// The height known last or, without one, that of the pair.
+  double heightSoFar(const Reconstruction& reconstruction) const;
+  std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction) const;
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);

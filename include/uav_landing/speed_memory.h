@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "uav_landing/camera_step.h"
+
 namespace uav_landing {
 
 /// The camera's speed on the pairs before: a picture that stands still while the aircraft cannot have stopped
@@ -11,23 +13,18 @@ class SpeedMemory {
   /// max_deceleration: m/s^2, by which the aircraft can lose speed.
   explicit SpeedMemory(double max_deceleration) : max_deceleration_(max_deceleration) {}
 
-  /// By how much the camera moved since the pair before.
-  struct Step {
-    double duration = 0;           ///< s
-    double way = 0, variance = 0;  ///< m, m^2
-  };
   /// By how much less the camera moved than it must have, and the variance of that.
   struct Shortfall {
     double difference = 0, variance = 0;  ///< m, negative when it moved enough; m^2
   };
   /// Against the slower of the two steps known last, less what can be lost since. A third of that way is
   /// enough: late stamps make steps look longer or shorter than they were. None where it may have stopped.
-  std::optional<Shortfall> compare(const Step& step) const;
+  std::optional<Shortfall> compare(const CameraStep& step) const;
   /// A step that agrees, as compared. One that does not leaves the speed as it was: the aircraft does not
   /// slow down while its pictures stand still. After that as many steps in a row (up to three) must be long
   /// enough, whatever their variance: pictures that change seem to move now and then. After half a minute
   /// nothing is known.
-  void learn(const Step& step, bool agrees);
+  void learn(const CameraStep& step, bool agrees);
   /// The last steps known stood still, and no motion has been seen since.
   bool stands() const { return still_ > 0; }
   /// A pair that tells nothing of the motion. duration: s.

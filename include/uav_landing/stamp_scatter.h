@@ -3,6 +3,8 @@
 #include <deque>
 #include <optional>
 
+#include "uav_landing/camera_step.h"
+
 namespace uav_landing {
 
 /// How wrong stamps are, by the camera's speed over the ground: an aircraft's does not change from pair to
@@ -12,8 +14,9 @@ class StampScatter {
   /// acceleration: m/s^2, by which the aircraft can change its speed.
   explicit StampScatter(double acceleration) : acceleration_(acceleration) {}
 
-  /// A step. duration: s, by the stamps; way: m, of any direction, with its variance, m^2.
-  void follow(double duration, double way, double variance);
+  /// A step, its duration by the stamps; one that is not known.
+  void follow(const CameraStep& step);
+  void skip() { last_.reset(); }
   /// Variance of the durations over their squares, of the last seconds; 0 when they are as good as shows.
   double ofDuration() const;
   void reset() { *this = StampScatter(acceleration_); }

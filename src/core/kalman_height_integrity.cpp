@@ -155,18 +155,11 @@ std::string KalmanHeightStage::problemOfPair() {
 
 void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Motion& step,
                                        const Reconstruction& reconstruction) {
-  // Whether the motion is certain enough for an angle does not matter here: that of a picture that stands
-  // still is not.
-  const Eigen::Vector3d& t = step.translation_over_height;
-  const double height = filter_.initialised() ? filter_.state()[0] : reconstruction.height;
-  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
-  if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0))
-    return speed_.skip(std::max(T, 0.0));
-  // Of any direction: the length of a vector that is nothing but noise has none.
-  const SpeedMemory::Step way{step.duration, t.norm() * height, height * height * covariance.trace()};
-  const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(way);
+  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  if (!way) return speed_.skip(std::max(T, 0.0));
+  const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(*way);
   if (shortfall) tests_.addOneSided(Consistency::kStandstill, shortfall->difference, shortfall->variance);
-  speed_.learn(way, !tests_.failed(Consistency::kStandstill));
+  speed_.learn(*way, !tests_.failed(Consistency::kStandstill));
 }
 
 void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {
@@ -247,8 +240,8 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
                                        const ApproachAngleResult::Motion& step,
                                        const Reconstruction& reconstruction) {
   if (!parameters_.integrity_monitor) return;
-  const double height = (filter_.initialised() ? filter_.state()[0] : reconstruction.height) -
-                        reconstruction.bend;  // above the plane ahead, which the motion is of
+  // Above the plane ahead, which the motion is of.
+  const double height = heightSoFar(reconstruction) - reconstruction.bend;
   const Eigen::Vector3d& t = step.translation_over_height;
   const std::optional<Eigen::Vector3d> before = last_normal_;
   last_normal_.reset();

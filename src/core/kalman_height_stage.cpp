@@ -269,12 +269,26 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   }
 }
 
+double KalmanHeightStage::heightSoFar(const Reconstruction& reconstruction) const {
+  return filter_.initialised() ? filter_.state()[0] : reconstruction.height;
+}
+
+// Whether the motion is certain enough for an angle does not matter here: that of a picture that stands still
+// is not.
+std::optional<CameraStep> KalmanHeightStage::cameraStep(const ApproachAngleResult::Motion& step,
+                                                        const Reconstruction& reconstruction) const {
+  const Eigen::Vector3d& t = step.translation_over_height;
+  const double height = heightSoFar(reconstruction);
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0)) return std::nullopt;
+  // Of any direction: the length of a vector that is nothing but noise has none.
+  return CameraStep{step.duration, t.norm() * height, height * height * covariance.trace()};
+}
+
 void KalmanHeightStage::followStamps(const ApproachAngleResult::Motion& step,
                                      Reconstruction& reconstruction) {
-  const double height = filter_.initialised() ? filter_.state()[0] : reconstruction.height;
-  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
-  stamps_.follow(step.duration, step.translation_over_height.norm() * height,
-                 height * height * covariance.trace());
+  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  way ? stamps_.follow(*way) : stamps_.skip();
   if (!filter_.initialised() || !(step.duration > 0)) return;
   // A duration has the errors of two stamps in it.
   const double stamp_variance = 0.5 * stamps_.ofDuration() * step.duration * step.duration;

@@ -11,7 +11,7 @@ constexpr int kSteps = 3;           // that are asked for at most
 
 }  // namespace
 
-std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const Step& step) const {
+std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const CameraStep& step) const {
   if (!before_ || !last_) return std::nullopt;
   const Speed& slower = before_->mean < last_->mean ? *before_ : *last_;
   const double least = slower.mean - max_deceleration_ * (since_ + step.duration);
@@ -20,7 +20,7 @@ std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const Step& step) con
   return Shortfall{share * least - step.way, step.variance + share * share * slower.variance};
 }
 
-void SpeedMemory::learn(const Step& step, bool agrees) {
+void SpeedMemory::learn(const CameraStep& step, bool agrees) {
   if (!agrees) still_ = std::min(still_ + 1, kSteps);
   if (still_ > 0) {
     const std::optional<Shortfall> shortfall = compare(step);

@@ -19,8 +19,9 @@ constexpr double kInDifference = 3;
 
 }  // namespace
 
-void StampScatter::follow(double duration, double way, double variance) {
-  if (!(duration > 0 && variance >= 0 && way > kMoves * std::sqrt(variance))) return last_.reset();
+void StampScatter::follow(const CameraStep& step) {
+  const auto [duration, way, variance] = step;
+  if (!(duration > 0 && variance >= 0 && way > kMoves * std::sqrt(variance))) return skip();
   const Speed now{std::log(way / duration), variance / (way * way)};
   if (last_) {
     const double change = now.logarithm - last_->logarithm;

@@ -15,7 +15,7 @@ constexpr double kStddev = 0.01;  // m, of a step
 
 /// Shortfall over its stddev; not a number where there is no test. Learns what agrees.
 double fly(SpeedMemory& memory, double duration, double way) {
-  const SpeedMemory::Step step{duration, way, kStddev * kStddev};
+  const CameraStep step{duration, way, kStddev * kStddev};
   const auto shortfall = memory.compare(step);
   const double ratio = shortfall ? shortfall->difference / std::sqrt(shortfall->variance) : kUnknown;
   memory.learn(step, !(ratio > 4.4));

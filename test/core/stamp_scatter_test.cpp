@@ -23,8 +23,8 @@ double scatterOf(double stamp_stddev, double way_stddev, double claimed_way_stdd
   constexpr int kSteps = 2000;
   for (int i = 0; i < kSteps; ++i) {
     const double late = stamp_stddev * normal(random);
-    scatter.follow(kStep + late - before, kSpeed * kStep + way_stddev * normal(random),
-                   claimed_way_stddev * claimed_way_stddev);
+    scatter.follow({kStep + late - before, kSpeed * kStep + way_stddev * normal(random),
+                    claimed_way_stddev * claimed_way_stddev});
     before = late;
     sum += scatter.ofDuration() / kSteps;
   }
@@ -48,7 +48,7 @@ TEST(StampScatter, ASingleWrongMotionAndAGustAreNoWrongStamps) {
   double speed = kSpeed;
   for (int i = 0; i < 40; ++i) {
     speed += (i % 10 < 5 ? 1 : -1) * 2.5 * kStep;
-    scatter.follow(kStep, i == 20 ? 5 : speed * kStep, 1e-8);
+    scatter.follow({kStep, i == 20 ? 5 : speed * kStep, 1e-8});
     EXPECT_EQ(scatter.ofDuration(), 0) << i;
   }
 }
@@ -57,7 +57,7 @@ TEST(StampScatter, StandingStillTellsNothing) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   StampScatter scatter(3);
-  for (int i = 0; i < 100; ++i) scatter.follow(kStep, std::abs(0.01 * normal(random)), 1e-4);
+  for (int i = 0; i < 100; ++i) scatter.follow({kStep, std::abs(0.01 * normal(random)), 1e-4});
   EXPECT_EQ(scatter.ofDuration(), 0);
 }
 
