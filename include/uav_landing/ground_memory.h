@@ -22,6 +22,8 @@ class GroundMemory {
   /// A step of which the motion is not known: the usual one. R: rotation since the pair before as far as it
   /// is known, its error in pitch and roll: 1 sigma, rad. Some such steps in a row, and nothing is known.
   void coast(const Eigen::Matrix3d& R, double turn_stddev);
+  /// A step that the next motion has in it, as the pair shows the same picture once more.
+  void wait();
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
   /// known; measured: the plane of the points before that. Where the path goes is the direction of
   /// the last moves together.

@@ -37,6 +37,9 @@ class MotionTracker {
                  Timings& timings, const AttitudePrior& imu = {});
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
+  /// The image is the very one of the call before: nothing of the motion since, the window's is what it was,
+  /// and the next step is from when the image first came.
+  Result repeat() const;
   void reset();
   /// Corners followed to the frame before by the last process(), those that contradict the motion included.
   const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
@@ -79,6 +82,7 @@ class MotionTracker {
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;
   PathAngleFilter filter_;
+  ApproachAngleResult::Motion last_window_;
 };
 
 }  // namespace uav_landing

@@ -50,7 +50,7 @@ struct ApproachAngleStage::Implementation {
       result.step.failure = result.window.failure = result.failure;
       result.runway.failure = result.runway.threshold_failure = result.failure;
       if (result.failure.reason == Reason::kInputInvalid) return result;
-      tracker.skip(stamp, left);
+      if (!repeated(stereo)) tracker.skip(stamp, left);
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
@@ -60,10 +60,10 @@ struct ApproachAngleStage::Implementation {
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
       result.step.failure = result.window.failure = result.failure;
       result.runway.failure = result.runway.threshold_failure = result.failure;
-      tracker.skip(stamp, left);
+      if (!repeated(stereo)) tracker.skip(stamp, left);
       return result;
     }
-    followMotion(stamp, left, has_plane ? &stereo : nullptr, result);
+    followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     ScopedTimer timer(timings, "runway_position");
     result.runway =
         runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
@@ -141,12 +141,19 @@ struct ApproachAngleStage::Implementation {
     result.n_covariance = plane.normalCovariance();
   }
 
-  void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo,
+  // A picture once more was not taken at its stamp: it says nothing of the motion up to now, and the motion
+  // to the next one is over the time of both.
+  bool repeated(const StereoDepthResult& stereo) const {
+    return parameters.use_stereo && stereo.left_repeated;
+  }
+
+  void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo, bool repeated,
                     ApproachAngleResult& result) {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(*stereo) : groundCorners(left, result.n);
-    MotionTracker::Result motion =
-        tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
+    const MotionTracker::Result motion =
+        repeated ? tracker.repeat()
+                 : tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
     ScopedTimer timer(timings, "foe_and_angle");
     result.step = motion.step;
     result.window = motion.window;

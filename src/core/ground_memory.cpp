@@ -67,6 +67,10 @@ void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev) {
   }
 }
 
+void GroundMemory::wait() {
+  if (++coasts_ > kMostCoasts) reset();
+}
+
 void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                         const GroundPlane& plane, const Eigen::Vector3d& measured) {
   const Eigen::Vector3d n = plane.normal();

@@ -240,6 +240,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
                                        const ApproachAngleResult::Motion& step,
                                        const Reconstruction& reconstruction) {
   if (!parameters_.integrity_monitor) return;
+  if (stereo.left_repeated) return ground_.wait();
   // Above the plane ahead, which the motion is of.
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
   const Eigen::Vector3d& t = step.translation_over_height;

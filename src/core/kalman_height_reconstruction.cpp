@@ -122,6 +122,7 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   findPlane(stereo, approach, reconstruction);
   followBend(stereo, reconstruction);
   const Eigen::Vector3d n = reconstruction.plane.normal();
+  reconstruction.normal = {n, reconstruction.plane.normalCovariance()};
   reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;
   if (parameters_.height_source == HeightSource::kPlane) {
     reconstruction.height = reconstruction.below.height();
@@ -177,7 +178,6 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
   if (!plane.valid()) return attitude_.carry(stamp, turn);
   Reconstruction::Normal& average = reconstruction.normal;
-  average = {plane.normal(), plane.normalCovariance()};
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;

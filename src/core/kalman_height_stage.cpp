@@ -68,7 +68,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
   timings_.clear();
   const StereoDepthResult stereo = checked(rig_, given_stereo);
-  const ApproachAngleResult approach = checked(given_approach);
+  ApproachAngleResult approach = checked(given_approach);
+  if (stereo.left_repeated)  // seen from where the camera was before
+    approach.runway.failure =
+        approach.runway.threshold_failure = {Reason::kInconsistent, toString(Consistency::kRepeatedImage)};
   tests_.begin();
   LandingResult result;
   result.stamp = stereo.stamp;
@@ -78,8 +81,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     result.failure = followTime(stereo.stamp);
-    averageAttitude(stereo.stamp, approach, reconstruction, result);
-    followStamps(approach.step, reconstruction);
+    if (!stereo.left_repeated) {  // else the next motion is from the pair before
+      averageAttitude(stereo.stamp, approach, reconstruction, result);
+      followStamps(approach.step, reconstruction);
+    }
     useWidth(approach.runway, reconstruction, result);
     leaveOutSources(stereo, approach, reconstruction);
     testPair(T, stereo, approach, reconstruction, result);

@@ -75,13 +75,24 @@ MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameter
     : rig_(model.rig),
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
       parameters_(parameters),
-      filter_(parameters.angle_window) {}
+      filter_(parameters.angle_window) {
+  reset();
+}
+
+MotionTracker::Result MotionTracker::repeat() const {
+  Result result;
+  result.step.failure = {Reason::kNoMotion, "the image is the one of the pair before"};
+  result.window = last_window_;
+  return result;
+}
 
 void MotionTracker::reset() {
   for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
   past_.clear();
   last_step_.reset();
   filter_.reset();
+  last_window_ = {};
+  last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
 
 int MotionTracker::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
@@ -102,7 +113,11 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
   return frame;
 }
 
-void MotionTracker::skip(double stamp, const cv::Mat& left) { advance(takeFrame(stamp, left), Result()); }
+void MotionTracker::skip(double stamp, const cv::Mat& left) {
+  Result nothing;
+  nothing.window.failure = {Reason::kNotYet, "no motion to the frame before"};
+  advance(takeFrame(stamp, left), nothing);
+}
 
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                                              const Eigen::Matrix3d& normal_covariance,
@@ -323,6 +338,7 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
       frame.since = CameraMotion{step.R * frame.since->R, step.R * frame.since->t * unit + step.t};
     }
   }
+  last_window_ = result.window;
   last_step_.reset();
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
   past_.push_back(std::move(now));

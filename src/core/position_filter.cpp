@@ -97,11 +97,13 @@ void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vect
   }
   if (moved && std::isfinite(height) && direction_.allFinite() && normal.allFinite()) {
     const Eigen::Vector3d forward = (direction_ - normal.dot(direction_) * normal).normalized();
-    const Eigen::Vector3d t = step.translation_over_height * height;
+    // A step that began earlier: the rest of the time has been guessed before.
+    const double share = seconds > 0 && step.duration > seconds ? seconds / step.duration : 1;
+    const Eigen::Vector3d t = share * height * step.translation_over_height;
     const Eigen::Vector2d movement(forward.dot(t), forward.cross(normal).dot(t));
     x_.predict(movement.x(), kAlongError * t.norm());
     y_.predict(movement.y(), kAcrossError * t.norm());
-    if (step.duration > 0) velocity_ = movement / step.duration;
+    if (step.duration > 0) velocity_ = movement / (share * step.duration);
     return;
   }
   const Eigen::Vector2d movement = velocity_.value_or(Eigen::Vector2d::Zero()) * seconds;

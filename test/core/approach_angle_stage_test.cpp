@@ -99,6 +99,29 @@ void expectMotion(const ApproachAngleResult::Motion& motion, const Movement& tru
   }
 }
 
+TEST(ApproachAngleStage, ARepeatedPictureIsNoStandstillAndTheStepAfterItIsOverTheTimeOfBoth) {
+  const Scene scene(7);
+  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  ApproachAngleResult result;
+  for (int i = 0; i < 8; ++i) {
+    const bool repeated = i == 6;
+    const double stamp = i * kPeriod, taken = repeated ? stamp - kPeriod : stamp;
+    const Pose pose = path(taken);
+    StereoDepthResult stereo = scene.stereo(pose, stamp);
+    stereo.left_repeated = repeated;
+    result =
+        stage.process(stamp, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo);
+    if (!repeated) continue;
+    EXPECT_EQ(result.step.failure.reason, Reason::kNoMotion);
+    EXPECT_FALSE(result.failure) << result.failure.message();
+    EXPECT_NEAR(result.window.angle, 10 * kDegree, 0.5 * kDegree);
+  }
+  EXPECT_NEAR(result.step.duration, 2 * kPeriod, 1e-9);
+  const Pose now = path(7 * kPeriod);
+  expectMotion(result.step, Movement(path(5 * kPeriod), now), now.height(), "after the repeated picture");
+}
+
 TEST(ApproachAngleStage, MeasuresDescendingLevelDriftingAndRollingMotion) {
   struct Case {
     std::string name;

@@ -167,5 +167,30 @@ TEST(GroundMemory, ForgetsWhereTheMotionStaysUnknown) {
             {30, 31, 32, 33});
 }
 
+TEST(GroundMemory, AStepThatTheNextOneHasInItIsNoStepOfItsOwn) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  const Surface step = [](double x) { return x < 40 ? 1.0 : 0.0; };
+  GroundMemory memory;
+  double known = 0;
+  for (int x = 0; x <= 39; ++x) {
+    if (x % 2 == 1) {
+      memory.wait();
+      continue;
+    }
+    if (x > 0) memory.move(Eigen::Matrix3d::Identity(), 2 * forward);
+    const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
+    memory.look(rig, look(rig, x, 12, step), plane, plane.g);
+    if (const auto below = memory.below(down)) {
+      EXPECT_NEAR(below->height, 11, 0.1) << x;
+      ++known;
+    }
+  }
+  EXPECT_GT(known, 3);
+  for (int i = 0; i < 5; ++i) memory.wait();
+  EXPECT_FALSE(memory.below(down)) << "for how long nothing has moved nobody knows";
+}
+
 }  // namespace
 }  // namespace uav_landing

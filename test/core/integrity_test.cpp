@@ -307,6 +307,34 @@ TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTi
   EXPECT_EQ(result.consecutive_rejections, result.tests[0].consecutive_failures);
 }
 
+TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentAvailable) {
+  KalmanHeightStage stage(makeRig(), {});
+  const auto height = [](double stamp) { return 20 - 1.5 * (stamp - 1); };
+  LandingResult result;
+  for (int i = 0; i < 80; ++i) {
+    const double stamp = 1 + 0.05 * i;
+    const bool started = i > 30, repeated = started && i % 2 == 0;
+    const double h = height(repeated ? stamp - 0.05 : stamp);
+    StereoDepthResult stereo = stereoAt(stamp, h);
+    stereo.left_repeated = stereo.right_repeated = repeated;
+    ApproachAngleResult approach = levelFlight(stamp, h);
+    const double duration = started && i > 31 ? 0.1 : 0.05;
+    approach.step.duration = duration;
+    approach.step.translation_over_height =
+        duration / h * (20 * approach.step.translation_over_height.normalized() + 1.5 * approach.n);
+    if (repeated) {
+      approach.step = {};
+      approach.step.failure = {Reason::kNoMotion, ""};
+    }
+    result = stage.process(stereo, approach);
+    if (i < 15) continue;
+    EXPECT_TRUE(result.height_valid) << i << ": " << result.failure.message();
+    EXPECT_NEAR(result.height, height(stamp), 0.05) << i;
+    EXPECT_NEAR(result.vertical_speed, -1.5, 0.1) << i;
+    EXPECT_EQ(failedTests(result.tests), repeated ? "repeated_image" : "") << i;
+  }
+}
+
 TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) {
   KalmanHeightStage stage(makeRig(), {});
   const auto process = [&](double stamp, double agreement) {

@@ -99,6 +99,18 @@ TEST(MotionTracker, MeasuresTheStepFromASkippedFrame) {
   EXPECT_FALSE(result.window.failure);
 }
 
+TEST(MotionTracker, MeasuresTheStepFromWhereARepeatedImageFirstCame) {
+  Scene scene;
+  const auto at = [](double t) { return makePose(-1 + t, 1.8 - 0.1 * t); };
+  for (const double t : {0.0, 0.1, 0.2}) scene.process(t, at(t));
+  const MotionTracker::Result last = scene.process(0.3, at(0.3)), again = scene.tracker.repeat();
+  EXPECT_EQ(again.step.failure.reason, Reason::kNoMotion);
+  EXPECT_EQ(again.window.angle, last.window.angle) << "the path is the one seen last";
+  const MotionTracker::Result next = scene.process(0.5, at(0.5));
+  EXPECT_NEAR(next.step.duration, 0.2, 1e-9);
+  expectStep(next, at(0.3), at(0.5));
+}
+
 TEST(MotionTracker, LooksBackNoLongerThanItsWindow) {
   Scene scene;
   scene.parameters.angle_window = 0.3;

@@ -82,6 +82,38 @@ TEST(PositionFilter, FollowsTheMotionWithGrowingVarianceWhileNothingIsSeen) {
   }
 }
 
+TEST(PositionFilter, AStepOverTwoPairsOfWhichTheFirstWasGuessedCountsOnce) {
+  PositionFilter filter;
+  LandingResult result;
+  const auto process = [&](double stamp, double duration, bool seen) {
+    ApproachAngleResult approach;
+    approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+    if (duration > 0) {
+      approach.step.duration = duration;
+      approach.step.rotation.setZero();
+      approach.step.translation_over_height = 20 * duration / kHeight * Eigen::Vector3d::UnitZ();
+    } else {
+      approach.step.failure = {Reason::kNoMotion, ""};
+    }
+    approach.runway.failure = approach.runway.threshold_failure = {Reason::kNoRunway, ""};
+    if (seen) {
+      approach.runway.failure = approach.runway.threshold_failure = {};
+      approach.runway.x = -100 / kHeight;
+      approach.runway.y = 0;
+      approach.runway.width = 3;
+      approach.runway.x_variance = approach.runway.y_variance = approach.runway.width_variance = 1e-6;
+    }
+    result = {};
+    result.stamp = stamp;
+    filter.process(approach, Eigen::Vector3d::UnitY(), kHeight, 1e-4, result);
+  };
+  process(1, 0.1, true);
+  process(1.1, 0.1, false);  // 2 m
+  process(1.2, 0, false);    // the picture once more: 2 m by the speed
+  process(1.3, 0.2, false);  // 4 m since 1.1 s
+  EXPECT_NEAR(result.x, -94, 0.1);
+}
+
 TEST(PositionFilter, ASystematicErrorDoesNotAverageOut) {
   Flight flight;
   flight.x_error = flight.x_systematic = 3;
