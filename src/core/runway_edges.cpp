@@ -18,7 +18,11 @@ constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edg
 constexpr double kLeastMargin = 1.4;      // evidence over that of any other symmetry
 constexpr double kLeastWidth = 0.3;       // heights: narrower is a stripe
 constexpr double kOtherWidth =
-    1.5;  // ratio between the widths of two pairs that are not the sides of one line
+    1.5;                         // ratio between the widths of two pairs that are not the sides of one line
+constexpr double kStripe = 0.1;  // of the runway's width: the centre line is narrower
+constexpr double kLeastDash = 0.1;       // log(far / near) of a dash of 30 m as far as 300 m
+constexpr double kThinner = 2;           // times, by which a line may look thinner where it is not seen
+constexpr double kHalf = 0.5;            // of its extent
 constexpr double kHalfTolerance = 0.15;  // of a pair's width: between marks and edges side by side
 constexpr double kFarTolerance = 0.01;   // rad about the vanishing point, by which a thin far line may be off
 constexpr double kUnbroken = 0.9;        // share of an edge's length that is seen
@@ -101,6 +105,18 @@ class Search {
     const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
     return l.begins == r.begins && (!l.begins || std::abs(std::log(l.near / r.near)) < kSameBeginning);
   }
+  /// Whether these are two painted lines with nothing as far again beyond either, where such a line would be
+  /// seen: if one of them were the centre line of a wider runway, its other edge line were there.
+  bool areOutermost(const Symmetry& symmetry, const MirroredPair& outermost, const Outlook& outlook) const {
+    const auto isLong = [&](bool bright) {
+      return std::any_of(symmetry.pairs.begin(), symmetry.pairs.end(), [&](const MirroredPair* pair) {
+        return pair->extent >= kLeastExtent && edges_[pair->left].brighter_left != bright;
+      });
+    };
+    const double left = edges_[outermost.left].lateral, right = edges_[outermost.right].lateral;
+    return isLong(true) && isLong(false) && isBare(2 * left - right, outermost, outlook) &&
+           isBare(2 * right - left, outermost, outlook);
+  }
   /// Whether these are two unbroken lines alike, each with both its sides. A single dash is not the
   /// counterpart of a line that goes on.
   bool areTwoLines(const Symmetry& symmetry) const {
@@ -126,11 +142,41 @@ class Search {
 
   /// Whether an edge, long beside the pair's, lies there.
   bool hasLongEdge(double lateral, const MirroredPair& pair) const {
+    return hasEdge(edges_, lateral, pair, std::max(kLong * pair.extent, kLeastExtent));
+  }
+
+  static bool hasEdge(const std::vector<GroundEdge>& edges, double lateral, const MirroredPair& pair,
+                      double extent) {
     const double tolerance = kHalfTolerance * pair.width + kFarTolerance * (1 + lateral * lateral);
-    return std::any_of(edges_.begin(), edges_.end(), [&](const GroundEdge& edge) {
-      return edge.extent >= std::max(kLong * pair.extent, kLeastExtent) &&
-             std::abs(edge.lateral - lateral) < tolerance;
+    return std::any_of(edges.begin(), edges.end(), [&](const GroundEdge& edge) {
+      return edge.extent >= extent && std::abs(edge.lateral - lateral) < tolerance;
     });
+  }
+
+  /// Whether a line like those of the pair would be seen there, and none is.
+  bool isBare(double lateral, const MirroredPair& pair, const Outlook& outlook) const {
+    const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
+    // The same line looks the thinner the farther to the side.
+    const double nearer = std::min(std::abs(l.lateral), std::abs(r.lateral));
+    if (std::hypot(1, lateral) > kThinner * std::hypot(1, nearer)) return false;
+    const double near = std::max(l.near, r.near), far = std::min(l.far, r.far);
+    return seenExtent(lateral, near, far, outlook.rig) > std::max(kHalf * pair.extent, kLeastExtent) &&
+           !hasEdge(outlook.edges, lateral, pair, kLeastDash);
+  }
+
+  /// log(far / near) of what the left camera sees of a line along the runway between these distances.
+  double seenExtent(double lateral, double near, double far, const StereoRig& rig) const {
+    constexpr int kSteps = 16;
+    int seen = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double forward = near * std::pow(far / near, (i + 0.5) / kSteps);
+      const Eigen::Vector3d ray = axes_.down + forward * axes_.forward + lateral * axes_.left;
+      if (ray.z() <= 0) continue;
+      const Eigen::Vector2d pixel = rig.project(ray);
+      seen += static_cast<int>(pixel.x() > 0 && pixel.x() < rig.size.width && pixel.y() > 0 &&
+                               pixel.y() < rig.size.height);
+    }
+    return std::log(far / near) * seen / kSteps;
   }
 
   double toleranceOf(const MirroredPair& a, const MirroredPair& b) const {
@@ -189,13 +235,25 @@ const MirroredPair* outermostPair(const Symmetry& symmetry, double width, double
   return best;
 }
 
-/// Whether there are two independent pairs: any two lines are symmetric about their middle, by both their
-/// sides.
-bool hasTwoWidths(const Symmetry& symmetry) {
-  const auto [narrowest, widest] =
-      std::minmax_element(symmetry.pairs.begin(), symmetry.pairs.end(),
-                          [](const MirroredPair* l, const MirroredPair* r) { return l->width < r->width; });
-  return (*widest)->width > kOtherWidth * (*narrowest)->width;
+/// Whether more than two lines share the symmetry. Any two are symmetric about their middle, by both their
+/// sides, and a piece of texture or the sides of one mark may be, too. But long pairs of very different
+/// widths are not the sides of two lines, nor are three long pairs, as of edge lines with the edges of the
+/// pavement beyond; a narrow bright stripe just in the middle is the centre line, and two marks or more, as
+/// bars of a threshold, are not there by chance.
+bool hasMoreThanTwoLines(const Symmetry& symmetry, const MirroredPair& outermost,
+                         const std::vector<GroundEdge>& edges) {
+  double narrowest = outermost.width, widest = outermost.width;
+  int lines = 0, marks = 0;
+  for (const MirroredPair* pair : symmetry.pairs) {
+    if (pair->extent < kLeastDash) continue;
+    if (pair->width < kStripe * outermost.width && !edges[pair->left].brighter_left) return true;
+    if (kOtherWidth * pair->width < outermost.width) ++marks;
+    if (pair->extent < kLeastExtent) continue;
+    narrowest = std::min(narrowest, pair->width);
+    widest = std::max(widest, pair->width);
+    ++lines;
+  }
+  return lines > 2 || marks > 1 || widest > kOtherWidth * narrowest;
 }
 
 Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}; }
@@ -203,7 +261,8 @@ Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}
 }  // namespace
 
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
-                                             double width, const std::optional<ExpectedCentre>& expected) {
+                                             double width, const std::optional<ExpectedCentre>& expected,
+                                             const Outlook* outlook) {
   const Search search(axes, edges);
   const double longest = search.longest();
   const std::vector<Symmetry> found = search.symmetries();
@@ -217,7 +276,9 @@ Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::
   if (width <= 0 && search.isHalf(outermost))
     return tl::make_unexpected(noRunway("the runway reaches as far again beyond its seeming edges"));
   if (!expected) {
-    if (width <= 0 && !hasTwoWidths(*best) && !search.areTwoLines(*best) && !search.isStrip(outermost))
+    const bool outermost_lines = outlook != nullptr && search.areOutermost(*best, outermost, *outlook);
+    if (width <= 0 && !hasMoreThanTwoLines(*best, outermost, edges) && !search.areTwoLines(*best) &&
+        !search.isStrip(outermost) && !outermost_lines)
       return tl::make_unexpected(noRunway("one pair of lines alone does not make a runway"));
     for (const Symmetry& other : found) {
       if (other.score * kLeastMargin <= best->score) break;

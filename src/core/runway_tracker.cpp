@@ -129,7 +129,8 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   const Edges edges = edgesOf(axes, direction, height);
   const double width =
       std::isfinite(height) && parameters_.runway_width > 0 ? parameters_.runway_width / height : 0;
-  Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt);
+  const Outlook outlook{model_.rig, edges.either};
+  Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt, &outlook);
   if (centre_.confirmations() >= kConfirmations) {
     const ExpectedCentre expected = *centre_.expected(kSlack * width_.value());
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;

@@ -123,6 +123,65 @@ TEST(RunwayEdges, OtherLinesBeyondDoNotHideTheRunway) {
   EXPECT_NEAR(found->centre, 0, 1e-6);
 }
 
+/// An edge line and the centre line of a wider runway, which looks as long as that does but is dashed.
+std::vector<GroundEdge> twoLines(double half = 1) {
+  std::vector<GroundEdge> edges;
+  addStripe(edges, half, 0.05, 2.0);
+  addStripe(edges, -half, 0.05, 1.5);
+  for (GroundEdge& e : edges)
+    if (e.lateral < 0) e.far *= 2;
+  return edges;
+}
+
+TEST(RunwayEdges, TextureOrOneMarkBetweenTwoLinesDoesNotMakeThemARunway) {
+  std::vector<GroundEdge> edges = twoLines();
+  EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt));
+  addStripe(edges, 0, 5, 0.02);
+  EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt)) << "short pieces of grass";
+  addStripe(edges, 0, 0.5, 0.25);
+  EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt)) << "an aiming point";
+}
+
+TEST(RunwayEdges, ACentreLineOrBarsBetweenTwoLinesDo) {
+  std::vector<GroundEdge> dashes = twoLines();
+  addStripe(dashes, 0, 0.04, 0.15);
+  const auto middle = findRunwayEdges(level(1e-4), dashes, 0, std::nullopt);
+  ASSERT_TRUE(middle) << middle.error().message();
+  EXPECT_NEAR(middle->centre, 0, 1e-6);
+  std::vector<GroundEdge> bars = twoLines();
+  for (const double side : {-0.6, -0.3, 0.3, 0.6}) addStripe(bars, side, 0.12, 0.15);
+  const auto threshold = findRunwayEdges(level(1e-4), bars, 0, std::nullopt);
+  ASSERT_TRUE(threshold) << threshold.error().message();
+  EXPECT_NEAR(threshold->centre, 0, 1e-6);
+}
+
+TEST(RunwayEdges, EdgesOfThePavementBeyondTwoLinesMakeThemARunway) {
+  std::vector<GroundEdge> edges = twoLines();
+  edges.push_back(edge(1.2, true, 0.9));
+  edges.push_back(edge(-1.2, false, 0.9));
+  EXPECT_TRUE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt));
+}
+
+TEST(RunwayEdges, TwoLinesWithRoomBeyondAreARunwayAndWithoutNot) {
+  // 90 degrees from side to side: what lies 1.2 to the side is in the picture from 1.2 ahead on.
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 320;
+  rig.cx = 320;
+  rig.cy = 0;
+  const std::vector<GroundEdge> edges = twoLines(0.4);
+  const auto found = [&](const std::vector<GroundEdge>& all) {
+    const Outlook outlook{rig, all};
+    return static_cast<bool>(findRunwayEdges(level(1e-4), edges, 0, std::nullopt, &outlook));
+  };
+  EXPECT_TRUE(found(edges)) << "the edge line 1.2 to the side of a wider runway would be seen";
+  std::vector<GroundEdge> more = edges;
+  more.push_back(edge(-1.15, true, 0.2));
+  EXPECT_FALSE(found(more)) << "something is there";
+  rig.fx = rig.fy = 2000;
+  EXPECT_FALSE(found(edges)) << "one does not see as far to the side";
+}
+
 TEST(RunwayEdges, ADarkStripThatBeginsInThePictureIsOne) {
   std::vector<GroundEdge> edges{edge(1.5, true), edge(-0.5, false)};
   EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt)) << "it may begin anywhere";
