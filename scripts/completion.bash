@@ -28,5 +28,9 @@ _uav_landing_script() {
 }
 
 complete -o default -F _uav_landing_rosrun rosrun
-complete -o default -F _uav_landing_script scripts/calibrate scripts/process_bags scripts/accuracy scripts/plot_estimates \
-  scripts/record_estimates scripts/print_board scripts/flightgear
+for _uav_landing_file in "${BASH_SOURCE[0]%/*}"/*; do
+  if [[ -f $_uav_landing_file && -x $_uav_landing_file ]]; then
+    complete -o default -F _uav_landing_script "scripts/${_uav_landing_file##*/}"
+  fi
+done
+unset _uav_landing_file

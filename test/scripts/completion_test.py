@@ -1,3 +1,4 @@
+import os
 import unittest
 
 from project import SOURCE_DIR, run
@@ -27,6 +28,14 @@ class CompletionTest(unittest.TestCase):
 
     def test_options_of_scripts_come_from_their_help(self):
         self.assertEqual(completions("_uav_landing_script", "scripts/calibrate", "--sq"), ["--square"])
+
+    def test_every_script_completes(self):
+        result = run(["bash", "-c", ". scripts/completion.bash; complete -p"], cwd=str(SOURCE_DIR))
+        completed = {line.split()[-1] for line in result.stdout.splitlines() if "_uav_landing_script" in line}
+        scripts = {f"scripts/{file.name}" for file in (SOURCE_DIR / "scripts").iterdir()
+                   if file.is_file() and os.access(str(file), os.X_OK)}
+        self.assertEqual(completed, scripts)
+        self.assertIn("scripts/process_bags", scripts)
 
     def test_other_words_are_left_to_file_names(self):
         self.assertEqual(completions("_uav_landing_rosrun", "rosrun", "uav_landing", "process_bag", "fli"), [])

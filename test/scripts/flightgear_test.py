@@ -22,6 +22,16 @@ class FlightgearTest(unittest.TestCase):
     def test_wrong_usage(self):
         self.assertEqual(run([PROGRAM]).returncode, 2)
 
+    def test_launch_file_starts_the_script_with_a_bag_to_play(self):
+        result = run(["roslaunch", "--args", "flightgear", "uav_landing", "flightgear.launch", "output:=/there/landing"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        command = result.stdout.split()
+        self.assertEqual(Path(command[0]).resolve(), PROGRAM)
+        self.assertEqual(command[1:6], ["--output", "/there/landing", "--bag", "/there/landing.bag", "--play"])
+        # What roslaunch appends is no wrong usage: only what is missing is complained of.
+        result = run(["/usr/bin/python3", *command], env=dict(os.environ, PATH="/nonexistent"))
+        self.assertEqual((result.returncode, len(result.stderr.splitlines())), (1, 1), result.stderr)
+
     def test_places_along_the_runway_are_metres_on_the_ellipsoid(self):
         runway = SourceFileLoader("flightgear", str(PROGRAM)).load_module().Runway(0.0, 10.0, 90.0)
         latitude, longitude = runway.place(1000.0)

@@ -91,6 +91,41 @@ class ProcessBagsTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("\t:\t", (self.output / "jobs.log").read_text())
 
+    def test_bags_are_spread_over_machines_by_ssh(self):
+        """With a stand-in for ssh, which runs the command here and notes the machine."""
+        ssh = self.bags / "ssh"
+        ssh.write_text('#!/bin/sh\nwhile [ "${1#-}" != "$1" ]; do shift; done\n'
+                       f'echo "$1" >>"{self.bags}/machines"\nshift\n[ "$1" != -- ] || shift\nexec sh -c "$*"\n')
+        ssh.chmod(0o755)
+        for name in ("first", "it's second"):
+            self.bag(f"{name}.bag")
+        (self.bags / "broken.bag").write_bytes(b"no bag at all")
+        hosts = self.bags / "hosts"
+        hosts.write_text("1/north\n1/south\n")
+        result = run([PROCESS_BAGS, self.bags, "--output", self.output, "--hosts", hosts],
+                     env=dict(os.environ, PARALLEL_SSH=str(ssh)))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("failed: broken: ", result.stderr)
+        self.assertEqual({name: row["result"] for name, row in self.rows().items()},
+                         {"first": "done", "it's second": "done", "broken": "failed"})
+        machines = (self.bags / "machines").read_text().split()
+        self.assertEqual(set(machines), {"north", "south"})
+        self.assertIn("\tsouth\t", (self.output / "jobs.log").read_text())
+
+    def test_an_interrupted_batch_goes_on_where_it_was(self):
+        for name in ("a", "b", "c"):
+            self.bag(f"{name}.bag")
+        self.assertEqual(self.process(self.bags).returncode, 0)
+        before = (self.output / "a.csv").stat().st_mtime_ns
+        # As after a kill: one bag half done under its temporary name, one not begun.
+        (self.output / "b.csv").rename(self.output / "b.csv.part")
+        (self.output / "c.csv").unlink()
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 of 3 bags are done already", result.stdout)
+        self.assertEqual((self.output / "a.csv").stat().st_mtime_ns, before)
+        self.assertEqual({row["result"] for row in self.rows().values()}, {"done"})
+
     def test_bad_inputs_are_named(self):
         for inputs, complaint in (([self.bags / "none.bag"], "none.bag: no such file or folder"),
                                   ([self.bags], "no *.bag in this folder")):
