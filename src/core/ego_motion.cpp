@@ -9,105 +9,13 @@
 #include <random>
 #include <string>
 
+#include "motion_rows.h"
 #include "rotation.h"
 
 namespace uav_landing {
 namespace {
 
-using Vector9d = Eigen::Matrix<double, 9, 1>;
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-
 constexpr int kRansacIterations = 80;
-// Distance, in pixels, by which a match may miss a motion in the consensus step.
-constexpr double kTolerance = 2.0;
-constexpr double kTukey = 4.5;
-
-// The unknowns: rotation now -> then (perturbed on the left), translation, ground normal.
-struct State {
-  Eigen::Matrix3d Q;
-  Eigen::Vector3d t, n;
-
-  State apply(const Vector9d& step) const {
-    return {rotationMatrix(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
-  }
-};
-
-// Residual of one match with its Jacobian by (rotation, t, n).
-struct Linearised {
-  bool usable = false;
-  Eigen::Vector2d residual;
-  Eigen::Matrix<double, 2, 9, Eigen::RowMajor> jacobian;
-  Eigen::Matrix2d covariance;
-};
-
-class Problem {
- public:
-  Problem(const StereoRig& rig, const std::vector<TemporalMatch>& matches) : rig_(rig), matches_(matches) {
-    rays_.reserve(matches.size());
-    for (const TemporalMatch& match : matches) rays_.push_back(rig.ray(match.now.x(), match.now.y()));
-  }
-
-  size_t size() const { return matches_.size(); }
-
-  double squaredError(const State& state, size_t i) const {
-    const double w = inverseDepth(state, i);
-    const Eigen::Vector3d y = state.Q * (rays_[i] + w * state.t);
-    if (!(y.z() > 1e-6)) return 1e9;
-    return (matches_[i].then - rig_.project(y)).squaredNorm();
-  }
-
-  Linearised linearise(const State& state, size_t i) const {
-    Linearised result;
-    const TemporalMatch& match = matches_[i];
-    const double w = inverseDepth(state, i);
-    const Eigen::Vector3d y = state.Q * (rays_[i] + w * state.t);
-    if (!(y.z() > 1e-6)) return result;
-    Eigen::Matrix<double, 2, 3> projection;
-    projection << rig_.fx / y.z(), 0, -rig_.fx * y.x() / (y.z() * y.z()), 0, rig_.fy / y.z(),
-        -rig_.fy * y.y() / (y.z() * y.z());
-    const Eigen::Vector3d Qt = state.Q * state.t;
-    result.residual = match.then - rig_.project(y);
-    result.jacobian.leftCols<3>() = -projection * crossMatrix(y);
-    result.jacobian.middleCols<3>(3) = projection * state.Q * w;
-    result.jacobian.rightCols<3>().setZero();
-    result.covariance = match.covariance;
-    if (match.on_plane) {
-      result.jacobian.rightCols<3>() = projection * Qt * rays_[i].transpose();
-    } else {
-      const Eigen::Vector2d by_depth = projection * Qt * match.inverse_depth_stddev;
-      result.covariance += by_depth * by_depth.transpose();
-    }
-    result.usable = true;
-    return result;
-  }
-
- private:
-  double inverseDepth(const State& state, size_t i) const {
-    return matches_[i].on_plane ? state.n.dot(rays_[i]) : matches_[i].inverse_depth;
-  }
-
-  const StereoRig& rig_;
-  const std::vector<TemporalMatch>& matches_;
-  std::vector<Eigen::Vector3d> rays_;
-};
-
-// How well a motion is supported: votes weighted by closeness, and how many matches it fits well.
-struct Support {
-  double votes = 0;
-  int close = 0;
-};
-
-Support support(const Problem& problem, const State& state) {
-  constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance
-  Support result;
-  for (size_t i = 0; i < problem.size(); ++i) {
-    const double ratio = problem.squaredError(state, i) / (kTolerance * kTolerance);
-    if (ratio >= 1) continue;
-    result.votes += 1 - ratio;
-    if (ratio < kClose) ++result.close;
-  }
-  return result;
-}
 
 // Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
 // the matches is right.
@@ -118,17 +26,10 @@ double triplesNeeded(double share) {
 }
 
 // Rotation and translation that carry three matches exactly, by two Newton steps with the normal held.
-bool solveTriple(const Problem& problem, const std::array<size_t, 3>& chosen, State& state) {
+bool solveTriple(MotionRows& triple, MotionState& state) {
   for (int iteration = 0; iteration < 2; ++iteration) {
-    Eigen::Matrix<double, 6, 6> A;
-    Eigen::Matrix<double, 6, 1> b;
-    for (int k = 0; k < 3; ++k) {
-      const Linearised row = problem.linearise(state, chosen[k]);
-      if (!row.usable) return false;
-      A.middleRows<2>(2 * k) = row.jacobian.leftCols<6>();
-      b.segment<2>(2 * k) = row.residual;
-    }
-    const Eigen::Matrix<double, 6, 1> x = A.partialPivLu().solve(b);
+    triple.linearise(state);
+    const Eigen::Matrix<double, 6, 1> x = triple.solveExactly();
     if (!x.allFinite() || x.head<3>().norm() > 0.5) return false;
     Vector9d step = Vector9d::Zero();
     step.head<6>() = x;
@@ -137,103 +38,31 @@ bool solveTriple(const Problem& problem, const std::array<size_t, 3>& chosen, St
   return true;
 }
 
-State bestByConsensus(const Problem& problem, const State& start) {
-  State best = start;
-  Support most = support(problem, start);
+MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
+  MotionState best = start;
+  MotionSupport most = all.support(start);
+  static thread_local MotionRows triple;  // kept for its memory
   std::mt19937 random(20100602u);
-  double needed = triplesNeeded(double(most.close) / problem.size());
+  double needed = triplesNeeded(double(most.close) / all.size());
   for (int iteration = 0; iteration < std::min<double>(needed, kRansacIterations); ++iteration) {
-    const std::array<size_t, 3> chosen = {random() % problem.size(), random() % problem.size(),
-                                          random() % problem.size()};
+    const std::array<size_t, 3> chosen = {random() % all.size(), random() % all.size(),
+                                          random() % all.size()};
     if (chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2]) continue;
-    State candidate = best;
-    if (!solveTriple(problem, chosen, candidate)) continue;
-    const Support found = support(problem, candidate);
+    MotionState candidate = best;
+    triple.assign(all, chosen);
+    if (!solveTriple(triple, candidate)) continue;
+    const MotionSupport found = all.support(candidate);
     if (found.votes > most.votes) {
       most = found;
       best = candidate;
-      needed = triplesNeeded(double(most.close) / problem.size());
+      needed = triplesNeeded(double(most.close) / all.size());
     }
   }
   return best;
 }
 
-// Robust size of the whitened residuals, at least 1. ratios: squared whitened residuals, reordered.
-double residualScale(std::vector<double>& ratios) {
-  if (ratios.empty()) return 1;
-  const auto middle = ratios.begin() + ratios.size() / 2;
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  // The median of chi-square with two degrees of freedom is 2 ln 2.
-  return std::max(1.0, std::sqrt(*middle / (2 * std::log(2.0))));
-}
-
-// Sums of the normal equations. Only the lower triangle of the information is filled.
-struct Normal {
-  Matrix9d information = Matrix9d::Zero();
-  Vector9d right = Vector9d::Zero();
-  int count = 0;
-
-  // Adds weight J' J and weight J' r of one whitened residual.
-  void add(const Eigen::Matrix<double, 1, 9>& jacobian, double residual, double weight) {
-    for (int j = 0; j < 9; ++j) {
-      const double scaled = weight * jacobian[j];
-      right[j] += scaled * residual;
-      for (int i = j; i < 9; ++i) information(i, j) += scaled * jacobian[i];
-    }
-  }
-};
-
-// The problem linearised at a state, with all rows whitened by their covariances. Keeps its memory.
-class WhitenedRows {
- public:
-  void assign(const Problem& problem, const State& state) {
-    rows_.resize(problem.size());
-    ratios_.clear();
-    for (size_t i = 0; i < problem.size(); ++i) {
-      Linearised& row = rows_[i] = problem.linearise(state, i);
-      if (!row.usable) continue;
-      const bool near = row.residual.squaredNorm() <= 4 * kTolerance * kTolerance;
-      whiten(row);
-      if (near) ratios_.push_back(row.residual.squaredNorm());
-    }
-    scale_ = residualScale(ratios_);
-  }
-
-  Normal accumulate(std::vector<char>& inliers) const {
-    Normal sums;
-    const double unit = 1 / (scale_ * scale_);
-    for (size_t i = 0; i < rows_.size(); ++i) {
-      const Linearised& row = rows_[i];
-      inliers[i] = 0;
-      if (!row.usable) continue;
-      const double ratio = unit * row.residual.squaredNorm() / (kTukey * kTukey);
-      if (ratio >= 1) continue;
-      const double weight = unit * (1 - ratio) * (1 - ratio);
-      for (int k = 0; k < 2; ++k) sums.add(row.jacobian.row(k), row.residual[k], weight);
-      inliers[i] = 1;
-      ++sums.count;
-    }
-    return sums;
-  }
-
- private:
-  // Multiplies by the inverse of the covariance's Cholesky factor.
-  static void whiten(Linearised& row) {
-    const double a = std::sqrt(row.covariance(0, 0)), b = row.covariance(1, 0) / a;
-    const double c = std::sqrt(std::max(1e-12, row.covariance(1, 1) - b * b));
-    row.residual[0] /= a;
-    row.residual[1] = (row.residual[1] - b * row.residual[0]) / c;
-    row.jacobian.row(0) /= a;
-    row.jacobian.row(1) = (row.jacobian.row(1) - b * row.jacobian.row(0)) / c;
-  }
-
-  std::vector<Linearised> rows_;
-  std::vector<double> ratios_;
-  double scale_ = 1;
-};
-
 // Adds a rotation known beforehand to the normal equations: as a perturbation of Q on the left.
-void addRotation(const RotationPrior& prior, const State& state, Normal& sums) {
+void addRotation(const RotationPrior& prior, const MotionState& state, MotionNormal& sums) {
   const Eigen::Matrix3d information = (state.Q * prior.covariance * state.Q.transpose()).inverse();
   sums.information.topLeftCorner<3, 3>() += information;
   sums.right.head<3>() += information * rotationVector(prior.R.transpose() * state.Q.transpose());
@@ -259,16 +88,16 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                                                    " corners followed, at least " +
                                                                    std::to_string(min_matches) + " needed"});
   }
-  const Problem problem(rig, matches);
-  State state = bestByConsensus(problem, {start.R.transpose(), start.t, normal});
+  static thread_local MotionRows rows;  // kept, as they are large
+  rows.assign(rig, matches);
+  MotionState state = bestByConsensus(rows, {start.R.transpose(), start.t, normal});
   const Eigen::Matrix3d prior = priorInformation(normal, normal_covariance);
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
-  static thread_local WhitenedRows rows;  // kept, as they are large
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    rows.assign(problem, state);
-    Normal sums = rows.accumulate(result.inliers);
+    rows.linearise(state);
+    MotionNormal sums = rows.accumulate(result.inliers);
     result.inlier_count = sums.count;
     if (sums.count < min_matches) {
       return tl::make_unexpected(Failure{
