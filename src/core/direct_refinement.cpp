@@ -32,20 +32,6 @@ constexpr double kLeastShare = 0.5;
 // By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
 constexpr double kLargestFactor = 2.0;
 
-// The error (pixels) with which the size of the residuals is as claimed. scale: of the residuals over what is
-// claimed with an error assumed.
-template <class Scale>
-double commonError(Scale&& scale) {
-  constexpr int kHalvings = 8;
-  if (scale(0.0) <= 1) return 0;
-  double low = 0, high = kLargestShift;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (scale(middle) > 1 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 // Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor
 // shows in the noisier half of the samples, the error in the other.
@@ -55,24 +41,23 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
   const auto quieter = [&](size_t a, size_t b) { return samples[a].stddev < samples[b].stddev; };
   const auto middle = order.begin() + order.size() / 2;
   std::nth_element(order.begin(), middle, order.end(), quieter);
-  std::vector<double> residuals, ratios;
-  for (const DisparitySample& sample : samples) {
+  std::vector<double> residuals, sorted, ratios, missing;
+  for (const DisparitySample& sample : samples)
     residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
-  }
-  std::vector<double> sorted = residuals;
+  sorted = residuals;
   const double offset = medianOf(sorted);
-  const auto ratioBeside = [&](size_t i, double factor, double common) {
-    return std::abs(residuals[i] - offset) / std::hypot(factor * samples[i].stddev, common);
-  };
-  for (auto i = middle; i != order.end(); ++i) ratios.push_back(ratioBeside(*i, 1, 0));
+  for (auto i = middle; i != order.end(); ++i)
+    ratios.push_back(std::abs(residuals[*i] - offset) / samples[*i].stddev);
   const double factor = std::min(robustStddev(ratios), kLargestFactor);
-  const double common = commonError([&](double assumed) {
-    ratios.clear();
-    for (auto i = order.begin(); i != middle; ++i) ratios.push_back(ratioBeside(*i, factor, assumed));
-    return robustStddev(ratios);
-  });
+  // The variance without which half of the quieter samples were off by more than normal errors are.
+  for (auto i = order.begin(); i != middle; ++i) {
+    const double off = kPerMedian * (residuals[*i] - offset), noise = factor * samples[*i].stddev;
+    missing.push_back(off * off - noise * noise);
+  }
+  const double common =
+      missing.empty() ? 0 : std::clamp(medianOf(missing), 0.0, kLargestShift * kLargestShift);
   for (DisparitySample& sample : samples)
-    sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common * common);
+    sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common);
 }
 
 }  // namespace

@@ -13,7 +13,9 @@ inline double medianOf(std::vector<double>& values) {
   return *middle;
 }
 
+/// 1 sigma of normal errors over the median of their magnitudes.
+constexpr double kPerMedian = 1.4826;
 /// 1 sigma of normal errors by the median of their magnitudes.
-inline double robustStddev(std::vector<double>& magnitudes) { return 1.4826 * medianOf(magnitudes); }
+inline double robustStddev(std::vector<double>& magnitudes) { return kPerMedian * medianOf(magnitudes); }
 
 }  // namespace uav_landing
