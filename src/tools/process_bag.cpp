@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   options.imu_needed = imu->count() > 0 && !options.imu.empty();
   try {
     return run(app, options);
-  } catch (const rosbag::BagException& error) {
+  } catch (const ros::Exception& error) {
     return inputUnusable(app, options.input + ": " + error.what());
   } catch (const std::exception& error) {
     return inputUnusable(app, error.what());

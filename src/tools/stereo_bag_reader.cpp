@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bag_structure.h"
+
 namespace uav_landing {
 namespace {
 
@@ -35,8 +37,9 @@ StereoBagReader::StereoBagReader(const std::string& path, const std::string& cam
     : imu_(imu) {
   if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": no such file");
   try {
-    bag_.open(path, rosbag::bagmode::Read);
-  } catch (const rosbag::BagException& error) {
+    checkBagStructure(path);
+    bag_.emplace(path, rosbag::bagmode::Read);
+  } catch (const std::exception& error) {
     throw std::runtime_error(path + ": cannot be read as a bag (" + error.what() +
                              "); if it was cut off, try `rosbag reindex`");
   }
@@ -47,7 +50,7 @@ StereoBagReader::StereoBagReader(const std::string& path, const std::string& cam
 
 Failure StereoBagReader::checkTopics(bool imu_needed) const {
   constexpr char kImuType[] = "sensor_msgs/Imu";
-  const std::map<std::string, std::string> found = topicsAndTypes(bag_);
+  const std::map<std::string, std::string> found = topicsAndTypes(*bag_);
   std::ostringstream problems;
   for (size_t i = 0; i < topics_.size(); ++i) {
     const auto topic = found.find(topics_[i]);
@@ -70,15 +73,15 @@ Failure StereoBagReader::checkTopics(bool imu_needed) const {
 }
 
 bool StereoBagReader::hasImu() const {
-  return !imu_.empty() && rosbag::View(bag_, rosbag::TopicQuery(imu_)).size() > 0;
+  return !imu_.empty() && rosbag::View(*bag_, rosbag::TopicQuery(imu_)).size() > 0;
 }
 
 std::size_t StereoBagReader::leftImages() const {
-  return rosbag::View(bag_, rosbag::TopicQuery(topics_[0])).size();
+  return rosbag::View(*bag_, rosbag::TopicQuery(topics_[0])).size();
 }
 
 std::size_t StereoBagReader::messages() const {
-  return rosbag::View(bag_, rosbag::TopicQuery(wanted())).size();
+  return rosbag::View(*bag_, rosbag::TopicQuery(wanted())).size();
 }
 
 std::vector<std::string> StereoBagReader::wanted() const {
@@ -89,14 +92,14 @@ std::vector<std::string> StereoBagReader::wanted() const {
 
 void StereoBagReader::readStaticTransforms(
     const std::function<void(const tf2_msgs::TFMessage&)>& visit) const {
-  rosbag::View view(bag_, rosbag::TopicQuery("/tf_static"));
+  rosbag::View view(*bag_, rosbag::TopicQuery("/tf_static"));
   for (const rosbag::MessageInstance& message : view)
     if (const auto transforms = message.instantiate<tf2_msgs::TFMessage>()) visit(*transforms);
 }
 
 void StereoBagReader::read(StereoPairing& pairing, const std::function<void(const sensor_msgs::Imu&)>& imu,
                            const std::function<void()>& progress) const {
-  rosbag::View view(bag_, rosbag::TopicQuery(wanted()));
+  rosbag::View view(*bag_, rosbag::TopicQuery(wanted()));
   for (const rosbag::MessageInstance& message : view) {
     const std::string topic = message.getTopic();
     if (topic == topics_[0]) {

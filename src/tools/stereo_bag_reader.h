@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ class StereoBagReader {
  private:
   std::vector<std::string> wanted() const;
 
-  rosbag::Bag bag_;
+  std::optional<rosbag::Bag> bag_;
   std::array<std::string, 4> topics_;
   std::string imu_;
 };

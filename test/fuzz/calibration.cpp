@@ -11,20 +11,20 @@ namespace uav_landing {
 namespace fuzz {
 namespace {
 
-constexpr int kLargest = 128;  // px; larger images are as likely to be wrong, and slow
+constexpr int kLargest = 64;  // px; larger images are as likely to be wrong, and slow
 
 CameraCalibration anyCalibration(Input& input, bool right) {
   sensor_msgs::CameraInfo info;
-  info.width = input.count(64);
-  info.height = input.count(48);
+  info.width = input.count(32);
+  info.height = input.count(24);
   const char* const models[] = {"plumb_bob", "rational_polynomial", "", "equidistant"};
   const size_t lengths[] = {5, 8, 0, 4};
   const size_t model = input.choice(4);
   info.distortion_model = models[model];
   info.D.resize(input.byte() < 200 ? lengths[model] : input.byte());
   for (double& d : info.D) d = input.number(0.01);
-  const double K[] = {60, 0, 32, 0, 60, 24, 0, 0, 1};
-  const double P[] = {60, 0, 32, right ? -18.0 : 0.0, 0, 60, 24, 0, 0, 0, 1, 0};
+  const double K[] = {30, 0, 16, 0, 30, 12, 0, 0, 1};
+  const double P[] = {30, 0, 16, right ? -9.0 : 0.0, 0, 30, 12, 0, 0, 0, 1, 0};
   for (size_t i = 0; i < 9; ++i) info.K[i] = input.number(K[i]);
   for (size_t i = 0; i < 9; ++i) info.R[i] = input.number(i % 4 == 0);
   for (size_t i = 0; i < 12; ++i) info.P[i] = input.number(P[i]);

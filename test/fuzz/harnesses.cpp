@@ -1,5 +1,6 @@
 #include "fuzz/harnesses.h"
 
+#include <console_bridge/console.h>
 #include <ros/console.h>
 
 #include <cstdio>
@@ -23,8 +24,10 @@ const std::vector<NamedHarness>& harnesses() {
 
 void silenceLog() {
   static const bool silent = [] {
-    const bool set = ros::console::set_logger_level(ROSCONSOLE_DEFAULT_NAME, ros::console::levels::Fatal);
+    // All of ROS, not only this package: camera_calibration_parsers has a logger of its own.
+    const bool set = ros::console::set_logger_level(ROSCONSOLE_ROOT_LOGGER_NAME, ros::console::levels::Fatal);
     ros::console::notifyLoggerLevelsChanged();
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
     return set;
   }();
   require(silent, "the log can be silenced");

@@ -7,10 +7,13 @@ import cv2
 import numpy
 import rosbag
 import rospy
-from sensor_msgs.msg import CameraInfo, Image
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import CameraInfo, Image, Imu
+from tf2_msgs.msg import TFMessage
 
 SOURCE_DIR = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 WIDTH, HEIGHT = 24, 16
+BAG_WIDTH, BAG_HEIGHT = 8, 6
 K = [20.0, 0.0, 12.0, 0.0, 20.0, 8.0, 0.0, 0.0, 1.0]
 
 
@@ -39,24 +42,49 @@ def calibration(side):
             + "projection_matrix:\n" + matrix.format(3, 4, projection)).encode()
 
 
+def sections(yaml):
+    """Its top-level sections, without comments: short inputs are changed sooner."""
+    lines = [line for line in yaml.decode().splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    found = []
+    for line in lines:
+        if not line.startswith(" ") or not found:
+            found.append([])
+        found[-1].append(line.split(" #")[0])
+    return ["\n".join(part).encode() for part in found]
+
+
 def camera_info(side):
-    info = CameraInfo(width=WIDTH, height=HEIGHT, distortion_model="plumb_bob", D=[0.0] * 5, K=K)
+    info = CameraInfo(width=BAG_WIDTH, height=BAG_HEIGHT, distortion_model="plumb_bob", D=[0.0] * 5, K=K)
     info.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]
     info.P = K[:3] + [-6.0 if side == "right" else 0.0] + K[3:6] + [0.0] + K[6:] + [0.0]
     return info
 
 
 def write_bag(path, compression):
-    with rosbag.Bag(path, "w", compression=compression, chunk_threshold=2000) as bag:
-        for frame in range(3):
+    """A bag of everything that is read, without the definitions of the messages, which nobody reads."""
+    def write(topic, message, stamp):
+        connection = {"topic": topic, "type": message._type, "md5sum": message._md5sum, "message_definition": ""}
+        bag.write(topic, message, stamp, connection_header=connection)
+
+    with rosbag.Bag(path, "w", compression=compression, chunk_threshold=1000) as bag:
+        mounting = TransformStamped(child_frame_id="imu_link")
+        mounting.header.frame_id = "left"
+        mounting.transform.rotation.w = 1
+        write("/tf_static", TFMessage([mounting]), rospy.Time(100))
+        for frame in range(2):
             stamp = rospy.Time(100 + frame)
+            inertial = Imu()
+            inertial.header.stamp = stamp
+            inertial.header.frame_id = "imu_link"
+            write("/imu/data", inertial, stamp)
             for side in ("left", "right"):
                 info = camera_info(side)
-                image = Image(width=WIDTH, height=HEIGHT, step=WIDTH, encoding="mono8")
-                image.data = bytes((7 * i + frame) % 256 for i in range(WIDTH * HEIGHT))
+                image = Image(width=BAG_WIDTH, height=BAG_HEIGHT, step=BAG_WIDTH, encoding="mono8")
+                image.data = bytes((7 * i + frame) % 256 for i in range(BAG_WIDTH * BAG_HEIGHT))
                 info.header.stamp = image.header.stamp = stamp
-                bag.write("/stereo/{}/camera_info".format(side), info, stamp)
-                bag.write("/stereo/{}/image_raw".format(side), image, stamp)
+                info.header.frame_id = image.header.frame_id = side
+                write("/stereo/{}/camera_info".format(side), info, stamp)
+                write("/stereo/{}/image_raw".format(side), image, stamp)
 
 
 def main():
@@ -74,7 +102,9 @@ def main():
          b"projection\n20 0 12 0\n0 20 8 0\n0 0 1 0\n")
     for path in files_below("config", ".yaml"):
         with open(path, "rb") as file:
-            save(folder, "config", os.path.relpath(path, SOURCE_DIR).replace("/", "_"), file.read())
+            for number, section in enumerate(sections(file.read())):
+                name = "{}_{:02d}".format(os.path.relpath(path, SOURCE_DIR).replace("/", "_"), number)
+                save(folder, "config", name, section)
     for compression in ("none", "bz2", "lz4"):
         path = os.path.join(folder, "bag", compression)
         os.makedirs(os.path.dirname(path), exist_ok=True)

@@ -1,7 +1,10 @@
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <string>
 
 #include "dataset.h"
 #include "fuzz/harnesses.h"
@@ -17,20 +20,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void writeFile(const fs::path& path, const std::string& content) { std::ofstream(path) << content; }
-
 /// A folder of this process, emptied at the end.
 struct Folder {
-  fs::path path = fs::temp_directory_path() / ("uav_landing_fuzz_" + std::to_string(getpid()));
+  fs::path path = memoryFolder() / ("uav_landing_fuzz_" + std::to_string(getpid()));
   Folder() {
     fs::create_directories(path / "left");
     fs::create_directories(path / "right");
+  }
+  /// Writes a file unless that is its content already.
+  void write(const std::string& name, const std::string& content) {
+    const auto last = written_.find(name);
+    if (last != written_.end() && last->second == content) return;
+    std::ofstream(path / name) << content;
+    written_[name] = content;
   }
   ~Folder() {
     std::error_code ignored;
     fs::remove_all(path, ignored);
   }
+
+ private:
+  std::map<std::string, std::string> written_;
 };
+
+/// Bags of 2009, which are left to rosbag unchecked. The first line as rosbag reads it.
+bool isFormat12(const std::string& bag) {
+  char name[100];
+  int major, minor;
+  const bool known = std::sscanf(bag.c_str(), "#ROS%99s V%d.%d", name, &major, &minor) == 3;
+  return known && int64_t{100} * major + minor == 102;
+}
 
 /// The part of the input up to the next mark.
 std::string section(std::string& rest) {
@@ -44,6 +63,7 @@ std::string section(std::string& rest) {
 
 void fuzzBag(const uint8_t* data, size_t size) {
   silenceLog();
+  if (isFormat12(std::string(reinterpret_cast<const char*>(data), size))) return;
   const MemoryFile file(data, size, ".bag");
   if (!file.written()) return;
   try {
@@ -67,14 +87,14 @@ void fuzzBag(const uint8_t* data, size_t size) {
 
 void fuzzDataset(const uint8_t* data, size_t size) {
   silenceLog();
-  static const Folder folder;
+  static Folder folder;
   std::string rest(reinterpret_cast<const char*>(data), size);
   const std::string left = section(rest), right = section(rest), frames = section(rest);
-  writeFile(folder.path / "left.yaml", left);
-  writeFile(folder.path / "right.yaml", right.empty() ? left : right);
-  writeFile(folder.path / "frames.csv", frames);
-  writeFile(folder.path / "left" / "0.png", rest);
-  writeFile(folder.path / "right" / "0.png", rest);
+  folder.write("left.yaml", left);
+  folder.write("right.yaml", right.empty() ? left : right);
+  folder.write("frames.csv", frames);
+  folder.write("left/0.png", rest);
+  folder.write("right/0.png", rest);
   const Expected<Dataset> dataset = readDataset(folder.path.string());
   if (!dataset) {
     require(!dataset.error().detail.empty(), "a dataset that cannot be used says why");

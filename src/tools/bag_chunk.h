@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace uav_landing {
+
+/// The content of a compressed chunk of a bag, which is size bytes. compression: "bz2" or "lz4". Throws
+/// std::exception when the chunk cannot be decompressed or is of another size; asks for no more memory than
+/// the compressed bytes can fill.
+std::string decompressChunk(const std::string& compression, std::string compressed, uint32_t size);
+
+}  // namespace uav_landing
