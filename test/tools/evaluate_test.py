@@ -2,15 +2,20 @@
 
 import base64
 import json
+import os
 import re
 import shutil
 import tempfile
 import unittest
 from pathlib import Path
 
+import cv2
+import numpy as np
 from project import SOURCE_DIR, run
 
 EVALUATE = SOURCE_DIR / "src/tools/evaluate"
+FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
+PAGE_WIDTH = 992  # of the text and the pictures, px: 62 em
 STAMPS = [0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]  # scored: the last four
 
 
@@ -195,6 +200,29 @@ class ReportTest(EvaluateTest):
         self.assertGreaterEqual(len(sources), 5)
         for source in sources:
             self.assertTrue(source.startswith("data:"), source)
+
+    @unittest.skipUnless(FIREFOX, "needs a browser: firefox-esr")
+    def test_browser_shows_every_picture_whole_and_in_order(self):
+        self.write_example()
+        folder, _ = self.report()
+        screenshot = self.folder / "screenshot.png"
+        result = run([FIREFOX, "--headless", "--no-remote", "--profile", self.folder, "--window-size=1200,4600",
+                      "--screenshot", screenshot, (folder / "index.html").as_uri()],
+                     env=dict(os.environ, HOME=str(self.folder)), timeout=240)
+        self.assertTrue(screenshot.is_file(), result.stderr)
+        page = cv2.imread(str(screenshot), cv2.IMREAD_GRAYSCALE)
+        last = 0
+        for name in ("figure6", "figure7", "errors", "consistency", "timeline"):
+            picture = cv2.imread(str(folder / f"{name}.png"), cv2.IMREAD_GRAYSCALE)
+            scale = PAGE_WIDTH / picture.shape[1]
+            picture = cv2.resize(picture, (PAGE_WIDTH, int(round(scale * picture.shape[0]))), interpolation=cv2.INTER_AREA)
+            # A difference of some px in height is the browser's rounding: blurred, it does not count.
+            match = cv2.matchTemplate(cv2.blur(page, (5, 5)), cv2.blur(picture, (5, 5)), cv2.TM_CCOEFF_NORMED)
+            _, score, _, (_, row) = cv2.minMaxLoc(match)
+            self.assertGreater(score, 0.9, name)
+            self.assertGreater(row, last, name)
+            last = row + picture.shape[0] - 5
+        self.assertTrue(np.all(page[-20:] == 255), "the page is longer than the screenshot")
 
     def test_names_the_distributions_that_cannot_be_drawn(self):
         self.write_example()
