@@ -11,8 +11,8 @@ namespace uav_landing {
 ///
 /// n' = R n with the step's rotation R, then a Kalman update with the pair's normal, in the tangent plane of
 /// n. Memory fades with one second, because the ground ahead is another one by then. Only what differs from
-/// pair to pair averages out; what is common to all (the rig's rotation) has to be added to the result by the
-/// caller.
+/// pair to pair averages out; what is common to all (the rig's rotation) stays. A turned rig tilts the plane
+/// in proportion to the height: the mean of pairs that were higher is tilted more than the last one.
 class AttitudeFilter {
  public:
   static constexpr double kGate = 25.0;  ///< squared sigmas of the two angles together
@@ -20,17 +20,21 @@ class AttitudeFilter {
   struct Estimate {
     Eigen::Vector3d normal;
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
-    double ratio = kUnknown;     ///< squared normalised difference to the pairs before
-    bool agrees = true;          ///< the pair's normal is one that the pairs before and the rotation allow
+    Eigen::Matrix3d common_root = Eigen::Matrix3d::Zero();  ///< symmetric root of what is common to them
+    Eigen::Matrix3d commonCovariance() const { return common_root * common_root.transpose(); }
+    double ratio = kUnknown;  ///< squared normalised difference to the pairs before
+    bool agrees = true;       ///< the pair's normal is one that the pairs before and the rotation allow
   };
 
-  /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair. step:
-  /// from the previous pair; without one the filter starts anew, but not before the normal has been compared
-  /// with those before by what a camera turns. A normal that contradicts the ones before (another surface was
-  /// taken for the ground) is left out and agrees is false; when that goes on for three seconds, the filter
-  /// starts anew from it, and at once as long as fewer than three pairs in a row have agreed.
+  /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair;
+  /// common: of what is the same in all but for its size. step: from the previous pair; without one the
+  /// filter starts anew, but not before the normal has been compared with those before by what a camera
+  /// turns. A normal that contradicts the ones before (another surface was taken for the ground) is left out
+  /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
+  /// long as fewer than three pairs in a row have agreed.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                  const ApproachAngleResult::Motion& step);
+                  const ApproachAngleResult::Motion& step,
+                  const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
   /// A pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
   void reset();
@@ -38,7 +42,8 @@ class AttitudeFilter {
  private:
   enum class Prediction { kNone, kTurned, kGuessed };
   Prediction predict(double stamp, const ApproachAngleResult::Motion& step);
-  Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
+  Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                 const Eigen::Matrix3d& common_root);
 
   std::optional<Estimate> estimate_;
   double stamp_ = 0, agreed_ = 0;  // s

@@ -1,5 +1,6 @@
 #include "uav_landing/attitude_filter.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -20,6 +21,13 @@ constexpr double kTurnRate = 5 * M_PI / 180;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
+/// Root of a covariance that may be negative by rounding.
+Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(covariance);
+  const Eigen::Vector3d roots = solved.eigenvalues().cwiseMax(0).cwiseSqrt();
+  return solved.eigenvectors() * roots.asDiagonal() * solved.eigenvectors().transpose();
+}
+
 Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
 
 }  // namespace
@@ -36,6 +44,7 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   if (known) {
     const Eigen::Matrix3d R = rotationMatrix(step.rotation);
     estimate_->normal = R * estimate_->normal;
+    estimate_->common_root = (R * estimate_->common_root * R.transpose()).eval();
     const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
     covariance = (faded * R * covariance * R.transpose()).eval() +
                  by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
@@ -59,9 +68,11 @@ void AttitudeFilter::reset() {
 
 AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
                                                 const Eigen::Matrix3d& covariance,
-                                                const ApproachAngleResult::Motion& step) {
+                                                const ApproachAngleResult::Motion& step,
+                                                const Eigen::Matrix3d& common) {
   const Prediction predicted = predict(stamp, step);
-  if (predicted == Prediction::kNone) return start(normal, covariance);
+  const Eigen::Matrix3d common_root = rootOf(common);
+  if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
   const Eigen::Matrix<double, 3, 2> basis = tangents(estimate_->normal);
   const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
   const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
@@ -71,7 +82,8 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   estimate_->agrees = estimate_->ratio <= kGate;
   if (!estimate_->agrees) {
     // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
-    if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience) return start(normal, covariance);
+    if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience)
+      return start(normal, covariance, common_root);
     return *estimate_;
   }
   agreed_ = stamp;
@@ -80,6 +92,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     // A guess is good enough to contradict, but nothing to average with.
     estimate_->normal = normal;
     estimate_->covariance = covariance;
+    estimate_->common_root = common_root;
     return *estimate_;
   }
   const Eigen::Matrix2d gain = P * S.inverse();
@@ -88,14 +101,18 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
   const Eigen::Matrix2d joint = kept * P * kept.transpose() + gain * measured * gain.transpose();
   estimate_->covariance = basis * joint * basis.transpose();
+  // Roots and not covariances: what is common adds up with its sign.
+  estimate_->common_root =
+      basis * (kept * basis.transpose() * estimate_->common_root + gain * basis.transpose() * common_root);
   return *estimate_;
 }
 
 AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
-                                               const Eigen::Matrix3d& covariance) {
+                                               const Eigen::Matrix3d& covariance,
+                                               const Eigen::Matrix3d& common_root) {
   agreed_ = stamp_;
   agreements_ = 1;
-  estimate_ = Estimate{normal, covariance, kUnknown, true};
+  estimate_ = Estimate{normal, covariance, common_root, kUnknown, true};
   return *estimate_;
 }
 

@@ -181,8 +181,8 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
-  const AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn);
-  average = {estimate.normal, estimate.covariance + common};
+  const AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn, common);
+  average = {estimate.normal, estimate.covariance + estimate.commonCovariance()};
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
   if (std::isfinite(estimate.ratio))
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);

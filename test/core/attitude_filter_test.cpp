@@ -73,6 +73,27 @@ TEST(AttitudeFilter, AveragesThroughRotationAndClaimsATrueVariance) {
   EXPECT_NEAR(std::sqrt(ratios), 0.8, 0.2) << "fading makes the claim up to 1.4 times too large";
 }
 
+TEST(AttitudeFilter, ClaimsWhatIsCommonAsLargeAsItWasInThePairsAveraged) {
+  // A turned rig tilts the plane the more the higher it is: by 1 sigma here, and from twice to once of it.
+  constexpr double kTilt = 0.02 * kDegree;
+  constexpr int kFrames = 13;
+  Flight flight(1, 0, 1e-6);
+  AttitudeFilter filter;
+  AttitudeFilter::Estimate estimate;
+  const auto size = [](int k) { return kTilt * (2 - static_cast<double>(k) / kFrames); };
+  for (int k = 1; k <= kFrames; ++k) {
+    const Eigen::Vector3d n = flight.truth(k), across = n.cross(Eigen::Vector3d::UnitX()).normalized();
+    const Eigen::Matrix3d own =
+        std::pow(0.1 * kDegree, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+    const Eigen::Matrix3d common = std::pow(size(k), 2) * across * across.transpose();
+    estimate = filter.update(k * kStep, (n + size(k) * across).normalized(), own, flight.step(k), common);
+  }
+  const double error = pitchOf(estimate.normal) - pitchOf(flight.truth(kFrames));
+  EXPECT_GT(std::abs(error), 1.3 * size(kFrames));
+  const double claimed = std::sqrt(pitchVariance(estimate.normal, estimate.commonCovariance()));
+  EXPECT_NEAR(claimed, std::abs(error), 0.03 * std::abs(error));
+}
+
 TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
   Flight flight(1, 0.1 * kDegree, 0);
   AttitudeFilter filter;
