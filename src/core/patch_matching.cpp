@@ -305,17 +305,19 @@ class SecantSteps {
     ++count_;
     return made_;
   }
-  // The place is good to about 0.002 px, little beside what matches are known to: a single step leaves a
+  // The place is good to about 0.005 px, little beside what matches are known to: a single step leaves a
   // tenth of itself, a secant step much less.
   bool converged() const {
-    constexpr double kShort = 0.02, kShortSecant = 0.1;
+    constexpr double kShort = 0.02, kShortSingle = 0.05, kShortSecant = 0.1;
     const double length = wanted_.norm();
-    return length < kShort || (count_ > 1 && length < kShortSecant && (made_ - wanted_).norm() < kShort);
+    return length < kShortSingle ||
+           (count_ > 1 && length < kShortSecant && (made_ - wanted_).norm() < kShort);
   }
 
  private:
   int count_ = 0;
-  double share_ = 0.9;  // of the distance that a step moves; about as much where textures are smoothed alike
+  // Of the distance, that a step moves; short ones about as much where textures are smoothed alike.
+  double share_ = 0.97;
   Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
 };
 
