@@ -14,6 +14,7 @@ namespace uav_landing {
 /// would lie below it, which ground does not allow, and counts against the plane.
 /// slope_range, when not null: bounds on the change of disparity per row of the planes drawn (the least
 /// squares that follow may leave them).
+/// until_sure: ends when a better plane, of samples with one disparity each, would have been drawn already.
 struct Consensus {
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   double support = 0;  ///< about the number of agreeing samples
@@ -21,6 +22,7 @@ struct Consensus {
   bool found = false;
 };
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                    const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range);
+                    const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range,
+                    bool until_sure = false);
 
 }  // namespace uav_landing

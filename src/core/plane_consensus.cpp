@@ -186,10 +186,19 @@ Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySamp
   return {slope * gy, gy, a.disparity / rig.fb() - gy * ya};
 }
 
+// Draws after which one of a plane that has this share of the votes or more would have been among them with a
+// probability of 99.9 %: every other one is a triple.
+double drawsNeeded(double share) {
+  constexpr double kMissed = 1e-3;
+  const double all_on_it = std::clamp(share * share * share, 1e-9, 1 - kMissed);
+  return 2 * std::log(kMissed) / std::log1p(-all_on_it);
+}
+
 }  // namespace
 
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                    const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range) {
+                    const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range,
+                    bool until_sure) {
   // Implausible triples cost next to nothing, so that many may be drawn for each that is counted.
   constexpr int kDrawsPerIteration = 20;
   Consensus best;
@@ -197,7 +206,8 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   const Voters voters{rig, samples};
   std::mt19937 random(20100601u);
   int counted = 0;
-  for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < iterations; ++draw) {
+  double needed = iterations;
+  for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < needed; ++draw) {
     const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
                                             : throughTwo(rig, samples, limits.max_roll, random);
     if (!isPlausibleGround(g, limits)) continue;
@@ -208,6 +218,9 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     if (best.found && votes.net() <= best.score) continue;
     best = {g, votes.agreeing, votes.net(), true};
     improve(voters, limits, best);
+    // Penalties only take away: a better plane has at least the votes that are left of this one's.
+    if (until_sure)
+      needed = std::min<double>(iterations, drawsNeeded(best.score / static_cast<double>(samples.size())));
   }
   return best;
 }

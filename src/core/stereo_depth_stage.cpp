@@ -164,7 +164,7 @@ struct StereoDepthStage::Implementation {
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     }
     if (result.failure) return;
-    const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr);
+    const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr, true);
     if (!consensus.found) {
       result.failure = {Reason::kNoPlane,
                         "no plausible ground plane in " + std::to_string(samples.size()) + " matches"};

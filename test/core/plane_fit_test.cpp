@@ -134,6 +134,21 @@ TEST(FindPlane, PrefersTheGroundToALargerPlaneAboveIt) {
   EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1);
 }
 
+TEST(FindPlane, MayEndEarlyOnlyWhereNoBetterPlaneIsLeft) {
+  // As many on the ground as on the roof, or fewer: the first plane drawn does not decide.
+  const Eigen::Vector3d g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    for (const int on_ground : {300, 135, 150}) {
+      Sampler sampler(seed);
+      std::vector<DisparitySample> samples = sampler.ground(roof, 300 - on_ground, 0.1);
+      const std::vector<DisparitySample> below = sampler.ground(g, on_ground, 0.1);
+      samples.insert(samples.end(), below.begin(), below.end());
+      const Consensus consensus = findPlane(rig(), samples, makeLimits(), 300, nullptr, true);
+      ASSERT_TRUE(consensus.found);
+      EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1) << seed << " " << on_ground;
+    }
+}
+
 TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
   const Eigen::Vector3d g = plane(4, -5, -3);
   Sampler sampler(5);
