@@ -47,6 +47,13 @@ class AutopilotNodelet : public StageNodelet {
   }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
+  void complainMore() override {
+    if (!sent_lately_ && !last_reason_.empty())
+      NODELET_WARN("%s: nothing sent for %.3g s: %s", getName().c_str(), node_.complaint_period,
+                   last_reason_.c_str());
+    sent_lately_ = false;
+    last_reason_.clear();
+  }
 
   void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
     const ros::Time& stamp = pose.header.stamp;
@@ -58,7 +65,12 @@ class AutopilotNodelet : public StageNodelet {
     const auto enu_pose = autopilotPose(pose, parameters_);
     if (range) range_publisher_.publish(*range);
     if (enu_pose) pose_publisher_.publish(*enu_pose);
-    report_.served(stamp, 0, reason(range.has_value(), enu_pose.has_value()));
+    const std::string missing = reason(range.has_value(), enu_pose.has_value());
+    report_.served(stamp, 0, missing);
+    if (range || enu_pose)
+      sent_lately_ = true;
+    else
+      last_reason_ = missing;
   }
 
   static std::string reason(bool range, bool pose) {
@@ -72,6 +84,8 @@ class AutopilotNodelet : public StageNodelet {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher range_publisher_, pose_publisher_;
   ros::Time last_stamp_;
+  bool sent_lately_ = false;
+  std::string last_reason_;  // why nothing was sent
 };
 
 }  // namespace uav_landing

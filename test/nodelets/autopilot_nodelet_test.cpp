@@ -24,7 +24,8 @@ class AutopilotNodeletTest : public NodeletTest {
   }
 
   /// What kalman_height says at a time; without a pose when there is no height.
-  void publish(double t, double height, double position_variance = 1) {
+  /// tilt: of the frame that is estimated, rad.
+  void publish(double t, double height, double position_variance = 1, double tilt = 0) {
     Range range;
     range.header.stamp = ros::Time(1000 + t);
     range.header.frame_id = "base_link";
@@ -35,7 +36,8 @@ class AutopilotNodeletTest : public NodeletTest {
     pose.header.stamp = range.header.stamp;
     pose.header.frame_id = "runway";
     pose.pose.pose.position.z = height;
-    pose.pose.pose.orientation.w = 1;
+    pose.pose.pose.orientation.x = std::sin(tilt / 2);
+    pose.pose.pose.orientation.w = std::cos(tilt / 2);
     for (int i = 0; i < 6; ++i) pose.pose.covariance[7 * i] = i < 2 ? position_variance : 1e-4;
     pose_.publish(pose);
   }
@@ -76,6 +78,17 @@ TEST_F(AutopilotNodeletTest, SendsTheRangeAloneBeforeTheRunwayIsFound) {
   publish(0.1, 5, 1);
   ASSERT_TRUE(ranges_.waitFor(2) && poses_.waitFor(1));
   EXPECT_EQ(poses_.messages()[0]->header.stamp, ros::Time(1000.1));
+}
+
+TEST_F(AutopilotNodeletTest, SaysWhyNothingIsSentWhenACameraIsEstimated) {
+  setParameter("autopilot", "complaint_period", 0.2);
+  start();
+  // The axes of a camera that looks along the runway: z is forward.
+  publish(0, 5, 1e6, -M_PI / 2);
+  EXPECT_TRUE(logged(
+      "/uav_landing/autopilot: nothing sent for 0.2 s: no range: too high, or what is estimated is a camera"))
+      << wholeLog();
+  EXPECT_TRUE(ranges_.messages().empty());
 }
 
 TEST_F(AutopilotNodeletTest, DynamicReconfigureChangesParametersInFlight) {
