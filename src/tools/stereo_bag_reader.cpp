@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bag_message.h"
 #include "bag_structure.h"
 
 namespace uav_landing {
@@ -28,7 +29,7 @@ template <size_t kInput>
 void add(StereoPairing& pairing, const rosbag::MessageInstance& message) {
   using Message = typename StereoPairing::Pointer<kInput>::element_type;
   // A message of another version of the type cannot be read; it is as good as missing.
-  if (const auto read = message.instantiate<std::remove_const_t<Message>>()) pairing.add<kInput>(read);
+  if (const auto read = readMessage<std::remove_const_t<Message>>(message)) pairing.add<kInput>(read);
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ void StereoBagReader::readStaticTransforms(
     const std::function<void(const tf2_msgs::TFMessage&)>& visit) const {
   rosbag::View view(*bag_, rosbag::TopicQuery("/tf_static"));
   for (const rosbag::MessageInstance& message : view)
-    if (const auto transforms = message.instantiate<tf2_msgs::TFMessage>()) visit(*transforms);
+    if (const auto transforms = readMessage<tf2_msgs::TFMessage>(message)) visit(*transforms);
 }
 
 void StereoBagReader::read(StereoPairing& pairing, const std::function<void(const sensor_msgs::Imu&)>& imu,
@@ -110,7 +111,7 @@ void StereoBagReader::read(StereoPairing& pairing, const std::function<void(cons
       add<2>(pairing, message);
     } else if (topic == topics_[3]) {
       add<3>(pairing, message);
-    } else if (const auto sample = message.instantiate<sensor_msgs::Imu>()) {
+    } else if (const auto sample = readMessage<sensor_msgs::Imu>(message)) {
       imu(*sample);
     }
     progress();

@@ -38,7 +38,7 @@ class StereoBagReader {
   /// Calls visit for every message of /tf_static.
   void readStaticTransforms(const std::function<void(const tf2_msgs::TFMessage&)>& visit) const;
   /// Hands every message to the pairing or to imu, in the order of the bag; after each of them calls
-  /// progress(). Throws rosbag::BagException where the file is damaged.
+  /// progress(). Throws ros::Exception where the file is damaged.
   void read(StereoPairing& pairing, const std::function<void(const sensor_msgs::Imu&)>& imu,
             const std::function<void()>& progress) const;
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
 #include <cstring>
@@ -12,7 +14,9 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
+#include "bag_message.h"
 #include "stereo_bag_reader.h"
 
 namespace uav_landing {
@@ -254,6 +258,43 @@ TEST_F(BagStructure, LeavesToRosbagWhatHasNoIndexOrAnotherFormat) {
   EXPECT_EQ(complaint(), "");
   bytes_ = "";
   EXPECT_EQ(complaint(), "");
+}
+
+TEST_F(BagStructure, LeavesLengthsInsideMessagesToTheirReaderWhichComparesThemBeforeItTakesMemory) {
+  // The picture is the last field of its message and 500 bytes long.
+  const size_t begin = dataLength(message()), size = numberAt<uint32_t>(bytes_, begin);
+  ASSERT_EQ(numberAt<uint32_t>(bytes_, begin + 4 + size - 504), 500u);
+  put(begin + 4 + size - 504, kHuge);
+  EXPECT_EQ(complaint(), "");
+  rosbag::Bag bag(path_, rosbag::bagmode::Read);
+  rosbag::View view(bag);
+  EXPECT_THROW(readMessage<sensor_msgs::Image>(*view.begin()), rosbag::BagFormatException);
+}
+
+TEST_F(BagStructure, ReadsMessagesAsRosbagDoes) {
+  rosbag::Bag bag(path_, rosbag::bagmode::Read);
+  rosbag::View view(bag);
+  for (const rosbag::MessageInstance& message : view) {
+    const auto read = readMessage<sensor_msgs::Image>(message);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(*read, *message.instantiate<sensor_msgs::Image>());
+    EXPECT_FALSE(readMessage<sensor_msgs::CameraInfo>(message));
+  }
+  EXPECT_EQ(view.size(), static_cast<uint32_t>(kMessages));
+}
+
+TEST(MessageBytes, TakesNoMemoryForASequenceThatDoesNotFit) {
+  // Three numbers take 24 bytes.
+  std::vector<uint8_t> bytes(4 + 23);
+  bytes[0] = 3;
+  std::vector<double> numbers;
+  MessageBytes tooFew(bytes.data(), static_cast<uint32_t>(bytes.size()));
+  EXPECT_THROW(tooFew.next(numbers), ros::serialization::StreamOverrunException);
+  EXPECT_EQ(numbers.capacity(), 0u);
+  bytes.push_back(0);
+  MessageBytes enough(bytes.data(), static_cast<uint32_t>(bytes.size()));
+  enough.next(numbers);
+  EXPECT_EQ(numbers.size(), 3u);
 }
 
 TEST_F(BagStructure, IsCheckedByTheReaderOfTheProgramsWhichNamesTheFile) {
