@@ -1,5 +1,6 @@
 #include "uav_landing/approach_angle_stage.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
@@ -63,6 +64,7 @@ struct ApproachAngleStage::Implementation {
       if (!repeated(stereo)) tracker.skip(stamp, left);
       return result;
     }
+    straightenPlan(result);
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     ScopedTimer timer(timings, "runway_position");
     result.runway =
@@ -129,6 +131,15 @@ struct ApproachAngleStage::Implementation {
     }
     setNormal(fused, result);
     return true;
+  }
+
+  // The runway's own slope and curve turn its vanishing point up and down. Seen from above it is straight,
+  // and yaw is against that.
+  void straightenPlan(ApproachAngleResult& result) const {
+    if (!result.vanishing_direction.allFinite()) return;
+    const Eigen::Vector3d across = result.n.cross(result.vanishing_direction).normalized();
+    const double straightness = parameters.runway_straightness_deg * kDegree;
+    result.vanishing_covariance -= straightness * straightness * across * across.transpose();
   }
 
   static GroundPlane withDirection(const GroundPlane& plane, const ApproachAngleResult& result) {

@@ -242,6 +242,11 @@ TEST(ApproachAngleStage, GivesTheDirectionOfTheRunwayInBothViews) {
   EXPECT_LT(std::acos(std::min(1.0, result.vanishing_direction.dot(wanted))), 0.3 * kDegree);
   const Eigen::Vector3d error = result.vanishing_direction - wanted;
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(error[i], 0, 4 * std::sqrt(result.vanishing_covariance(i, i)));
+  // What the runway's own slope and curve turn it by is up and down: seen from above it is straight.
+  const Eigen::Vector3d across = result.n.cross(result.vanishing_direction).normalized();
+  const double straightness = std::pow(scene.parameters.runway_straightness_deg * kDegree, 2);
+  EXPECT_LT(across.dot(result.vanishing_covariance * across), 0.5 * straightness);
+  EXPECT_GT(result.n.dot(result.vanishing_covariance * result.n), 0.98 * straightness);
 }
 
 TEST(ApproachAngleStage, CorrectsTheStereoNormalByTheVanishingPoint) {
