@@ -67,7 +67,8 @@ class RigChange {
   /// Against the mean of the pairs before; none for the first ones.
   std::optional<Innovation> compare(const RigRotation& measured) const;
   /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds; what
-  /// comes then is learned anew.
+  /// comes then is learned anew. A small change is the rig's as soon as it has stayed the same for a second:
+  /// what images that do not belong together do to the height goes with the rotation that they show.
   void learn(double T, const RigRotation& measured, bool agrees);
   /// False while another rotation than before is not yet known for long enough to be the rig's: that of
   /// images that do not belong together changes.
@@ -75,10 +76,20 @@ class RigChange {
   void reset() { *this = RigChange(); }
 
  private:
-  Eigen::Vector2d mean_ = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
-  double learned_ = 0, disagreed_ = 0;  // s
-  bool anew_ = false;                   // after another rotation
+  struct Mean {
+    Eigen::Vector2d value = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+    double learned = 0;  // s
+
+    Innovation compare(const RigRotation& measured) const;
+    void add(double T, const RigRotation& measured);
+  };
+  /// The pairs that do not agree, as long as they agree with each other.
+  void learnOther(double T, const RigRotation& measured);
+
+  Mean mean_, other_;
+  double disagreed_ = 0;  // s
+  bool anew_ = false;     // after another rotation
 };
 
 }  // namespace uav_landing

@@ -8,6 +8,7 @@
 #include "uav_landing/ground_memory.h"
 #include "uav_landing/height_filter.h"
 #include "uav_landing/height_memory.h"
+#include "uav_landing/innovation_scatter.h"
 #include "uav_landing/parameters.h"
 #include "uav_landing/position_filter.h"
 #include "uav_landing/recovery.h"
@@ -124,6 +125,8 @@ class KalmanHeightStage {
   double modelVariance(double height) const;
   /// Of the last height's variance what is the same on all pairs: surface, width and rig, m^2.
   double commonVariance(double height) const;
+  /// By which the filter's own variance is larger than what the pairs claim makes of it.
+  double varianceFactor() const { return parameters_.integrity_monitor ? scatter_.factor() : 1; }
   /// From the plane of the surface ahead to its tangent straight below.
   void followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction);
   void followSurface(double surface_variance);
@@ -143,6 +146,7 @@ class KalmanHeightStage {
   StereoRig rig_;
   KalmanHeightParameters parameters_;
   HeightFilter filter_;
+  InnovationScatter scatter_;
   AttitudeFilter attitude_;
   PositionFilter position_;
   RigRotationFilter rig_rotation_;

@@ -54,8 +54,9 @@ class SolutionSeparation {
     double bound = kUnknown;  ///< m
     const char* source = "";  ///< what it is because of
   };
-  /// height, variance: published, m, m^2.
-  Level protectionLevel(double height, double variance) const;
+  /// height, variance: published, m, m^2. factor: by which the variances of all pairs are larger than
+  /// claimed.
+  Level protectionLevel(double height, double variance, double factor = 1) const;
   /// The level, or that because of one more solution for the height (m, m^2), whichever is larger.
   Level larger(const Level& level, double height, double solution, double variance, const char* source) const;
 

@@ -263,7 +263,8 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
 
 void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const {
   if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
-  SolutionSeparation::Level level = separation_.protectionLevel(result.height, result.height_variance);
+  SolutionSeparation::Level level =
+      separation_.protectionLevel(result.height, result.height_variance, varianceFactor());
   if (const std::optional<GroundMemory::Below> below = ground_.below(normal))
     level = separation_.larger(level, result.height, below->height, below->variance, "surface_below");
   result.height_protection_level = level.bound;

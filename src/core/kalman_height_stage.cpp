@@ -56,6 +56,7 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
     : rig_(rig),
       parameters_(parameters),
       filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
+      scatter_(parameters.gate * parameters.gate),
       rig_rotation_(rig, parameters.rig_memory),
       width_(parameters.known_runway_width),
       separation_(parameters),
@@ -212,6 +213,7 @@ void KalmanHeightStage::accept(double stamp) {
 void KalmanHeightStage::loseTrack() {
   ++resets_;
   filter_.reset();
+  scatter_.reset();
   separation_.reset();
   confirmations_ = 0;
   consecutive_rejections_ = 0;
@@ -253,6 +255,7 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
       filter_.update(reconstruction.height, reconstruction.variance, commonVariance(reconstruction.height));
   result.innovation = update.innovation;
   result.innovation_variance = update.innovation_variance;
+  scatter_.add(update.innovation * update.innovation / update.innovation_variance);
   tests_.addRatio(Consistency::kInnovation, update.innovation,
                   update.innovation * update.innovation / update.innovation_variance,
                   parameters_.gate * parameters_.gate);
@@ -318,7 +321,7 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   if (!filter_.initialised()) return;
   const double h = filter_.state()[0];
   result.height = h;
-  result.height_variance = filter_.ownCovariance()(0, 0) + commonVariance(h);
+  result.height_variance = varianceFactor() * filter_.ownCovariance()(0, 0) + commonVariance(h);
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 

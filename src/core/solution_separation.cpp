@@ -72,7 +72,8 @@ void SolutionSeparation::updateSpeed(double speed, double variance) {
       solutions_[i]->filter.updateSpeed(speed, variance);
 }
 
-SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance) const {
+SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance,
+                                                              double factor) const {
   const double sigma = std::sqrt(variance);
   Level level{factor_ * sigma, "noise"};
   const double scaled = unwatched_scale_ * height + fault_factor_ * sigma;
@@ -80,7 +81,8 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i]) continue;
     const HeightFilter& filter = solutions_[i]->filter;
-    level = larger(level, height, filter.state()[0], filter.ownCovariance()(0, 0) + solutions_[i]->common,
+    level = larger(level, height, filter.state()[0],
+                   factor * filter.ownCovariance()(0, 0) + solutions_[i]->common,
                    toString(static_cast<FaultySource>(i)));
   }
   return level;

@@ -229,19 +229,32 @@ class Campaign {
  private:
   void chooseFaults() {
     const bool simulated = options_.dataset.empty();
-    const std::set<std::string> wanted(options_.faults.begin(), options_.faults.end());
+    std::set<std::string> wanted;
+    for (const std::string& name : options_.faults)
+      name.find('+') == std::string::npos ? (void)wanted.insert(name) : choosePair(name);
     std::set<std::string> unknown = wanted;
     for (const Fault& fault : allFaults()) {
       unknown.erase(fault.name);
-      const bool asked = wanted.empty() || wanted.count(fault.name) > 0;
+      const bool asked = options_.faults.empty() || wanted.count(fault.name) > 0;
       if (asked && (!fault.needs_scene || simulated)) faults_.push_back(&fault);
     }
     if (!unknown.empty()) throw std::runtime_error("there is no fault " + *unknown.begin());
   }
 
-  /// Each fault alone, and some pairs of them drawn by the seed.
+  /// "a+b", in the order of the places along the light's way.
+  void choosePair(const std::string& names) {
+    Combination pair;
+    for (const Fault& fault : allFaults())
+      if (("+" + names + "+").find("+" + fault.name + "+") != std::string::npos) pair.push_back(&fault);
+    std::sort(pair.begin(), pair.end(), [](const Fault* a, const Fault* b) { return a->place < b->place; });
+    if (pair.size() != 2) throw std::runtime_error(names + " is no pair of faults");
+    const bool drawn = pair[0]->needs_scene || pair[1]->needs_scene;
+    if (options_.dataset.empty() || !drawn) asked_pairs_.push_back(pair);
+  }
+
+  /// Each fault alone, the pairs asked for, and some pairs drawn by the seed.
   std::vector<Combination> combinations(uint64_t seed) const {
-    std::vector<Combination> all;
+    std::vector<Combination> all = asked_pairs_;
     for (const Fault* fault : faults_) all.push_back({fault});
     cv::RNG random(seed * 77 + 5);
     const int count = static_cast<int>(faults_.size());
@@ -335,6 +348,7 @@ class Campaign {
   Options options_;
   Parameters parameters_;
   std::vector<const Fault*> faults_;
+  std::vector<Combination> asked_pairs_;
   PendingFile pending_;
   std::ofstream file_, trace_;
 };
@@ -356,7 +370,7 @@ int main(int argc, char** argv) {
   app.add_option("--trace", options.trace, "rows of every frame to write, to see what a run was misled by");
   app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
   app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
-  app.add_option("--faults", options.faults, "only these; without it all")->delimiter(',');
+  app.add_option("--faults", options.faults, "only these, pairs as a+b; without it all")->delimiter(',');
   app.add_option("--pairs", options.pairs, "pairs of faults besides, for each seed")->capture_default_str();
   app.add_option("--first", options.first, "first seed")->capture_default_str();
   app.add_option("--count", options.count, "how many seeds")

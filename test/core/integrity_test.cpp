@@ -2,10 +2,12 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <random>
 
 #include "support/rigs.h"
 #include "uav_landing/consistency_tests.h"
 #include "uav_landing/height_memory.h"
+#include "uav_landing/innovation_scatter.h"
 #include "uav_landing/kalman_height_stage.h"
 #include "uav_landing/recovery.h"
 #include "uav_landing/region_planes.h"
@@ -84,6 +86,16 @@ TEST(SolutionSeparation, BoundsTheErrorByTheSolutionWithoutTheSourceThatIsWrong)
   const auto later = separation.protectionLevel(10, 0.001);
   EXPECT_GT(later.bound, 0.5);
   EXPECT_LT(later.bound, level.bound);
+}
+
+TEST(SolutionSeparation, IsWiderByTheFactorThatClaimsAreWrongBy) {
+  KalmanHeightParameters parameters;
+  parameters.unwatched_scale_error = 0;
+  SolutionSeparation separation(parameters);
+  separation.start(same(10, 0.01), 10);
+  // With the default prior of a fault, 1e-3, and risk, 1e-5: 2.576 sigma.
+  EXPECT_NEAR(separation.protectionLevel(10, 1e-12).bound, 2.576 * 0.1, 1e-3);
+  EXPECT_NEAR(separation.protectionLevel(10, 1e-12, 4).bound, 2.576 * 0.2, 1e-3);
 }
 
 TEST(SolutionSeparation, GrowsWhereNothingIsLeftWithoutTheSource) {
@@ -227,6 +239,63 @@ TEST(RigChange, AnotherRotationIsTheRigsOnceItStaysTheSameForASecond) {
   EXPECT_LT(waited, 2.1);
 }
 
+TEST(RigChange, ASmallBendIsTheRigsAfterASecondAndALargeOneAfterFour) {
+  const auto secondsUntilKnown = [](double bend_deg) {
+    RigChange change;
+    const auto learn = [&](const RigRotation& measured) {
+      const auto innovation = change.compare(measured);
+      const bool agrees = !innovation || innovation->difference.norm() < 0.03 * kDegree;
+      change.learn(0.05, measured, agrees);
+      return agrees && change.settled();
+    };
+    for (int i = 0; i < 40; ++i) learn(rotation(0.1, 0));
+    double waited = 0;
+    while (!learn(rotation(0.1 + bend_deg, 0)) && waited < 10) waited += 0.05;
+    return waited;
+  };
+  EXPECT_NEAR(secondsUntilKnown(0.05), 1, 0.11);
+  EXPECT_NEAR(secondsUntilKnown(0.2), 4, 0.11);
+  EXPECT_NEAR(secondsUntilKnown(1), 4, 0.11);
+}
+
+TEST(RigChange, ASmallRotationThatChangesIsNotTheRigs) {
+  RigChange change;
+  for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
+  // As of a picture that stands still while the camera moves on slowly.
+  for (int i = 0; i < 50; ++i) {
+    const RigRotation measured = rotation(0, 0.1 + 0.1 * (i % 2));
+    change.learn(0.05, measured, false);
+    EXPECT_GT(change.compare(measured)->difference.norm(), 0.05 * kDegree) << i;
+  }
+}
+
+TEST(InnovationScatter, IsThatOfTheClaimsWhereTheyAreTrueAndTellsThoseThatAreNot) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const auto factorOf = [&](double stddev, InnovationScatter& scatter) {
+    double sum = 0;
+    for (int i = 0; i < 400; ++i) {
+      scatter.add(std::pow(stddev * normal(random), 2));
+      sum += scatter.factor();
+    }
+    return sum / 400;
+  };
+  InnovationScatter honest(25), timid(25), bold(25);
+  EXPECT_LT(factorOf(1, honest), 1.05);
+  EXPECT_EQ(factorOf(0.5, timid), 1);
+  const double factor = factorOf(2.5, bold);
+  EXPECT_GT(factor, 3) << "of 6.25, as far as twenty pairs make it certain";
+  EXPECT_LT(factor, 6.25);
+}
+
+TEST(InnovationScatter, OneWrongPairSaysNothingOfTheOthers) {
+  InnovationScatter scatter(25);
+  for (int i = 0; i < 20; ++i) scatter.add(i == 10 ? 1e6 : 0.5);
+  EXPECT_LT(scatter.factor(), 1.25);
+  scatter.reset();
+  EXPECT_EQ(scatter.factor(), 1);
+}
+
 TEST(RigChange, APairThatLooksExactByChanceIsNotMoreSoThanThePairsBefore) {
   RigChange change;
   const auto withStddev = [](double rz_deg, double stddev_deg) {
@@ -305,6 +374,26 @@ TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTi
   } while (result.height_valid && stamp < onset + 2);
   EXPECT_LE(stamp - 0.05 - onset, 0.35 + 1e-9);
   EXPECT_EQ(result.consecutive_rejections, result.tests[0].consecutive_failures);
+}
+
+TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThatSaysSo) {
+  const auto fly = [](double scatter) {
+    KalmanHeightStage stage(makeRig(), {});
+    std::mt19937 random(5);
+    std::normal_distribution<double> error(0, scatter);
+    LandingResult result;
+    for (int i = 0; i < 60; ++i) {
+      const double stamp = 1 + 0.05 * i;
+      StereoDepthResult stereo = stereoAt(stamp, 10 + error(random));
+      stereo.points.clear();
+      stereo.plane.covariance *= 36;  // claims a stddev of 0.06 / n.z of the height
+      result = stage.process(stereo, levelFlight(stamp, 10));
+    }
+    return result;
+  };
+  const double claimed = std::sqrt(fly(0).raw_height_variance);
+  const LandingResult honest = fly(0.8 * claimed), bold = fly(2.5 * claimed);
+  EXPECT_GT(bold.height_variance, 1.5 * honest.height_variance);
 }
 
 TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentAvailable) {
