@@ -12,6 +12,7 @@
 namespace uav_landing {
 namespace {
 
+constexpr int kUsualSize = 11;  // of windows, by default
 constexpr int kLargestRadius = 15, kLargestStride = 32;
 constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
 
@@ -200,8 +201,8 @@ struct ShiftSums {
 };
 
 // window: without its mean. area: values of the other image, whose first pixel is the first shift's.
-UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, int size, int stride,
-                                    ShiftSums& shifts) {
+[[gnu::always_inline]] inline void addUpAny(const float* window, const float* area, int size, int stride,
+                                            ShiftSums& shifts) {
   Lanes cross{}, sums{}, squares{};
   for (int j = 0; j < size; ++j, area += stride) {
     Lanes row_cross{}, row_sums{}, row_squares{};  // of their own, so that rows need not wait for each other
@@ -219,6 +220,16 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, int 
   store(cross, shifts.cross.data());
   store(sums, shifts.sums.data());
   store(squares, shifts.squares.data());
+}
+
+// The usual size is known to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, int size, int stride,
+                                    ShiftSums& shifts) {
+  if (size == kUsualSize) {
+    addUpAny(window, area, kUsualSize, stride, shifts);
+  } else {
+    addUpAny(window, area, size, stride, shifts);
+  }
 }
 
 UAV_LANDING_MULTIVERSION void subtract(float mean, std::vector<float>& values) {

@@ -16,6 +16,7 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
+constexpr int kUsualSize = 11;  // of windows, by default
 
 // Rows of places of which each is in the column after that of the one before or, from one of them on, in the
 // one after that or still the same: row j at start + j by_row, and on by step.
@@ -56,15 +57,21 @@ UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const Pla
   }
 }
 
-// Sums and sums of squares of the columns of a strip of rows.
-UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* __restrict sums,
-                                         float* __restrict squares) {
-  for (int i = 0; i < stride; ++i) sums[i] = squares[i] = 0;
-  for (int j = 0; j < rows; ++j, strip += stride)
-    for (int i = 0; i < stride; ++i) {
-      sums[i] += strip[i];
-      squares[i] += strip[i] * strip[i];
+// Sums and sums of squares of the columns of a strip of rows. stride: of whole lanes.
+UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* sums,
+                                         float* squares) {
+  for (int i = 0; i < stride; i += kLanes) {
+    const float* column = strip + i;
+    Lanes sum{}, square{};
+    for (int j = 0; j < rows; ++j, column += stride) {
+      Lanes values;
+      load(column, values);
+      sum += values;
+      square += values * values;
     }
+    store(sum, sums + i);
+    store(square, squares + i);
+  }
 }
 
 // What the scores at kLanes neighbouring positions of a strip are made of.
@@ -73,8 +80,9 @@ struct BlockSums {
 };
 
 // Products of a square window with what is below it, and sums of the strip's columns and squares there.
-UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, const float* column_sums,
-                                    const float* column_squares, int size, int stride, BlockSums& block) {
+[[gnu::always_inline]] inline void addUpAny(const float* window, const float* strip, const float* column_sums,
+                                            const float* column_squares, int size, int stride,
+                                            BlockSums& block) {
   Lanes cross{}, sums{}, squares{};
   for (int j = 0; j < size; ++j, strip += stride) {
     Lanes row{};  // sums of their own, so that rows need not wait for each other
@@ -95,6 +103,16 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, con
   store(cross, block.cross.data());
   store(sums, block.sums.data());
   store(squares, block.squares.data());
+}
+
+// The usual size is known to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, const float* column_sums,
+                                    const float* column_squares, int size, int stride, BlockSums& block) {
+  if (size == kUsualSize) {
+    addUpAny(window, strip, column_sums, column_squares, kUsualSize, stride, block);
+  } else {
+    addUpAny(window, strip, column_sums, column_squares, size, stride, block);
+  }
 }
 
 }  // namespace
