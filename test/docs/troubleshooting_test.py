@@ -1,0 +1,25 @@
+import re
+import unittest
+
+from project import SOURCE_DIR
+
+FOREIGN = ("Skipped loading plugin", "stereo_image_proc", "no such package media_export")
+
+
+def phrases(message):
+    """Pieces of a message that do not depend on the case: three words or more, or a reason's name."""
+    fixed = re.sub(r"[/\w]+/[\w/]+|\w*\[\d\]|\w+_link|expected ", "|", message)
+    return re.findall(r"[A-Za-z']+(?: [A-Za-z']+){2,}|[a-z]+_[a-z_]+", fixed)
+
+
+class TroubleshootingTest(unittest.TestCase):
+    def test_the_programs_still_say_what_the_table_quotes(self):
+        sources = "".join(file.read_text() for folder in ("src", "include") for file in (SOURCE_DIR / folder).rglob("*")
+                          if file.suffix in (".cpp", ".h"))
+        sources = re.sub(r'"\s*\n\s*"', "", sources)
+        section = (SOURCE_DIR / "README.md").read_text().split("## Troubleshooting")[1].split("\n## ")[0]
+        rows = [line.split(" | ")[0] for line in section.splitlines() if line.startswith("| ")][1:]
+        quoted = [phrase for row in rows for message in re.findall(r"`([^`]+)`", row) if message not in FOREIGN
+                  for phrase in phrases(message)]
+        self.assertGreater(len(quoted), 20)
+        self.assertEqual([phrase for phrase in quoted if phrase not in sources], [])
