@@ -2,7 +2,7 @@
 add_library(uav_landing_tools STATIC
   src/tools/bag_bytes.cpp src/tools/bag_chunk.cpp src/tools/bag_records.cpp src/tools/bag_structure.cpp
   src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
-  src/tools/random_approach.cpp src/tools/stereo_bag_reader.cpp src/tools/stereo_bag_writer.cpp)
+  src/tools/old_bag_structure.cpp src/tools/random_approach.cpp src/tools/stereo_bag_reader.cpp src/tools/stereo_bag_writer.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})

@@ -11,6 +11,7 @@ namespace uav_landing {
 
 /// Kinds of records, as the field "op" says.
 enum class BagOperation : uint8_t {
+  kDefinition = 0x01,  // of a topic; format 1.2
   kMessage = 0x02,
   kFileHeader = 0x03,
   kIndex = 0x04,

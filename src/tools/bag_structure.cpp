@@ -11,6 +11,7 @@
 #include "bag_bytes.h"
 #include "bag_chunk.h"
 #include "bag_records.h"
+#include "old_bag_structure.h"
 
 namespace uav_landing {
 namespace {
@@ -24,8 +25,10 @@ class Walk {
   explicit Walk(const std::string& path) : file_(path) {}
 
   void run() {
-    const size_t first_line = lengthOfFirstLine();
-    if (first_line == 0) return;
+    int version = 0;
+    const size_t first_line = lengthOfFirstLine(version);
+    if (version == 102) checkOldBagStructure(file_, first_line);
+    if (version != 200) return;
     BagRecords records = from(first_line);
     const BagFields header = records.header(BagOperation::kFileHeader, "the file header");
     const auto index = records.field<uint64_t>(header, "index_pos", first_line);
@@ -52,15 +55,15 @@ class Walk {
 
   BagRecords from(uint64_t at) const { return BagRecords(file_, at, file_.size(), ""); }
 
-  /// 0: not a bag of format 2.0. As rosbag reads it.
-  size_t lengthOfFirstLine() const {
+  /// version: 200 for format 2.0, 0 when it is not a bag. As rosbag reads it.
+  size_t lengthOfFirstLine(int& version) const {
     constexpr size_t kLongest = 1023;
     char line[kLongest + 1] = {}, name[100];
     int major, minor;
     const auto length = static_cast<size_t>(std::min<uint64_t>(kLongest, file_.size()));
     file_.copy(0, length, line);
     if (std::sscanf(line, "#ROS%99s V%d.%d", name, &major, &minor) != 3) return 0;
-    if (int64_t{100} * major + minor != 200) return 0;
+    version = static_cast<int>(int64_t{100} * major + minor);
     const void* end = std::memchr(line, '\n', length);
     return end ? static_cast<size_t>(static_cast<const char*>(end) + 1 - line) : length;
   }

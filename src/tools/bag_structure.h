@@ -11,7 +11,7 @@ namespace uav_landing {
 /// decompressed.
 ///
 /// Throws std::runtime_error, "damaged at byte N: what is there, and what was expected". Says nothing about
-/// bags without an index and about other formats than 2.0 (http://wiki.ros.org/Bags/Format/2.0).
+/// bags without an index and about formats that rosbag does not know. http://wiki.ros.org/Bags/Format/2.0
 void checkBagStructure(const std::string& path);
 
 }  // namespace uav_landing

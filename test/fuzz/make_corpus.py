@@ -1,6 +1,8 @@
 """Inputs for the fuzzers to start from: make_corpus.py FOLDER writes FOLDER/<harness>/*."""
+import io
 import os
 import random
+import struct
 import sys
 
 import cv2
@@ -60,31 +62,60 @@ def camera_info(side):
     return info
 
 
-def write_bag(path, compression):
-    """A bag of everything that is read, without the definitions of the messages, which nobody reads."""
-    def write(topic, message, stamp):
-        connection = {"topic": topic, "type": message._type, "md5sum": message._md5sum, "message_definition": ""}
-        bag.write(topic, message, stamp, connection_header=connection)
+def messages():
+    """Of everything that is read from bags: topic, message and when it was received."""
+    mounting = TransformStamped(child_frame_id="imu_link")
+    mounting.header.frame_id = "left"
+    mounting.transform.rotation.w = 1
+    yield "/tf_static", TFMessage([mounting]), rospy.Time(100)
+    for frame in range(2):
+        stamp = rospy.Time(100 + frame)
+        inertial = Imu()
+        inertial.header.stamp = stamp
+        inertial.header.frame_id = "imu_link"
+        yield "/imu/data", inertial, stamp
+        for side in ("left", "right"):
+            info = camera_info(side)
+            image = Image(width=BAG_WIDTH, height=BAG_HEIGHT, step=BAG_WIDTH, encoding="mono8")
+            image.data = bytes((7 * i + frame) % 256 for i in range(BAG_WIDTH * BAG_HEIGHT))
+            info.header.stamp = image.header.stamp = stamp
+            info.header.frame_id = image.header.frame_id = side
+            yield "/stereo/{}/camera_info".format(side), info, stamp
+            yield "/stereo/{}/image_raw".format(side), image, stamp
 
+
+def write_bag(path, compression):
+    """Without the definitions of the messages, which nobody reads."""
     with rosbag.Bag(path, "w", compression=compression, chunk_threshold=1000) as bag:
-        mounting = TransformStamped(child_frame_id="imu_link")
-        mounting.header.frame_id = "left"
-        mounting.transform.rotation.w = 1
-        write("/tf_static", TFMessage([mounting]), rospy.Time(100))
-        for frame in range(2):
-            stamp = rospy.Time(100 + frame)
-            inertial = Imu()
-            inertial.header.stamp = stamp
-            inertial.header.frame_id = "imu_link"
-            write("/imu/data", inertial, stamp)
-            for side in ("left", "right"):
-                info = camera_info(side)
-                image = Image(width=BAG_WIDTH, height=BAG_HEIGHT, step=BAG_WIDTH, encoding="mono8")
-                image.data = bytes((7 * i + frame) % 256 for i in range(BAG_WIDTH * BAG_HEIGHT))
-                info.header.stamp = image.header.stamp = stamp
-                info.header.frame_id = image.header.frame_id = side
-                write("/stereo/{}/camera_info".format(side), info, stamp)
-                write("/stereo/{}/image_raw".format(side), image, stamp)
+        for topic, message, stamp in messages():
+            connection = {"topic": topic, "type": message._type, "md5sum": message._md5sum, "message_definition": ""}
+            bag.write(topic, message, stamp, connection_header=connection)
+
+
+def old_bag():
+    """The same in format 1.2, http://wiki.ros.org/Bags/Format/1.2."""
+    def record(data, **fields):
+        values = [name.encode() + b"=" + value for name, value in fields.items()]
+        header = b"".join(struct.pack("<I", len(value)) + value for value in values)
+        return struct.pack("<I", len(header)) + header + struct.pack("<I", len(data)) + data
+
+    def file_header(index):
+        return b"#ROSBAG V1.2\n" + record(b"", op=b"\x03", index_pos=struct.pack("<Q", index))
+
+    content, entries = b"", {}
+    for topic, message, stamp in messages():
+        name = topic.encode()
+        position = len(file_header(0)) + len(content)
+        if topic not in entries:
+            content += record(b"", op=b"\x01", topic=name, md5=message._md5sum.encode(), type=message._type.encode(),
+                              **{"def": b""})
+        data = io.BytesIO()
+        message.serialize(data)
+        content += record(data.getvalue(), op=b"\x02", topic=name, time=struct.pack("<II", stamp.secs, 0))
+        entries.setdefault(topic, []).append(struct.pack("<IIQ", stamp.secs, 0, position))
+    indexes = [record(b"".join(found), op=b"\x04", topic=topic.encode(), ver=struct.pack("<I", 0),
+                      count=struct.pack("<I", len(found))) for topic, found in entries.items()]
+    return file_header(len(file_header(0)) + len(content)) + content + b"".join(indexes)
 
 
 def main():
@@ -109,6 +140,7 @@ def main():
         path = os.path.join(folder, "bag", compression)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         write_bag(path, compression)
+    save(folder, "bag", "format_1.2", old_bag())
     png = cv2.imencode(".png", numpy.arange(WIDTH * HEIGHT, dtype=numpy.uint8).reshape(HEIGHT, WIDTH))[1].tobytes()
     frames = b"stamp_s,left,right,height_m,pitch_deg\n100.000000000,0.png,0.png,2.5,-3\n"
     save(folder, "dataset", "good", b"\n---\n".join([calibration("left"), calibration("right"), frames, png]))
