@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 
 #include "uav_landing/calibration.h"
 
 namespace uav_landing {
+
+class Resampler;
 
 /// The paper's pre-process: turns a raw image into the rectified one by precomputed fixed-point maps.
 /// Honours R and P even when D is zero, and binning and ROI of the camera_info.
@@ -23,8 +26,8 @@ class Rectifier {
 
  private:
   CameraCalibration calibration_;
-  cv::Mat map1_, map2_, mask_;
-  bool identity_ = false;  // nothing to do but copy
+  cv::Mat mask_;
+  std::shared_ptr<const Resampler> resampler_;  // none where there is nothing to do but copy
 };
 
 /// What the stages behind rectification know of the cameras: the rig and where the rectified images have

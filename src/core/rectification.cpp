@@ -2,16 +2,13 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
-#include "multiversion.h"
+#include "resampler.h"
 
 namespace uav_landing {
 
@@ -88,76 +85,6 @@ bool isIdentity(const cv::Mat& map1, const cv::Mat& map2) {
   return true;
 }
 
-/// Makes the maps safe to follow without a look at the borders: two pixels side by side of two rows each, all
-/// in an image of this size, and anything where the mask is 0. map2 becomes weights in 1/32: of the right
-/// pixels in the lower byte, of the lower pixels in the upper one.
-void keepInside(cv::Mat& mask, cv::Size source, cv::Mat& map1, cv::Mat& map2) {
-  const auto clamped = [](int place, int fraction, int size) {
-    return place + 1 < size ? std::make_pair(place, fraction) : std::make_pair(size - 2, cv::INTER_TAB_SIZE);
-  };
-  if (source.width < 2 || source.height < 2) mask.setTo(0);  // nothing to interpolate between
-  for (int v = 0; v < mask.rows; ++v)
-    for (int u = 0; u < mask.cols; ++u) {
-      cv::Vec2s& p = map1.at<cv::Vec2s>(v, u);
-      ushort& fraction = map2.at<ushort>(v, u);
-      if (mask.at<uchar>(v, u) == 0) {
-        p = {0, 0};
-        fraction = 0;
-        continue;
-      }
-      const auto [x, right] = clamped(p[0], fraction % cv::INTER_TAB_SIZE, source.width);
-      const auto [y, below] = clamped(p[1], fraction / cv::INTER_TAB_SIZE, source.height);
-      p = {static_cast<short>(x), static_cast<short>(y)};
-      fraction = static_cast<ushort>(right + 256 * below);
-    }
-}
-
-/// Where in the source's memory a row of places, (x, y) each, is.
-UAV_LANDING_MULTIVERSION void findOffsets(const short* __restrict places, int count, int step,
-                                          int* __restrict offsets) {
-  for (int u = 0; u < count; ++u) offsets[u] = places[2 * u + 1] * step + places[2 * u];
-}
-
-/// The two pixels from each offset on, the first in the lower byte.
-void gather(const uchar* source, const int* offsets, int count, std::uint16_t* pairs) {
-  for (int u = 0; u < count; ++u) std::memcpy(pairs + u, source + offsets[u], sizeof(*pairs));
-}
-
-/// Bilinear interpolation in fixed point, rounded, between pairs of pixels of an upper and a lower row.
-UAV_LANDING_MULTIVERSION void blend(const std::uint16_t* __restrict upper,
-                                    const std::uint16_t* __restrict lower,
-                                    const std::uint16_t* __restrict weights, const uchar* __restrict mask,
-                                    int count, uchar* __restrict out) {
-  constexpr short kOne = cv::INTER_TAB_SIZE;
-  for (int u = 0; u < count; ++u) {
-    const short right = static_cast<short>(weights[u] & 255), below = static_cast<short>(weights[u] >> 8);
-    const short left = static_cast<short>(kOne - right), above = static_cast<short>(kOne - below);
-    const short a = static_cast<short>((upper[u] & 255) * left + (upper[u] >> 8) * right);
-    const short b = static_cast<short>((lower[u] & 255) * left + (lower[u] >> 8) * right);
-    const unsigned grey = static_cast<unsigned>(a * above + b * below + kOne * kOne / 2) / (kOne * kOne);
-    out[u] = static_cast<uchar>(grey & mask[u]);
-  }
-}
-
-/// Follows maps that are inside the image, a row at a time; several times as fast as cv::remap.
-void resample(const cv::Mat& raw, const cv::Mat& map1, const cv::Mat& map2, const cv::Mat& mask,
-              cv::Mat& out) {
-  out.create(mask.size(), CV_8UC1);
-  if (raw.cols < 2 || raw.rows < 2) {
-    out.setTo(0);
-    return;
-  }
-  std::vector<int> offsets(mask.cols);
-  std::vector<std::uint16_t> upper(mask.cols), lower(mask.cols);
-  for (int v = 0; v < mask.rows; ++v) {
-    findOffsets(map1.ptr<short>(v), mask.cols, static_cast<int>(raw.step), offsets.data());
-    gather(raw.data, offsets.data(), mask.cols, upper.data());
-    gather(raw.data + raw.step, offsets.data(), mask.cols, lower.data());
-    blend(upper.data(), lower.data(), map2.ptr<std::uint16_t>(v), mask.ptr<uchar>(v), mask.cols,
-          out.ptr<uchar>(v));
-  }
-}
-
 }  // namespace
 
 Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
@@ -174,10 +101,12 @@ Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
 
   Rectifier rectifier;
   rectifier.calibration_ = calibration;
-  cv::convertMaps(x, y, rectifier.map1_, rectifier.map2_, CV_16SC2);
-  rectifier.identity_ = isIdentity(rectifier.map1_, rectifier.map2_);
-  rectifier.mask_ = sourceMask(rectifier.map1_, rectifier.map2_, c.imageSize());
-  if (!rectifier.identity_) keepInside(rectifier.mask_, c.imageSize(), rectifier.map1_, rectifier.map2_);
+  cv::Mat map1, map2;
+  cv::convertMaps(x, y, map1, map2, CV_16SC2);
+  rectifier.mask_ = sourceMask(map1, map2, c.imageSize());
+  if (isIdentity(map1, map2)) return rectifier;
+  if (c.width < 2 || c.height < 2) rectifier.mask_.setTo(0);  // nothing to interpolate between
+  rectifier.resampler_ = std::make_shared<Resampler>(map1, map2, rectifier.mask_, c.imageSize());
   return rectifier;
 }
 
@@ -187,10 +116,10 @@ Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
   if (raw.size() != mask_.size())
     return {Reason::kInputInvalid,
             "image is " + text(raw.size()) + ", its camera_info says " + text(mask_.size())};
-  if (identity_)
-    raw.copyTo(out);
+  if (resampler_)
+    resampler_->resample(raw, out);
   else
-    resample(raw, map1_, map2_, mask_, out);
+    raw.copyTo(out);
   return {};
 }
 
