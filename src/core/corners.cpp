@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "harris_rows.h"
+#include "mask_bounds.h"
 
 namespace uav_landing {
 namespace {
@@ -133,7 +134,7 @@ class Cells {
 
 std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
                                    double min_distance, double harris_k) {
-  const cv::Rect area = cv::boundingRect(mask);
+  const cv::Rect area = boundsOf(mask);
   if (area.width < 7 || area.height < 7) return {};
   static thread_local std::vector<Candidate> maxima, memory;  // kept, as there are many
   findMaxima(image(area), mask(area), quality, harris_k, maxima);

@@ -1,11 +1,9 @@
 #include "line_fit.h"
 
 #include <algorithm>
-#include <array>
-#include <opencv2/core.hpp>
 
 #include "line_refinement.h"
-#include "multiversion.h"
+#include "order_statistic.h"
 
 namespace uav_landing::line_fit {
 
@@ -15,37 +13,17 @@ constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 constexpr double kTukey = 4.685;       // scales: 95 % as good as least squares when the errors are normal
 
-/// Buckets of the numbers, all that are beyond the last one in that.
-constexpr int kBuckets = 32;
-UAV_LANDING_MULTIVERSION void shareOut(const float* __restrict values, int count, float scale,
-                                       uchar* __restrict bucket_of) {
-  for (int i = 0; i < count; ++i) {
-    const float bucket = values[i] * scale;
-    bucket_of[i] = static_cast<uchar>(static_cast<int>(bucket < kBuckets - 1 ? bucket : kBuckets - 1));
-  }
-}
-
-/// Of values >= 0, the upper one of two in the middle. They are shared out among buckets up to twice the
-/// mean, which the median never exceeds, so that only the few in the middle bucket are put in order.
+/// Of values >= 0, the upper one of two in the middle.
 float median(const Values& values) {
   constexpr float kNothing = 1e-30F;
   const float mean = values.mean();
   if (!(mean > kNothing)) return mean;
-  std::array<uchar, 2 * kMaxStations> bucket_of;
-  const int size = static_cast<int>(values.size());
-  shareOut(values.data(), size, 0.5F * kBuckets / mean, bucket_of.data());
-  std::array<int, kBuckets> counts{};
-  for (int i = 0; i < size; ++i) ++counts[bucket_of[i]];
-  int rank = size / 2, bucket = 0;
-  while (rank >= counts[bucket]) rank -= counts[bucket++];
-  std::array<float, 2 * kMaxStations> middle;
-  int count = 0;
-  for (int i = 0; i < size; ++i) {
-    middle[count] = values[i];
-    count += bucket_of[i] == bucket ? 1 : 0;
-  }
-  std::nth_element(middle.begin(), middle.begin() + rank, middle.begin() + count);
-  return middle[rank];
+  PaddedValues<2 * kMaxStations> padded;
+  padded.count = static_cast<int>(values.size());
+  std::copy_n(values.data(), padded.count, padded.values.begin());
+  padded.pad();
+  constexpr float kUsual = 0.8F;  // of the mean: the median of the magnitudes of normal errors
+  return orderStatistic(padded, padded.count / 2, kUsual * mean);
 }
 
 Fit fitOnce(const Peaks& p) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "line_refinement.h"
+#include "mask_bounds.h"
 #include "segment_scanner.h"
 
 namespace uav_landing {
@@ -198,7 +199,7 @@ void shift(LineSegment& line, const Eigen::Vector2d& by) {
 
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                                    const ApproachAngleParameters& parameters) {
-  const cv::Rect part = cv::boundingRect(ground);
+  const cv::Rect part = boundsOf(ground);
   if (part.width < 8 || part.height < 8) return {};
   const double min_length = parameters.min_line_length * image.rows;
   std::vector<RoughSegment> candidates = roughSegments(image(part), ground(part), min_length, parameters);

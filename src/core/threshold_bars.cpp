@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "order_statistic.h"
+
 namespace uav_landing {
 
 namespace {
@@ -23,19 +25,20 @@ constexpr int kFewestBars = 4;          // that are equally wide
 
 /// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars, or of less contrast.
 double barContrast(const Across& pattern, double least) {
-  Across known;
-  const auto end = std::copy_if(pattern.begin(), pattern.end(), known.begin(),
-                                [](float value) { return std::isfinite(value); });
-  const std::ptrdiff_t count = end - known.begin();
-  if (count < TopView::kLeastPicture * kColumns) return 0;
+  PaddedValues<kColumns> known;
+  const auto begin = known.values.begin();
+  const auto end =
+      std::copy_if(pattern.begin(), pattern.end(), begin, [](float value) { return std::isfinite(value); });
+  known.count = static_cast<int>(end - begin);
+  if (known.count < TopView::kLeastPicture * kColumns) return 0;
   // Most of the runway is nearly of one grey: too few are lighter than the darkest by so much.
   constexpr float kSafe = 0.999F;
-  const float lighter = *std::min_element(known.begin(), end) + kSafe * static_cast<float>(least);
-  if (std::count_if(known.begin(), end, [=](float value) { return value >= lighter; }) <= count / 8) return 0;
-  const auto from_below = known.begin() + count / 8, from_above = end - 1 - count / 8;
-  std::nth_element(known.begin(), from_below, end);
-  std::nth_element(from_below, from_above, end);
-  const float dark = *from_below, light = *from_above;
+  const int outermost = known.count / 8;
+  const float lighter = *std::min_element(begin, end) + kSafe * static_cast<float>(least);
+  if (std::count_if(begin, end, [=](float value) { return value >= lighter; }) <= outermost) return 0;
+  known.pad();
+  const float dark = orderStatistic(known, outermost, lighter);
+  const float light = orderStatistic(known, known.count - 1 - outermost, lighter);
   const float contrast = light - dark;
   if (contrast < least) return 0;
   int flips = 0, last = 0, state = 0, gap = 0;
