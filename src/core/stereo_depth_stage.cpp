@@ -18,7 +18,7 @@ namespace {
 constexpr double kDegree = M_PI / 180.0;
 // Failing frames for which the last plane stays the first guess.
 constexpr int kKeepPlaneFor = 5;
-// In how many failing searches one is also tried with left and right swapped.
+// In how many searches that find nothing one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
 
 }  // namespace
@@ -114,14 +114,17 @@ struct StereoDepthStage::Implementation {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
     const Consensus found = searchPlane(coarse, parameters, limits);
-    if (found.found) return found.g;
+    if (found.found || failed_searches % kSwapCheckInterval == 0) {
+      // Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
+      const Consensus behind = searchPlane(swapped(coarse), parameters, limits);
+      looks_swapped = behind.found && behind.score > found.score;
+    }
+    if (found.found && !looks_swapped) return found.g;
+    ++failed_searches;
     return tl::make_unexpected(whyNotFound());
   }
 
-  Failure whyNotFound() {
-    if (failed_searches++ % kSwapCheckInterval == 0) {
-      looks_swapped = searchPlane(swapped(coarse), parameters, limits).found;
-    }
+  Failure whyNotFound() const {
     if (looks_swapped) {
       return {
           Reason::kNegativeDisparity,

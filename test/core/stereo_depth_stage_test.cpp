@@ -216,6 +216,18 @@ TEST(StereoDepthStage, KeepsSayingThatTheImagesAreSwapped) {
     EXPECT_EQ(stage.process(0.1 * i, pair.right, pair.left).failure.reason, Reason::kNegativeDisparity) << i;
 }
 
+TEST(StereoDepthStage, TakesNoZebraBarsOneOffForGroundInFrontWhileTheImagesAreSwapped) {
+  for (const double height : {1.2, 1.6, 2.0, 2.5, 3.0}) {
+    Scene scene(9);
+    scene.ground.bar_period = 0.24;
+    scene.ground.bar_from = 1;
+    scene.ground.bar_to = 9;
+    scene.ground.bar_reach = 3;
+    const Pair pair = scene.render(makePose(height, -8, 0));
+    EXPECT_EQ(scene.first({pair.right, pair.left}).failure.reason, Reason::kNegativeDisparity) << height;
+  }
+}
+
 TEST(StereoDepthStage, FindsNoPlaneInImagesThatHaveNothingToDoWithEachOther) {
   const Scene scene(11), other(12);
   const Pose pose = makePose(1.6, -8, 0);
