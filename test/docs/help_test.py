@@ -10,7 +10,8 @@ OPTION = re.compile(r"\s+(?:-\w, ?)?(?:-\w [^-]*)?--[a-z]")
 
 def programs():
     """All programs of the project, those for its developers as well."""
-    return sorted(file for folder in FOLDERS for file in folder.iterdir() if file.is_file() and os.access(str(file), os.X_OK))
+    files = (file for folder in FOLDERS for file in folder.iterdir() if file.is_file() and os.access(str(file), os.X_OK))
+    return sorted(file for file in files if not file.name.endswith("_test"))  # those are GoogleTest's
 
 
 def unexplained(text):
