@@ -191,7 +191,8 @@ class LaunchTest(unittest.TestCase):
             return rounds
 
         with launch(f"bag:={self.bag}", "loop:=true", "rate:=2") as launched:
-            self.assert_comes(lambda: len(valid_rounds()) >= 3 and min(valid_rounds()[1:3]) > 10, launched)
+            # Not the first ones: a machine with other work to do may miss much of a round.
+            self.assert_comes(lambda: sum(valid > 10 for valid in valid_rounds()[1:]) >= 2, launched)
 
     def test_nodelets_and_process_bag_give_the_same_numbers(self):
         offline_bag = self.folder / "offline.bag"
