@@ -7,14 +7,23 @@ from pathlib import Path
 from project import BUILD_DIR, SOURCE_DIR, run
 
 
+def configured_prefix():
+    for line in (BUILD_DIR / "CMakeCache.txt").read_text().splitlines():
+        if line.startswith("CMAKE_INSTALL_PREFIX:"):
+            return Path(line.split("=", 1)[1])
+    raise AssertionError("no CMAKE_INSTALL_PREFIX in CMakeCache.txt")
+
+
 class InstallTest(unittest.TestCase):
     """The install space, made from the build tree in a temporary folder, works on its own."""
 
     @classmethod
     def setUpClass(cls):
-        cls.prefix = Path(tempfile.mkdtemp(prefix="uav_landing_install_"))
-        cls.addClassCleanup(shutil.rmtree, str(cls.prefix))
-        run(["cmake", "--install", BUILD_DIR, "--prefix", cls.prefix], check=True)
+        root = Path(tempfile.mkdtemp(prefix="uav_landing_install_"))
+        cls.addClassCleanup(shutil.rmtree, str(root))
+        # Not by --prefix: catkin's own files would still go to the configured one, which only root may write.
+        run(["cmake", "--install", BUILD_DIR], check=True, env=dict(os.environ, DESTDIR=str(root)))
+        cls.prefix = root / configured_prefix().relative_to("/")
         cls.environment = dict(os.environ)
         # As in a fresh shell with only this install space: neither the checkout nor the development space is on a path.
         for variable in ("CMAKE_PREFIX_PATH", "ROS_PACKAGE_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "PKG_CONFIG_PATH"):
