@@ -92,10 +92,10 @@ class ProcessBagsTest(unittest.TestCase):
         self.assertIn("\t:\t", (self.output / "jobs.log").read_text())
 
     def test_bags_are_spread_over_machines_by_ssh(self):
-        """With a stand-in for ssh, which runs the command here and notes the machine."""
+        """With a stand-in for ssh, which runs the command here and notes the machine; no $SHELL is set there."""
         ssh = self.bags / "ssh"
         ssh.write_text('#!/bin/sh\nwhile [ "${1#-}" != "$1" ]; do shift; done\n'
-                       f'echo "$1" >>"{self.bags}/machines"\nshift\n[ "$1" != -- ] || shift\nexec sh -c "$*"\n')
+                       f'echo "$1" >>"{self.bags}/machines"\nshift\n[ "$1" != -- ] || shift\nunset SHELL\nexec sh -c "$*"\n')
         ssh.chmod(0o755)
         for name in ("first", "it's second"):
             self.bag(f"{name}.bag")
