@@ -101,15 +101,21 @@ Marker silhouette(const std_msgs::Header& header, double span, const DrawnAircra
   return shape;
 }
 
-/// Where the aircraft is with three sigma; as thick as a line at least.
-Marker ellipsoid(const std_msgs::Header& header, double line, const DrawnAircraft& aircraft, double largest) {
+/// Whether the uncertainty is known and small enough to be drawn over the runway.
+bool hasEllipsoid(const NodeParameters& parameters, const DrawnAircraft& aircraft) {
+  return aircraft.stddev.maxCoeff() < parameters.runway_length / 6;
+}
+
+/// Where the aircraft is with three sigma, ellipsoid_scale times larger; as thick as a line at least.
+Marker ellipsoid(const std_msgs::Header& header, double line, const NodeParameters& parameters,
+                 const DrawnAircraft& aircraft) {
   Marker shape = marker(header, 7, "uncertainty", Marker::SPHERE, 1, colour(1.0F, 0.6F, 0.2F, 0.45F));
-  if (!(aircraft.stddev.maxCoeff() < largest)) {
+  if (!hasEllipsoid(parameters, aircraft)) {
     shape.action = Marker::DELETE;
     return shape;
   }
   shape.pose.position = point(aircraft.position);
-  const Eigen::Vector3d size = (6 * aircraft.stddev).cwiseMax(line);
+  const Eigen::Vector3d size = (6 * parameters.ellipsoid_scale * aircraft.stddev).cwiseMax(line);
   shape.scale.x = size.x();
   shape.scale.y = size.y();
   shape.scale.z = size.z();
@@ -154,12 +160,14 @@ visualization_msgs::MarkerArray drawLanding(const std_msgs::Header& header, cons
   if (aircraft) {
     array.markers.push_back(glidePath(header, line, estimate, aircraft->position, direction));
     array.markers.push_back(silhouette(header, parameters.runway_width / 2.5, *aircraft));
-    array.markers.push_back(ellipsoid(header, line, *aircraft, parameters.runway_length / 6));
+    array.markers.push_back(ellipsoid(header, line, parameters, *aircraft));
   }
 
   Marker text = marker(header, 5, "numbers", Marker::TEXT_VIEW_FACING, 0,
                        estimate.valid() ? colour(0.3F, 1.0F, 0.3F) : colour(1.0F, 0.4F, 0.3F));
   text.text = numbers(estimate);
+  if (aircraft && hasEllipsoid(parameters, *aircraft))
+    text.text += "\nellipsoid 3 sigma" + number(" x %g", parameters.ellipsoid_scale, "");
   const Eigen::Vector3d anchor = aircraft        ? aircraft->position
                                  : track.empty() ? Eigen::Vector3d::Zero()
                                                  : track.back();

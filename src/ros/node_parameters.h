@@ -23,6 +23,7 @@ struct NodeParameters {
   bool publish_tf = true;
   double runway_width = 30.0;
   double runway_length = 600.0;
+  double ellipsoid_scale = 10.0;
   double complaint_period = 5.0;
   double diagnostic_period = 1.0;
 
@@ -53,6 +54,10 @@ struct NodeParameters {
     v.number("runway_width", runway_width, 0.1, 200.0, "m", "of the runway as drawn (kalman_height markers)");
     v.number("runway_length", runway_length, 0.1, 10000.0, "m",
              "of the runway as drawn (kalman_height markers)");
+    v.number(
+        "ellipsoid_scale", ellipsoid_scale, 1.0, 1000.0, "",
+        "the ellipsoid of three sigma is drawn larger by this factor: centimetres are too small to be seen "
+        "over a runway (kalman_height markers)");
     v.number("complaint_period", complaint_period, 0.1, 3600.0, "s",
              "without a pair for this long the nodelet says which input is missing");
     v.number("diagnostic_period", diagnostic_period, 0.1, 3600.0, "s", "between two diagnostics messages");
