@@ -109,7 +109,7 @@ bool hasEllipsoid(const NodeParameters& parameters, const DrawnAircraft& aircraf
 /// Where the aircraft is with three sigma, ellipsoid_scale times larger; as thick as a line at least.
 Marker ellipsoid(const std_msgs::Header& header, double line, const NodeParameters& parameters,
                  const DrawnAircraft& aircraft) {
-  Marker shape = marker(header, 7, "uncertainty", Marker::SPHERE, 1, colour(1.0F, 0.6F, 0.2F, 0.45F));
+  Marker shape = marker(header, 7, "uncertainty", Marker::SPHERE, 1, colour(1.0F, 0.65F, 0.3F, 0.8F));
   if (!hasEllipsoid(parameters, aircraft)) {
     shape.action = Marker::DELETE;
     return shape;
