@@ -7,9 +7,8 @@ namespace uav_landing {
 /// An image prepared for matching: lightly smoothed (so that interpolation does not pull matches towards
 /// whole pixels) in float, at full size and at a coarse level of about 400 columns for wide searches.
 struct MatchImage {
-  cv::Mat fine;     ///< CV_32F, full size
-  cv::Mat coarse;   ///< CV_32F, averaged over factor x factor pixels
-  cv::Mat reduced;  ///< CV_32F, the coarse level before it is smoothed
+  cv::Mat fine;    ///< CV_32F, full size
+  cv::Mat coarse;  ///< CV_32F, averaged over factor x factor pixels
   int factor = 1;
 
   /// image: mono8.

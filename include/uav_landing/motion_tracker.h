@@ -68,6 +68,7 @@ class MotionTracker {
                            const Eigen::Matrix3d& R) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);
+  void takeMemory(const Frame& now);
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
@@ -76,8 +77,9 @@ class MotionTracker {
   StereoRig rig_;
   cv::Mat mask_;  // left, eroded by the window
   ApproachAngleParameters parameters_;
-  std::deque<Frame> past_;  // oldest first
-  std::vector<MatchImage> spare_;
+  std::deque<Frame> past_;         // oldest first
+  std::vector<MatchImage> spare_;  // their memory is used again
+  cv::Mat spare_coarse_;
   std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;

@@ -19,22 +19,25 @@ struct Candidate {
   short x, y;
 };
 
-/// Appends the maxima of a row inside the mask and returns the end. There must be room for all of the row:
-/// every pixel of a block with a maximum is written and only the end tells which ones stay, as where they are
-/// a processor cannot guess.
-Candidate* addMaxima(const float* maxima, const uchar* allowed, int columns, int row, Candidate* end) {
-  constexpr int kBlock = 4;  // most are without a maximum
-  for (int begin = 0; begin < columns; begin += kBlock) {
-    const int stop = std::min(begin + kBlock, columns);
-    if (stop == begin + kBlock) {
-      std::uint64_t bits[2];
-      std::memcpy(bits, maxima + begin, sizeof(bits));
-      if ((bits[0] | bits[1]) == 0) continue;
-    }
-    for (int u = begin; u < stop; ++u) {
-      *end = {maxima[u], static_cast<short>(u), static_cast<short>(row)};
-      end += static_cast<int>(maxima[u] > 0) & static_cast<int>(allowed[u] != 0);
-    }
+/// Appends the marked pixels of a row and returns the end. There must be room for all of the row: two of each
+/// block are written, and only the end tells which ones stay, as how many there are a processor cannot guess.
+Candidate* addMarked(const uchar* marks, const float* responses, int columns, int row, Candidate* end) {
+  static_assert(HarrisRows::kBlock == sizeof(std::uint64_t), "a block's marks are looked at as one number");
+  constexpr std::uint64_t kOnes = 0x0101010101010101, kLast = std::uint64_t(1) << 63;
+  for (int begin = 0; begin < columns; begin += HarrisRows::kBlock) {
+    std::uint64_t bits;
+    std::memcpy(&bits, marks + begin, sizeof(bits));
+    if (bits == 0) continue;
+    const auto put = [&](Candidate* place) {
+      const int u = begin + __builtin_ctzll(bits | kLast) / 8;
+      *place = {responses[u], static_cast<short>(u), static_cast<short>(row)};
+      bits &= bits - 1;
+    };
+    Candidate* const stop = end + (bits * kOnes >> 56);
+    put(end++);
+    put(end++);
+    while (end < stop) put(end++);
+    end = stop;
   }
   return end;
 }
@@ -49,8 +52,8 @@ void findMaxima(const cv::Mat& image, const cv::Mat& mask, double quality, doubl
     harris.compute(v);
     if (v < 4) continue;
     if (maxima.size() < count + image.cols) maxima.resize(2 * (count + image.cols));
-    count = addMaxima(harris.maxima(v - 1), mask.ptr<uchar>(v - 1), image.cols, v - 1, &maxima[count]) -
-            maxima.data();
+    const uchar* marks = harris.maxima(v - 1, mask.ptr<uchar>(v - 1));
+    count = addMarked(marks, harris.response(v - 1), image.cols, v - 1, &maxima[count]) - maxima.data();
   }
   maxima.resize(count);
   float strongest = 0;

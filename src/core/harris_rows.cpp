@@ -57,13 +57,14 @@ UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const fl
 inline float larger(float a, float b) { return a > b ? a : b; }
 
 /// A maximum is larger than its neighbours before it, and not smaller than those after it.
-UAV_LANDING_MULTIVERSION void keepMaxima(const Rows<float>& rows, int columns, float* __restrict maxima) {
+UAV_LANDING_MULTIVERSION void markMaxima(const Rows<float>& rows, const uchar* __restrict allowed,
+                                         int columns, uchar* __restrict maxima) {
   const float *a = rows.above, *b = rows.middle, *c = rows.below;
   for (int u = 2; u < columns - 2; ++u) {
     const float before = larger(larger(a[u - 1], a[u]), larger(a[u + 1], b[u - 1]));
     const float after = larger(larger(c[u - 1], c[u]), larger(c[u + 1], b[u + 1]));
-    const float positive = b[u] > larger(before, 0.F) ? b[u] : 0.F;
-    maxima[u] = b[u] >= after ? positive : 0.F;
+    const int is_larger = b[u] > larger(before, 0.F) ? 1 : 0, not_smaller = b[u] >= after ? 1 : 0;
+    maxima[u] = static_cast<uchar>(is_larger & not_smaller & allowed[u]);
   }
 }
 
@@ -74,9 +75,9 @@ HarrisRows::HarrisRows(const cv::Mat& image, double k)
       k_(static_cast<float>(k)),
       columns_(image.cols),
       products_(9 * static_cast<size_t>(columns_)),
-      responses_(3 * static_cast<size_t>(columns_)),
+      responses_(3 * static_cast<size_t>(columns_) + kBlock),
       sums_(3 * static_cast<size_t>(columns_)),
-      maxima_(columns_) {}
+      maxima_((static_cast<size_t>(columns_) + kBlock - 1) / kBlock * kBlock) {}
 
 void HarrisRows::compute(int v) {
   for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
@@ -91,8 +92,8 @@ void HarrisRows::compute(int v) {
   respond(xx, xy, yy, columns_, k_, responseRow(v));
 }
 
-const float* HarrisRows::maxima(int v) {
-  keepMaxima({responseRow(v - 1), responseRow(v), responseRow(v + 1)}, columns_, maxima_.data());
+const uchar* HarrisRows::maxima(int v, const uchar* allowed) {
+  markMaxima({responseRow(v - 1), responseRow(v), responseRow(v + 1)}, allowed, columns_, maxima_.data());
   return maxima_.data();
 }
 

@@ -15,9 +15,13 @@ class HarrisRows {
   /// Computes the response of row v (2 <= v < rows - 2), 0 in the two outermost columns; rows must be asked
   /// for in turn, from 2 on.
   void compute(int v);
-  /// Response at the local maxima of row v, 0 elsewhere; row v + 1 must be the one computed last. Of equal
-  /// neighbours the last one counts.
-  const float* maxima(int v);
+  /// Good for whole blocks of kBlock.
+  const float* response(int v) { return responseRow(v); }
+  /// 1 at the local maxima of row v where allowed, a mask of 0 and 255, is not 0; 0 elsewhere, filled up to
+  /// whole blocks of kBlock. Row v + 1 must be the one computed last. Of equal neighbours the last one
+  /// counts.
+  const uchar* maxima(int v, const uchar* allowed);
+  static constexpr int kBlock = 8;
 
  private:
   float* productRow(int v) { return products_.data() + static_cast<size_t>(v % 3) * 3 * columns_; }
@@ -27,7 +31,8 @@ class HarrisRows {
   float k_;
   int columns_, next_ = 1;
   std::vector<float> products_, responses_;  // three rows each
-  std::vector<float> sums_, maxima_;         // one row
+  std::vector<float> sums_;                  // one row
+  std::vector<uchar> maxima_;
 };
 
 }  // namespace uav_landing

@@ -17,8 +17,7 @@ void MatchImage::assign(const cv::Mat& image) {
   if (factor == 1) {
     coarse = fine;
   } else {
-    reduce(image, factor, reduced);
-    smooth(reduced, coarse);
+    smoothReduced(image, factor, coarse);
   }
 }
 

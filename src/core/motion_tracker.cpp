@@ -21,6 +21,12 @@ constexpr int kFewestScouts = 6;
 // Images kept however close their stamps are: 0.5 s of 100 Hz.
 constexpr size_t kMostFrames = 50;
 
+// Images whose memory is taken beforehand: 0.5 s of 30 Hz.
+constexpr size_t kMostAtOnce = 17;
+
+// Stamps may be off by this much for a frame still to be in the window, s.
+constexpr double kWindowSlack = 0.05;
+
 // At most count of the corners, spread as the corners are.
 std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
   if (corners.size() <= count) return corners;
@@ -109,8 +115,21 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
     frame.image = std::move(spare_.back());
     spare_.pop_back();
   }
+  if (frame.image.coarse.empty()) frame.image.coarse = std::move(spare_coarse_);
   frame.image.assign(left);
   return frame;
+}
+
+// What the frames of the window will need, as soon as their rate is known: with each of the first dozen pairs
+// it would take longer to get memory from the system than to fill it.
+void MotionTracker::takeMemory(const Frame& now) {
+  const double duration = now.stamp - past_.back().stamp;
+  const double kept = std::floor((parameters_.angle_window + kWindowSlack) / duration) + 1;
+  const size_t needed = static_cast<size_t>(std::min<double>(kMostAtOnce, kept));
+  while (past_.size() + spare_.size() < needed) {
+    spare_.emplace_back();
+    spare_.back().fine = cv::Mat::zeros(now.image.fine.size(), now.image.fine.type());
+  }
 }
 
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
@@ -341,8 +360,11 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   last_window_ = result.window;
   last_step_.reset();
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
+  if (past_.size() == 1) takeMemory(now);
+  // Wide searches, at the coarse level, are in the frame before only.
+  if (!past_.empty() && past_.back().image.factor > 1) spare_coarse_ = std::move(past_.back().image.coarse);
   past_.push_back(std::move(now));
-  const double oldest = past_.back().stamp - parameters_.angle_window - 0.05;
+  const double oldest = past_.back().stamp - parameters_.angle_window - kWindowSlack;
   while (past_.size() > 2 && (past_.front().stamp < oldest || past_.size() > kMostFrames)) {
     spare_.push_back(std::move(past_.front().image));
     past_.pop_front();

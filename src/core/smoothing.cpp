@@ -19,6 +19,10 @@ Kernel gaussian(double sigma) {
   const double side = std::exp(-0.5 / (sigma * sigma)), sum = 1 + 2 * side;
   return {static_cast<float>(1 / sum), static_cast<float>(side / sum)};
 }
+const Kernel& kernel() {
+  static const Kernel kernel = gaussian(0.7);
+  return kernel;
+}
 
 /// One row of the result from three of the image. columns: mixed vertically, with a place before the first
 /// and one behind the last.
@@ -57,37 +61,45 @@ void meanOfMore(const std::uint16_t* sums, int size, int factor, float scale, fl
   }
 }
 
+/// A row of the means over blocks. sums: memory for the columns of the image.
+void reduceRow(const cv::Mat& image, int factor, int row, std::vector<std::uint16_t>& sums, float* out,
+               int size) {
+  const float scale = 1.F / static_cast<float>(factor * factor);
+  std::fill(sums.begin(), sums.end(), std::uint16_t(0));
+  for (int k = 0; k < factor; ++k)
+    addRow(image.ptr<uchar>(row * factor + k), static_cast<int>(sums.size()), sums.data());
+  if (factor == 2)
+    meanOfTwo(sums.data(), size, scale, out);
+  else
+    meanOfMore(sums.data(), size, factor, scale, out);
+}
+
 }  // namespace
 
 void smooth(const cv::Mat& image, cv::Mat& smoothed) {
-  static const Kernel kernel = gaussian(0.7);
   smoothed.create(image.size(), CV_32FC1);
   std::vector<float> columns(image.cols + 2);
   for (int v = 0; v < image.rows; ++v) {
     const int above = cv::borderInterpolate(v - 1, image.rows, cv::BORDER_REFLECT_101);
     const int below = cv::borderInterpolate(v + 1, image.rows, cv::BORDER_REFLECT_101);
-    float* out = smoothed.ptr<float>(v);
-    if (image.depth() == CV_8U)
-      smoothRowOf8Bit(image.ptr<uchar>(above), image.ptr<uchar>(v), image.ptr<uchar>(below), image.cols,
-                      kernel, columns.data(), out);
-    else
-      smoothRowOfFloat(image.ptr<float>(above), image.ptr<float>(v), image.ptr<float>(below), image.cols,
-                       kernel, columns.data(), out);
+    smoothRowOf8Bit(image.ptr<uchar>(above), image.ptr<uchar>(v), image.ptr<uchar>(below), image.cols,
+                    kernel(), columns.data(), smoothed.ptr<float>(v));
   }
 }
 
-void reduce(const cv::Mat& image, int factor, cv::Mat& reduced) {
-  reduced.create(image.rows / factor, image.cols / factor, CV_32FC1);
-  const float scale = 1.F / static_cast<float>(factor * factor);
-  std::vector<std::uint16_t> sums(static_cast<size_t>(reduced.cols) * factor);
-  for (int v = 0; v < reduced.rows; ++v) {
-    std::fill(sums.begin(), sums.end(), std::uint16_t(0));
-    for (int k = 0; k < factor; ++k)
-      addRow(image.ptr<uchar>(v * factor + k), static_cast<int>(sums.size()), sums.data());
-    if (factor == 2)
-      meanOfTwo(sums.data(), reduced.cols, scale, reduced.ptr<float>(v));
-    else
-      meanOfMore(sums.data(), reduced.cols, factor, scale, reduced.ptr<float>(v));
+void smoothReduced(const cv::Mat& image, int factor, cv::Mat& smoothed) {
+  smoothed.create(image.rows / factor, image.cols / factor, CV_32FC1);
+  const int rows = smoothed.rows, size = smoothed.cols;
+  std::vector<std::uint16_t> sums(static_cast<size_t>(size) * factor);
+  std::vector<float> reduced(3 * static_cast<size_t>(size)), columns(size + 2);  // the last three rows
+  const auto reducedRow = [&](int v) { return &reduced[static_cast<size_t>(v % 3) * size]; };
+  int next = 0;
+  for (int v = 0; v < rows; ++v) {
+    for (; next <= std::min(v + 1, rows - 1); ++next)
+      reduceRow(image, factor, next, sums, reducedRow(next), size);
+    const float* above = reducedRow(cv::borderInterpolate(v - 1, rows, cv::BORDER_REFLECT_101));
+    const float* below = reducedRow(cv::borderInterpolate(v + 1, rows, cv::BORDER_REFLECT_101));
+    smoothRowOfFloat(above, reducedRow(v), below, size, kernel(), columns.data(), smoothed.ptr<float>(v));
   }
 }
 
