@@ -210,9 +210,10 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < needed; ++draw) {
     const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
                                             : throughTwo(rig, samples, limits.max_roll, random);
-    if (!isPlausibleGround(g, limits)) continue;
+    // The slope first: it takes less time, and most planes that are drawn have another one.
     const double slope = rig.fb() * g.y() / rig.fy;
-    if (slope_range && (slope < slope_range->x() || slope > slope_range->y())) continue;
+    if (slope_range && !(slope >= slope_range->x() && slope <= slope_range->y())) continue;
+    if (!isPlausibleGround(g, limits)) continue;
     ++counted;
     const Votes votes = voters.votesFor(g, limits.tolerance);
     if (best.found && votes.net() <= best.score) continue;

@@ -12,6 +12,7 @@ namespace fuzz {
 namespace {
 
 // Of the smallest size at which an unspoiled approach has heights and angles; three frames until it has them.
+// An input is one to three frames.
 constexpr int kWidth = 64, kHeight = 48, kFrames = 3;
 constexpr double kStep = 0.1;  // s
 
@@ -112,10 +113,11 @@ void fuzzImagePair(const uint8_t* data, size_t size) {
   if (input.byte() % 8 == 0) parameters.approach_angle.use_stereo = false;
   // Pictures for people take longer than all stages.
   const bool draw = input.byte() % 8 == 0;
+  const int frames = kFrames - static_cast<int>(input.choice(kFrames));
   auto pipeline =
       Pipeline::create(idealCamera(scene.rig, false), idealCamera(scene.rig, true), parameters).value();
   double stamp = 1;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < frames; ++i) {
     cv::Mat left = scene.left[i].clone(), right = scene.right[i].clone();
     for (int times = static_cast<int>(input.choice(4)); times > 0; --times) {
       const size_t which = input.choice(3);

@@ -69,6 +69,8 @@ void expectHonest(const LandingResult& result) {
 }
 
 constexpr int kBefore = 40, kBad = 2, kAfter = 22;  // pairs; after the bad ones a second of good ones
+constexpr int kRecovered =
+    3;  // pairs, valid and right, after which few inputs wait for the end of that second
 
 /// Good messages of a pair, as the stage takes them.
 struct Pair {
@@ -117,13 +119,15 @@ void fuzzMessages(const uint8_t* data, size_t size) {
     expectHonest(result);
     useResult(messages, result);
   }
-  LandingResult result;
+  const bool whole_second = input.byte() % 16 == 15;
+  int right = 0;  // pairs in a row
   for (const Pair& pair : afterwards) {
-    result = stage.process(pair.stereo, pair.approach);
+    const LandingResult result = stage.process(pair.stereo, pair.approach);
     expectHonest(result);
+    right = result.valid() && std::abs(result.height - pair.height) < 0.5 ? right + 1 : 0;
+    if (right == kRecovered && !whole_second) break;
   }
-  require(result.valid(), "a second of good messages makes the estimate valid again");
-  require(std::abs(result.height - afterwards.back().height) < 0.5, "and right");
+  require(right > 0, "a second of good messages makes the estimate valid again, and right");
 }
 
 }  // namespace fuzz
