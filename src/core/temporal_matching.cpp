@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "touch_ahead.h"
 #include "uav_landing/patch_matching.h"
 
 namespace uav_landing {
@@ -20,8 +21,8 @@ constexpr double kUniqueness = 0.92;
 
 // Affine appearance of the surroundings of a corner in the other image.
 struct LocalWarp {
-  Eigen::Vector2d centre;
-  Eigen::Matrix2d warp;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
 };
 
 // Image of pixel x (full size) under the plane-induced homography now -> then; false when it lies behind.
@@ -49,6 +50,41 @@ bool visible(const cv::Mat& mask, const Eigen::Vector2d& x) {
   return u >= 0 && v >= 0 && u < mask.cols && v < mask.rows && mask.at<uchar>(v, u) != 0;
 }
 
+// Says where corners are to be looked for, and touches the pixels there.
+class Predictions {
+ public:
+  Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
+              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius)
+      : rig_(rig),
+        now_(now),
+        then_(then),
+        mask_(mask),
+        motion_(motion),
+        plane_(rig, motion, plane),
+        radius_(radius) {}
+
+  // False when there is none.
+  bool at(const TrackedCorner& corner, LocalWarp* local) const {
+    constexpr int kAround = 3;  // for interpolation and the steps of refinement
+    const Eigen::Vector2d x(corner.u, corner.v);
+    const bool seen = corner.on_plane ? plane_.at(x, local)
+                                      : PointWarp(rig_, motion_, {0, 0, corner.inverse_depth}).at(x, local);
+    if (!seen) return false;
+    touchPixel(mask_, local->centre.x(), local->centre.y());
+    touchWindow(now_.fine, corner.u, corner.v, radius_ + 1, radius_ + 1);
+    touchWindow(then_.fine, local->centre.x(), local->centre.y(), radius_ + kAround, radius_ + kAround);
+    return true;
+  }
+
+ private:
+  const StereoRig& rig_;
+  const MatchImage &now_, &then_;
+  const cv::Mat& mask_;
+  const CameraMotion& motion_;
+  PointWarp plane_;
+  int radius_;
+};
+
 }  // namespace
 
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
@@ -57,16 +93,19 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const TemporalMatchOptions& options,
                                          std::vector<TemporalMatch> memory) {
   const int factor = now.factor, radius = options.window_radius;
-  const PointWarp plane_warp(rig, predicted, normal);
+  const Predictions predictions(rig, now, then, mask, predicted, normal, radius);
   PatchSearch coarse(now.coarse, then.coarse, radius), fine(now.fine, then.fine, radius);
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
   matches.reserve(corners.size());
-  for (const TrackedCorner& corner : corners) {
+  LocalWarp local, next;
+  bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const TrackedCorner& corner = corners[i];
     const Eigen::Vector2d x(corner.u, corner.v);
-    LocalWarp local;
-    const bool seen = corner.on_plane ? plane_warp.at(x, &local)
-                                      : PointWarp(rig, predicted, {0, 0, corner.inverse_depth}).at(x, &local);
+    const bool seen = next_seen;
+    local = next;
+    if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
     if (!seen || !visible(mask, local.centre)) continue;
     if (options.coarse_steps > 0) {
       // The window at the coarse level is centred on a whole pixel near the corner; its displacement is what
