@@ -11,13 +11,16 @@ namespace {
 
 constexpr int kMostColumns = 56, kMostRows = 31;
 constexpr int kBefore = 4;  // values before the first column of a row
+// Of lines, with some more than there are, so that whole registers can be filled.
+constexpr int kMostLines = (kMostRows + kLanes - 1) / kLanes * kLanes;
 
-// A line of places that is nearly along the rows, by the pixels' columns that it crosses: between them along
+// Lines of places that are nearly along the rows, by the pixels' columns that they cross: between them along
 // the columns first, all columns at a time, and then along the line.
 struct Crossings {
-  int first, top;  // column and row of the image where they begin; the row above is read, too
-  float down;      // rows from top to the line at the first column
-  float start;     // columns from the first one to the first place
+  // Column and row of the image where they begin; the row above is read, too.
+  alignas(32) std::array<int, kMostLines> first, top;
+  alignas(32) std::array<float, kMostLines> down;   // rows from top to the line at the first column
+  alignas(32) std::array<float, kMostLines> start;  // columns from the first one to the first place
 };
 
 // Such lines, one for each row of a window.
@@ -35,15 +38,20 @@ struct NearRows {
     rise = slope * (columns - 1);
   }
 
-  Crossings at(int row) const {
-    Crossings line;
-    const double x = begin.x() + by_row.x() * row, y = begin.y() + by_row.y() * row;
-    line.first = static_cast<int>(x) - 1;
-    line.start = static_cast<float>(x - line.first);
-    const double left = y - slope * (x - line.first);
-    line.top = static_cast<int>(std::min(left, left + rise));
-    line.down = static_cast<float>(left - line.top);
-    return line;
+  // All lines at once.
+  [[gnu::always_inline]] inline void cross(int rows, Crossings& lines) const {
+    const double x0 = begin.x(), y0 = begin.y(), x_by_row = by_row.x(), y_by_row = by_row.y();
+    const double by_column = slope, falls = std::min(rise, 0.0);
+    for (int j = 0; j < wholeLanes(rows); ++j) {
+      const double x = x0 + x_by_row * j, y = y0 + y_by_row * j;
+      const int first = static_cast<int>(x) - 1;
+      const double behind = x - first, left = y - by_column * behind;
+      const int top = static_cast<int>(left + falls);
+      lines.first[j] = first;
+      lines.start[j] = static_cast<float>(behind);
+      lines.top[j] = top;
+      lines.down[j] = static_cast<float>(left - top);
+    }
   }
 
   // Whether a line has all it needs inside the image and crosses at most two of its rows.
@@ -54,16 +62,22 @@ struct NearRows {
   }
 };
 
-// The image at the crossings.
-[[gnu::always_inline]] inline void interpolateDown(const float* image, std::ptrdiff_t stride,
-                                                   const Crossings& line, float slope, int columns,
-                                                   float* out) {
-  const float* p = image + (line.top - 1) * stride + line.first;
+// The image at the crossings of a line, from the pixels on that are above the first one.
+[[gnu::always_inline]] inline void interpolateDown(const float* p, std::ptrdiff_t stride, float down,
+                                                   float slope, int columns, float* out) {
+  const bool between_two_rows = down + std::max(slope, 0.f) * static_cast<float>(columns) < 0.999f;
   Lanes t, values;
-  progress(line.down, slope, t);
-  for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
-    cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride, p + 4 * stride}, t, values);
-    store(values, out + i);
+  progress(down, slope, t);
+  if (between_two_rows) {
+    for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
+      cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride}, t, values);
+      store(values, out + i);
+    }
+  } else {
+    for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
+      cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride, p + 4 * stride}, t, values);
+      store(values, out + i);
+    }
   }
 }
 
@@ -102,36 +116,98 @@ UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, doub
   return true;
 }
 
+// The values between the columns, row by row: of all lines together where kLanes of their places begin.
+class AlongLines {
+ public:
+  [[gnu::always_inline]] inline void find(const Crossings& lines, int rows, float step, int count) {
+    drift_ = step - 1;
+    alignas(32) std::array<float, kMostLines> start = lines.start;
+    for (int i = 0; i < count; i += kLanes) {
+      Begin& begin = begins_[i / kLanes];
+      for (int j = 0; j < wholeLanes(rows); ++j) {
+        const float last = start[j] + drift_ * (kLanes - 1);
+        const int first = static_cast<int>(last < start[j] ? last : start[j]);
+        begin.first[j] = first;
+        begin.behind[j] = start[j] - static_cast<float>(first);
+        start[j] += step * kLanes;
+      }
+    }
+  }
+
+  // row: of line j.
+  [[gnu::always_inline]] inline void interpolate(const float* row, int j, int count,
+                                                 float* __restrict out) const {
+    for (int i = 0; i < count; i += kLanes) {
+      const Begin& begin = begins_[i / kLanes];
+      const float* p = row + begin.first[j] - 1;
+      Lanes t, values;
+      progress(begin.behind[j], drift_, t);
+      cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+      store(values, out + i);
+    }
+  }
+
+ private:
+  struct Begin {
+    alignas(32) std::array<int, kMostLines> first;     // column in front of the places
+    alignas(32) std::array<float, kMostLines> behind;  // columns from there to the first place
+  };
+  float drift_;
+  std::array<Begin, kMostColumns / kLanes> begins_;
+};
+
+struct LineValues {
+  std::array<float, kMostColumns * kMostRows> values;
+  float* row(int j) { return &values[j * kMostColumns + kBefore]; }
+};
+
+// The image at all crossings. All rows before any is read again: what was just written piece by piece is not
+// yet there to be read.
+[[gnu::always_inline]] inline void interpolateDown(const cv::Mat& image, const Crossings& lines, float slope,
+                                                   int rows, int columns, LineValues& values) {
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
+  const float* origin = image.ptr<float>();
+  for (int j = 0; j < rows; ++j) {
+    float* row = values.row(j);
+    interpolateDown(origin + (lines.top[j] - 1) * stride + lines.first[j], stride, lines.down[j], slope,
+                    columns, row);
+    row[-1] = row[columns] = 0;  // are read, but not chosen
+  }
+}
+
 UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::Vector2d& at,
                                              const Eigen::Matrix2d& warp, int radius, int stride,
                                              float* out) {
   if (!(warp(0, 0) > 0.1 && warp(0, 0) * stride < kMostColumns - kLanes - 6) || 2 * radius + 1 > kMostRows)
     return false;
-  const NearRows lines(at, warp, radius, stride);
-  const int size = 2 * radius + 1, columns = lines.columns;
-  if (!lines.fits(image, 0) || !lines.fits(image, size - 1)) return false;
-  std::array<float, kMostColumns * kMostRows> values;
-  std::array<float, kMostRows> starts;
-  const float slope = static_cast<float>(lines.slope);
-  const std::ptrdiff_t image_stride = static_cast<std::ptrdiff_t>(image.step1());
-  // All rows before any is read again: what was just written piece by piece is not yet there to be read.
-  for (int j = 0; j < size; ++j) {
-    const Crossings line = lines.at(j);
-    starts[j] = line.start;
-    float* row = &values[j * kMostColumns + kBefore];
-    interpolateDown(image.ptr<float>(), image_stride, line, slope, columns, row);
-    row[-1] = row[columns] = 0;  // are read, but not chosen
+  const NearRows near(at, warp, radius, stride);
+  const int size = 2 * radius + 1;
+  if (!near.fits(image, 0) || !near.fits(image, size - 1)) return false;
+  Crossings lines;
+  near.cross(size, lines);
+  LineValues values;
+  const float slope = static_cast<float>(near.slope), step = static_cast<float>(near.step);
+  // The usual width is known to the compiler, which then needs no loops for a row.
+  constexpr int kUsual = 2 * kLanes;
+  if (near.columns == kUsual) {
+    interpolateDown(image, lines, slope, size, kUsual, values);
+  } else {
+    interpolateDown(image, lines, slope, size, near.columns, values);
   }
-  const bool neighbours = inNeighbouringColumns(lines.step);
-  const float step = static_cast<float>(lines.step);
-  const std::int32_t fixed_step = CubicTable::fixed(lines.step);
-  for (int j = 0; j < size; ++j, out += stride) {
-    const float* row = &values[j * kMostColumns + kBefore];
-    if (neighbours) {
-      interpolateAlong(row, starts[j], step, wholeLanes(stride), out);
-    } else {
-      sampleCubicRow(row, CubicTable::fixed(starts[j]), fixed_step, stride, out);
-    }
+  if (!inNeighbouringColumns(near.step)) {
+    const std::int32_t fixed_step = CubicTable::fixed(near.step);
+    for (int j = 0; j < size; ++j, out += stride)
+      sampleCubicRow(values.row(j), CubicTable::fixed(lines.start[j]), fixed_step, stride, out);
+    return true;
+  }
+  AlongLines along;
+  const int count = wholeLanes(stride);
+  if (count == kUsual) {
+    along.find(lines, size, step, kUsual);
+    for (int j = 0; j < size; ++j, out += stride) along.interpolate(values.row(j), j, kUsual, out);
+  } else {
+    along.find(lines, size, step, count);
+    for (int j = 0; j < size; ++j, out += stride) along.interpolate(values.row(j), j, count, out);
   }
   return true;
 }

@@ -14,6 +14,14 @@ inline float cubicBetween(float a, float b, float c, float d, float t) {
   return b + t * (c1 + t * (c2 + t * c3));
 }
 
+/// The same for eight places at once.
+[[gnu::always_inline]] inline void cubicBetween(const Lanes& a, const Lanes& b, const Lanes& c,
+                                                const Lanes& d, const Lanes& t, Lanes& out) {
+  const Lanes rise = c - b;
+  const Lanes c1 = 0.5f * (c - a), c3 = 0.5f * (d - a) - 1.5f * rise, c2 = rise - c1 - c3;
+  out = b + t * (c1 + t * (c2 + t * c3));
+}
+
 /// The same for eight places, each between the second and the third of five neighbours, or the third and the
 /// fourth where t, counted from the second, is 1 to 2. from: where the neighbours of all places begin.
 [[gnu::always_inline]] inline void cubicBetween(const float* const (&from)[5], const Lanes& t, Lanes& out) {
@@ -24,10 +32,17 @@ inline float cubicBetween(float a, float b, float c, float d, float t) {
   load(from[3], p3);
   load(from[4], p4);
   const auto next = t >= 1;
-  const Lanes a = next ? p1 : p0, b = next ? p2 : p1, c = next ? p3 : p2, d = next ? p4 : p3;
-  const Lanes behind = next ? t - 1 : t, rise = c - b;
-  const Lanes c1 = 0.5f * (c - a), c3 = 0.5f * (d - a) - 1.5f * rise, c2 = rise - c1 - c3;
-  out = b + behind * (c1 + behind * (c2 + behind * c3));
+  cubicBetween(next ? p1 : p0, next ? p2 : p1, next ? p3 : p2, next ? p4 : p3, next ? t - 1 : t, out);
+}
+
+/// The same where every t is below 1, so that four neighbours do.
+[[gnu::always_inline]] inline void cubicBetween(const float* const (&from)[4], const Lanes& t, Lanes& out) {
+  Lanes p0, p1, p2, p3;
+  load(from[0], p0);
+  load(from[1], p1);
+  load(from[2], p2);
+  load(from[3], p3);
+  cubicBetween(p0, p1, p2, p3, t, out);
 }
 
 /// Catmull-Rom interpolation along a row: value and derivative by the column. Needs 1 <= x < cols - 2.
