@@ -18,6 +18,15 @@ constexpr int kLanes = 8;
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
+/// Eight whole numbers as floats. Element by element: the compiler makes one instruction of that, but not of
+/// loops or conversions of vectors.
+template <typename Number>
+[[gnu::always_inline]] inline void convert(const Number* from, Lanes& to) {
+  using Integers = int __attribute__((vector_size(32)));
+  to = __builtin_convertvector(
+      (Integers{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]}), Lanes);
+}
+
 /// start, start + step, ...
 [[gnu::always_inline]] inline void progress(float start, float step, Lanes& to) {
   to = start + step * Lanes{0, 1, 2, 3, 4, 5, 6, 7};

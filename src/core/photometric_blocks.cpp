@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -48,7 +49,8 @@ constexpr double kLeastUsual = 0.05;
 
 using Lane = std::array<float, kWidth>;
 
-float sum(const Lane& lane) {
+// One after the other. Not merged with other sums, which would take longer than the adding.
+[[gnu::noinline]] float sum(const Lane& lane) {
   float total = 0;
   for (const float value : lane) total += value;
   return total;
@@ -79,33 +81,57 @@ bool set(const cv::Mat& mask, double u, double v) {
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
 }
 
-// What a row of a block is interpolated from: the first value lies begin (0 to 2) behind the second pixel,
-// each further one a step behind the last. Floats, made for all rows before any is interpolated.
-struct RowPixels {
-  static constexpr int kRead = kWidth + kLanes;  // more than the kWidth + 4 needed: whole vector registers
-  std::array<float, kRead> pixel;
-  float begin;
-};
+// What the rows of a block are interpolated from: of each row the first value lies begin (0 to 2) behind the
+// second pixel, each further one a step behind the last. Floats, made for all rows before any is
+// interpolated. Neighbouring places must be in neighbouring pixels, but for one place from which on they are
+// one further.
+class RowPixels {
+ public:
+  static bool possible(float step) { return std::abs(step - 1) * (kWidth - 1) < 0.99f; }
 
-// At the places x, x + step, ... of a row. Neighbouring places must be in neighbouring pixels, but for one
-// place from which on they are one further.
-[[gnu::always_inline]] inline void load(const uchar* row, float x, float step, RowPixels& out) {
-  const float last = x + step * static_cast<float>(kWidth - 1);
-  const int first = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
-  out.begin = x - static_cast<float>(first);
-  row += first - 1;
-  for (int i = 0; i < RowPixels::kRead; ++i) out.pixel[i] = row[i];
-}
-
-[[gnu::always_inline]] inline void interpolate(const RowPixels& in, float step, Lane& value) {
-  for (int i = 0; i < kWidth; i += kLanes) {
-    const float* p = &in.pixel[i];
-    Lanes t, values;
-    progress(in.begin + (step - 1) * static_cast<float>(i), step - 1, t);
-    cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
-    store(values, &value[i]);
+  // starts: the first places of the rows.
+  [[gnu::always_inline]] inline void load(const cv::Mat& rows, const std::array<float, kHeight>& starts,
+                                          float step) {
+    drift_ = step - 1;
+    std::array<int, kHeight> first;
+    for (int y = 0; y < kHeight; ++y) {
+      const float x = starts[y], last = x + step * static_cast<float>(kWidth - 1);
+      first[y] = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
+      const float begin = x - static_cast<float>(first[y]);
+      for (int k = 0; k < kParts; ++k) begin_[k][y] = begin + drift_ * static_cast<float>(k * kLanes);
+      none_further_[y] = begin + std::max(drift_, 0.f) * kWidth < 0.999f;
+    }
+    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(rows.step1());
+    for (int y = 0; y < kHeight; ++y) {
+      const uchar* row = rows.ptr<uchar>() + y * stride + first[y] - 1;
+      for (int i = 0; i < kRead; i += kLanes) {
+        Lanes pixels;
+        convert(row + i, pixels);
+        store(pixels, &pixel_[y][i]);
+      }
+    }
   }
-}
+
+  // Of row y the values from the k-th kLanes on.
+  [[gnu::always_inline]] inline void interpolate(int y, int k, Lanes& values) const {
+    const float* p = &pixel_[y][k * kLanes];
+    Lanes t;
+    progress(begin_[k][y], drift_, t);
+    if (none_further_[y]) {
+      cubicBetween({p, p + 1, p + 2, p + 3}, t, values);
+    } else {
+      cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+    }
+  }
+
+ private:
+  static constexpr int kRead = kWidth + kLanes;  // more than the kWidth + 4 needed: whole vector registers
+  static constexpr int kParts = kWidth / kLanes;
+  std::array<std::array<float, kRead>, kHeight> pixel_;
+  std::array<std::array<float, kHeight>, kParts> begin_;
+  std::array<int, kHeight> none_further_;
+  float drift_;
+};
 
 // Grey levels of a row at any places x, x + step, ..., one by one.
 inline void sampleRow(const uchar* row, float x, float step, Lane& value) {
@@ -117,38 +143,78 @@ inline void sampleRow(const uchar* row, float x, float step, Lane& value) {
   }
 }
 
-// Sums over the columns of a block of what the warped right image r is, squared, and times the block's
-// values.
+// Sums over a block of what the warped right image r is, squared, and times the block's values.
 struct BlockSums {
-  Lane r{}, squares{}, greys{}, slopes{};
+  float r, squares, greys, slopes;
+};
+
+// The same of its columns. values: function (row, k, Lanes&) of the values from the k-th kLanes on. Counted
+// from the grey level reference, so that floats are exact enough for the differences of sums.
+struct ColumnSums {
+  Lane r, squares, greys, slopes;
+
+  template <typename Values>
+  [[gnu::always_inline]] inline void addUp(const Values& values, float reference, const float* grey,
+                                           const float* slope) {
+    for (int k = 0; k < kWidth / kLanes; ++k) {
+      Lanes r_sums{}, square_sums{}, grey_sums{}, slope_sums{};
+      for (int y = 0; y < kHeight; ++y) {
+        const int at = y * kWidth + k * kLanes;
+        Lanes value, own_grey, own_slope;
+        values(y, k, value);
+        load(grey + at, own_grey);
+        load(slope + at, own_slope);
+        value -= reference;
+        r_sums += value;
+        square_sums += value * value;
+        grey_sums += value * own_grey;
+        slope_sums += value * own_slope;
+      }
+      store(r_sums, &r[k * kLanes]);
+      store(square_sums, &squares[k * kLanes]);
+      store(grey_sums, &greys[k * kLanes]);
+      store(slope_sums, &slopes[k * kLanes]);
+    }
+  }
 };
 
 // first: place of the block's first pixel in the first of the rows, which moves by down from row to row.
-// Counted from the grey level reference, so that floats are exact enough for the differences of sums.
 UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& rows, double first, double down, float step,
                                          float reference, const float* grey, const float* slope) {
-  const auto start = [&](int y) { return static_cast<float>(first + down * y); };
-  const bool neighbours = std::abs(step - 1) * (kWidth - 1) < 0.99f;
-  std::array<RowPixels, kHeight> pixels;
-  if (neighbours)
-    for (int y = 0; y < kHeight; ++y) load(rows.ptr<uchar>(y), start(y), step, pixels[y]);
-  BlockSums sums;
-  for (int y = 0; y < kHeight; ++y, grey += kWidth, slope += kWidth) {
-    Lane values;
-    if (neighbours) {
-      interpolate(pixels[y], step, values);
-    } else {
-      sampleRow(rows.ptr<uchar>(y), start(y), step, values);
-    }
-    for (int i = 0; i < kWidth; ++i) {
-      const float value = values[i] - reference;
-      sums.r[i] += value;
-      sums.squares[i] += value * value;
-      sums.greys[i] += value * grey[i];
-      sums.slopes[i] += value * slope[i];
-    }
+  std::array<float, kHeight> starts;
+  for (int y = 0; y < kHeight; ++y) starts[y] = static_cast<float>(first + down * y);
+  ColumnSums sums;
+  if (RowPixels::possible(step)) {
+    RowPixels pixels;
+    pixels.load(rows, starts, step);
+    sums.addUp([&](int y, int k, Lanes& value) { pixels.interpolate(y, k, value); }, reference, grey, slope);
+  } else {
+    std::array<Lane, kHeight> sampled;
+    for (int y = 0; y < kHeight; ++y) sampleRow(rows.ptr<uchar>(y), starts[y], step, sampled[y]);
+    sums.addUp([&](int y, int k, Lanes& value) { load(&sampled[y][k * kLanes], value); }, reference, grey,
+               slope);
   }
-  return sums;
+  return {sum(sums.r), sum(sums.squares), sum(sums.greys), sum(sums.slopes)};
+}
+
+// Sum of the squares of a block of derivatives less their mean.
+UAV_LANDING_MULTIVERSION int blockEnergy(const short* first, size_t stride) {
+  using Row = short __attribute__((vector_size(kWidth * sizeof(short))));
+  alignas(Row) std::array<short, kPixels>
+      all;  // one after the other: the compiler knows instructions for that
+  alignas(Row) std::array<short, kWidth> columns;
+  Row sums{};  // of eight derivatives of up to 4 * 255
+  for (int y = 0; y < kHeight; ++y, first += stride) {
+    Row row;
+    std::memcpy(&row, first, sizeof row);
+    std::memcpy(&all[y * kWidth], &row, sizeof row);
+    sums += row;
+  }
+  std::memcpy(columns.data(), &sums, sizeof sums);
+  int total = 0, energy = 0;
+  for (const short value : columns) total += value;
+  for (const short value : all) energy += value * value;
+  return energy - static_cast<int>(static_cast<int64_t>(total) * total / kPixels);
 }
 
 }  // namespace
@@ -182,20 +248,7 @@ void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig
   for (int v = first_row_; v + kHeight + kMargin <= left.rows; v += kHeight) {
     for (int u = kMargin; u + kWidth + kMargin <= left.cols; u += kWidth) {
       if (!usable(rig, shift, u, v)) continue;
-      std::array<int, kWidth> sums{}, squares{};
-      for (int y = 0; y < kHeight; ++y) {
-        const short* row = gradient_.ptr<short>(v + y) + u;
-        for (int x = 0; x < kWidth; ++x) {
-          sums[x] += row[x];
-          squares[x] += row[x] * row[x];
-        }
-      }
-      int total = 0, energy = 0;
-      for (int x = 0; x < kWidth; ++x) {
-        total += sums[x];
-        energy += squares[x];
-      }
-      energy -= static_cast<int>(static_cast<int64_t>(total) * total / kPixels);
+      const int energy = blockEnergy(gradient_.ptr<short>(v) + u, gradient_.step1());
       candidates_.push_back({u, v, energy, false});
     }
   }
@@ -239,43 +292,76 @@ void PhotometricBlocks::pick(int count) {
 
 UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate,
                                                            Block& block) const {
+  constexpr int kAround = 2;  // pixels read to all sides
   block.u = candidate.u;
   block.v = candidate.v;
+  std::array<std::array<float, kWidth + kLanes>, kHeight + 2 * kAround> pixels;
+  for (int y = 0; y < kHeight + 2 * kAround; ++y) {
+    const uchar* row = left.ptr<uchar>(candidate.v + y - kAround) + candidate.u - kAround;
+    for (const int x : {0, kLanes, kWidth + 2 * kAround - kLanes}) {
+      Lanes greys;
+      convert(row + x, greys);
+      store(greys, &pixels[y][x]);
+    }
+  }
   Lane grey_sum{}, slope_sum{};
   for (int y = 0; y < kHeight; ++y) {
-    const uchar* grey = left.ptr<uchar>(candidate.v + y) + candidate.u;
+    const float* grey = &pixels[y + kAround][kAround];
     const short* gradient = gradient_.ptr<short>(candidate.v + y) + candidate.u;
+    float* slope = &block.slope[y * kWidth];
+    for (int x = 0; x < kWidth; x += kLanes) {
+      Lanes slopes;
+      convert(gradient + x, slopes);
+      store(slopes / kSobelScale, slope + x);
+    }
     for (int x = 0; x < kWidth; ++x) {
-      block.grey[y * kWidth + x] = grey[x];
-      block.slope[y * kWidth + x] = gradient[x] / kSobelScale;
       grey_sum[x] += grey[x];
-      slope_sum[x] += gradient[x] / kSobelScale;
+      slope_sum[x] += slope[x];
     }
   }
   const float grey_mean = sum(grey_sum) / kPixels, slope_mean = sum(slope_sum) / kPixels;
-  Lane grey_squares{}, squares{}, products{}, downs{}, down_greys{}, down_slopes{}, along_greys{},
-      along_slopes{};
-  for (int y = 0; y < kHeight; ++y) {
-    float* grey = &block.grey[y * kWidth];
-    float* slope = &block.slope[y * kWidth];
-    const auto row = [&](int down) { return left.ptr<uchar>(candidate.v + y + down) + candidate.u; };
-    const uchar *above2 = row(-2), *above = row(-1), *own = row(0), *below = row(1), *below2 = row(2);
-    for (int x = 0; x < kWidth; ++x) {
+  // Of the columns.
+  Lane grey_squares, squares, products, downs, down_greys, down_slopes, along_greys, along_slopes;
+  for (int x = 0; x < kWidth; x += kLanes) {
+    Lanes gg{}, ss{}, gs{}, ss_y{}, dg{}, ds{}, ag{}, as{};
+    for (int y = 0; y < kHeight; ++y) {
       // Of fourth order: the difference of two neighbours would see too little of a sharp edge.
-      const float down = static_cast<float>(8 * (below[x] - above[x]) - (below2[x] - above2[x])) / 12.f;
-      const float along =
-          static_cast<float>(8 * (own[x + 1] - own[x - 1]) - (own[x + 2] - own[x - 2])) / 12.f;
-      grey[x] -= grey_mean;
-      slope[x] -= slope_mean;
-      along_greys[x] += along * grey[x];
-      along_slopes[x] += along * slope[x];
-      grey_squares[x] += grey[x] * grey[x];
-      products[x] += grey[x] * slope[x];
-      squares[x] += slope[x] * slope[x];
-      downs[x] += slope[x] * slope[x] * static_cast<float>(y);
-      down_greys[x] += down * grey[x];
-      down_slopes[x] += down * slope[x];
+      const auto derivative = [&](int dx, int dy, Lanes& out) {
+        const float* p = &pixels[y + kAround][x + kAround];
+        constexpr int kStride = kWidth + kLanes;
+        Lanes before2, before, after, after2;
+        load(p - 2 * (dy * kStride + dx), before2);
+        load(p - (dy * kStride + dx), before);
+        load(p + (dy * kStride + dx), after);
+        load(p + 2 * (dy * kStride + dx), after2);
+        out = (8.f * (after - before) - (after2 - before2)) / 12.f;
+      };
+      Lanes down, along, grey, slope;
+      derivative(0, 1, down);
+      derivative(1, 0, along);
+      load(&pixels[y + kAround][x + kAround], grey);
+      load(&block.slope[y * kWidth + x], slope);
+      grey -= grey_mean;
+      slope -= slope_mean;
+      store(grey, &block.grey[y * kWidth + x]);
+      store(slope, &block.slope[y * kWidth + x]);
+      ag += along * grey;
+      as += along * slope;
+      gg += grey * grey;
+      gs += grey * slope;
+      ss += slope * slope;
+      ss_y += slope * slope * static_cast<float>(y);
+      dg += down * grey;
+      ds += down * slope;
     }
+    store(gg, &grey_squares[x]);
+    store(ss, &squares[x]);
+    store(gs, &products[x]);
+    store(ss_y, &downs[x]);
+    store(dg, &down_greys[x]);
+    store(ds, &down_slopes[x]);
+    store(ag, &along_greys[x]);
+    store(as, &along_slopes[x]);
   }
   block.grey_energy = sum(grey_squares);
   block.slope_energy = sum(squares);
@@ -318,9 +404,9 @@ void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) 
     const float reference = right.at<uchar>(block.v, static_cast<int>(begin));
     const BlockSums sums = addUp(right.rowRange(block.v, block.v + kHeight), begin, -shift.b, step, reference,
                                  block.grey.data(), block.slope.data());
-    const double total = sum(sums.r), grey = sum(sums.greys);
+    const double total = sums.r, grey = sums.greys;
     const double explained = total * total / kPixels + grey * grey / block.grey_energy;
-    products_.push_back({&block, grey, sum(sums.slopes), (sum(sums.squares) - explained) / (kPixels - 2)});
+    products_.push_back({&block, grey, sums.slopes, (sums.squares - explained) / (kPixels - 2)});
   }
 }
 
