@@ -69,51 +69,54 @@ UAV_LANDING_MULTIVERSION void blend(const std::uint16_t* __restrict upper,
 #ifdef UAV_LANDING_HAS_SHUFFLE
 bool hasShuffle() { return __builtin_cpu_supports("avx2") != 0; }
 
-inline __m128i eightBytes(const uchar* from) {
-  return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from));
+inline __m128i sixteenBytes(const void* from) { return _mm_loadu_si128(static_cast<const __m128i*>(from)); }
+__attribute__((target("avx2"))) inline __m256i halves(const uchar* first, const uchar* second) {
+  return _mm256_inserti128_si256(_mm256_castsi128_si256(sixteenBytes(first)), sixteenBytes(second), 1);
 }
-inline __m128i sixteenBytes(const uchar* from) {
-  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+__attribute__((target("avx2"))) inline __m256i words(const std::array<uchar, SourceWindows::kPixels>& bytes) {
+  return _mm256_cvtepu8_epi16(sixteenBytes(bytes.data()));
 }
 
-/// The same sums as in blend(), eight pixels at a time: a shuffle, which compilers do not find by themselves,
-/// picks their sources from the rows of a window. It gives 0 for bytes with the highest bit (kNextRow) set,
-/// so each pixel takes the rows that are its own.
-__attribute__((target("avx2"))) void blendWindows(const cv::Mat& raw, const SourceWindow* windows, int count,
+/// The same sums as in blend(), sixteen pixels at a time: a shuffle, which compilers do not find by
+/// themselves, picks the sources of each half from the rows of its window. It gives 0 for bytes with the
+/// highest bit (kNextRow) set, so each pixel takes the rows that are its own.
+__attribute__((target("avx2"))) void blendWindows(const cv::Mat& raw, const SourceWindows* windows, int count,
                                                   const uchar* mask, uchar* out) {
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(raw.step);
-  const __m128i pixel_and_right = _mm_set1_epi16(0x0100);
-  const __m128i other_row = _mm_set1_epi8(static_cast<char>(SourceWindow::kNextRow));
-  const __m128i one = _mm_set1_epi8(kOne);
+  const __m256i both = _mm256_set1_epi16(0x0101), and_right = _mm256_set1_epi16(0x0100);
+  const __m256i other_row = _mm256_set1_epi8(static_cast<char>(SourceWindows::kNextRow));
+  const __m256i one = _mm256_set1_epi16(kOne), right_less_left = _mm256_set1_epi16(0x0100 - 1);
   const __m256i half = _mm256_set1_epi32(kOne * kOne / 2);
-  for (int u = 0; u < count; u += SourceWindow::kPixels) {
-    const int first = std::min(u, count - SourceWindow::kPixels);
-    const SourceWindow& window = *windows++;
-    if (window.x == SourceWindow::kNone) continue;
-    const uchar* source = raw.data + window.y * step + window.x;
-    const __m128i row0 = sixteenBytes(source), row1 = sixteenBytes(source + step),
-                  row2 = sixteenBytes(source + 2 * step);
-    const __m128i place = eightBytes(window.place.data()), right = eightBytes(window.right.data()),
-                  below = eightBytes(window.below.data());
-    const __m128i here = _mm_add_epi8(_mm_unpacklo_epi8(place, place), pixel_and_right);
-    const __m128i next = _mm_xor_si128(here, other_row);
-    const __m128i upper = _mm_or_si128(_mm_shuffle_epi8(row0, here), _mm_shuffle_epi8(row1, next));
-    const __m128i lower = _mm_or_si128(_mm_shuffle_epi8(row1, here), _mm_shuffle_epi8(row2, next));
-    const __m128i across = _mm_unpacklo_epi8(_mm_sub_epi8(one, right), right);
-    const __m128i a = _mm_maddubs_epi16(upper, across), b = _mm_maddubs_epi16(lower, across);
-    const __m256i pairs = _mm256_set_m128i(_mm_unpackhi_epi16(a, b), _mm_unpacklo_epi16(a, b));
-    const __m256i down = _mm256_cvtepu8_epi16(_mm_unpacklo_epi8(_mm_sub_epi8(one, below), below));
-    const __m256i sums = _mm256_add_epi32(_mm256_madd_epi16(pairs, down), half);
-    static_assert(kOne * kOne == 1 << 10, "what is shifted out");
-    const __m256i grey = _mm256_srli_epi32(sums, 10);
-    const __m128i words = _mm_packus_epi32(_mm256_castsi256_si128(grey), _mm256_extracti128_si256(grey, 1));
-    const __m128i bytes = _mm_and_si128(_mm_packus_epi16(words, words), eightBytes(mask + first));
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(out + first), bytes);
+  for (int u = 0; u < count; u += SourceWindows::kPixels) {
+    const int first = std::min(u, count - SourceWindows::kPixels);
+    const SourceWindows& window = *windows++;
+    const uchar* near = raw.data + window.y[0] * step + window.x[0];
+    const uchar* far = raw.data + window.y[1] * step + window.x[1];
+    const __m256i row0 = halves(near, far), row1 = halves(near + step, far + step),
+                  row2 = halves(near + 2 * step, far + 2 * step);
+    const __m256i here = _mm256_add_epi16(_mm256_mullo_epi16(words(window.place), both), and_right);
+    const __m256i next = _mm256_xor_si256(here, other_row);
+    const __m256i upper = _mm256_or_si256(_mm256_shuffle_epi8(row0, here), _mm256_shuffle_epi8(row1, next));
+    const __m256i lower = _mm256_or_si256(_mm256_shuffle_epi8(row1, here), _mm256_shuffle_epi8(row2, next));
+    // The weight of the right pixel in the upper byte, what is left of one in the lower.
+    const __m256i across = _mm256_add_epi16(_mm256_mullo_epi16(words(window.right), right_less_left), one);
+    const __m256i a = _mm256_maddubs_epi16(upper, across), b = _mm256_maddubs_epi16(lower, across);
+    const __m256i below = words(window.below), above = _mm256_sub_epi16(one, below);
+    const auto grey = [half](__m256i pairs, __m256i down) __attribute__((target("avx2"))) {
+      static_assert(kOne * kOne == 1 << 10, "what is shifted out");
+      return _mm256_srli_epi32(_mm256_add_epi32(_mm256_madd_epi16(pairs, down), half), 10);
+    };
+    const __m256i greys =
+        _mm256_packus_epi32(grey(_mm256_unpacklo_epi16(a, b), _mm256_unpacklo_epi16(above, below)),
+                            grey(_mm256_unpackhi_epi16(a, b), _mm256_unpackhi_epi16(above, below)));
+    const __m256i bytes = _mm256_permute4x64_epi64(_mm256_packus_epi16(greys, greys), 0x08);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + first),
+                     _mm_and_si128(_mm256_castsi256_si128(bytes), sixteenBytes(mask + first)));
   }
 }
 #else
 bool hasShuffle() { return false; }
-void blendWindows(const cv::Mat&, const SourceWindow*, int, const uchar*, uchar*) {}
+void blendWindows(const cv::Mat&, const SourceWindows*, int, const uchar*, uchar*) {}
 #endif
 
 }  // namespace
@@ -121,47 +124,50 @@ void blendWindows(const cv::Mat&, const SourceWindow*, int, const uchar*, uchar*
 Resampler::Resampler(const cv::Mat& map1, const cv::Mat& map2, const cv::Mat& mask, cv::Size source)
     : places_(map1.clone()), weights_(map2.clone()), mask_(mask) {
   keepInside(mask_, source, places_, weights_);
-  if (hasShuffle() && source.width >= SourceWindow::kColumns && source.height >= SourceWindow::kRows &&
-      mask_.cols >= SourceWindow::kPixels)
+  if (hasShuffle() && source.width >= SourceWindows::kColumns && source.height >= SourceWindows::kRows &&
+      mask_.cols >= SourceWindows::kPixels)
     findWindows(source);
 }
 
 void Resampler::findWindows(cv::Size source) {
   for (int v = 0; v < mask_.rows; ++v)
-    for (int u = 0; u < mask_.cols; u += SourceWindow::kPixels) {
-      const int first = std::min(u, mask_.cols - SourceWindow::kPixels);
-      windows_.push_back(windowOf(first, v, source));
-      if (windows_.back().x == SourceWindow::kNone) apart_.emplace_back(first, v);
+    for (int u = 0; u < mask_.cols; u += SourceWindows::kPixels) {
+      const int first = std::min(u, mask_.cols - SourceWindows::kPixels);
+      SourceWindows& windows = windows_.emplace_back();
+      for (const int half : {0, 1}) {
+        const int begin = first + half * SourceWindows::kHalf;
+        if (!findWindow(begin, v, source, windows, half)) apart_.emplace_back(begin, v);
+      }
     }
   windows_per_row_ = windows_.size() / mask_.rows;
 }
 
-SourceWindow Resampler::windowOf(int u, int v, cv::Size source) const {
+bool Resampler::findWindow(int u, int v, cv::Size source, SourceWindows& windows, int half) const {
   const cv::Vec2s* places = places_.ptr<cv::Vec2s>(v) + u;
   const std::uint16_t* weights = weights_.ptr<std::uint16_t>(v) + u;
   const uchar* mask = mask_.ptr<uchar>(v) + u;
   // Pixels that the mask leaves out may come from anywhere.
-  int left = source.width - SourceWindow::kColumns, right = 0, top = source.height - SourceWindow::kRows,
+  int left = source.width - SourceWindows::kColumns, right = 0, top = source.height - SourceWindows::kRows,
       bottom = 0;
-  for (int i = 0; i < SourceWindow::kPixels; ++i) {
+  for (int i = 0; i < SourceWindows::kHalf; ++i) {
     if (mask[i] == 0) continue;
     left = std::min<int>(left, places[i][0]);
     right = std::max<int>(right, places[i][0]);
     top = std::min<int>(top, places[i][1]);
     bottom = std::max<int>(bottom, places[i][1]);
   }
-  SourceWindow window;
-  if (right + 1 >= left + SourceWindow::kColumns || bottom + 1 >= top + SourceWindow::kRows) return window;
-  window.x = static_cast<short>(left);
-  window.y = static_cast<short>(top);
-  for (int i = 0; i < SourceWindow::kPixels; ++i) {
+  if (right + 1 >= left + SourceWindows::kColumns || bottom + 1 >= top + SourceWindows::kRows) return false;
+  windows.x[half] = static_cast<short>(left);
+  windows.y[half] = static_cast<short>(top);
+  for (int i = 0; i < SourceWindows::kHalf; ++i) {
     if (mask[i] == 0) continue;
-    window.place[i] =
-        static_cast<uchar>(places[i][0] - left + (places[i][1] > top ? SourceWindow::kNextRow : 0));
-    window.right[i] = static_cast<uchar>(weights[i] & 255);
-    window.below[i] = static_cast<uchar>(weights[i] >> 8);
+    const int k = half * SourceWindows::kHalf + i;
+    windows.place[k] =
+        static_cast<uchar>(places[i][0] - left + (places[i][1] > top ? SourceWindows::kNextRow : 0));
+    windows.right[k] = static_cast<uchar>(weights[i] & 255);
+    windows.below[k] = static_cast<uchar>(weights[i] >> 8);
   }
-  return window;
+  return true;
 }
 
 void Resampler::resampleRun(const cv::Mat& raw, const cv::Point& first, int count, cv::Mat& out) const {
@@ -191,7 +197,7 @@ void Resampler::resample(const cv::Mat& raw, cv::Mat& out) const {
   }
   for (int v = 0; v < mask_.rows; ++v)
     blendWindows(raw, &windows_[windows_per_row_ * v], mask_.cols, mask_.ptr<uchar>(v), out.ptr<uchar>(v));
-  for (const cv::Point& first : apart_) resampleRun(raw, first, SourceWindow::kPixels, out);
+  for (const cv::Point& first : apart_) resampleRun(raw, first, SourceWindows::kHalf, out);
 }
 
 }  // namespace uav_landing

@@ -6,14 +6,13 @@
 
 namespace uav_landing {
 
-/// Where eight pixels side by side come from, all inside a window of 16 x 3 pixels. Bytes, as reading these
-/// takes most of the time.
-struct SourceWindow {
-  static constexpr int kPixels = 8, kColumns = 16, kRows = 3;
-  static constexpr short kNone = -1;
+/// Where sixteen pixels side by side come from, each half of them inside a window of 16 x 3 pixels. Bytes, as
+/// reading these takes much of the time.
+struct SourceWindows {
+  static constexpr int kPixels = 16, kHalf = 8, kColumns = 16, kRows = 3;
   static constexpr uchar kNextRow = 0x80;
 
-  short x = kNone, y = 0;                                // first pixel; kNone: they do not fit in
+  std::array<short, 2> x{}, y{};                         // first pixel of each half's window
   std::array<uchar, kPixels> place{}, right{}, below{};  // column, plus kNextRow; weights in 1/32
 };
 
@@ -30,15 +29,16 @@ class Resampler {
   void resample(const cv::Mat& raw, cv::Mat& out) const;
 
  private:
-  SourceWindow windowOf(int u, int v, cv::Size source) const;
+  /// Of the half that begins at this pixel; false when its sources do not fit into a window.
+  bool findWindow(int u, int v, cv::Size source, SourceWindows& windows, int half) const;
   void findWindows(cv::Size source);
   void resampleRun(const cv::Mat& raw, const cv::Point& first, int count, cv::Mat& out) const;
 
   cv::Mat places_, weights_, mask_;  // weights in 1/32: of the right pixels in the lower byte, of the lower
                                      // pixels in the upper one
   size_t windows_per_row_ = 0;
-  std::vector<SourceWindow> windows_;  // empty where the processor has no use for them
-  std::vector<cv::Point> apart_;       // first ones of the eight pixels without a window
+  std::vector<SourceWindows> windows_;  // empty where the processor has no use for them
+  std::vector<cv::Point> apart_;        // first ones of the halves without a window
 };
 
 }  // namespace uav_landing
