@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "multiversion.h"
@@ -13,9 +15,11 @@ namespace {
 constexpr double kFarthest = 60;     // heights
 constexpr double kNearest = 0.5;     // heights
 constexpr double kFootprint = 0.02;  // of the width: largest length on the ground of a pixel that tells
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kColumns = TopView::kColumns;
 
-/// Where a picture shows points of a line in space, origin + y direction; columns below 0 behind the camera.
+/// Where a picture shows points of a line in space, origin + y direction; columns of -infinity behind the
+/// camera.
 struct LineView {
   Eigen::Vector3d origin, direction;
   double fx, fy, cx, cy;
@@ -27,10 +31,62 @@ UAV_LANDING_MULTIVERSION void project(const LineView& line, const Places& y, Pla
   const double fx = line.fx, fy = line.fy, cx = line.cx, cy = line.cy;
   for (int c = 0; c < kColumns; ++c) {
     const double z = z0 + y[c] * dz, inverse = 1 / z;
-    const double column = fx * (x0 + y[c] * dx) * inverse + cx;
+    const double left_out = z > 0 ? 0 : -kInfinity;
     v[c] = fy * (y0 + y[c] * dy) * inverse + cy;
-    u[c] = z > 0 ? column : -1;
+    u[c] = fx * (x0 + y[c] * dx) * inverse + cx + left_out;
   }
+}
+
+/// What greys at some places are interpolated from.
+struct Pixels {
+  std::array<int, kColumns> column, row;             // of the one to the upper left; any outside
+  std::array<float, kColumns> right, below;          // how far the place is from there, px
+  std::array<int, kColumns> inside;                  // 1 where they are all in the picture
+  std::array<std::uint16_t, kColumns> upper, lower;  // the left one in the lower byte
+};
+
+/// width, height: of the picture. Beside the camera places are farther out than an int can say.
+UAV_LANDING_MULTIVERSION void findPixels(const Places& u, const Places& v, int width, int height,
+                                         Pixels& pixels) {
+  const double right_end = width - 1, lower_end = height - 1;
+  const double last_column = std::nextafter(right_end, 0), last_row = std::nextafter(lower_end, 0);
+  for (int c = 0; c < kColumns; ++c) {
+    const double x = u[c] > 0 ? u[c] : 0, y = v[c] > 0 ? v[c] : 0;
+    const double in_x = x < right_end ? x : last_column, in_y = y < lower_end ? y : last_row;
+    const int column = static_cast<int>(in_x), row = static_cast<int>(in_y);
+    pixels.column[c] = column;
+    pixels.row[c] = row;
+    pixels.right[c] = static_cast<float>(in_x - column);
+    pixels.below[c] = static_cast<float>(in_y - row);
+    pixels.inside[c] = (in_x == u[c] ? 1 : 0) & (in_y == v[c] ? 1 : 0);
+  }
+}
+
+void loadPixels(const cv::Mat& image, const cv::Mat& mask, Pixels& pixels) {
+  for (int c = 0; c < kColumns; ++c) {
+    const uchar* above =
+        image.data + static_cast<std::ptrdiff_t>(image.step) * pixels.row[c] + pixels.column[c];
+    std::memcpy(&pixels.upper[c], above, sizeof(std::uint16_t));
+    std::memcpy(&pixels.lower[c], above + image.step, sizeof(std::uint16_t));
+    pixels.inside[c] &= mask.data[static_cast<std::ptrdiff_t>(mask.step) * pixels.row[c] + pixels.column[c]];
+  }
+}
+
+/// Returns how many there are.
+UAV_LANDING_MULTIVERSION int interpolate(const Pixels& pixels, TopView::Across& greys) {
+  int count = 0;
+  for (int c = 0; c < kColumns; ++c) {
+    const int upper_left = pixels.upper[c] & 255, upper_right = pixels.upper[c] >> 8;
+    const int lower_left = pixels.lower[c] & 255, lower_right = pixels.lower[c] >> 8;
+    const float s = pixels.right[c], t = pixels.below[c];
+    const float upper = static_cast<float>(upper_left) + s * static_cast<float>(upper_right - upper_left);
+    const float lower = static_cast<float>(lower_left) + s * static_cast<float>(lower_right - lower_left);
+    const float grey = upper + t * (lower - upper);
+    const float left_out = pixels.inside[c] != 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
+    greys[c] = grey + left_out;
+    count += pixels.inside[c];
+  }
+  return count;
 }
 
 }  // namespace
@@ -70,28 +126,15 @@ bool TopView::mayBeSeen(double x) const {
   return isSeen(kColumns / 4) || isSeen(kColumns - 1 - kColumns / 4);
 }
 
-inline float TopView::greyAt(double u, double v) const {
-  // Beside the camera pixels are farther out than an int can say.
-  if (!(u >= 0 && v >= 0 && u < image_.cols - 1 && v < image_.rows - 1))
-    return std::numeric_limits<float>::quiet_NaN();
-  const int i = static_cast<int>(v), j = static_cast<int>(u);
-  if (mask_.at<uchar>(i, j) == 0) return std::numeric_limits<float>::quiet_NaN();
-  const float s = static_cast<float>(u - j), t = static_cast<float>(v - i);
-  const uchar *above = image_.ptr<uchar>(i) + j, *below = above + image_.step;
-  const float upper = static_cast<float>(above[0]) + s * static_cast<float>(above[1] - above[0]);
-  const float lower = static_cast<float>(below[0]) + s * static_cast<float>(below[1] - below[0]);
-  return upper + t * (lower - upper);
-}
-
 bool TopView::sample(double x, Across& row) const {
   Places columns, lines;
   project({x * axes_.forward + axes_.down, axes_.left, rig_.fx, rig_.fy, rig_.cx, rig_.cy}, across_, columns,
           lines);
-  int inside = 0;
-  for (int c = 0; c < kColumns; ++c) {
-    row[c] = greyAt(columns[c], lines[c]);
-    inside += std::isnan(row[c]) ? 0 : 1;
-  }
+  if (image_.cols < 2 || image_.rows < 2) return false;
+  Pixels pixels;
+  findPixels(columns, lines, image_.cols, image_.rows, pixels);
+  loadPixels(image_, mask_, pixels);
+  const int inside = interpolate(pixels, row);
   return inside >= kLeastPicture * kColumns;
 }
 

@@ -39,7 +39,6 @@ class TopView {
 
   bool mayBeSeen(double x) const;
   bool sample(double x, Across& row) const;
-  float greyAt(double u, double v) const;
 
   const cv::Mat &image_, &mask_;
   const StereoRig& rig_;

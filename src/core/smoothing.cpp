@@ -76,10 +76,9 @@ void reduceRow(const cv::Mat& image, int factor, int row, std::vector<std::uint1
 
 }  // namespace
 
-void smooth(const cv::Mat& image, cv::Mat& smoothed) {
-  smoothed.create(image.size(), CV_32FC1);
+void smooth(const cv::Mat& image, const cv::Range& rows, cv::Mat& smoothed) {
   std::vector<float> columns(image.cols + 2);
-  for (int v = 0; v < image.rows; ++v) {
+  for (int v = rows.start; v < rows.end; ++v) {
     const int above = cv::borderInterpolate(v - 1, image.rows, cv::BORDER_REFLECT_101);
     const int below = cv::borderInterpolate(v + 1, image.rows, cv::BORDER_REFLECT_101);
     smoothRowOf8Bit(image.ptr<uchar>(above), image.ptr<uchar>(v), image.ptr<uchar>(below), image.cols,
@@ -87,18 +86,17 @@ void smooth(const cv::Mat& image, cv::Mat& smoothed) {
   }
 }
 
-void smoothReduced(const cv::Mat& image, int factor, cv::Mat& smoothed) {
-  smoothed.create(image.rows / factor, image.cols / factor, CV_32FC1);
-  const int rows = smoothed.rows, size = smoothed.cols;
+void smoothReduced(const cv::Mat& image, int factor, const cv::Range& rows, cv::Mat& smoothed) {
+  const int count = smoothed.rows, size = smoothed.cols;
   std::vector<std::uint16_t> sums(static_cast<size_t>(size) * factor);
   std::vector<float> reduced(3 * static_cast<size_t>(size)), columns(size + 2);  // the last three rows
   const auto reducedRow = [&](int v) { return &reduced[static_cast<size_t>(v % 3) * size]; };
-  int next = 0;
-  for (int v = 0; v < rows; ++v) {
-    for (; next <= std::min(v + 1, rows - 1); ++next)
+  int next = std::max(rows.start - 1, 0);
+  for (int v = rows.start; v < rows.end; ++v) {
+    for (; next <= std::min(v + 1, count - 1); ++next)
       reduceRow(image, factor, next, sums, reducedRow(next), size);
-    const float* above = reducedRow(cv::borderInterpolate(v - 1, rows, cv::BORDER_REFLECT_101));
-    const float* below = reducedRow(cv::borderInterpolate(v + 1, rows, cv::BORDER_REFLECT_101));
+    const float* above = reducedRow(cv::borderInterpolate(v - 1, count, cv::BORDER_REFLECT_101));
+    const float* below = reducedRow(cv::borderInterpolate(v + 1, count, cv::BORDER_REFLECT_101));
     smoothRowOfFloat(above, reducedRow(v), below, size, kernel(), columns.data(), smoothed.ptr<float>(v));
   }
 }

@@ -1,5 +1,6 @@
 #include "uav_landing/stereo_depth_stage.h"
 
+#include <optional>
 #include <string>
 
 #include "uav_landing/direct_refinement.h"
@@ -20,6 +21,8 @@ constexpr double kDegree = M_PI / 180.0;
 constexpr int kKeepPlaneFor = 5;
 // In how many searches that find nothing one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
+// Share of the image's rows by which the horizon mostly moves less from pair to pair.
+constexpr double kSlack = 0.02;
 
 }  // namespace
 
@@ -83,17 +86,27 @@ struct StereoDepthStage::Implementation {
   void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     {
       ScopedTimer timer(timings, "match_images");
-      left.assign(left_image);
-      right.assign(right_image);
+      // Rows that are made level come from other rows.
+      const FirstRows first = has_last && rows.isLevel() ? groundRows(last_g, kSlack) : FirstRows();
+      left.assign(left_image, first);
+      right.assign(right_image, first);
     }
     fine.left = left.fine;
     coarse.left = left.coarse;
     levelRows();
-    const Expected<Eigen::Vector3d> start = firstPlane(result);
+    const auto extend = [&](const FirstRows& first) {
+      ScopedTimer timer(timings, "match_images");
+      left.extend(left_image, first);
+      right.extend(right_image, first);
+    };
+    std::optional<Eigen::Vector3d> tracked = trackedPlane();
+    if (!tracked) extend({});
+    const Expected<Eigen::Vector3d> start = tracked ? *tracked : searchedPlane(result);
     if (!start) {
       result.failure = start.error();
       return;
     }
+    extend(groundRows(*start, 0));
     refine(*start, result);
     if (direct && !result.failure) refineDirectly(left_image, right_image, result);
   }
@@ -104,13 +117,24 @@ struct StereoDepthStage::Implementation {
     coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
-  // A plane good to about a pixel of disparity: followed from the previous pair, or searched.
-  Expected<Eigen::Vector3d> firstPlane(StereoDepthResult& result) {
-    if (has_last) {
-      ScopedTimer timer(timings, "feature_matching_coarse");
-      const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
-      if (tracked.found) return tracked.g;
-    }
+  // Where windows on the ground of this plane may reach.
+  FirstRows groundRows(const Eigen::Vector3d& g, double slack) const {
+    constexpr int kInterpolation = 8;  // px that they are moved, and that is interpolated from
+    const int above = parameters.window_radius + kInterpolation;
+    return firstGroundRows(model.rig, g, {above, above}, slack);
+  }
+
+  // A plane good to about a pixel of disparity: followed from the previous pair ...
+  std::optional<Eigen::Vector3d> trackedPlane() {
+    if (!has_last) return std::nullopt;
+    ScopedTimer timer(timings, "feature_matching_coarse");
+    const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
+    if (!tracked.found) return std::nullopt;
+    return tracked.g;
+  }
+
+  // ... or searched.
+  Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
     const Consensus found = searchPlane(coarse, parameters, limits);

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "support/ground_renderer.h"
+#include "uav_landing/ground_plane.h"
 #include "uav_landing/match_image.h"
 
 namespace uav_landing {
@@ -101,6 +103,51 @@ TEST(MatchImage, MayBeReusedForImagesOfAnotherSize) {
   EXPECT_EQ(match.factor, fresh.factor);
   EXPECT_EQ(cv::norm(match.fine, fresh.fine, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(match.coarse, fresh.coarse, cv::NORM_INF), 0);
+}
+
+TEST(MatchImage, LeavesRowsOutUntilTheyAreAdded) {
+  for (const cv::Size size : {cv::Size(960, 640), cv::Size(320, 240)}) {
+    const cv::Mat image = striped(size);
+    MatchImage all, match;
+    all.assign(image);
+    match.assign(cv::Mat(size, CV_8UC1, cv::Scalar(200)));
+    match.assign(image, {101, 47});
+    const int fine = match.factor == 1 ? 47 : 101;
+    const auto differ = [](const cv::Mat& a, const cv::Mat& b, int begin, int end) {
+      return cv::norm(a.rowRange(begin, end), b.rowRange(begin, end), cv::NORM_INF) > 0;
+    };
+    EXPECT_FALSE(differ(match.fine, all.fine, fine, size.height));
+    EXPECT_FALSE(differ(match.coarse, all.coarse, 47, all.coarse.rows));
+    EXPECT_TRUE(differ(match.fine, all.fine, 0, fine));
+    EXPECT_TRUE(differ(match.coarse, all.coarse, 0, 47));
+    match.extend(image, {120, 60});
+    EXPECT_TRUE(differ(match.fine, all.fine, 0, fine));
+    match.extend(image, {});
+    EXPECT_FALSE(differ(match.fine, all.fine, 0, size.height));
+    EXPECT_FALSE(differ(match.coarse, all.coarse, 0, all.coarse.rows));
+  }
+}
+
+TEST(FirstGroundRows, AreAboveTheHorizonEverywhere) {
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 500;
+  rig.cx = rig.cx_right = 319.5;
+  rig.cy = 239.5;
+  rig.baseline = 1;
+  // 5 degrees down, right side 10 degrees down: the ground reaches highest on the right, where its horizon is
+  // tan(10 deg) higher for each column from the middle.
+  const double degree = M_PI / 180;
+  const double middle = 239.5 - 500 * std::tan(5 * degree) / std::cos(10 * degree);
+  const double highest = middle - 319.5 * std::tan(10 * degree);
+  const Eigen::Vector3d normal = 0.02 * normalFromPitchRoll(-5 * degree, 10 * degree);
+  const FirstRows rows = firstGroundRows(rig, normal, {20, 10}, 0.02);
+  EXPECT_NEAR(rows.fine, highest - 0.02 * 480 - 20, 1.5);
+  EXPECT_NEAR(rows.coarse, (highest - 0.02 * 480) / 2 - 10, 1.5);
+  // Looking up by so much that there is none, and down by so much that there is nothing else.
+  EXPECT_GE(firstGroundRows(rig, normalFromPitchRoll(40 * degree, 0), {0, 0}, 0).fine, 480);
+  EXPECT_EQ(firstGroundRows(rig, normalFromPitchRoll(-40 * degree, 0), {0, 0}, 0).fine, 0);
+  EXPECT_EQ(firstGroundRows(rig, {0, -1, 0}, {0, 0}, 0).fine, 0);
 }
 
 }  // namespace
