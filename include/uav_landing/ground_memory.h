@@ -16,12 +16,13 @@ namespace uav_landing {
 /// known.
 class GroundMemory {
  public:
-  /// Motion since the pair before: a point is at R x - t now. t: m; the usual one is taken for a step that is
-  /// several times as long.
-  void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
-  /// A step of which the motion is not known: the usual one. R: rotation since the pair before as far as it
-  /// is known, its error in pitch and roll: 1 sigma, rad. Some such steps in a row, and nothing is known.
-  void coast(const Eigen::Matrix3d& R, double turn_stddev);
+  /// Motion since the pair before, T ago: a point is at R x - t now. t: m; at the usual speed for a step that
+  /// is several times as long.
+  void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double T);
+  /// A step of which the motion is not known, over T: at the usual speed; once the next motion is known, at
+  /// the mean of the speeds before and after. R: rotation since the pair before as far as it is known, its
+  /// error in pitch and roll: 1 sigma, rad. Some such steps in a row, and nothing is known.
+  void coast(const Eigen::Matrix3d& R, double turn_stddev, double T);
   /// A step that the next motion has in it, as the pair shows the same picture once more.
   void wait();
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
@@ -44,8 +45,21 @@ class GroundMemory {
     double reach = 0;     // of the strip to this side of it, m
     double flown = 0;     // since, m
   };
+  /// Steps in a row of which the motion is not known.
+  struct Gap {
+    std::deque<Patch> patches;  // as they were before it
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+    double turn_variance = 0, time = 0;  // rad^2, s
+    size_t seen = 0;                     // patches since, the last ones
+  };
+  void closeGap(const Eigen::Vector3d& speed_after, double usual_time);
+  static void carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,
+                    double turn_variance, double climb_variance);
+
   std::deque<Patch> patches_;                       // nearest first
+  std::optional<Gap> gap_;                          // just before now
   Eigen::Vector3d path_ = Eigen::Vector3d::Zero();  // m, over the last pairs: a single one can be wrong
+  double path_time_ = 0;                            // s, that the path took
   double steps_ = 0;                                // that the path is of
   int coasts_ = 0;                                  // steps in a row that are not known
 };

@@ -161,6 +161,7 @@ class KalmanHeightStage {
   StampScatter stamps_;
   Recovery recovery_;
   GroundMemory ground_;
+  std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s
   std::optional<Eigen::Vector3d> last_normal_;  // of the ground on the pair before
   Timings timings_;
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "median.h"
 
@@ -20,7 +21,8 @@ constexpr double kPathKept = 0.8;      // share of the path that counts on the n
 constexpr double kLongestStep = 5;     // over the mean step of the path: a longer one is wrong
 constexpr size_t kFewest = 5;          // points that make a patch
 constexpr int kMostCoasts = 3;         // pairs without a motion in a row
-constexpr double kClimbChange = 0.05;  // 1 sigma of the climb on a step that is not known, of its length
+constexpr double kClimbChange =
+    0.05;  // 1 sigma of the climb on a usual step that is not known, of its length
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
 constexpr double kDirectionError = 0.15 * M_PI / 180;
 
@@ -41,30 +43,50 @@ double medianVariance(const std::vector<GroundPoint>& points, double middle) {
 
 }  // namespace
 
-void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
-  const Eigen::Vector3d before = R * path_, usual = steps_ > 0 ? before / steps_ : t;
-  const double longest = kLongestStep * usual.norm();
-  const bool wrong = longest > 0 && t.norm() > longest;
-  const Eigen::Vector3d step = wrong ? usual : t;
-  coasts_ = 0;
-  // As long as can be believed: a speed that did change is after some pairs.
-  path_ = kPathKept * before + (wrong ? Eigen::Vector3d(longest * t.normalized()) : t);
-  steps_ = kPathKept * steps_ + 1;
-  for (Patch& patch : patches_) {
+void GroundMemory::carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,
+                         double turn_variance, double climb_variance) {
+  for (Patch& patch : patches) {
     patch.at = R * patch.at - step;
     patch.flown += step.norm();
+    patch.variance += turn_variance * patch.at.squaredNorm() + climb_variance;
   }
 }
 
-void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev) {
-  if (!(steps_ > 0) || ++coasts_ > kMostCoasts) return reset();
+void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double T) {
+  const Eigen::Vector3d before = R * path_, usual = path_time_ > 0 ? before * (T / path_time_) : t;
+  const double longest = kLongestStep * usual.norm();
+  const bool wrong = longest > 0 && t.norm() > longest;
+  const Eigen::Vector3d step = wrong ? usual : t;
+  if (gap_ && !wrong && T > 0) closeGap(R.transpose() * t / T, path_time_ / steps_);
+  gap_.reset();
+  coasts_ = 0;
+  // As long as can be believed: a speed that did change is after some pairs.
+  path_ = kPathKept * before + (wrong ? Eigen::Vector3d(longest * t.normalized()) : t);
+  path_time_ = kPathKept * path_time_ + T;
+  steps_ = kPathKept * steps_ + 1;
+  carry(patches_, R, step, 0, 0);
+}
+
+void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T) {
+  if (!(path_time_ > 0) || ++coasts_ > kMostCoasts) return reset();
+  if (!gap_) gap_ = Gap{patches_};
+  gap_->R = R * gap_->R;
+  gap_->turn_variance += turn_stddev * turn_stddev;
+  gap_->time += T;
   path_ = R * path_;
-  const Eigen::Vector3d step = path_ / steps_;
-  for (Patch& patch : patches_) {
-    patch.at = R * patch.at - step;
-    patch.flown += step.norm();
-    patch.variance += std::pow(turn_stddev * patch.at.norm(), 2) + std::pow(kClimbChange * step.norm(), 2);
-  }
+  const double steps = steps_ * T / path_time_, usual = path_.norm() / steps_;
+  carry(patches_, R, path_ * (T / path_time_), turn_stddev * turn_stddev,
+        steps * std::pow(kClimbChange * usual, 2));
+}
+
+// Between two speeds that are known the way is as certain as that of one usual step. usual_time: of that, s.
+void GroundMemory::closeGap(const Eigen::Vector3d& speed_after, double usual_time) {
+  const Eigen::Vector3d speed = 0.5 * (path_ / path_time_ + speed_after);
+  carry(gap_->patches, gap_->R, speed * gap_->time, gap_->turn_variance,
+        std::pow(kClimbChange * speed.norm() * usual_time, 2));
+  const auto seen = static_cast<std::ptrdiff_t>(std::min(gap_->seen, patches_.size()));
+  gap_->patches.insert(gap_->patches.end(), patches_.end() - seen, patches_.end());
+  patches_ = std::move(gap_->patches);
 }
 
 void GroundMemory::wait() {
@@ -106,6 +128,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
   const double place = medianOf(distances), height = medianOf(heights);
   if (!patches_.empty() && place < distance(patches_.back()) + kSpacing * h) return;
   patches_.push_back({place * ahead + height * n, medianVariance(strip, height), place - nearest, 0});
+  if (gap_) ++gap_->seen;
 }
 
 std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& normal) const {

@@ -18,9 +18,9 @@ namespace {
 constexpr double kWidthTolerance = 0.02;
 // Share of the matches along the rows that must hold across the rows.
 constexpr double kLeastRowAgreement = 0.5;
-// 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, and
-// where these are not known either. rad
-constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 0.25 * M_PI / 180;
+// 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, rad,
+// and where these are not known either, rad/s.
+constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
 
 }  // namespace
 
@@ -241,6 +241,8 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
                                        const Reconstruction& reconstruction) {
   if (!parameters_.integrity_monitor) return;
   if (stereo.left_repeated) return ground_.wait();
+  const double T = ground_stamp_ ? stereo.stamp - *ground_stamp_ : 0;
+  ground_stamp_ = stereo.stamp;
   // Above the plane ahead, which the motion is of.
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
   const Eigen::Vector3d& t = step.translation_over_height;
@@ -248,12 +250,12 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   last_normal_.reset();
   if (reconstruction.plane.valid()) last_normal_ = reconstruction.normal.mean;
   if (t.allFinite() && step.rotation.allFinite() && height > 0) {
-    ground_.move(rotationMatrix(step.rotation), t * height);
+    ground_.move(rotationMatrix(step.rotation), t * height, T);
   } else if (before && last_normal_) {
     ground_.coast(Eigen::Quaterniond::FromTwoVectors(*before, *last_normal_).toRotationMatrix(),
-                  kTurnByNormals);
+                  kTurnByNormals, T);
   } else {
-    ground_.coast(Eigen::Matrix3d::Identity(), kTurnUnknown);
+    ground_.coast(Eigen::Matrix3d::Identity(), kTurnUnknown * T, T);
   }
   if (reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
   const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),

@@ -148,6 +148,7 @@ void KalmanHeightStage::reset() {
   stamps_.reset();
   recovery_.reset();
   ground_.reset();
+  ground_stamp_.reset();
   last_normal_.reset();
   last_stamp_.reset();
   lost_ = false;

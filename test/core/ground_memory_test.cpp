@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kPitch = -10 * kDegree;
+constexpr double kPeriod = 0.05;                // s between pairs
 using Surface = std::function<double(double)>;  // elevation over distance, m
 
 StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
@@ -47,8 +48,8 @@ void flyMemory(const Surface& surface, See&& see, const std::vector<double>& wit
   for (double x = 0; x <= 60; ++x) {
     const double z = 12 - x / 20;
     const bool known = std::find(without_motion.begin(), without_motion.end(), x) == without_motion.end();
-    if (x > 0 && known) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20);
-    if (x > 0 && !known) memory.coast(Eigen::Matrix3d::Identity(), 0.1 * kDegree);
+    if (x > 0 && known) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20, kPeriod);
+    if (x > 0 && !known) memory.coast(Eigen::Matrix3d::Identity(), 0.1 * kDegree, kPeriod);
     GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
     memory.look(rig, look(rig, x, z, surface), plane, plane.g);
     see(x, z, memory);
@@ -105,12 +106,12 @@ TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
   const auto points = look(rig, 0, 12, [](double) { return 0; });
   GroundMemory memory;
   for (int x = 0; x < 40; ++x) {
-    memory.move(Eigen::Matrix3d::Identity(), forward);
+    memory.move(Eigen::Matrix3d::Identity(), forward, kPeriod);
     memory.look(rig, points, plane, plane.g);
   }
   ASSERT_TRUE(memory.below(down));
   // Noise makes one picture seem to go backwards, by more than the distance between patches, 2 m.
-  memory.move(Eigen::Matrix3d::Identity(), -2.5 * forward);
+  memory.move(Eigen::Matrix3d::Identity(), -2.5 * forward, kPeriod);
   const std::optional<GroundMemory::Below> below = memory.below(down);
   ASSERT_TRUE(below);
   EXPECT_NEAR(below->height, 12, 1e-6);
@@ -121,7 +122,7 @@ TEST(GroundMemory, TakesTheUsualStepForOneThatCannotBe) {
   int known = 0;
   const auto jump = [&](double x, double z, GroundMemory memory) {
     if (x < 24) return;
-    memory.move(Eigen::Matrix3d::Identity(), -z * down);
+    memory.move(Eigen::Matrix3d::Identity(), -z * down, kPeriod);
     ++known;
     ASSERT_TRUE(memory.below(down));
     EXPECT_NEAR(memory.below(down)->height, z - 1.0 / 20, 0.01) << "sunk as in the pairs before";
@@ -158,6 +159,60 @@ TEST(GroundMemory, APairWithoutAMotionCostsCertaintyAndNotTheMemory) {
   flyMemory(slope, see, {30, 31});
 }
 
+// Twelve pairs are missing, and meanwhile the aircraft begins to sink three times as fast: what is below is
+// carried on by all of the time, and by both speeds once the second one is known.
+TEST(GroundMemory, CarriesOnOverMissingPairsByTheTimeThatPassed) {
+  const Surface slope = [](double x) { return std::tan(1.5 * kDegree) * std::min(0.0, x - 60); };
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  constexpr double kFrom = 30, kTo = 42, kBefore = 0.05, kAfter = 0.15;  // of the way sunk
+  GroundMemory memory;
+  double z = 12;
+  const auto see = [&](double x) {
+    const GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
+    memory.look(rig, look(rig, x, z, slope), plane, plane.g);
+    return memory.below(down);
+  };
+  see(0);
+  std::optional<GroundMemory::Below> before;
+  for (double x = 1; x <= kFrom; ++x) {
+    z -= kBefore;
+    memory.move(Eigen::Matrix3d::Identity(), forward + kBefore * down, kPeriod);
+    before = see(x);
+  }
+  ASSERT_TRUE(before);
+  z -= 0.5 * (kBefore + kAfter) * (kTo - kFrom);
+  memory.coast(Eigen::Matrix3d::Identity(), 0, (kTo - kFrom) * kPeriod);
+  const std::optional<GroundMemory::Below> blind = see(kTo);
+  ASSERT_TRUE(blind);
+  // As if it had gone on to sink as before.
+  const double wrong = 0.5 * (kAfter - kBefore) * (kTo - kFrom);
+  EXPECT_NEAR(blind->height, z - slope(kTo) + wrong, 0.03);
+  EXPECT_GT(std::sqrt(blind->variance), 0.05 * std::sqrt(kTo - kFrom)) << "5 % of each step of 1 m";
+  for (double x = kTo + 1; x <= kTo + 4; ++x) {
+    z -= kAfter;
+    memory.move(Eigen::Matrix3d::Identity(), forward + kAfter * down, kPeriod);
+    const std::optional<GroundMemory::Below> below = see(x);
+    ASSERT_TRUE(below) << x;
+    EXPECT_NEAR(below->height, z - slope(x), 0.03) << x;
+    EXPECT_LT(std::sqrt(below->variance), 0.1) << x;
+  }
+}
+
+TEST(GroundMemory, AMotionOverMissingPairsIsNotTooLong) {
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  flyMemory([](double) { return 0; },
+            [&](double x, double z, GroundMemory memory) {
+              if (x < 24 || x > 40) return;
+              memory.move(Eigen::Matrix3d::Identity(), 6 * forward + 6 * down / 10, 6 * kPeriod);
+              const std::optional<GroundMemory::Below> below = memory.below(down);
+              ASSERT_TRUE(below) << x;
+              EXPECT_NEAR(below->height, z - 0.6, 0.01) << "sunk by 1 m in 10 m";
+            });
+}
+
 TEST(GroundMemory, ForgetsWhereTheMotionStaysUnknown) {
   flyMemory([](double) { return 0.0; },
             [](double x, double, const GroundMemory& memory) {
@@ -179,7 +234,7 @@ TEST(GroundMemory, AStepThatTheNextOneHasInItIsNoStepOfItsOwn) {
       memory.wait();
       continue;
     }
-    if (x > 0) memory.move(Eigen::Matrix3d::Identity(), 2 * forward);
+    if (x > 0) memory.move(Eigen::Matrix3d::Identity(), 2 * forward, 2 * kPeriod);
     const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
     memory.look(rig, look(rig, x, 12, step), plane, plane.g);
     if (const auto below = memory.below(down)) {
