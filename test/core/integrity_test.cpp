@@ -423,6 +423,38 @@ TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentA
   }
 }
 
+// The camera nods by 0.1 deg from pair to pair, and planes are off by 0.05 deg this way and that: pairs of
+// which every one is shown twice say of the attitude what they say once.
+TEST(KalmanHeightIntegrity, APictureOnceMoreCountsOnceForTheAttitude) {
+  KalmanHeightStage once(makeRig(), {}), twice(makeRig(), {});
+  constexpr double kNod = 0.1 * kDegree, kError = 0.05 * kDegree, kPeriod = 0.1;
+  for (int i = 0; i < 40; ++i) {
+    const double stamp = 1 + kPeriod * i, error = i % 3 == 0 ? kError : -0.5 * kError;
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.plane.g = normalFromPitchRoll(-4 * kDegree + kNod * i + error, 0) / 10;
+    stereo.points = matchesOn(makeRig(), stereo.plane.g);
+    ApproachAngleResult approach = levelFlight(stamp, 10);
+    approach.n = stereo.plane.normal();
+    for (ApproachAngleResult::Motion* motion : {&approach.step, &approach.window}) {
+      motion->duration = kPeriod;
+      motion->rotation = Eigen::Vector3d(-kNod, 0, 0);
+      motion->translation_over_height *= 2;
+    }
+    const LandingResult expected = once.process(stereo, approach), shown = twice.process(stereo, approach);
+    EXPECT_NEAR(shown.pitch, expected.pitch, 1e-9) << i;
+    EXPECT_NEAR(shown.pitch_variance, expected.pitch_variance, 1e-6 * expected.pitch_variance) << i;
+
+    StereoDepthResult again = stereo;
+    again.stamp = approach.stamp = stamp + 0.5 * kPeriod;
+    again.left_repeated = again.right_repeated = true;
+    approach.step = {};
+    approach.step.failure = {Reason::kNoMotion, ""};
+    const LandingResult repeated = twice.process(again, approach);
+    for (const TestResult& test : repeated.tests)
+      EXPECT_FALSE(test.name == toString(Consistency::kTilt) && test.possible()) << i;
+  }
+}
+
 TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) {
   KalmanHeightStage stage(makeRig(), {});
   const auto process = [&](double stamp, double agreement) {
