@@ -95,10 +95,11 @@ class StageNodelet : public nodelet::Nodelet {
   /// Puts a failure that a person has to mend (wrong input, cameras swapped) in the log, as refuse() does.
   void warnOf(const Failure& failure);
 
-  /// How everything behind rectify is paired.
+  /// How everything behind rectify is paired: that has left out what was late.
   static RectifyParameters exactPairing() {
     RectifyParameters parameters;
     parameters.queue_size = kStageQueue;
+    parameters.max_late = 0;
     return parameters;
   }
   std::vector<std::string> resolved(const std::vector<std::string>& topics) const {

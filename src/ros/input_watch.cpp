@@ -4,24 +4,24 @@
 
 namespace uav_landing {
 
-InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size)
-    : waiting_(topics.size(), Waiting{}), queue_size_(queue_size) {
+InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late)
+    : waiting_(topics.size(), Waiting(max_late)), queue_size_(queue_size) {
   for (const std::string& topic : topics) inputs_.push_back(Input{topic});
 }
 
 InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
   Waiting& waiting = waiting_[input];
   ++inputs_[input].received;
-  const bool first = inputs_[input].received == 1 || waiting.latest.isZero();
-  if (!first && stamp == waiting.latest) {
-    ++inputs_[input].repeated;
+  const Arrival arrival = waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
+  if (arrival == Arrival::kRepeated || arrival == Arrival::kLate) {
+    ++(arrival == Arrival::kLate ? inputs_[input].late : inputs_[input].repeated);
     ++inputs_[input].dropped;
-    return Arrival::kRepeated;
+    return arrival;
   }
-  const Arrival arrival = !first && stamp < waiting.latest ? Arrival::kBackwards : Arrival::kNext;
   if (arrival == Arrival::kBackwards) {
     ++jumps_;
     forget();
+    waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
   }
   waiting.latest = stamp;
   waiting.stamps.push_back(stamp);
@@ -47,6 +47,7 @@ void InputWatch::forget() {
     inputs_[i].dropped += waiting_[i].stamps.size();
     waiting_[i].stamps.clear();
     waiting_[i].latest = ros::Time();
+    waiting_[i].order.reset();
   }
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "uav_landing/stamp_order.h"
+
 namespace uav_landing {
 
 /// Counts what arrives on several inputs that are to be paired by stamp, and says in words why nothing pairs
@@ -17,17 +19,17 @@ class InputWatch {
     std::string topic;
     uint64_t received = 0;  ///< messages
     uint64_t paired = 0;    ///< of them, found all their counterparts
-    uint64_t dropped = 0;   ///< of them, given up: a counterpart missing, or the stamp repeated
+    uint64_t dropped = 0;   ///< of them, given up: a counterpart missing, or the stamp repeated or late
     uint64_t repeated = 0;  ///< of the dropped, had the stamp of the message before
+    uint64_t late = 0;      ///< of the dropped, came after newer ones
   };
-  enum class Arrival { kNext, kRepeated, kBackwards };
+  using Arrival = StampOrder::Arrival;
 
-  /// queue_size: messages per input that wait for their counterparts.
-  InputWatch(const std::vector<std::string>& topics, size_t queue_size);
+  /// queue_size: messages per input that wait for their counterparts. max_late: s, see StampOrder.
+  InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late);
 
-  /// To be called for each message. kRepeated: must not be paired. kBackwards: the clock was set back (a bag
-  /// that loops, a restarted camera); what waits is to be forgotten, with forget(), before this message is
-  /// used.
+  /// To be called for each message. kRepeated, kLate: must not be paired. kBackwards: the clock was set back;
+  /// what waits has been forgotten, and is to be so by others, before this message is used.
   Arrival arrived(size_t input, const ros::Time& stamp);
   /// The message of this stamp has found its counterparts; older ones on this input never will.
   void paired(size_t input, const ros::Time& stamp);
@@ -43,11 +45,13 @@ class InputWatch {
 
  private:
   struct Waiting {
+    explicit Waiting(double max_late) : order(max_late) {}
+    StampOrder order;
     std::deque<ros::Time> stamps;
-    ros::Time latest;          // zero: none yet
-    uint64_t received_before;  // at the last complaint
-    uint64_t paired_before;
-    uint64_t repeated_before;
+    ros::Time latest;
+    uint64_t received_before = 0;  // at the last complaint
+    uint64_t paired_before = 0;
+    uint64_t repeated_before = 0;
   };
 
   std::vector<Input> inputs_;

@@ -20,9 +20,9 @@
 namespace uav_landing {
 
 /// Finds the messages that belong together by their stamps (header.stamp), with message_filters. Fed by plain
-/// calls, so it serves subscriptions and bags alike. A stamp that goes back clears everything that waits; a
-/// repeated stamp is dropped. Thread safe; the callback runs in the thread of the add() that completed the
-/// set, without the lock.
+/// calls, so it serves subscriptions and bags alike. Repeated and late stamps are dropped; one that goes back
+/// farther clears everything that waits (StampOrder). Thread safe; the callback runs in the thread of the
+/// add() that completed the set, without the lock.
 template <class... Messages>
 class Pairing {
  public:
@@ -35,7 +35,7 @@ class Pairing {
   Pairing(const RectifyParameters& parameters, const std::vector<std::string>& topics, Callback callback)
       : parameters_(parameters),
         callback_(std::move(callback)),
-        watch_(topics, static_cast<size_t>(parameters.queue_size)) {
+        watch_(topics, static_cast<size_t>(parameters.queue_size), parameters.max_late) {
     rebuild();
   }
 
@@ -46,7 +46,7 @@ class Pairing {
       const std::lock_guard<std::mutex> lock(mutex_);
       const ros::Time& stamp = message->header.stamp;
       const InputWatch::Arrival arrival = watch_.arrived(kInput, stamp);
-      if (arrival == InputWatch::Arrival::kRepeated) return;
+      if (arrival == InputWatch::Arrival::kRepeated || arrival == InputWatch::Arrival::kLate) return;
       if (arrival == InputWatch::Arrival::kBackwards) rebuild();
       using Message = std::tuple_element_t<kInput, std::tuple<Messages...>>;
       // The stamp stands in for the receipt time: the system clock need not be known (bags are read without

@@ -46,9 +46,10 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
   for (size_t i = 0; i < inputs.size(); ++i) {
     const uint64_t received = inputs[i].received - std::min(inputs[i].received, received_before_[i]);
     if (received == 0) silent += (silent.empty() ? "" : ", ") + inputs[i].topic;
-    status.addf(inputs[i].topic, "%.1f Hz; %lu received, %lu paired, %lu dropped",
+    status.addf(inputs[i].topic, "%.1f Hz; %lu received, %lu paired, %lu dropped, %lu of them late",
                 static_cast<double>(received) / seconds, static_cast<unsigned long>(inputs[i].received),
-                static_cast<unsigned long>(inputs[i].paired), static_cast<unsigned long>(inputs[i].dropped));
+                static_cast<unsigned long>(inputs[i].paired), static_cast<unsigned long>(inputs[i].dropped),
+                static_cast<unsigned long>(inputs[i].late));
     received_before_[i] = inputs[i].received;
   }
 

@@ -54,10 +54,11 @@ void reportPairing(const StereoPairing& pairing, Complaints& complain) {
   for (const InputWatch::Input& input : pairing.inputs()) {
     const auto unpaired = input.received - input.paired;
     if (unpaired == 0) continue;
-    const std::string repeated =
-        input.repeated > 0 ? ", of them " + std::to_string(input.repeated) + " with a repeated stamp" : "";
+    std::string why;
+    if (input.repeated > 0) why += ", of them " + std::to_string(input.repeated) + " with a repeated stamp";
+    if (input.late > 0) why += ", of them " + std::to_string(input.late) + " came after newer ones";
     complain(std::to_string(unpaired) + " of " + std::to_string(input.received) + " messages on " +
-             input.topic + " belong to no pair" + repeated);
+             input.topic + " belong to no pair" + why);
   }
   if (pairing.jumps() > 0) complain("stamps went back " + std::to_string(pairing.jumps()) + " times");
 }

@@ -29,6 +29,7 @@ uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
 uav_landing_add_gtest(integrity_test test/core/integrity_test.cpp)
 uav_landing_add_gtest(speed_memory_test test/core/speed_memory_test.cpp)
 uav_landing_add_gtest(stamp_scatter_test test/core/stamp_scatter_test.cpp)
+uav_landing_add_gtest(stamp_order_test test/core/stamp_order_test.cpp)
 uav_landing_add_gtest(ground_memory_test test/core/ground_memory_test.cpp)
 uav_landing_add_gtest(width_height_test test/core/width_height_test.cpp)
 uav_landing_add_gtest(ground_direction_test test/core/ground_direction_test.cpp

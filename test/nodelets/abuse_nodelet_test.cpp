@@ -123,6 +123,32 @@ TEST_F(AbuseTest, AClockThatJumpsAheadAndBack) {
   expectRecovery(-500);
 }
 
+TEST_F(AbuseTest, PairsThatComeLateAreLeftOutAndCountedAndTheHeightStays) {
+  for (int i = 0; i <= 40; ++i) {
+    const double t = kStep * i;
+    const auto publish = [&](double time) {
+      const ros::Time stamp = PairPublisher::stampOf(20 + time);
+      cameras_->publishLeft(stamp, scene_.image(time, false), scene_.info(false));
+      cameras_->publishRight(stamp, scene_.image(time, true), scene_.info(true));
+      return stamp;
+    };
+    const ros::Time stamp = publish(t);
+    const auto of_pair = [&](const LandingEstimate& e) { return e.header.stamp == stamp; };
+    ASSERT_TRUE(eventually([&] { return has(of_pair); })) << i;
+    if (i < 20) continue;
+    EXPECT_TRUE(has([&](const LandingEstimate& e) { return of_pair(e) && e.valid; })) << i;
+    if (i % 4 == 0) publish(t - 0.5 * kStep);
+  }
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
+  EXPECT_TRUE(diagnostics.waitFor([](const diagnostic_msgs::DiagnosticArray& array) {
+    for (const auto& status : array.status)
+      for (const auto& value : status.values)
+        if (value.key == "/stereo/left/image_raw" && value.value.find(" 6 of them late") != std::string::npos)
+          return true;
+    return false;
+  }));
+}
+
 TEST_F(AbuseTest, AFloodOf200Hz) {
   const auto left = scene_.image(0, false), right = scene_.image(0, true);
   for (int i = 0; i < 400; ++i) {

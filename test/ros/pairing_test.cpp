@@ -93,6 +93,35 @@ TEST_F(StereoPairingTest, ALoopingBagKeepsPairing) {
   EXPECT_EQ(pairing_.jumps(), 1u);
 }
 
+TEST_F(StereoPairingTest, APairThatComesAfterTheNextOneIsLeftOutAndCounted) {
+  addPair(1.0);
+  addPair(1.2);
+  addPair(1.1);
+  addPair(1.3);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.2, 1.2}, {1.3, 1.3}}));
+  EXPECT_EQ(pairing_.jumps(), 0u);
+  for (const InputWatch::Input& input : pairing_.inputs()) {
+    EXPECT_EQ(input.late, 1u) << input.topic;
+    EXPECT_EQ(input.dropped, 1u) << input.topic;
+  }
+}
+
+TEST_F(StereoPairingTest, ALateImageLeavesWhatWaitsInPlace) {
+  addPair(1.0);
+  addLeft(1.2);
+  addLeft(1.1);
+  addRight(1.2);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.2, 1.2}}));
+}
+
+TEST_F(StereoPairingTest, AClockSetBackByLittleIsFollowedAfterTenImages) {
+  addPair(1.0);
+  for (int loop = 0; loop < 6; ++loop)
+    for (const double stamp : {0.8, 0.9, 1.0}) addPair(stamp);
+  EXPECT_EQ(pairing_.jumps(), 1u);
+  EXPECT_GE(pairs_.size(), 2u);
+}
+
 TEST_F(StereoPairingTest, RightImageLeftOverFromTheLastLoopIsNotPaired) {
   addPair(10.0);
   addRight(10.1);

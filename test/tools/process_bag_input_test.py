@@ -335,6 +335,16 @@ class StampsTest(ProcessBagTest):
         self.assertEqual([row["stamp_s"] for row in self.rows()], ["10.000000000", "10.100000000", "10.300000000"])
         self.assertIn("with a repeated stamp", result.stderr)
 
+    def test_pairs_that_come_late_make_no_row_and_are_counted(self):
+        frames = noise_frames(5)
+        frames[1], frames[2] = frames[2], frames[1]
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([row["stamp_s"] for row in self.rows()],
+                         ["10.000000000", "10.200000000", "10.300000000", "10.400000000"])
+        self.assertIn("of them 1 came after newer ones", result.stderr)
+        self.assertNotIn("stamps went back", result.stderr)
+
     def test_stamps_that_go_back_are_reported_and_followed(self):
         result = self.process_frames(noise_frames(3, start=20) + noise_frames(3, start=10))
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+namespace uav_landing {
+
+/// What the stamp of a pair says, or of one camera's image, against those before. One that came a little
+/// late, after the one behind it, is of no use any more, and what is known stays. Larger steps back are those
+/// of a clock that was set back (a bag that loops, a restarted camera), and so are late ones only, many in a
+/// row: then everything starts anew.
+class StampOrder {
+ public:
+  enum class Arrival { kNext, kRepeated, kLate, kBackwards };
+
+  /// max_late: s behind the newest stamp; 0: every step back is that of a clock.
+  explicit StampOrder(double max_late);
+
+  /// stamp: ns; 0 is none. kRepeated and kLate: to be left out. kBackwards: what waits and what is remembered
+  /// is to be forgotten first.
+  Arrival follow(int64_t stamp);
+  /// Stamps may start anywhere again.
+  void reset();
+
+ private:
+  int64_t max_late_;    // ns
+  int64_t newest_ = 0;  // ns; 0: none yet
+  int late_ = 0;        // in a row
+};
+
+}  // namespace uav_landing

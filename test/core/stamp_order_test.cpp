@@ -1,0 +1,52 @@
+#include "uav_landing/stamp_order.h"
+
+#include <gtest/gtest.h>
+
+namespace uav_landing {
+namespace {
+
+using Arrival = StampOrder::Arrival;
+constexpr int64_t kMs = 1000000;
+
+TEST(StampOrder, LeavesOutWhatIsLateByUpToTheLimitAndGoesOn) {
+  StampOrder order(0.3);
+  EXPECT_EQ(order.follow(10000 * kMs), Arrival::kNext);
+  EXPECT_EQ(order.follow(10050 * kMs), Arrival::kNext);
+  EXPECT_EQ(order.follow(10050 * kMs), Arrival::kRepeated);
+  EXPECT_EQ(order.follow(10020 * kMs), Arrival::kLate);
+  EXPECT_EQ(order.follow(9750 * kMs), Arrival::kLate);
+  EXPECT_EQ(order.follow(10051 * kMs), Arrival::kNext);
+}
+
+TEST(StampOrder, AStepBackByMoreIsThatOfAClock) {
+  StampOrder order(0.3);
+  order.follow(10000 * kMs);
+  EXPECT_EQ(order.follow(9699 * kMs), Arrival::kBackwards);
+  EXPECT_EQ(order.follow(9750 * kMs), Arrival::kNext) << "the new time counts";
+  EXPECT_EQ(order.follow(9700 * kMs), Arrival::kLate);
+}
+
+TEST(StampOrder, WithoutALimitEveryStepBackIsThatOfAClock) {
+  StampOrder order(0);
+  order.follow(10000 * kMs);
+  EXPECT_EQ(order.follow(10000 * kMs - 1), Arrival::kBackwards);
+}
+
+TEST(StampOrder, LateOnesAloneAreThoseOfAClockThatWasSetBack) {
+  StampOrder order(0.3);
+  order.follow(10000 * kMs);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(order.follow((9800 + 20 * (i % 5)) * kMs), Arrival::kLate) << i;
+  EXPECT_EQ(order.follow(9880 * kMs), Arrival::kBackwards);
+  EXPECT_EQ(order.follow(9900 * kMs), Arrival::kNext);
+}
+
+TEST(StampOrder, LateOnesBetweenOthersAreNoClock) {
+  StampOrder order(0.3);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(order.follow((10000 + 50 * i) * kMs), Arrival::kNext);
+    EXPECT_EQ(order.follow((9975 + 50 * i) * kMs), Arrival::kLate);
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing
