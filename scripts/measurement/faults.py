@@ -19,8 +19,8 @@ HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "r
           "error / level, worst", "error / limit, worst", "longest, s")
 TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}.
 
-A run is a piece of an approach ({frames} frames at most) with a fault from a random moment on; *frames* are those with the
-fault, later than 1 s after the start. *Available* is the share of them with a valid height. *Misleading* frames have a valid
+A run is a piece of an approach ({frames} frames at most) with a fault from a random moment on, or from the first pair on: those
+named so, and changes of scene and calibration; *frames* are those with the fault, later than 1 s after the start. *Available* is the share of them with a valid height. *Misleading* frames have a valid
 height and an error beyond the protection level or the alert limit; *runs misled* are the runs with at least one. Frames of
 one run are not independent, so the bound per run is the one that means something. Bounds are Clopper and Pearson's, one
 sided, 95 %: no campaign of this size proves 1e-5. *Longest* is the longest time for which the error was beyond the alert

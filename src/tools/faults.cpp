@@ -1,5 +1,6 @@
 #include "faults.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fault_effects.h"
@@ -12,7 +13,7 @@ using Spoil = std::function<void(FaultRun&, int, Delivery&)>;
 constexpr double kDegree = M_PI / 180;
 
 Fault spoils(const char* name, Place place, const char* meaning, Spoil spoil) {
-  return {name, meaning, place, std::move(spoil), {}, {}, false};
+  return {name, meaning, place, std::move(spoil), {}, {}, false, false};
 }
 
 /// A fault of both cameras' pictures, or of the left one only.
@@ -50,12 +51,12 @@ Fault bent(const char* axis, int index, double degrees) {
 
 Fault calibrated(const char* name, const char* meaning,
                  std::function<void(CameraCalibration&, CameraCalibration&)> calibrate) {
-  Fault fault{name, meaning, Place::kSensor, {}, std::move(calibrate), {}, false};
+  Fault fault{name, meaning, Place::kSensor, {}, std::move(calibrate), {}, false, false};
   return fault;
 }
 
 Fault built(const char* name, const char* meaning, std::function<void(SimulatorParameters&)> build) {
-  Fault fault{name, meaning, Place::kScene, {}, {}, std::move(build), true};
+  Fault fault{name, meaning, Place::kScene, {}, {}, std::move(build), true, false};
   return fault;
 }
 
@@ -242,6 +243,18 @@ void addRig(std::vector<Fault>& all) {
                            }));
 }
 
+/// Some of those that come in flight once more, there from the first pair on.
+void addFromFirst(std::vector<Fault>& all) {
+  for (const char* name : {"swapped", "unsynchronised", "bent_pitch_0.2", "bent_yaw_0.2", "bent_roll_0.2",
+                           "bent_yaw_1", "focal_right"}) {
+    Fault fault = *std::find_if(all.begin(), all.end(), [&](const Fault& f) { return f.name == name; });
+    fault.name += "_first";
+    fault.meaning += ", from the first pair on";
+    fault.from_first = true;
+    all.push_back(std::move(fault));
+  }
+}
+
 }  // namespace
 
 const std::vector<Fault>& allFaults() {
@@ -252,6 +265,7 @@ const std::vector<Fault>& allFaults() {
     addLight(all);
     addGround(all);
     addRig(all);
+    addFromFirst(all);
     return all;
   }();
   return faults;

@@ -36,7 +36,7 @@ struct Delivery {
 /// What a fault knows of the run that it spoils.
 struct FaultRun {
   const Flight& flight;
-  int onset = 0;  ///< first frame with the fault
+  int onset = 0;  ///< first frame with the fault that spoils it
   cv::RNG random;
 };
 
@@ -53,11 +53,13 @@ struct Fault {
   /// Another scene, for the whole run; empty otherwise. Only when simulated.
   std::function<void(SimulatorParameters&)> build;
   bool needs_scene = false;  ///< only when simulated
+  bool from_first = false;   ///< from the first pair on: nothing was healthy before
 
-  bool wholeRun() const { return calibrate || build; }
+  /// There from the first pair on.
+  bool wholeRun() const { return calibrate || build || from_first; }
 };
 
-/// All of them; the first, "none", does nothing.
+/// All of them; the first, "none", does nothing. NAME_first is NAME from the first pair on.
 const std::vector<Fault>& allFaults();
 
 }  // namespace uav_landing

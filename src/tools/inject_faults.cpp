@@ -2,6 +2,7 @@
 // and counts what was available, what was misleading and how long until it was noticed.
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -21,6 +22,7 @@
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/attitude.h"
 #include "uav_landing/simulator/ground_profile.h"
+#include "uav_landing/stamp_order.h"
 
 namespace {
 
@@ -148,12 +150,14 @@ Flight cut(const Flight& whole, int first, int frames) {
   return part;
 }
 
-Delivery deliver(FaultRun& run, const Combination& faults, int frame) {
+/// in_flight: first frame with the faults that come in flight.
+Delivery deliver(FaultRun& run, const Combination& faults, int in_flight, int frame) {
   const Flight::Frame& source = run.flight.frames[static_cast<size_t>(frame)];
   Delivery pair{source.time, source.left.clone(), source.right.clone(), true};
-  if (frame < run.onset) return pair;
-  for (const Fault* fault : faults)
-    if (fault->spoil) fault->spoil(run, frame, pair);
+  for (const Fault* fault : faults) {
+    run.onset = fault->from_first ? 0 : in_flight;
+    if (fault->spoil && frame >= run.onset) fault->spoil(run, frame, pair);
+  }
   return pair;
 }
 
@@ -169,7 +173,10 @@ double trueHeight(const Flight& flight, double time) {
 /// After each pair that counts: what was said, the true height, whether the fault was there.
 using Observer = std::function<void(double time, const LandingResult&, double true_height, bool faulted)>;
 
-FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint64_t seed,
+constexpr double kStart = 100;  // stamp of the first pair, s
+
+/// Faults are scored from the frame onset on.
+FaultScore fly(const Flight& flight, const Combination& faults, int in_flight, int onset, uint64_t seed,
                const Parameters& parameters, const Observer& observe) {
   CameraCalibration left = flight.left, right = flight.right;
   for (const Fault* fault : faults)
@@ -180,14 +187,18 @@ FaultScore fly(const Flight& flight, const Combination& faults, int onset, uint6
     score.alarm = "refused: " + pipeline.error().detail;
     return score;
   }
-  FaultRun run{flight, onset, cv::RNG(seed)};
+  FaultRun run{flight, in_flight, cv::RNG(seed)};
   double last = flight.frames.front().time;
+  StampOrder order(parameters.rectify.max_late);
   for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
-    const Delivery pair = deliver(run, faults, frame);
+    const Delivery pair = deliver(run, faults, in_flight, frame);
     const double now = flight.frames[static_cast<size_t>(frame)].time;
     // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
     if (!pair.delivered) continue;
-    const Pipeline::Output& output = pipeline->process(100 + pair.time, pair.left, pair.right);
+    // As where images are paired.
+    const StampOrder::Arrival arrival = order.follow(std::llround(1e9 * (kStart + pair.time)));
+    if (arrival == StampOrder::Arrival::kRepeated || arrival == StampOrder::Arrival::kLate) continue;
+    const Pipeline::Output& output = pipeline->process(kStart + pair.time, pair.left, pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;
     const double height = trueHeight(flight, pair.time);
     score.take(output.landing, height, frame >= onset, now - last);
@@ -257,10 +268,15 @@ class Campaign {
     std::vector<Combination> all = asked_pairs_;
     for (const Fault* fault : faults_) all.push_back({fault});
     cv::RNG random(seed * 77 + 5);
-    const int count = static_cast<int>(faults_.size());
+    // Those that come in flight are drawn; what they are from the first pair on is flown alone or when asked.
+    std::vector<const Fault*> drawn = faults_;
+    drawn.erase(
+        std::remove_if(drawn.begin(), drawn.end(), [](const Fault* fault) { return fault->from_first; }),
+        drawn.end());
+    const int count = static_cast<int>(drawn.size());
     for (int i = 0; i < options_.pairs && count > 2; ++i) {
-      const Fault* first = faults_[static_cast<size_t>(random.uniform(1, count))];
-      const Fault* second = faults_[static_cast<size_t>(random.uniform(1, count))];
+      const Fault* first = drawn[static_cast<size_t>(random.uniform(1, count))];
+      const Fault* second = drawn[static_cast<size_t>(random.uniform(1, count))];
       if (first == second || first->name == "none" || second->name == "none") continue;
       if (exclude(*first, *second)) continue;
       if (first->place > second->place) std::swap(first, second);
@@ -312,15 +328,14 @@ class Campaign {
         std::any_of(faults.begin(), faults.end(), [](const Fault* f) { return f->wholeRun(); });
     const bool healthy = faults.size() == 1 && faults[0]->name == "none";
     // Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
-    int onset = random.uniform(frames * 5 / 20, frames * 7 / 20);
-    if (whole) onset = 0;
-    if (healthy) onset = frames;
+    const int in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
+    const int onset = healthy ? frames : whole ? 0 : in_flight;
     const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
     const Observer observe = [&](double time, const LandingResult& said, double height, bool faulted) {
       trace(from, time, said, height, faulted);
     };
     const FaultScore score =
-        fly(flight, faults, onset, hash, parameters_, trace_.is_open() ? observe : Observer());
+        fly(flight, faults, in_flight, onset, hash, parameters_, trace_.is_open() ? observe : Observer());
     CsvRow row(file_);
     row.text(source).text(std::to_string(seed)).text(nameOf(faults));
     row.number(onset < frames ? flight.frames[static_cast<size_t>(onset)].time - flight.frames[0].time
