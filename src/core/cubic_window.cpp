@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kMostColumns = 56, kMostRows = 31;
 constexpr int kBefore = 4;  // values before the first column of a row
+// Of windows' rows, by default, filled up to whole lanes: known to the compiler, which then needs no loops
+// for a row.
+constexpr int kUsual = 2 * kLanes;
 // Of lines, with some more than there are, so that whole registers can be filled.
 constexpr int kMostLines = (kMostRows + kLanes - 1) / kLanes * kLanes;
 
@@ -85,43 +88,15 @@ struct NearRows {
 // that or still the same.
 bool inNeighbouringColumns(double step) { return std::abs(step - 1) * (kLanes - 1) < 0.99; }
 
-// Values at start, start + step, ... of such places.
-[[gnu::always_inline]] inline void interpolateAlong(const float* row, float start, float step, int count,
-                                                    float* __restrict out) {
-  const float drift = step - 1;
-  for (int i = 0; i < count; i += kLanes, start += step * kLanes) {
-    const int first = static_cast<int>(std::min(start, start + drift * (kLanes - 1)));
-    const float* p = row + first - 1;
-    Lanes t, values;
-    progress(start - static_cast<float>(first), drift, t);
-    cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
-    store(values, out + i);
-  }
-}
-
-UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, double start, double by_row,
-                                               double step, int rows, int stride, float* out) {
-  const int count = wholeLanes(stride);
-  const double last = start + by_row * (rows - 1), drift = (step - 1) * (count - 1);
-  if (!inNeighbouringColumns(step) || !(std::min(start, last) + std::min(drift, 0.0) >= 1) ||
-      !(std::max(start, last) + std::max(drift, 0.0) + count + 3 < image.cols)) {
-    return false;
-  }
-  for (int j = 0; j < rows; ++j, out += stride) {
-    const double x = start + by_row * j;
-    const int first = static_cast<int>(x + std::min(drift, 0.0));
-    interpolateAlong(image.ptr<float>(v + j) + first, static_cast<float>(x - first), static_cast<float>(step),
-                     count, out);
-  }
-  return true;
-}
-
-// The values between the columns, row by row: of all lines together where kLanes of their places begin.
-class AlongLines {
+// Values at start, start + step, ... of such places, row by row: where kLanes of them begin is found for all
+// rows together.
+class AlongRows {
  public:
-  [[gnu::always_inline]] inline void find(const Crossings& lines, int rows, float step, int count) {
+  // start: of each row, columns. rows: of the arrays, filled up to whole lanes.
+  [[gnu::always_inline]] inline void find(const std::array<float, kMostLines>& starts, int rows, float step,
+                                          int count) {
     drift_ = step - 1;
-    alignas(32) std::array<float, kMostLines> start = lines.start;
+    alignas(32) std::array<float, kMostLines> start = starts;
     for (int i = 0; i < count; i += kLanes) {
       Begin& begin = begins_[i / kLanes];
       for (int j = 0; j < wholeLanes(rows); ++j) {
@@ -134,7 +109,7 @@ class AlongLines {
     }
   }
 
-  // row: of line j.
+  // row: the j-th, where columns are counted from.
   [[gnu::always_inline]] inline void interpolate(const float* row, int j, int count,
                                                  float* __restrict out) const {
     for (int i = 0; i < count; i += kLanes) {
@@ -155,6 +130,53 @@ class AlongLines {
   float drift_;
   std::array<Begin, kMostColumns / kLanes> begins_;
 };
+
+// Places in rows of the image, each in a column after the one before: row j from start + j by_row on.
+struct PlaceRows {
+  double start, by_row,
+      drift;  // drift: columns that the last place is ahead of the one so much after the first
+
+  bool inside(const cv::Mat& image, int rows, int count) const {
+    const double last = start + by_row * (rows - 1);
+    return std::min(start, last) + std::min(drift, 0.0) >= 1 &&
+           std::max(start, last) + std::max(drift, 0.0) + count + 3 < image.cols;
+  }
+  // Columns from which the places' are counted, and the first place from there.
+  [[gnu::always_inline]] inline void find(int rows, std::array<int, kMostLines>& columns,
+                                          std::array<float, kMostLines>& starts) const {
+    const double first_place = start, step = by_row, back = std::min(drift, 0.0);
+    for (int j = 0; j < wholeLanes(rows); ++j) {
+      const double x = first_place + step * j;
+      columns[j] = static_cast<int>(x + back);
+      starts[j] = static_cast<float>(x - columns[j]);
+    }
+  }
+};
+
+UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, double start, double by_row,
+                                               double step, int rows, int stride, float* out) {
+  const int count = wholeLanes(stride);
+  const PlaceRows places{start, by_row, (step - 1) * (count - 1)};
+  if (!inNeighbouringColumns(step) || rows > kMostRows || count > kMostColumns ||
+      !places.inside(image, rows, count)) {
+    return false;
+  }
+  alignas(32) std::array<int, kMostLines> columns;
+  alignas(32) std::array<float, kMostLines> starts;
+  places.find(rows, columns, starts);
+  const float* row = image.ptr<float>(v);
+  AlongRows along;
+  if (count == kUsual) {
+    along.find(starts, rows, static_cast<float>(step), kUsual);
+    for (int j = 0; j < rows; ++j, out += stride, row += image.step1())
+      along.interpolate(row + columns[j], j, kUsual, out);
+  } else {
+    along.find(starts, rows, static_cast<float>(step), count);
+    for (int j = 0; j < rows; ++j, out += stride, row += image.step1())
+      along.interpolate(row + columns[j], j, count, out);
+  }
+  return true;
+}
 
 struct LineValues {
   std::array<float, kMostColumns * kMostRows> values;
@@ -187,8 +209,6 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
   near.cross(size, lines);
   LineValues values;
   const float slope = static_cast<float>(near.slope), step = static_cast<float>(near.step);
-  // The usual width is known to the compiler, which then needs no loops for a row.
-  constexpr int kUsual = 2 * kLanes;
   if (near.columns == kUsual) {
     interpolateDown(image, lines, slope, size, kUsual, values);
   } else {
@@ -200,13 +220,13 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
       sampleCubicRow(values.row(j), CubicTable::fixed(lines.start[j]), fixed_step, stride, out);
     return true;
   }
-  AlongLines along;
+  AlongRows along;
   const int count = wholeLanes(stride);
   if (count == kUsual) {
-    along.find(lines, size, step, kUsual);
+    along.find(lines.start, size, step, kUsual);
     for (int j = 0; j < size; ++j, out += stride) along.interpolate(values.row(j), j, kUsual, out);
   } else {
-    along.find(lines, size, step, count);
+    along.find(lines.start, size, step, count);
     for (int j = 0; j < size; ++j, out += stride) along.interpolate(values.row(j), j, count, out);
   }
   return true;

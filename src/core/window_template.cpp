@@ -21,6 +21,19 @@ UAV_LANDING_MULTIVERSION double sumOf(const float* values, int count) {
   return total;
 }
 
+// The window's rows one after the other. The last lanes of a row end where it does.
+UAV_LANDING_MULTIVERSION void copyRows(const float* image, size_t stride, int size, float* out) {
+  for (int y = 0; y < size; ++y, image += stride, out += size) {
+    for (int x = 0; size >= kLanes && x < size; x += kLanes) {
+      const int first = std::min(x, size - kLanes);
+      Lanes values;
+      load(image + first, values);
+      store(values, out + first);
+    }
+    for (int x = 0; size < kLanes && x < size; ++x) out[x] = image[x];
+  }
+}
+
 // Takes the mean off; the sum of the squares of what is left.
 UAV_LANDING_MULTIVERSION double centre(float* values, int count, float mean) {
   Lanes squares{};
@@ -47,10 +60,7 @@ bool WindowTemplate::load(const cv::Mat& image, int u, int v, int radius) {
   if (u < radius || v < radius || u + radius >= image.cols || v + radius >= image.rows) return false;
   const int size = 2 * radius + 1;
   values.resize(static_cast<size_t>(size) * size);
-  for (int dy = 0; dy < size; ++dy) {
-    const float* row = image.ptr<float>(v - radius + dy) + u - radius;
-    std::copy(row, row + size, values.data() + static_cast<size_t>(dy) * size);
-  }
+  copyRows(image.ptr<float>(v - radius) + u - radius, image.step1(), size, values.data());
   const int count = size * size;
   mean = sumOf(values.data(), count) / count;
   energy = centre(values.data(), count, static_cast<float>(mean));
