@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "median.h"
@@ -36,22 +35,19 @@ constexpr double kLargestFactor = 2.0;
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor
 // shows in the noisier half of the samples, the error in the other.
 void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
-  std::vector<size_t> order(samples.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  const auto quieter = [&](size_t a, size_t b) { return samples[a].stddev < samples[b].stddev; };
-  const auto middle = order.begin() + order.size() / 2;
-  std::nth_element(order.begin(), middle, order.end(), quieter);
-  std::vector<double> residuals, sorted, ratios, missing;
-  for (const DisparitySample& sample : samples)
+  std::vector<double> residuals, stddevs, ratios, missing;
+  for (const DisparitySample& sample : samples) {
     residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
-  sorted = residuals;
-  const double offset = medianOf(sorted);
-  for (auto i = middle; i != order.end(); ++i)
-    ratios.push_back(std::abs(residuals[*i] - offset) / samples[*i].stddev);
+    stddevs.push_back(sample.stddev);
+  }
+  const double offset = medianOf(residuals), middle = medianOf(stddevs);
+  for (size_t i = 0; i < samples.size(); ++i)
+    if (stddevs[i] >= middle) ratios.push_back(std::abs(residuals[i] - offset) / stddevs[i]);
   const double factor = std::min(robustStddev(ratios), kLargestFactor);
   // The variance without which half of the quieter samples were off by more than normal errors are.
-  for (auto i = order.begin(); i != middle; ++i) {
-    const double off = kPerMedian * (residuals[*i] - offset), noise = factor * samples[*i].stddev;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (stddevs[i] >= middle) continue;
+    const double off = kPerMedian * (residuals[i] - offset), noise = factor * stddevs[i];
     missing.push_back(off * off - noise * noise);
   }
   const double common =

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lanes.h"
+#include "median.h"
 #include "multiversion.h"
 #include "rotation.h"
 
@@ -316,10 +317,8 @@ double MotionRows::residualScale() {
   }
   if (used == 0) return 1;
   ratios_.resize(used);
-  const auto middle = ratios_.begin() + static_cast<std::ptrdiff_t>(used / 2);
-  std::nth_element(ratios_.begin(), middle, ratios_.end());
   // The median of chi-square with two degrees of freedom is 2 ln 2.
-  return std::max(1.0, std::sqrt(*middle / (2 * std::log(2.0))));
+  return std::max(1.0, std::sqrt(medianOf(ratios_) / (2 * std::log(2.0))));
 }
 
 MotionNormal MotionRows::accumulate(std::vector<char>& inliers) {

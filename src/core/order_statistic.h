@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "lanes.h"
 
@@ -28,5 +29,8 @@ template <int kMost>
 float orderStatistic(const PaddedValues<kMost>& padded, int rank, float guess) {
   return orderStatistic(padded.values.data(), wholeLanes(padded.count), rank, guess);
 }
+
+/// The same of any numbers, in any order, not filled up. NaN when some of them are and none is found.
+double orderStatistic(const double* values, size_t count, size_t rank);
 
 }  // namespace uav_landing

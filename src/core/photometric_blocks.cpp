@@ -70,10 +70,8 @@ double signalBehind(double measured, double stddev, double usual) {
   return most_likely + stddev * density / (0.5 * std::erfc(-z / std::sqrt(2.0)));
 }
 
-double lowerQuartileOf(std::vector<double>& values) {
-  const auto quartile = values.begin() + values.size() / 4;
-  std::nth_element(values.begin(), quartile, values.end());
-  return *quartile;
+double lowerQuartileOf(const std::vector<double>& values) {
+  return orderStatistic(values.data(), values.size(), values.size() / 4);
 }
 
 bool set(const cv::Mat& mask, double u, double v) {

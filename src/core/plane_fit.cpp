@@ -8,21 +8,19 @@
 #include <string>
 
 #include "lanes.h"
+#include "median.h"
 #include "multiversion.h"
 
 namespace uav_landing {
 namespace {
 
-// Robust size of the residuals as a multiple of the claimed stddevs, at least 1. ratios: reordered.
-double scaleOf(std::vector<double>& ratios) {
-  constexpr double kPerMedian = 1.4826;
+// Robust size of the residuals as a multiple of the claimed stddevs, at least 1.
+double scaleOf(const std::vector<double>& ratios) {
   if (ratios.empty()) return 1;
   const auto small =
       std::count_if(ratios.begin(), ratios.end(), [](double r) { return kPerMedian * r <= 1; });
   if (static_cast<size_t>(small) > ratios.size() / 2) return 1;  // the median is among them
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::max(1.0, kPerMedian * *middle);
+  return std::max(1.0, robustStddev(ratios));
 }
 
 struct NormalEquations {

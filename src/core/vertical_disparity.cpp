@@ -104,9 +104,8 @@ Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
   // The median row shift is a start from which outliers show.
   std::vector<double> shifts;
   for (const RowShift& row : rows) shifts.push_back(row.shift / row.by_rotation.x());
-  std::nth_element(shifts.begin(), shifts.begin() + shifts.size() / 2, shifts.end());
   RigRotation rotation;
-  rotation.w = Eigen::Vector3d(shifts[shifts.size() / 2], 0, 0);
+  rotation.w = Eigen::Vector3d(medianOf(shifts), 0, 0);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double scale = residualScale(rows, rotation.w);
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kAnything * kAnything);

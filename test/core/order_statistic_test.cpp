@@ -57,5 +57,44 @@ TEST(OrderStatistic, EndsWhereNothingCanBePutInOrder) {
   EXPECT_FALSE(orderStatistic(padded, 4, 1) < std::numeric_limits<float>::infinity());
 }
 
+/// The same of doubles, for some of the ranks.
+void expectInOrder(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  for (size_t rank = 0; rank < values.size(); rank += 1 + values.size() / 50)
+    ASSERT_EQ(orderStatistic(values.data(), values.size(), rank), sorted[rank])
+        << rank << " of " << values.size();
+}
+
+TEST(OrderStatisticOfDoubles, IsTheValueOfThatRank) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> some;
+  for (const size_t count : {1, 2, 15, 63, 64, 65, 66, 67, 300, 1001}) {
+    std::vector<double> values(count);
+    for (double& value : values) value = some(random);
+    expectInOrder(values);
+    for (double& value : values) value = std::exp(20 * value);
+    expectInOrder(values);
+  }
+}
+TEST(OrderStatisticOfDoubles, CountsEqualValuesOneByOne) {
+  std::mt19937 random(9);
+  for (const int different : {1, 2, 5, 40}) {
+    std::vector<double> values(500);
+    for (double& value : values) value = static_cast<double>(random() % different) - 2;
+    expectInOrder(values);
+  }
+}
+TEST(OrderStatisticOfDoubles, FindsValuesThatSamplesMiss) {
+  std::vector<double> values(640, 1e-300);
+  for (size_t i = 1; i < values.size(); i += 40) values[i] = -1e300 + 1e290 * static_cast<double>(i);
+  for (size_t i = 2; i < values.size(); i += 40) values[i] = 1e300;
+  expectInOrder(values);
+}
+TEST(OrderStatisticOfDoubles, EndsWhereNothingCanBePutInOrder) {
+  const std::vector<double> values(100, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(std::isnan(orderStatistic(values.data(), values.size(), 50)));
+}
+
 }  // namespace
 }  // namespace uav_landing
