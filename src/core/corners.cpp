@@ -90,6 +90,8 @@ class Cells {
 
   Cells(const cv::Size& area, double cell, double min_distance)
       : min_squared_(min_distance * min_distance), reach_(static_cast<int>(std::ceil(min_distance))) {
+    columns_.reserve(area.width);
+    rows_.reserve(area.height);
     for (int x = 0; x < area.width; ++x) columns_.push_back(static_cast<int>(x / cell));
     for (int y = 0; y < area.height; ++y) rows_.push_back(static_cast<int>(y / cell));
     cells_.resize(static_cast<size_t>(columns_.back() + 1) * (rows_.back() + 1));

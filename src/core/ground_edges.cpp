@@ -208,7 +208,7 @@ std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes
     edge.brighter_left = view.brighterLeft(lines[i]);
     edge.pieces = {piece};
     edge.begins = view.beginsInside(lines[i]);
-    pieces.push_back(edge);
+    pieces.push_back(std::move(edge));
   }
   const auto longer = [](const GroundEdge& l, const GroundEdge& r) { return l.extent > r.extent; };
   std::sort(pieces.begin(), pieces.end(), longer);

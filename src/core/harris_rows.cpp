@@ -41,12 +41,14 @@ UAV_LANDING_MULTIVERSION void multiply(const Rows<float>& rows, int columns, flo
 }
 
 UAV_LANDING_MULTIVERSION void addRows(const Rows<float>& rows, int count, float* __restrict sum) {
+  UAV_LANDING_UNROLL
   for (int i = 0; i < count; ++i) sum[i] = rows.above[i] + rows.middle[i] + rows.below[i];
 }
 
 /// From the three products' sums over the three rows.
 UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const float* yy, int columns, float k,
                                       float* __restrict response) {
+  UAV_LANDING_UNROLL
   for (int u = 2; u < columns - 2; ++u) {
     const float a = xx[u - 1] + xx[u] + xx[u + 1], b = xy[u - 1] + xy[u] + xy[u + 1],
                 c = yy[u - 1] + yy[u] + yy[u + 1];

@@ -11,3 +11,11 @@
 #else
 #define UAV_LANDING_MULTIVERSION
 #endif
+
+// Before a loop of few instructions over many pixels: does four vectors in turn, as counting and jumping back
+// is a good part of such a loop.
+#if defined(__GNUC__) && !defined(__clang__)
+#define UAV_LANDING_UNROLL _Pragma("GCC unroll 4")
+#else
+#define UAV_LANDING_UNROLL
+#endif

@@ -195,6 +195,7 @@ class Search {
   /// Every edge counts in one pair only, the one that fits best.
   Symmetry around(const MirroredPair& centre) const {
     std::vector<std::pair<double, const MirroredPair*>> near;
+    near.reserve(pairs_.size());
     for (const MirroredPair& pair : pairs_) {
       if (areApart(pair, centre)) continue;
       const double miss = std::abs(pair.centre - centre.centre) / toleranceOf(pair, centre);
@@ -203,6 +204,7 @@ class Search {
     std::sort(near.begin(), near.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
     std::vector<char> used(edges_.size(), 0);
     Symmetry symmetry;
+    symmetry.pairs.reserve(near.size());
     symmetry.centre = centre.centre;
     symmetry.tolerance = toleranceOf(centre, centre);
     for (const auto& [miss, pair] : near) {

@@ -29,11 +29,13 @@ const Kernel& kernel() {
 template <class Pixel>
 inline void smoothRow(const Pixel* above, const Pixel* row, const Pixel* below, int size, Kernel kernel,
                       float* __restrict columns, float* __restrict out) {
+  UAV_LANDING_UNROLL
   for (int u = 0; u < size; ++u)
     columns[u + 1] =
         kernel.middle * static_cast<float>(row[u]) + kernel.side * static_cast<float>(above[u] + below[u]);
   columns[0] = columns[2];
   columns[size + 1] = columns[size - 1];
+  UAV_LANDING_UNROLL
   for (int u = 0; u < size; ++u)
     out[u] = kernel.middle * columns[u + 1] + kernel.side * (columns[u] + columns[u + 2]);
 }
@@ -47,6 +49,7 @@ UAV_LANDING_MULTIVERSION void smoothRowOfFloat(const float* above, const float* 
 }
 
 UAV_LANDING_MULTIVERSION void addRow(const uchar* __restrict row, int size, std::uint16_t* __restrict sums) {
+  UAV_LANDING_UNROLL
   for (int u = 0; u < size; ++u) sums[u] = static_cast<std::uint16_t>(sums[u] + row[u]);
 }
 UAV_LANDING_MULTIVERSION void meanOfTwo(const std::uint16_t* __restrict sums, int size, float scale,

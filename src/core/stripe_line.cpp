@@ -193,6 +193,8 @@ std::optional<Replacement> replacementOf(const cv::Mat& image, const cv::Mat& gr
   if (!side) return std::nullopt;
 
   std::vector<Peak> clear, middle;
+  clear.reserve(stations.size());
+  middle.reserve(stations.size());
   for (const Station& station : stations) {
     const double other = station.other[*side];
     if (!(std::abs(other - station.edge) < kApart))

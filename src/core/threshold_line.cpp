@@ -39,6 +39,7 @@ struct Step {
 
 Step stepAt(const TopView& view, int k) {
   std::vector<double> steps;
+  steps.reserve(kStretches);
   for (int stretch = 0; stretch < kStretches; ++stretch) {
     double sum = 0;
     int known = 0;
