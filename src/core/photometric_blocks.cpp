@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "interpolation.h"
+#include "lanes.h"
 #include "median.h"
 #include "multiversion.h"
 
@@ -47,15 +47,6 @@ constexpr double kProductNoise = 1.0 / 3, kProductScatter = 0.505;
 // Of the usual signal over the noise: less cannot be told from none.
 constexpr double kLeastUsual = 0.05;
 
-using Lane = std::array<float, kWidth>;
-
-// One after the other. Not merged with other sums, which would take longer than the adding.
-[[gnu::noinline]] float sum(const Lane& lane) {
-  float total = 0;
-  for (const float value : lane) total += value;
-  return total;
-}
-
 // What of a signal measured with normal errors was there: the mean by Bayes' rule. A signal is positive, and
 // strong ones are rare but not unheard of (density 1 / (usual + signal)^2, its logarithm taken as linear near
 // what was measured). Among many blocks with next to nothing to see, noise makes some look as if they had;
@@ -77,122 +68,6 @@ double lowerQuartileOf(const std::vector<double>& values) {
 bool set(const cv::Mat& mask, double u, double v) {
   const int x = cvRound(u), y = cvRound(v);
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
-}
-
-// What the rows of a block are interpolated from: of each row the first value lies begin (0 to 2) behind the
-// second pixel, each further one a step behind the last. Floats, made for all rows before any is
-// interpolated. Neighbouring places must be in neighbouring pixels, but for one place from which on they are
-// one further.
-class RowPixels {
- public:
-  static bool possible(float step) { return std::abs(step - 1) * (kWidth - 1) < 0.99f; }
-
-  // starts: the first places of the rows.
-  [[gnu::always_inline]] inline void load(const cv::Mat& rows, const std::array<float, kHeight>& starts,
-                                          float step) {
-    drift_ = step - 1;
-    std::array<int, kHeight> first;
-    for (int y = 0; y < kHeight; ++y) {
-      const float x = starts[y], last = x + step * static_cast<float>(kWidth - 1);
-      first[y] = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
-      const float begin = x - static_cast<float>(first[y]);
-      for (int k = 0; k < kParts; ++k) begin_[k][y] = begin + drift_ * static_cast<float>(k * kLanes);
-      none_further_[y] = begin + std::max(drift_, 0.f) * kWidth < 0.999f;
-    }
-    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(rows.step1());
-    for (int y = 0; y < kHeight; ++y) {
-      const uchar* row = rows.ptr<uchar>() + y * stride + first[y] - 1;
-      for (int i = 0; i < kRead; i += kLanes) {
-        Lanes pixels;
-        convert(row + i, pixels);
-        store(pixels, &pixel_[y][i]);
-      }
-    }
-  }
-
-  // Of row y the values from the k-th kLanes on.
-  [[gnu::always_inline]] inline void interpolate(int y, int k, Lanes& values) const {
-    const float* p = &pixel_[y][k * kLanes];
-    Lanes t;
-    progress(begin_[k][y], drift_, t);
-    if (none_further_[y]) {
-      cubicBetween({p, p + 1, p + 2, p + 3}, t, values);
-    } else {
-      cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
-    }
-  }
-
- private:
-  static constexpr int kRead = kWidth + kLanes;  // more than the kWidth + 4 needed: whole vector registers
-  static constexpr int kParts = kWidth / kLanes;
-  std::array<std::array<float, kRead>, kHeight> pixel_;
-  std::array<std::array<float, kHeight>, kParts> begin_;
-  std::array<int, kHeight> none_further_;
-  float drift_;
-};
-
-// Grey levels of a row at any places x, x + step, ..., one by one.
-inline void sampleRow(const uchar* row, float x, float step, Lane& value) {
-  for (int i = 0; i < kWidth; ++i) {
-    const float place = x + step * static_cast<float>(i);
-    const int column = static_cast<int>(place);
-    const uchar* p = row + column;
-    value[i] = cubicBetween(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
-  }
-}
-
-// Sums over a block of what the warped right image r is, squared, and times the block's values.
-struct BlockSums {
-  float r, squares, greys, slopes;
-};
-
-// The same of its columns. values: function (row, k, Lanes&) of the values from the k-th kLanes on. Counted
-// from the grey level reference, so that floats are exact enough for the differences of sums.
-struct ColumnSums {
-  Lane r, squares, greys, slopes;
-
-  template <typename Values>
-  [[gnu::always_inline]] inline void addUp(const Values& values, float reference, const float* grey,
-                                           const float* slope) {
-    for (int k = 0; k < kWidth / kLanes; ++k) {
-      Lanes r_sums{}, square_sums{}, grey_sums{}, slope_sums{};
-      for (int y = 0; y < kHeight; ++y) {
-        const int at = y * kWidth + k * kLanes;
-        Lanes value, own_grey, own_slope;
-        values(y, k, value);
-        load(grey + at, own_grey);
-        load(slope + at, own_slope);
-        value -= reference;
-        r_sums += value;
-        square_sums += value * value;
-        grey_sums += value * own_grey;
-        slope_sums += value * own_slope;
-      }
-      store(r_sums, &r[k * kLanes]);
-      store(square_sums, &squares[k * kLanes]);
-      store(grey_sums, &greys[k * kLanes]);
-      store(slope_sums, &slopes[k * kLanes]);
-    }
-  }
-};
-
-// first: place of the block's first pixel in the first of the rows, which moves by down from row to row.
-UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& rows, double first, double down, float step,
-                                         float reference, const float* grey, const float* slope) {
-  std::array<float, kHeight> starts;
-  for (int y = 0; y < kHeight; ++y) starts[y] = static_cast<float>(first + down * y);
-  ColumnSums sums;
-  if (RowPixels::possible(step)) {
-    RowPixels pixels;
-    pixels.load(rows, starts, step);
-    sums.addUp([&](int y, int k, Lanes& value) { pixels.interpolate(y, k, value); }, reference, grey, slope);
-  } else {
-    std::array<Lane, kHeight> sampled;
-    for (int y = 0; y < kHeight; ++y) sampleRow(rows.ptr<uchar>(y), starts[y], step, sampled[y]);
-    sums.addUp([&](int y, int k, Lanes& value) { load(&sampled[y][k * kLanes], value); }, reference, grey,
-               slope);
-  }
-  return {sum(sums.r), sum(sums.squares), sum(sums.greys), sum(sums.slopes)};
 }
 
 // Sum of the squares of a block of derivatives less their mean.
@@ -302,7 +177,7 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
       store(greys, &pixels[y][x]);
     }
   }
-  Lane grey_sum{}, slope_sum{};
+  BlockRow grey_sum{}, slope_sum{};
   for (int y = 0; y < kHeight; ++y) {
     const float* grey = &pixels[y + kAround][kAround];
     const short* gradient = gradient_.ptr<short>(candidate.v + y) + candidate.u;
@@ -317,9 +192,9 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
       slope_sum[x] += slope[x];
     }
   }
-  const float grey_mean = sum(grey_sum) / kPixels, slope_mean = sum(slope_sum) / kPixels;
+  const float grey_mean = sumOf(grey_sum) / kPixels, slope_mean = sumOf(slope_sum) / kPixels;
   // Of the columns.
-  Lane grey_squares, squares, products, downs, down_greys, down_slopes, along_greys, along_slopes;
+  BlockRow grey_squares, squares, products, downs, down_greys, down_slopes, along_greys, along_slopes;
   for (int x = 0; x < kWidth; x += kLanes) {
     Lanes gg{}, ss{}, gs{}, ss_y{}, dg{}, ds{}, ag{}, as{};
     for (int y = 0; y < kHeight; ++y) {
@@ -361,17 +236,17 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
     store(ag, &along_greys[x]);
     store(as, &along_slopes[x]);
   }
-  block.grey_energy = sum(grey_squares);
-  block.slope_energy = sum(squares);
-  block.both = sum(products);
-  block.down_grey = sum(down_greys);
-  block.down_slope = sum(down_slopes);
-  block.along_grey = sum(along_greys);
-  block.along_slope = sum(along_slopes);
+  block.grey_energy = sumOf(grey_squares);
+  block.slope_energy = sumOf(squares);
+  block.both = sumOf(products);
+  block.down_grey = sumOf(down_greys);
+  block.down_slope = sumOf(down_slopes);
+  block.along_grey = sumOf(along_greys);
+  block.along_slope = sumOf(along_slopes);
   float along = 0;
   for (int x = 0; x < kWidth; ++x) along += squares[x] * static_cast<float>(x);
   block.centre_u = static_cast<float>(block.u) + along / block.slope_energy;
-  block.centre_v = static_cast<float>(block.v) + sum(downs) / block.slope_energy;
+  block.centre_v = static_cast<float>(block.v) + sumOf(downs) / block.slope_energy;
   return block.grey_energy > kLeastEnergy && block.slope_energy > 0;
 }
 

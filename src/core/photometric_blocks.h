@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "block_sums.h"
 #include "shift_model.h"
 
 namespace uav_landing {
@@ -17,7 +18,7 @@ namespace uav_landing {
 /// the left one's derivatives are independent, so that interpolation does not pull towards whole pixels.
 class PhotometricBlocks {
  public:
-  static constexpr int kWidth = 16, kHeight = 8, kPixels = kWidth * kHeight;
+  static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kWidth * kHeight;
 
   /// Masks of the rectified images (mono8), eroded by at least two pixels.
   PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "order_statistic.h"
 #include "uav_landing/plane_fit.h"
 
 namespace uav_landing {
@@ -16,11 +17,9 @@ struct Borders {
   double far = 0, near = 0, middle = 0;
 };
 
-double quantile(std::vector<double>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+double quantile(const std::vector<double>& values, double share) {
+  const auto rank = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
+  return orderStatistic(values.data(), values.size(), rank);
 }
 
 Borders findBorders(const std::vector<StereoDepthResult::Point>& points) {

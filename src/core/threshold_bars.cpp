@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "median.h"
 #include "order_statistic.h"
 
 namespace uav_landing {
@@ -61,10 +62,9 @@ double barContrast(const Across& pattern, double least) {
 }
 
 /// The median when enough of the lengths are like it; 0 otherwise.
-double commonLength(std::vector<double>& lengths, double tolerance, int fewest) {
+double commonLength(const std::vector<double>& lengths, double tolerance, int fewest) {
   if (lengths.empty()) return 0;
-  std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
-  const double middle = lengths[lengths.size() / 2];
+  const double middle = medianOf(lengths);
   const auto alike = std::count_if(lengths.begin(), lengths.end(), [&](double length) {
     return std::abs(length - middle) <= tolerance * middle;
   });
