@@ -16,6 +16,7 @@ enum class Consistency {
   kPhotometric,
   kRowAgreement,
   kRigRotation,
+  kBaselineDirection,
   kStandstill,
   kTilt,
   kVanishingPoint,
@@ -25,7 +26,7 @@ enum class Consistency {
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 12;
+constexpr int kConsistencyTests = 13;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.

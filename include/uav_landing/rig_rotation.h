@@ -22,6 +22,10 @@ Eigen::RowVector3d disparityByRotation(const StereoRig& rig, double column, doub
 /// The same of the vertical disparity, row in the right image minus row in the left one.
 Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double column, double v);
 
+/// The same by the direction of the baseline (BaselineDirection): with the right camera at b (1, ty, tz) the
+/// right ray of a point is off by b (y tz - ty) / Z, and b / Z = d / f. disparity: of the point, pixels.
+Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disparity, double v);
+
 /// How the plane g fitted to these points' disparities follows w: dg = A dw, with the points on the plane
 /// weighted as the fit does (plane_fit.h). 1/m per rad. Points that leave a plane undetermined give zero.
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,

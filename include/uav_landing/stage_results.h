@@ -26,6 +26,16 @@ struct RigRotation {
   bool known() const { return w.allFinite() && covariance.allFinite(); }
 };
 
+/// Where the right camera is from the left one, against its calibration: at b (1, t.x, t.y), rectified axes
+/// (right, down, forward). Other than 0 for images that were not taken at the same time, or with a focal
+/// length that is not as calibrated.
+struct BaselineDirection {
+  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down, forward over the baseline, rad
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);  ///< rad^2
+
+  bool known() const { return t.allFinite() && covariance.allFinite(); }
+};
+
 /// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
 struct StereoDepthResult {
   /// One matched corner. Coordinates in the rectified left image, pixels.
@@ -55,6 +65,8 @@ struct StereoDepthResult {
   double skew = 0;                     ///< stamp of right minus left image, seconds
   /// What vertical disparities say of the rig, of this pair alone; random errors only.
   RigRotation vertical_rotation;
+  /// What they say of the baseline, of this pair alone; with the errors that all pairs may have.
+  BaselineDirection baseline_direction;
   /// Share of the corners matched along the rows that are found when they may move across the rows as well:
   /// wrong matches mostly are not. Unknown where nothing was measured.
   double row_agreement = kUnknown;

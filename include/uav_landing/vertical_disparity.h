@@ -10,20 +10,26 @@
 
 namespace uav_landing {
 
-/// Rotation of the right camera as vertical disparities show it (see rig_rotation.h): rx and rz well, ry
-/// weakly. They do not depend on the ground: no plane, depth or height enters.
-///
-/// samples: matched corners with the disparity found in the level's right image. The right row of a few of
-/// them is measured to sub-pixel (gain and offset free, within 2 rows), then w fitted with redescending
-/// weights. g: plane that tells how windows are sheared, 1/m. Fails when fewer than 20 corners have a row.
-/// agreement: set to the share of the corners whose row was found, unless null; NaN when there are none.
-Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
-                                                 const std::vector<DisparitySample>& samples,
-                                                 const Eigen::Vector3d& g, int window_radius,
-                                                 double* agreement = nullptr);
+/// What the rows of matched corners show of the right camera. They do not depend on the ground: no plane or
+/// height enters.
+struct VerticalDisparities {
+  /// See rig_rotation.h: rx and rz well, ry weakly. Fails when fewer than 20 corners have a row.
+  Expected<RigRotation> rotation;
+  /// Unknown where the rotation is; the rotation is fitted with it once more.
+  BaselineDirection baseline;
+  /// Share of the corners whose row was found; NaN when there are none.
+  double agreement = kUnknown;
+};
 
-/// The same with nothing matched yet: looks for corners around the places that a rough plane predicts, within
-/// 3 columns and 3 rows of whole pixels first.
+/// samples: matched corners with the disparity found in the level's right image. The right row of a few of
+/// them is measured to sub-pixel (gain and offset free, within 2 rows), then the rotation and the direction
+/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m.
+VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<DisparitySample>& samples,
+                                               const Eigen::Vector3d& g, int window_radius);
+
+/// The rotation with nothing matched yet: looks for corners around the places that a rough plane predicts,
+/// within 3 columns and 3 rows of whole pixels first.
 Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
                                                 const std::vector<cv::Point>& corners,
                                                 const Eigen::Vector3d& g, int window_radius);
@@ -48,17 +54,21 @@ class RowAlignment {
   bool isLevel() const { return taken_out_.isZero(); }
   /// Looks for the rows of corners with a rough plane. True when level() now gives another image.
   bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g);
-  /// Rotation by the rows of the matched corners; adapts level() for the next pair. The level is one whose
-  /// right image is from level().
-  RigRotation measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
-                      const Eigen::Vector3d& g);
+  struct Measured {
+    RigRotation rotation;
+    BaselineDirection baseline;
+    /// Share of the corners matched along the rows that are found when they may move across the rows as well.
+    /// Wrong matches mostly are not. NaN when nothing was measured.
+    double agreement = kUnknown;
+  };
+  /// By the rows of the matched corners; adapts level() for the next pair. The level is one whose right image
+  /// is from level().
+  Measured measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
+                   const Eigen::Vector3d& g);
   /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
   /// with what a calibration that is good to bias_stddev (pixels in the middle of the image) leads to expect,
   /// as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig, double bias_stddev) const;
-  /// Of the pair measured last: share of the corners matched along the rows that are found when they may move
-  /// across the rows as well. Wrong matches mostly are not. NaN when nothing was measured.
-  double agreement() const { return agreement_; }
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
@@ -74,7 +84,6 @@ class RowAlignment {
   Eigen::Vector3d levelled_by_ =
       Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
   bool measured_ = false;
-  double agreement_ = kUnknown;
 };
 
 }  // namespace uav_landing

@@ -16,6 +16,8 @@ const char* toString(Consistency test) {
       return "row_agreement";
     case Consistency::kRigRotation:
       return "rig_rotation";
+    case Consistency::kBaselineDirection:
+      return "baseline_direction";
     case Consistency::kStandstill:
       return "standstill";
     case Consistency::kTilt:

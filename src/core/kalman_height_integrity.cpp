@@ -18,6 +18,8 @@ namespace {
 constexpr double kWidthTolerance = 0.02;
 // Share of the matches along the rows that must hold across the rows.
 constexpr double kLeastRowAgreement = 0.5;
+// 1 sigma of the baseline's direction after a calibration, beside what its measurement claims, rad.
+constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
 // 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, rad,
 // and where these are not known either, rad/s.
 constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
@@ -93,6 +95,9 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   const bool bent = tests_.failed(Consistency::kRigRotation);
   if (bent || pairs_failed_ == 0 || !rig_change_.settled())
     rig_change_.learn(T, stereo.vertical_rotation, !bent);
+  if (const BaselineDirection& baseline = stereo.baseline_direction; baseline.known())
+    tests_.add(Consistency::kBaselineDirection, baseline.t,
+               baseline.covariance + std::pow(kBaselineCalibration, 2) * Eigen::Matrix2d::Identity());
   testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
@@ -128,7 +133,7 @@ void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePri
 std::optional<Consistency> KalmanHeightStage::failedTestOfPair() const {
   for (const Consistency test :
        {Consistency::kRepeatedImage, Consistency::kRowAgreement, Consistency::kRigRotation,
-        Consistency::kStandstill, Consistency::kImageRegions})
+        Consistency::kBaselineDirection, Consistency::kStandstill, Consistency::kImageRegions})
     if (tests_.failed(test)) return test;
   return std::nullopt;
 }

@@ -58,6 +58,12 @@ bool isRotation(const RigRotation& rotation) {
          rotation.covariance.diagonal().minCoeff() >= kLeastStddev * kLeastStddev;
 }
 
+/// Of the right camera against the left one: further than any that has its picture.
+bool isBaseline(const BaselineDirection& baseline) {
+  constexpr double kLargest = 100;  // baselines
+  return within(baseline.t.norm(), kLargest) && isCovariance<2>(baseline.covariance);
+}
+
 /// Both become unknown unless they are a direction.
 void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
   if (isDirection(direction, covariance)) return;
@@ -154,6 +160,7 @@ StereoDepthResult checked(const StereoRig& rig, const StereoDepthResult& result)
   if (kept.points.size() > kMostPoints) kept.points.clear();
   kept.points.erase(std::remove_if(kept.points.begin(), kept.points.end(), impossible), kept.points.end());
   if (!isRotation(kept.vertical_rotation)) kept.vertical_rotation = {};
+  if (!isBaseline(kept.baseline_direction)) kept.baseline_direction = {};
   if (kept.failure) return kept;
   const std::string problem = problemOfPlane(rig, result);
   if (problem.empty()) return kept;

@@ -34,6 +34,11 @@ Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double colu
   return rig.fy * Eigen::RowVector3d(1 + y * y, -x * y, -x);
 }
 
+Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disparity, double v) {
+  const double y = (v - rig.cy) / rig.fy;
+  return rig.fy / rig.fx * disparity * Eigen::RowVector2d(-1, y);
+}
+
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                                 const Eigen::Vector3d& g) {
   constexpr double kTukey = 4.0;

@@ -213,8 +213,10 @@ struct StereoDepthStage::Implementation {
   void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     if (result.failure) return;
-    result.vertical_rotation = rows.measure(fine, samples, result.plane.g);
-    result.row_agreement = rows.agreement();
+    const RowAlignment::Measured measured = rows.measure(fine, samples, result.plane.g);
+    result.vertical_rotation = measured.rotation;
+    result.baseline_direction = measured.baseline;
+    result.row_agreement = measured.agreement;
     result.row_covariance = rowLeak(rows.residual(fine.rig, parameters.disparity_bias_stddev));
     result.plane.covariance += result.row_covariance;
   }

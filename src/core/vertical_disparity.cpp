@@ -1,15 +1,12 @@
 #include "uav_landing/vertical_disparity.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 #include "interpolation.h"
-#include "median.h"
 #include "multiversion.h"
+#include "row_fit.h"
 #include "uav_landing/patch_matching.h"
 #include "uav_landing/rig_rotation.h"
 
@@ -18,25 +15,9 @@ namespace {
 
 // Corners measured: enough, as the filter behind averages over frames.
 constexpr size_t kMeasured = 240, kSearched = 80;
-constexpr int kFewest = 20;
 // Error of a row that its residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
 constexpr double kMinScore = 0.8;
-
-struct RowShift {
-  Eigen::RowVector3d by_rotation;
-  double shift, stddev;  // pixels
-  int cell;              // of the image
-};
-
-constexpr int kCellsAcross = 4, kCellsDown = 3;
-
-int cellOf(const StereoRig& rig, double u, double v) {
-  const auto part = [](double at, int size, int parts) {
-    return std::clamp(static_cast<int>(at * parts / size), 0, parts - 1);
-  };
-  return part(v, rig.size.height, kCellsDown) * kCellsAcross + part(u, rig.size.width, kCellsAcross);
-}
 
 // How the ground's window appears in the right image.
 Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
@@ -45,85 +26,35 @@ Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
   return warp;
 }
 
-void addRow(const StereoLevel& level, int u, int v, const Eigen::Vector2d& start, const Eigen::Matrix2d& warp,
-            int radius, std::vector<RowShift>& rows) {
+// disparity: of the corner, as known so far.
+void addRow(const StereoLevel& level, int u, int v, double disparity, const Eigen::Vector2d& start,
+            const Eigen::Matrix2d& warp, int radius, std::vector<RowShift>& rows) {
   const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
   if (!place.converged || place.score < kMinScore) return;
   const double stddev = std::hypot(std::sqrt(place.covariance(1, 1)), kStddevFloor);
-  rows.push_back({verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
-                  place.position.y() - v, stddev, cellOf(level.rig, u, v)});
+  RowShift row;
+  row.by << verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
+      verticalDisparityByBaseline(level.rig, disparity, v);
+  row.shift = place.position.y() - v;
+  row.stddev = stddev;
+  row.cell = imageCell(level.rig, u, v);
+  rows.push_back(row);
 }
 
-// Robust size of the residuals as a multiple of the claimed stddevs.
-double residualScale(const std::vector<RowShift>& rows, const Eigen::Vector3d& w) {
-  std::vector<double> ratios;
-  for (const RowShift& row : rows)
-    ratios.push_back(std::abs(row.shift - row.by_rotation.dot(w)) / row.stddev);
-  return std::max(1.0, robustStddev(ratios));
+Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
+  const Expected<RowFit<3>> fit = fitRows<3>(rows);
+  if (!fit) return tl::make_unexpected(fit.error());
+  return RigRotation{fit->value, fit->covariance + sharedVariance<3>(rows, *fit), fit->count};
 }
 
-// Weight of a row by Tukey's function of its residual; 0 for outliers.
-double weightOf(const RowShift& row, const Eigen::Vector3d& w, double scale) {
-  constexpr double kTukey = 4.0;
-  const double stddev = scale * row.stddev;
-  const double ratio = (row.shift - row.by_rotation.dot(w)) / (kTukey * stddev);
-  if (std::abs(ratio) >= 1) return 0;
-  return (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
-}
-
-// What neighbouring rows share adds to the covariance of a fit that took them as independent: residuals of a
-// lens, or of what stands on the ground, are the same in a part of the image, and pull at the rotation as the
-// corners come and go there. After the sandwich estimator with clusters (Liang, Zeger 1986), of which only
-// the products of different rows count; by chance they are negative as often as positive.
-Eigen::Matrix3d sharedVariance(const std::vector<RowShift>& rows, const RigRotation& rotation) {
-  const double scale = residualScale(rows, rotation.w);
-  std::array<Eigen::Vector3d, kCellsAcross * kCellsDown> sums;
-  sums.fill(Eigen::Vector3d::Zero());
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  for (const RowShift& row : rows) {
-    const double residual = row.shift - row.by_rotation.dot(rotation.w);
-    const Eigen::Vector3d pull = weightOf(row, rotation.w, scale) * residual * row.by_rotation.transpose();
-    sums[row.cell] += pull;
-    shared -= pull * pull.transpose();
-  }
-  for (const Eigen::Vector3d& sum : sums) shared += sum * sum.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(rotation.covariance * shared *
-                                                            rotation.covariance);
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
-}
-
-Expected<RigRotation> fit(const std::vector<RowShift>& rows) {
-  constexpr int kIterations = 6;
-  // Without corners on all sides a component is not determined; rad.
-  constexpr double kAnything = 0.1;
-  const auto few = [](int count) {
-    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(count) + " rows, at least " +
-                                                                   std::to_string(kFewest) + " needed"});
-  };
-  if (static_cast<int>(rows.size()) < kFewest) return few(static_cast<int>(rows.size()));
-  // The median row shift is a start from which outliers show.
-  std::vector<double> shifts;
-  for (const RowShift& row : rows) shifts.push_back(row.shift / row.by_rotation.x());
-  RigRotation rotation;
-  rotation.w = Eigen::Vector3d(medianOf(shifts), 0, 0);
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const double scale = residualScale(rows, rotation.w);
-    Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kAnything * kAnything);
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    rotation.count = 0;
-    for (const RowShift& row : rows) {
-      const double weight = weightOf(row, rotation.w, scale);
-      if (weight == 0) continue;
-      information += weight * row.by_rotation.transpose() * row.by_rotation;
-      right += weight * row.by_rotation.transpose() * row.shift;
-      ++rotation.count;
-    }
-    if (rotation.count < kFewest) return few(rotation.count);
-    rotation.covariance = information.inverse();
-    rotation.w = rotation.covariance * right;
-  }
-  rotation.covariance += sharedVariance(rows, rotation);
-  return rotation;
+BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
+  // What a lens or texture leaves in a part of the image, the same for all corners there, pixels.
+  constexpr double kCommon = 0.1;
+  const Expected<RowFit<5>> fit = fitRows<5>(rows);
+  if (!fit) return {};
+  const Eigen::Matrix<double, 5, 5> covariance =
+      fit->covariance + sharedVariance<5>(rows, *fit) + commonVariance<5>(rows, *fit, kCommon);
+  return {fit->value.tail<2>(), covariance.bottomRightCorner<2, 2>()};
 }
 
 // A row of the image seen aslant: place down the image by column.
@@ -153,10 +84,9 @@ void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int 
 
 }  // namespace
 
-Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
-                                                 const std::vector<DisparitySample>& samples,
-                                                 const Eigen::Vector3d& g, int window_radius,
-                                                 double* agreement) {
+VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<DisparitySample>& samples,
+                                               const Eigen::Vector3d& g, int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
   const size_t count = std::min(kMeasured, samples.size());
   std::vector<RowShift> rows;
@@ -164,12 +94,14 @@ Expected<RigRotation> measureVerticalDisparities(const StereoLevel& level,
   for (size_t i = 0; i < count; ++i) {
     const DisparitySample& sample = samples[i * samples.size() / count];
     const double column = sample.u - sample.disparity - level.rig.principalOffset();
-    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), {column, sample.v}, warp,
-           window_radius, rows);
+    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
+           {column, sample.v}, warp, window_radius, rows);
   }
-  if (agreement != nullptr)
-    *agreement = count > 0 ? static_cast<double>(rows.size()) / static_cast<double>(count) : kUnknown;
-  return fit(rows);
+  VerticalDisparities measured;
+  if (count > 0) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(count);
+  measured.rotation = fitRotation(rows);
+  measured.baseline = fitBaseline(rows);
+  return measured;
 }
 
 Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
@@ -186,9 +118,9 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
     const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
     const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
     const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
-    if (best.found) addRow(level, corner.x, corner.y, best.position, warp, window_radius, rows);
+    if (best.found) addRow(level, corner.x, corner.y, disparity, best.position, warp, window_radius, rows);
   }
-  return fit(rows);
+  return fitRotation(rows);
 }
 
 double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) {
@@ -229,18 +161,18 @@ bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>
   return found && adapt(level.rig, *found);
 }
 
-RigRotation RowAlignment::measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
-                                  const Eigen::Vector3d& g) {
-  agreement_ = kUnknown;
+RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
+                                             const std::vector<DisparitySample>& samples,
+                                             const Eigen::Vector3d& g) {
   if (!enabled_) return {};
-  const Expected<RigRotation> found =
-      measureVerticalDisparities(level, samples, g, window_radius_, &agreement_);
-  if (!found) return {};
-  RigRotation rotation = *found;
-  rotation.w += taken_out_;
-  average(rotation);
-  adapt(level.rig, *found);
-  return rotation;
+  const VerticalDisparities found = measureVerticalDisparities(level, samples, g, window_radius_);
+  Measured measured{{}, found.baseline, found.agreement};
+  if (!found.rotation) return measured;
+  measured.rotation = *found.rotation;
+  measured.rotation.w += taken_out_;
+  average(measured.rotation);
+  adapt(level.rig, *found.rotation);
+  return measured;
 }
 
 void RowAlignment::average(const RigRotation& measured) {

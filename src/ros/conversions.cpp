@@ -194,6 +194,8 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.vertical_rotation.w, message.vertical_rotation);
   toArray(result.vertical_rotation.covariance, message.vertical_rotation_covariance);
   message.vertical_rotation_count = static_cast<uint32_t>(result.vertical_rotation.count);
+  toArray(result.baseline_direction.t, message.baseline_direction);
+  toArray(result.baseline_direction.covariance, message.baseline_direction_covariance);
   message.row_agreement = result.row_agreement;
   message.photometric_agreement = result.photometric_agreement;
   message.left_repeated = result.left_repeated;
@@ -235,6 +237,8 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.vertical_rotation, result.vertical_rotation.w);
   fromArray(message.vertical_rotation_covariance, result.vertical_rotation.covariance);
   result.vertical_rotation.count = static_cast<int>(message.vertical_rotation_count);
+  fromArray(message.baseline_direction, result.baseline_direction.t);
+  fromArray(message.baseline_direction_covariance, result.baseline_direction.covariance);
   result.row_agreement = message.row_agreement;
   result.photometric_agreement = message.photometric_agreement;
   result.left_repeated = message.left_repeated;

@@ -471,6 +471,25 @@ TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) 
   EXPECT_EQ(result.status, Status::kCoasting);
 }
 
+TEST(KalmanHeightIntegrity, ABaselineInAnotherDirectionThanCalibratedGivesNoMeasurement) {
+  KalmanHeightStage stage(makeRig(), {});
+  const auto process = [&](double stamp, double forward, double stddev) {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.baseline_direction.t = {0, forward};
+    stereo.baseline_direction.covariance = stddev * stddev * Eigen::Matrix2d::Identity();
+    return stage.process(stereo, levelFlight(stamp, 10));
+  };
+  double stamp = 1;
+  for (int i = 0; i < 40; ++i, stamp += 0.05) EXPECT_EQ(failedTests(process(stamp, 0.02, 0.01).tests), "");
+  // 4.8 sigma of two numbers are exceeded once in a hundred thousand; a calibration is not perfect either.
+  EXPECT_EQ(failedTests(process(stamp, 0.048, 0.01).tests), "");
+  const LandingResult result = process(stamp + 0.05, 0.06, 0.01);
+  EXPECT_EQ(failedTests(result.tests), "baseline_direction");
+  EXPECT_EQ(result.failure.message(), "inconsistent: baseline_direction");
+  EXPECT_TRUE(result.rejected);
+  EXPECT_EQ(result.status, Status::kCoasting);
+}
+
 TEST(KalmanHeightIntegrity, AsManyPairsInARowMustPassAsFailedBefore) {
   for (const int failures : {1, 2, 3, 5}) {
     KalmanHeightStage stage(makeRig(), {});

@@ -67,6 +67,21 @@ TEST(RigRotation, MovesDisparitiesAsATurnedCameraDoes) {
   }
 }
 
+TEST(BaselineDirection, MovesRowsAsACameraAtAnotherPlaceDoes) {
+  const StereoRig rig = test::makeRig(640, 480, kBaseline);
+  constexpr double kSmall = 1e-5;
+  for (const Eigen::Vector3d& point : {Eigen::Vector3d(-3, 2, 10), Eigen::Vector3d(1, 6, 25)}) {
+    const double v = rig.cy + rig.fy * point.y() / point.z(), disparity = rig.fb() / point.z();
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Vector3d place =
+          kBaseline * (Eigen::Vector3d::UnitX() + kSmall * Eigen::Vector3d::Unit(i + 1));
+      const Eigen::Vector3d seen = point - place;
+      const double moved = rig.cy + rig.fy * seen.y() / seen.z() - v;
+      EXPECT_NEAR(verticalDisparityByBaseline(rig, disparity, v)[i], moved / kSmall, 0.02) << i;
+    }
+  }
+}
+
 TEST(RigRotation, TurnsThePlaneAsAFitToTheDisturbedDisparitiesDoes) {
   const StereoRig rig = test::makeRig(640, 480, kBaseline);
   Pose pose;
@@ -136,6 +151,47 @@ TEST(VerticalDisparity, APartOfTheImageWithAnErrorOfItsOwnMakesTheRotationUncert
   EXPECT_GT(result.row_agreement, 0.9);
 }
 
+/// How far the direction of the baseline is from 0, in squares of its sigma.
+double ratioOf(const BaselineDirection& baseline) {
+  return baseline.t.dot(baseline.covariance.inverse() * baseline.t);
+}
+
+TEST(VerticalDisparity, TellsWhereTheRightCameraWasWhenItsImageWasTaken) {
+  const BentScene scene({0, 0, 0});
+  const BaselineDirection together = scene.first().baseline_direction;
+  ASSERT_TRUE(together.known());
+  EXPECT_LT(ratioOf(together), 13.8) << "chi-square with two degrees of freedom: once in a thousand";
+  // Behind or before the left one on the way down, in metres, and turned besides.
+  for (const double behind : {1.0, 0.3, -0.3}) {
+    Pose earlier = scene.pose;
+    earlier.position += Eigen::Vector3d(-behind, 0, 0.05 * behind);
+    earlier.roll += 0.05 * kDegree;
+    StereoDepthStage stage(scene.model, scene.parameters);
+    const StereoDepthResult result =
+        stage.process(1, scene.ground.left(scene.rig, scene.pose), scene.ground.right(scene.rig, earlier));
+    const BaselineDirection& baseline = result.baseline_direction;
+    ASSERT_TRUE(baseline.known()) << behind << ": " << result.failure.message();
+    const Eigen::Vector3d place =
+        kBaseline * Eigen::Vector3d::UnitX() + scene.pose.seen(earlier.position - scene.pose.position);
+    const Eigen::Vector2d expected = place.tail<2>() / place.x();
+    EXPECT_LT((baseline.t - expected).norm(), 0.1 * expected.norm() + 0.02) << behind << ": " << baseline.t;
+    EXPECT_GT(ratioOf(baseline), 100) << behind;
+  }
+}
+
+TEST(VerticalDisparity, TellsAnotherFocalLengthOfTheRightCamera) {
+  const BentScene scene({0, 0, 0});
+  StereoRig longer = scene.rig;
+  longer.fx *= 1.01;
+  longer.fy *= 1.01;
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const BaselineDirection baseline =
+      stage.process(1, scene.ground.left(scene.rig, scene.pose), scene.ground.right(longer, scene.pose))
+          .baseline_direction;
+  ASSERT_TRUE(baseline.known());
+  EXPECT_GT(ratioOf(baseline), 100);
+}
+
 TEST(VerticalDisparity, IsBlindToGainOffsetAndNoise) {
   const BentScene scene({0.1, 0, 0.1});
   StereoDepthStage stage(scene.model, scene.parameters);
@@ -171,7 +227,9 @@ TEST(VerticalDisparity, SaysNothingWhenSwitchedOffOrBlind) {
   EXPECT_FALSE(scene.first().vertical_rotation.known());
   const cv::Mat flat(scene.rig.size, CV_8UC1, cv::Scalar(128));
   StereoDepthStage stage(scene.model, StereoDepthParameters());
-  EXPECT_FALSE(stage.process(1, flat, flat).vertical_rotation.known());
+  const StereoDepthResult blind = stage.process(1, flat, flat);
+  EXPECT_FALSE(blind.vertical_rotation.known());
+  EXPECT_FALSE(blind.baseline_direction.known());
 }
 
 TEST(VerticalDisparity, StraightenedRowsAreThoseOfAStraightRig) {

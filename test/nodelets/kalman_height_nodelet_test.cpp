@@ -51,6 +51,8 @@ class KalmanHeightNodeletTest : public NodeletTest {
     depth->row_agreement = kNan;
     depth->vertical_rotation.assign(kNan);
     depth->vertical_rotation_covariance.assign(kNan);
+    depth->baseline_direction.assign(kNan);
+    depth->baseline_direction_covariance.assign(kNan);
     auto angle = boost::make_shared<ApproachAngle>();
     angle->header = depth->header;
     angle->vanishing_direction.assign(kNan);

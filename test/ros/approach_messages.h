@@ -60,6 +60,8 @@ struct ApproachMessages {
     result.vertical_rotation.w.setZero();
     result.vertical_rotation.covariance = Eigen::Vector3d(1e-8, 1e-4, 1e-8).asDiagonal();
     result.vertical_rotation.count = 50;
+    result.baseline_direction.t.setZero();
+    result.baseline_direction.covariance = 1e-4 * Eigen::Matrix2d::Identity();
     return result;
   }
 

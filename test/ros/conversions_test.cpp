@@ -92,6 +92,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.vertical_rotation.w);
   fill(result.vertical_rotation.covariance);
   result.vertical_rotation.count = 99;
+  fill(result.baseline_direction.t);
+  fill(result.baseline_direction.covariance);
   result.disparity_bias_stddev = next();
   result.row_agreement = next();
   result.photometric_agreement = next();
@@ -128,6 +130,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.vertical_rotation.w, result.vertical_rotation.w);
   EXPECT_EQ(back.vertical_rotation.covariance, result.vertical_rotation.covariance);
   EXPECT_EQ(back.vertical_rotation.count, 99);
+  EXPECT_EQ(back.baseline_direction.t, result.baseline_direction.t);
+  EXPECT_EQ(back.baseline_direction.covariance, result.baseline_direction.covariance);
   EXPECT_EQ(back.disparity_bias_stddev, result.disparity_bias_stddev);
   EXPECT_EQ(back.row_agreement, result.row_agreement);
   EXPECT_EQ(back.photometric_agreement, result.photometric_agreement);

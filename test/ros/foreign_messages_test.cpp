@@ -172,6 +172,7 @@ TEST_F(ForeignMessages, CovariancesOfAnotherScaleAreForgottenWithinASecond) {
     SCOPED_TRACE("scale " + std::to_string(scale));
     test(stereo.plane_covariance);
     test(stereo.vertical_rotation_covariance);
+    test(stereo.baseline_direction_covariance);
     test(approach.vanishing_covariance);
     test(approach.n_vp_covariance);
     test(approach.n_covariance);
