@@ -31,23 +31,29 @@ class AttitudeFilter {
   /// filter starts anew, but not before the normal has been compared with those before by what a camera
   /// turns. A normal that contradicts the ones before (another surface was taken for the ground) is left out
   /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
-  /// long as fewer than three pairs in a row have agreed.
+  /// long as fewer than three pairs in a row have agreed. Where a step turns by more than is usual, and the
+  /// normals say that the camera did not, the step is left out.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step,
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
   /// A pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
+  /// The last step turned by more than is usual, and no normal has confirmed that.
+  bool doubtsTurn() const { return doubted_ || unturned_; }
   void reset();
 
  private:
   enum class Prediction { kNone, kTurned, kGuessed };
   Prediction predict(double stamp, const ApproachAngleResult::Motion& step);
+  void followUnturned(double T, const Eigen::Matrix3d& R);
   Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix3d& common_root);
 
   std::optional<Estimate> estimate_;
-  double stamp_ = 0, agreed_ = 0;  // s
-  int agreements_ = 0;             // in a row since the start, up to three
+  std::optional<Estimate> unturned_;  // without a turn that may be none
+  bool doubted_ = false;              // the last normal was one of a camera that did not turn
+  double stamp_ = 0, agreed_ = 0;     // s
+  int agreements_ = 0;                // in a row since the start, up to three
 };
 
 }  // namespace uav_landing

@@ -108,7 +108,9 @@ class KalmanHeightStage {
                   LandingResult& result);
   /// Carries on the ground that was in view, and adds that of this pair.
   void rememberGround(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step,
-                      const Reconstruction& reconstruction);
+                      const Reconstruction& reconstruction, bool rejected);
+  bool agreesWithFlight(const ApproachAngleResult::Motion& step, double T, double height,
+                        const std::optional<Eigen::Vector3d>& normal) const;
   /// No height after contradictions before nothing has contradicted for recovery_time.
   void awaitRecovery(double T, LandingResult& result);
   void reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const;

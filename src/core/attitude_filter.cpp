@@ -18,6 +18,8 @@ constexpr double kPatience = 3.0;        // s, with normals that contradict
 constexpr int kConfirmed = 3;
 // 1 sigma of the camera's angular velocity where no step tells the rotation, rad/s.
 constexpr double kTurnRate = 5 * M_PI / 180;
+// A turn by this, rad/s, may as well be a wrong one.
+constexpr double kUnusualTurn = 5 * kTurnRate;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
@@ -28,7 +30,35 @@ Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
   return solved.eigenvectors() * roots.asDiagonal() * solved.eigenvectors().transpose();
 }
 
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Of a normal after a time in which nobody knows how the camera turned.
+Eigen::Matrix3d turnVariance(const Eigen::Vector3d& n, double T) {
+  return std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+}
+
 Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
+
+/// A pair's normal against an estimate, in the tangent plane of that.
+struct Innovation {
+  Eigen::Matrix<double, 3, 2> basis;
+  Eigen::Matrix2d P, measured, S;  // covariances of the estimate, of the pair's normal, and their sum
+  Eigen::Vector2d difference;
+  double ratio;
+
+  Innovation(const AttitudeFilter::Estimate& estimate, const Eigen::Vector3d& normal,
+             const Eigen::Matrix3d& covariance)
+      : basis(tangents(estimate.normal)) {
+    P = symmetric(basis.transpose() * estimate.covariance * basis);
+    difference = basis.transpose() * (normal - estimate.normal);
+    measured = symmetric(basis.transpose() * covariance * basis);
+    S = P + measured;
+    const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
+    ratio = difference.dot(allowed.inverse() * difference);
+  }
+};
 
 }  // namespace
 
@@ -43,6 +73,7 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   const double faded = std::exp(T / kMemory);
   if (known) {
     const Eigen::Matrix3d R = rotationMatrix(step.rotation);
+    followUnturned(T, R);
     estimate_->normal = R * estimate_->normal;
     estimate_->common_root = (R * estimate_->common_root * R.transpose()).eval();
     const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
@@ -51,10 +82,17 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
     return Prediction::kTurned;
   }
   if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
-  const Eigen::Vector3d& n = estimate_->normal;
-  covariance =
-      faded * covariance + std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  covariance = faded * covariance + turnVariance(estimate_->normal, T);
   return Prediction::kGuessed;
+}
+
+void AttitudeFilter::followUnturned(double T, const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d& n = estimate_->normal;
+  const bool unusual = angleBetween(n, R * n) > kUnusualTurn * T;
+  if (unusual && !unturned_ && agreements_ >= kConfirmed) unturned_ = *estimate_;
+  if (!unturned_) return;
+  if (!unusual) unturned_->normal = R * unturned_->normal;
+  unturned_->covariance = std::exp(T / kMemory) * unturned_->covariance + turnVariance(unturned_->normal, T);
 }
 
 void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step) {
@@ -63,6 +101,8 @@ void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step
 
 void AttitudeFilter::reset() {
   estimate_.reset();
+  unturned_.reset();
+  doubted_ = false;
   agreements_ = 0;
 }
 
@@ -70,15 +110,21 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
                                                 const Eigen::Matrix3d& covariance,
                                                 const ApproachAngleResult::Motion& step,
                                                 const Eigen::Matrix3d& common) {
-  const Prediction predicted = predict(stamp, step);
+  Prediction predicted = predict(stamp, step);
   const Eigen::Matrix3d common_root = rootOf(common);
+  doubted_ = false;
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
-  const Eigen::Matrix<double, 3, 2> basis = tangents(estimate_->normal);
-  const Eigen::Matrix2d P = symmetric(basis.transpose() * estimate_->covariance * basis);
-  const Eigen::Vector2d innovation = basis.transpose() * (normal - estimate_->normal);
-  const Eigen::Matrix2d measured = symmetric(basis.transpose() * covariance * basis), S = P + measured;
-  const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
-  estimate_->ratio = innovation.dot(allowed.inverse() * innovation);
+  Innovation innovation(*estimate_, normal, covariance);
+  if (innovation.ratio > kGate && unturned_) {
+    const Innovation without(*unturned_, normal, covariance);
+    if (without.ratio <= kGate) {
+      estimate_ = unturned_;
+      innovation = without;
+      predicted = Prediction::kGuessed;
+      doubted_ = true;
+    }
+  }
+  estimate_->ratio = innovation.ratio;
   estimate_->agrees = estimate_->ratio <= kGate;
   if (!estimate_->agrees) {
     // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
@@ -86,6 +132,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
       return start(normal, covariance, common_root);
     return *estimate_;
   }
+  unturned_.reset();
   agreed_ = stamp;
   agreements_ = std::min(agreements_ + 1, kConfirmed);
   if (predicted == Prediction::kGuessed) {
@@ -95,11 +142,13 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     estimate_->common_root = common_root;
     return *estimate_;
   }
-  const Eigen::Matrix2d gain = P * S.inverse();
-  estimate_->normal = (estimate_->normal + basis * (gain * innovation)).normalized();
+  const Eigen::Matrix<double, 3, 2>& basis = innovation.basis;
+  const Eigen::Matrix2d gain = innovation.P * innovation.S.inverse();
+  estimate_->normal = (estimate_->normal + basis * (gain * innovation.difference)).normalized();
   // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
   const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
-  const Eigen::Matrix2d joint = kept * P * kept.transpose() + gain * measured * gain.transpose();
+  const Eigen::Matrix2d joint =
+      kept * innovation.P * kept.transpose() + gain * innovation.measured * gain.transpose();
   estimate_->covariance = basis * joint * basis.transpose();
   // Roots and not covariances: what is common adds up with its sign.
   estimate_->common_root =
@@ -110,6 +159,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
 AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
                                                const Eigen::Matrix3d& covariance,
                                                const Eigen::Matrix3d& common_root) {
+  unturned_.reset();
   agreed_ = stamp_;
   agreements_ = 1;
   estimate_ = Estimate{normal, covariance, common_root, kUnknown, true};

@@ -23,6 +23,10 @@ constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
 // 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, rad,
 // and where these are not known either, rad/s.
 constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
+// 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
+constexpr double kSlope = 0.05;
+// Stamps of the same two pairs may differ by this, s.
+constexpr double kStampRounding = 1e-3;
 
 }  // namespace
 
@@ -241,28 +245,47 @@ void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) co
   if (!result.failure) result.failure = failure;
 }
 
+// Whether a step can be the way of the camera over T: one wrong step would lift or tilt all that is
+// remembered. height: above the plane ahead. normal: of the ground now, where known.
+bool KalmanHeightStage::agreesWithFlight(const ApproachAngleResult::Motion& step, double T, double height,
+                                         const std::optional<Eigen::Vector3d>& normal) const {
+  const Eigen::Vector3d& t = step.translation_over_height;
+  if (!t.allFinite() || !step.rotation.allFinite() || !(height > 0)) return false;
+  if (T > 0 && !(std::abs(T - step.duration) <= kStampRounding)) return false;
+  if (attitude_.doubtsTurn()) return false;
+  if (!filter_.initialised() || !normal) return true;
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  const double off = height * normal->dot(t) + T * filter_.state()[1];
+  const double variance =
+      height * height * (normal->dot(covariance * *normal) + std::pow(kSlope, 2) * t.squaredNorm()) +
+      T * T * filter_.covariance()(1, 1);
+  return off * off <= std::pow(parameters_.gate, 2) * variance;
+}
+
 void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
                                        const ApproachAngleResult::Motion& step,
-                                       const Reconstruction& reconstruction) {
+                                       const Reconstruction& reconstruction, bool rejected) {
   if (!parameters_.integrity_monitor) return;
   if (stereo.left_repeated) return ground_.wait();
   const double T = ground_stamp_ ? stereo.stamp - *ground_stamp_ : 0;
   ground_stamp_ = stereo.stamp;
   // Above the plane ahead, which the motion is of.
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
-  const Eigen::Vector3d& t = step.translation_over_height;
   const std::optional<Eigen::Vector3d> before = last_normal_;
   last_normal_.reset();
   if (reconstruction.plane.valid()) last_normal_ = reconstruction.normal.mean;
-  if (t.allFinite() && step.rotation.allFinite() && height > 0) {
-    ground_.move(rotationMatrix(step.rotation), t * height, T);
+  const Eigen::Matrix3d R = rotationMatrix(step.rotation);
+  std::optional<Eigen::Vector3d> now = last_normal_;
+  if (!now && before) now = R * *before;
+  if (agreesWithFlight(step, T, height, now)) {
+    ground_.move(R, height * step.translation_over_height, T);
   } else if (before && last_normal_) {
     ground_.coast(Eigen::Quaterniond::FromTwoVectors(*before, *last_normal_).toRotationMatrix(),
                   kTurnByNormals, T);
   } else {
     ground_.coast(Eigen::Matrix3d::Identity(), kTurnUnknown * T, T);
   }
-  if (reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
+  if (rejected || reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
   const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
                           reconstruction.plane.covariance};
   ground_.look(rig_, stereo.points, plane, stereo.plane.g);

@@ -94,7 +94,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     reportHeight(result);
     testMemory(T, reconstruction, approach, result);
     awaitRecovery(T, result);
-    rememberGround(stereo, approach.step, reconstruction);
+    rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n, result);
   }
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();

@@ -178,6 +178,55 @@ TEST_F(TiltedSurface, IsToldAfterPairsWithoutANormal) {
   EXPECT_LT(errorOf(estimate), 0.05 * kDegree);
 }
 
+/// A camera that turns by so much in one step, or is only said to.
+class SuddenTurn : public TiltedSurface {
+ protected:
+  static constexpr double kTurn = 8 * kDegree;
+
+  ApproachAngleResult::Motion turning() {
+    ApproachAngleResult::Motion step = flight_.step(k_);
+    step.rotation.z() += kTurn;
+    return step;
+  }
+};
+
+TEST_F(SuddenTurn, ThatTheNormalsContradictIsLeftOut) {
+  AttitudeFilter::Estimate estimate = update(0, turning());
+  EXPECT_TRUE(estimate.agrees);
+  EXPECT_LT(errorOf(estimate), 0.2 * kDegree);
+  EXPECT_TRUE(filter_.doubtsTurn());
+  for (++k_; k_ < 40; ++k_) {
+    estimate = update(0);
+    EXPECT_TRUE(estimate.agrees) << k_;
+    EXPECT_FALSE(filter_.doubtsTurn());
+  }
+}
+
+TEST_F(SuddenTurn, ThatTheNormalsContradictLaterIsLeftOut) {
+  filter_.carry(k_ * kStep, turning());
+  EXPECT_TRUE(filter_.doubtsTurn());
+  for (++k_; k_ < 24; ++k_) filter_.carry(k_ * kStep, flight_.step(k_));
+  EXPECT_TRUE(filter_.doubtsTurn());
+  EXPECT_TRUE(update(0).agrees);
+  ++k_;
+  EXPECT_TRUE(update(0).agrees);
+  EXPECT_FALSE(filter_.doubtsTurn());
+}
+
+TEST_F(SuddenTurn, ThatTheNormalsConfirmIsOne) {
+  // From here on the surface appears turned as the step says.
+  AttitudeFilter::Estimate estimate = update(kTurn, turning());
+  EXPECT_TRUE(estimate.agrees);
+  EXPECT_FALSE(filter_.doubtsTurn());
+  for (++k_; k_ < 40; ++k_) EXPECT_TRUE(update(kTurn).agrees) << k_;
+}
+
+TEST_F(SuddenTurn, ExcusesNoOtherTilt) {
+  EXPECT_FALSE(update(4 * kDegree, turning()).agrees);
+  ++k_;
+  EXPECT_FALSE(update(4 * kDegree).agrees);
+}
+
 TEST_F(TiltedSurface, IsForgottenWithoutAPairForLong) {
   k_ += 80;
   EXPECT_TRUE(update(3 * kDegree, ApproachAngleResult::Motion()).agrees);

@@ -157,6 +157,33 @@ TEST_F(ForeignMessages, AMessageFullOfOneNumberIsForgottenWithinASecond) {
                    [&](const ApproachAngle& poisoned) { expectRecovery(stage, messages_.stereo, poisoned); });
 }
 
+TEST_F(ForeignMessages, AStepThatTheCameraDidNotTakeIsForgottenWithinASecond) {
+  const KalmanHeightStage stage = settled();
+  rememberTheUsual(stage);
+  ApproachAngle& approach = messages_.approach;
+  StereoDepth blind = messages_.stereo;
+  blind.reason = "no_plane";
+  const auto test = [&](double& number, double error) {
+    const double healthy = number;
+    number += error;
+    SCOPED_TRACE(error);
+    expectRecovery(stage, messages_.stereo, approach);
+    expectRecovery(stage, blind, approach);
+    number = healthy;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    SCOPED_TRACE(axis);
+    for (const double turn : {-0.2, 0.05, 0.2}) test(approach.step.rotation[axis], turn);
+    for (const double way : {-0.1, 0.05, 0.1}) test(approach.step.translation_over_height[axis], way);
+  }
+  // Of another time than that between the two pairs.
+  for (const double factor : {0.5, 20.0}) {
+    ApproachAngle other = approach;
+    other.step.duration *= factor;
+    expectRecovery(stage, messages_.stereo, other);
+  }
+}
+
 TEST_F(ForeignMessages, CovariancesOfAnotherScaleAreForgottenWithinASecond) {
   const KalmanHeightStage stage = settled();
   rememberTheUsual(stage);
