@@ -31,29 +31,33 @@ class AttitudeFilter {
   /// filter starts anew, but not before the normal has been compared with those before by what a camera
   /// turns. A normal that contradicts the ones before (another surface was taken for the ground) is left out
   /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
-  /// long as fewer than three pairs in a row have agreed. Where a step turns by more than is usual, and the
-  /// normals say that the camera did not, the step is left out.
+  /// long as fewer than three pairs in a row have agreed. Where a step turns by more than is usual, or a
+  /// normal is taken that only just agrees or that no step leads to, what would be without it is kept for
+  /// 0.2 s: when the next normals contradict the one and agree with the other, that one is taken.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step,
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
   /// A pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
-  /// The last step turned by more than is usual, and no normal has confirmed that.
-  bool doubtsTurn() const { return doubted_ || unturned_; }
+  /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
+  bool doubtsTurn() const { return turn_doubted_; }
   void reset();
 
  private:
   enum class Prediction { kNone, kTurned, kGuessed };
   Prediction predict(double stamp, const ApproachAngleResult::Motion& step);
-  void followUnturned(double T, const Eigen::Matrix3d& R);
+  void turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step);
+  void guess(double T);
+  void doubt(const Estimate& other);
   Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix3d& common_root);
 
   std::optional<Estimate> estimate_;
-  std::optional<Estimate> unturned_;  // without a turn that may be none
-  bool doubted_ = false;              // the last normal was one of a camera that did not turn
-  double stamp_ = 0, agreed_ = 0;     // s
-  int agreements_ = 0;                // in a row since the start, up to three
+  std::optional<Estimate> other_;  // without the turn or the normal that is in doubt
+  bool turn_doubted_ = false;
+  double doubted_ = 0;             // s
+  double stamp_ = 0, agreed_ = 0;  // s
+  int agreements_ = 0;             // in a row since the start, up to three
 };
 
 }  // namespace uav_landing

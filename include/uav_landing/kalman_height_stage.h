@@ -65,8 +65,9 @@ class KalmanHeightStage {
     SolutionSeparation::Measurements without;       ///< the height with each source left out
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
-  void findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                 Reconstruction& reconstruction);
+  /// measured: the plane of stereo with the pair's skew in its covariance.
+  void findPlane(const GroundPlane& measured, const StereoDepthResult& stereo,
+                 const ApproachAngleResult& approach, Reconstruction& reconstruction);
   /// Turns the plane by a direction that lies in the ground.
   void fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const;
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rotation.h"
 
@@ -20,6 +21,8 @@ constexpr int kConfirmed = 3;
 constexpr double kTurnRate = 5 * M_PI / 180;
 // A turn by this, rad/s, may as well be a wrong one.
 constexpr double kUnusualTurn = 5 * kTurnRate;
+// Squared sigmas from which a normal that agrees is kept in doubt, and for how long, s.
+constexpr double kDoubtful = 9, kDoubtTime = 0.2;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
@@ -32,11 +35,6 @@ Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// Of a normal after a time in which nobody knows how the camera turned.
-Eigen::Matrix3d turnVariance(const Eigen::Vector3d& n, double T) {
-  return std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
 }
 
 Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
@@ -60,39 +58,62 @@ struct Innovation {
   }
 };
 
+/// Memory fades with each of these.
+void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step,
+            AttitudeFilter::Estimate& estimate) {
+  estimate.normal = R * estimate.normal;
+  estimate.common_root = (R * estimate.common_root * R.transpose()).eval();
+  const Eigen::Matrix3d by_rotation = crossMatrix(estimate.normal);
+  estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() +
+                        by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+}
+
+/// Nobody knows how the camera turned.
+void addTurn(double T, AttitudeFilter::Estimate& estimate) {
+  const Eigen::Vector3d& n = estimate.normal;
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance +
+                        std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+}
+
 }  // namespace
 
 AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
   const double T = stamp - stamp_;
   stamp_ = stamp;
   if (!estimate_ || !(T > 0)) return Prediction::kNone;
-  Eigen::Matrix3d& covariance = estimate_->covariance;
+  if (stamp - doubted_ > kDoubtTime) other_.reset();
   // A step that spans another time is not the way from the last normal to this one.
   const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
                      std::abs(T - step.duration) <= kStampRounding;
-  const double faded = std::exp(T / kMemory);
   if (known) {
-    const Eigen::Matrix3d R = rotationMatrix(step.rotation);
-    followUnturned(T, R);
-    estimate_->normal = R * estimate_->normal;
-    estimate_->common_root = (R * estimate_->common_root * R.transpose()).eval();
-    const Eigen::Matrix3d by_rotation = crossMatrix(estimate_->normal);
-    covariance = (faded * R * covariance * R.transpose()).eval() +
-                 by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+    turn(T, rotationMatrix(step.rotation), step);
     return Prediction::kTurned;
   }
   if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
-  covariance = faded * covariance + turnVariance(estimate_->normal, T);
+  guess(T);
   return Prediction::kGuessed;
 }
 
-void AttitudeFilter::followUnturned(double T, const Eigen::Matrix3d& R) {
+void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step) {
   const Eigen::Vector3d& n = estimate_->normal;
-  const bool unusual = angleBetween(n, R * n) > kUnusualTurn * T;
-  if (unusual && !unturned_ && agreements_ >= kConfirmed) unturned_ = *estimate_;
-  if (!unturned_) return;
-  if (!unusual) unturned_->normal = R * unturned_->normal;
-  unturned_->covariance = std::exp(T / kMemory) * unturned_->covariance + turnVariance(unturned_->normal, T);
+  turn_doubted_ = agreements_ >= kConfirmed && angleBetween(n, R * n) > kUnusualTurn * T;
+  if (turn_doubted_) {
+    if (!other_) doubt(*estimate_);
+    addTurn(T, *other_);
+  } else if (other_) {
+    rotate(T, R, step, *other_);
+  }
+  rotate(T, R, step, *estimate_);
+}
+
+void AttitudeFilter::guess(double T) {
+  if (other_) addTurn(T, *other_);
+  addTurn(T, *estimate_);
+}
+
+void AttitudeFilter::doubt(const Estimate& other) {
+  other_ = other;
+  doubted_ = stamp_;
 }
 
 void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step) {
@@ -101,8 +122,8 @@ void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step
 
 void AttitudeFilter::reset() {
   estimate_.reset();
-  unturned_.reset();
-  doubted_ = false;
+  other_.reset();
+  turn_doubted_ = false;
   agreements_ = 0;
 }
 
@@ -112,17 +133,17 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
                                                 const Eigen::Matrix3d& common) {
   Prediction predicted = predict(stamp, step);
   const Eigen::Matrix3d common_root = rootOf(common);
-  doubted_ = false;
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
   Innovation innovation(*estimate_, normal, covariance);
-  if (innovation.ratio > kGate && unturned_) {
-    const Innovation without(*unturned_, normal, covariance);
+  if (innovation.ratio > kGate && other_) {
+    const Innovation without(*other_, normal, covariance);
     if (without.ratio <= kGate) {
-      estimate_ = unturned_;
+      std::swap(*estimate_, *other_);
       innovation = without;
       predicted = Prediction::kGuessed;
-      doubted_ = true;
     }
+  } else if (innovation.ratio <= kGate) {
+    turn_doubted_ = false;
   }
   estimate_->ratio = innovation.ratio;
   estimate_->agrees = estimate_->ratio <= kGate;
@@ -132,10 +153,11 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
       return start(normal, covariance, common_root);
     return *estimate_;
   }
-  unturned_.reset();
   agreed_ = stamp;
   agreements_ = std::min(agreements_ + 1, kConfirmed);
-  if (predicted == Prediction::kGuessed) {
+  const bool guessed = predicted == Prediction::kGuessed;
+  if (!other_ && agreements_ >= kConfirmed && (guessed || innovation.ratio > kDoubtful)) doubt(*estimate_);
+  if (guessed) {
     // A guess is good enough to contradict, but nothing to average with.
     estimate_->normal = normal;
     estimate_->covariance = covariance;
@@ -159,7 +181,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
 AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
                                                const Eigen::Matrix3d& covariance,
                                                const Eigen::Matrix3d& common_root) {
-  unturned_.reset();
+  other_.reset();
   agreed_ = stamp_;
   agreements_ = 1;
   estimate_ = Estimate{normal, covariance, common_root, kUnknown, true};

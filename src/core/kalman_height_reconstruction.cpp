@@ -14,11 +14,19 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
+// 1 sigma of a plane over itself: with more, what is linear in its errors has no meaning. Good ones have
+// 0.02.
+constexpr double kLargestRelative = 0.3;
 
-Failure missingPlane(const StereoDepthResult& stereo) {
+/// plane: with what the pair's skew adds to its covariance.
+Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) {
   if (stereo.failure) return stereo.failure;
-  if (!stereo.plane.valid() || !stereo.plane.covariance.allFinite())
+  if (!plane.valid() || !plane.covariance.allFinite())
     return {Reason::kNoPlane, "the ground plane has no finite value and covariance"};
+  const double relative = std::sqrt(plane.covariance.trace()) / plane.g.norm();
+  if (!(relative <= kLargestRelative))
+    return {Reason::kUncertain,
+            text("the ground plane has 1 sigma of ", relative, " of itself, more than ", kLargestRelative)};
   return {};
 }
 
@@ -115,11 +123,12 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
                                                                  const ApproachAngleResult& approach) {
   const ScopedTimer timer(timings_, "reconstruction");
   Reconstruction reconstruction;
-  reconstruction.failure = missingPlane(stereo);
+  const GroundPlane measured = withSkew(rig_, stereo, approach.step);
+  reconstruction.failure = missingPlane(stereo, measured);
   if (reconstruction.failure) return reconstruction;
 
   followSurface(stereo.surface_variance);
-  findPlane(stereo, approach, reconstruction);
+  findPlane(measured, stereo, approach, reconstruction);
   followBend(stereo, reconstruction);
   const Eigen::Vector3d n = reconstruction.plane.normal();
   reconstruction.normal = {n, reconstruction.plane.normalCovariance()};
@@ -137,11 +146,11 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   return reconstruction;
 }
 
-void KalmanHeightStage::findPlane(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                                  Reconstruction& reconstruction) {
+void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepthResult& stereo,
+                                  const ApproachAngleResult& approach, Reconstruction& reconstruction) {
   GroundPlane& plane = reconstruction.plane;
   Eigen::Matrix3d& common = reconstruction.common;
-  plane = withSkew(rig_, stereo, approach.step);
+  plane = measured;
   common = stereo.row_covariance;
   common(2, 2) += std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
   reconstruction.alone = plane;

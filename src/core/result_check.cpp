@@ -16,6 +16,7 @@ constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the pictur
 constexpr double kFastestTurn = 6;  // rad/s: one roll a second
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
+constexpr double kLargestSkew = 0.1;                         // s, what max_skew can be
 constexpr double kLargestVariance = 1e9;  // in squares of the units below: says "unknown" in numbers
 constexpr double kLeastRelative = 1e-6;   // 1 sigma over the value: no camera sees better
 constexpr double kRounding = 1e-6;        // of covariances that went through calculations
@@ -143,7 +144,8 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     if (!(below > 0.5 && below < 2 && isCovariance<3>(result.below.covariance)))
       return "plane_below: no tangent of the surface that the plane is of";
   }
-  if (!std::isfinite(result.skew)) return "skew: not a number";
+  if (!within(result.skew, kLargestSkew))
+    return text("skew: ", result.skew, " s, at most ", kLargestSkew, " expected");
   if (result.points.size() > kMostPoints)
     return text("u: ", result.points.size(), " points, at most ", kMostPoints, " expected");
   return "";

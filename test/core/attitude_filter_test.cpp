@@ -206,7 +206,6 @@ TEST_F(SuddenTurn, ThatTheNormalsContradictLaterIsLeftOut) {
   filter_.carry(k_ * kStep, turning());
   EXPECT_TRUE(filter_.doubtsTurn());
   for (++k_; k_ < 24; ++k_) filter_.carry(k_ * kStep, flight_.step(k_));
-  EXPECT_TRUE(filter_.doubtsTurn());
   EXPECT_TRUE(update(0).agrees);
   ++k_;
   EXPECT_TRUE(update(0).agrees);
@@ -219,6 +218,22 @@ TEST_F(SuddenTurn, ThatTheNormalsConfirmIsOne) {
   EXPECT_TRUE(estimate.agrees);
   EXPECT_FALSE(filter_.doubtsTurn());
   for (++k_; k_ < 40; ++k_) EXPECT_TRUE(update(kTurn).agrees) << k_;
+}
+
+TEST_F(SuddenTurn, IsForgottenAfterAFifthOfASecond) {
+  filter_.carry(k_ * kStep, turning());
+  for (++k_; k_ < 27; ++k_) filter_.carry(k_ * kStep, flight_.step(k_));
+  EXPECT_FALSE(update(0).agrees);
+}
+
+TEST_F(TiltedSurface, ThatIsTakenWhereNoStepContradictsIsLeftWhenTheNextNormalsDo) {
+  // Within the 2 deg that a camera may turn meanwhile, and claimed to be known well.
+  EXPECT_TRUE(update(1.7 * kDegree, ApproachAngleResult::Motion()).agrees);
+  for (++k_; k_ < 40; ++k_) {
+    const AttitudeFilter::Estimate estimate = update(0);
+    EXPECT_TRUE(estimate.agrees) << k_;
+    EXPECT_LT(errorOf(estimate), 0.2 * kDegree) << k_;
+  }
 }
 
 TEST_F(SuddenTurn, ExcusesNoOtherTilt) {

@@ -184,6 +184,22 @@ TEST_F(ForeignMessages, AStepThatTheCameraDidNotTakeIsForgottenWithinASecond) {
   }
 }
 
+TEST_F(ForeignMessages, APlaneThatIsNothingButItsCovarianceGivesNoHeight) {
+  const KalmanHeightStage stage = settled();
+  rememberTheUsual(stage);
+  // Of any size: any direction in the ground seems to agree with it.
+  StereoDepth& stereo = messages_.stereo;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) stereo.plane_covariance[3 * i + k] = stereo.plane[i] * stereo.plane[k];
+  KalmanHeightStage copy = stage;
+  ApproachAngleResult no_width = toResult(messages_.approach);
+  no_width.runway.failure = {Reason::kNoRunway, ""};
+  const LandingResult result = copy.process(toResult(stereo), no_width);
+  EXPECT_NE(result.failure.message().find("uncertain: the ground plane has 1 sigma of 1"), std::string::npos)
+      << result.failure.message();
+  expectRecovery(stage, stereo, messages_.approach);
+}
+
 TEST_F(ForeignMessages, CovariancesOfAnotherScaleAreForgottenWithinASecond) {
   const KalmanHeightStage stage = settled();
   rememberTheUsual(stage);
@@ -268,7 +284,9 @@ TEST_F(ForeignMessages, TheFieldThatIsWrongIsNamed) {
   EXPECT_EQ(messageOf(stereo), "input_invalid: plane_below: no tangent of the surface that the plane is of");
   stereo = messages_.stereo;
   stereo.skew = nan;
-  EXPECT_EQ(messageOf(stereo), "input_invalid: skew: not a number");
+  EXPECT_EQ(messageOf(stereo), "input_invalid: skew: nan s, at most 0.1 expected");
+  stereo.skew = -3;
+  EXPECT_EQ(messageOf(stereo), "input_invalid: skew: -3 s, at most 0.1 expected");
 }
 
 TEST_F(ForeignMessages, ResultsOfTheOwnStagesComeThroughUnchanged) {
