@@ -15,7 +15,8 @@ namespace uav_landing {
 /// in proportion to the height: the mean of pairs that were higher is tilted more than the last one.
 class AttitudeFilter {
  public:
-  static constexpr double kGate = 25.0;  ///< squared sigmas of the two angles together
+  static constexpr double kGate = 25.0;           ///< squared sigmas of the two angles together
+  static constexpr double kStampRounding = 1e-3;  ///< s, by which stamps of the same pairs may differ
 
   struct Estimate {
     Eigen::Vector3d normal;
@@ -33,7 +34,7 @@ class AttitudeFilter {
   /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
   /// long as fewer than three pairs in a row have agreed. Where a step turns by more than is usual, or a
   /// normal is taken that only just agrees or that no step leads to, what would be without it is kept for
-  /// 0.2 s: when the next normals contradict the one and agree with the other, that one is taken.
+  /// four pairs: when a normal contradicts the one and agrees with the other, that one is taken.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step,
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
@@ -41,6 +42,8 @@ class AttitudeFilter {
   void carry(double stamp, const ApproachAngleResult::Motion& step);
   /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
   bool doubtsTurn() const { return turn_doubted_; }
+  /// Nothing is in doubt.
+  bool settled() const { return !other_; }
   void reset();
 
  private:
@@ -48,14 +51,15 @@ class AttitudeFilter {
   Prediction predict(double stamp, const ApproachAngleResult::Motion& step);
   void turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step);
   void guess(double T);
-  void doubt(const Estimate& other);
+  void doubt(const Estimate& other, bool turn);
   Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix3d& common_root);
 
   std::optional<Estimate> estimate_;
   std::optional<Estimate> other_;  // without the turn or the normal that is in doubt
+  bool other_is_turn_ = false;
+  int doubts_left_ = 0;  // pairs
   bool turn_doubted_ = false;
-  double doubted_ = 0;             // s
   double stamp_ = 0, agreed_ = 0;  // s
   int agreements_ = 0;             // in a row since the start, up to three
 };

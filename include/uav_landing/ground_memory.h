@@ -21,8 +21,12 @@ class GroundMemory {
   void move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double T);
   /// A step of which the motion is not known, over T: at the usual speed; once the next motion is known, at
   /// the mean of the speeds before and after. R: rotation since the pair before as far as it is known, its
-  /// error in pitch and roll: 1 sigma, rad. Some such steps in a row, and nothing is known.
-  void coast(const Eigen::Matrix3d& R, double turn_stddev, double T);
+  /// error in pitch and roll: 1 sigma, rad. normal: of the ground before, where known. Some such steps in a
+  /// row, and nothing is known, but for those of which only the rotation is doubted.
+  void coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
+             const std::optional<Eigen::Vector3d>& normal = std::nullopt, bool doubted = false);
+  /// After such steps: the ground's normal now, which tells their rotation in pitch and roll to 1 sigma, rad.
+  void settleTurn(const Eigen::Vector3d& normal, double turn_stddev);
   /// A step that the next motion has in it, as the pair shows the same picture once more.
   void wait();
   /// Remembers the nearest ground of a pair along the path. plane: the ground's, freed of all errors that are
@@ -47,11 +51,15 @@ class GroundMemory {
   };
   /// Steps in a row of which the motion is not known.
   struct Gap {
-    std::deque<Patch> patches;  // as they were before it
+    std::deque<Patch> patches;              // as they were before it
+    Eigen::Vector3d path;                   // m, as it was before it
+    std::optional<Eigen::Vector3d> normal;  // before it
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
     double turn_variance = 0, time = 0;  // rad^2, s
     size_t seen = 0;                     // patches since, the last ones
   };
+  double climbVariance(double T) const;
+  void replaceBefore(std::deque<Patch> patches);
   void closeGap(const Eigen::Vector3d& speed_after, double usual_time);
   static void carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,
                     double turn_variance, double climb_variance);

@@ -98,6 +98,8 @@ class KalmanHeightStage {
   void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);
   /// The vertical speed by motion, uncertain by what the stamps are wrong by as well.
   VerticalSpeed withStamps(VerticalSpeed speed) const;
+  /// Where the right camera is by the rows of the pair, against its place and the skew.
+  void testBaseline(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step);
   /// The ground's normal by stereo alone against the imu's direction of gravity.
   void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
   /// The first test of this pair alone that failed.

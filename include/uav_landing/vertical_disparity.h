@@ -15,7 +15,8 @@ namespace uav_landing {
 struct VerticalDisparities {
   /// See rig_rotation.h: rx and rz well, ry weakly. Fails when fewer than 20 corners have a row.
   Expected<RigRotation> rotation;
-  /// Unknown where the rotation is; the rotation is fitted with it once more.
+  /// The rotation is fitted with it once more. Its covariance has in it what lenses and focal lengths are
+  /// wrong by after a calibration. Unknown with fewer corners as well.
   BaselineDirection baseline;
   /// Share of the corners whose row was found; NaN when there are none.
   double agreement = kUnknown;

@@ -12,17 +12,17 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kMemory = 1.0;          // s
-constexpr double kStampRounding = 1e-3;  // s
-constexpr double kPatience = 3.0;        // s, with normals that contradict
+constexpr double kMemory = 1.0;    // s
+constexpr double kPatience = 3.0;  // s, with normals that contradict
 // Pairs in a row that agree make a normal that others are measured by.
 constexpr int kConfirmed = 3;
 // 1 sigma of the camera's angular velocity where no step tells the rotation, rad/s.
 constexpr double kTurnRate = 5 * M_PI / 180;
 // A turn by this, rad/s, may as well be a wrong one.
 constexpr double kUnusualTurn = 5 * kTurnRate;
-// Squared sigmas from which a normal that agrees is kept in doubt, and for how long, s.
-constexpr double kDoubtful = 9, kDoubtTime = 0.2;
+// Squared sigmas from which a normal that agrees is in doubt, and for how many pairs.
+constexpr double kDoubtful = 9;
+constexpr int kDoubtPairs = 4;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
@@ -81,7 +81,8 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   const double T = stamp - stamp_;
   stamp_ = stamp;
   if (!estimate_ || !(T > 0)) return Prediction::kNone;
-  if (stamp - doubted_ > kDoubtTime) other_.reset();
+  if (other_ && --doubts_left_ < 0) other_.reset();
+  turn_doubted_ = false;
   // A step that spans another time is not the way from the last normal to this one.
   const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
                      std::abs(T - step.duration) <= kStampRounding;
@@ -98,7 +99,7 @@ void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngl
   const Eigen::Vector3d& n = estimate_->normal;
   turn_doubted_ = agreements_ >= kConfirmed && angleBetween(n, R * n) > kUnusualTurn * T;
   if (turn_doubted_) {
-    if (!other_) doubt(*estimate_);
+    if (!other_) doubt(*estimate_, true);
     addTurn(T, *other_);
   } else if (other_) {
     rotate(T, R, step, *other_);
@@ -111,9 +112,10 @@ void AttitudeFilter::guess(double T) {
   addTurn(T, *estimate_);
 }
 
-void AttitudeFilter::doubt(const Estimate& other) {
+void AttitudeFilter::doubt(const Estimate& other, bool turn) {
   other_ = other;
-  doubted_ = stamp_;
+  other_is_turn_ = turn;
+  doubts_left_ = kDoubtPairs;
 }
 
 void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step) {
@@ -135,15 +137,19 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const Eigen::Matrix3d common_root = rootOf(common);
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
   Innovation innovation(*estimate_, normal, covariance);
-  if (innovation.ratio > kGate && other_) {
+  bool denied = false;  // the turn that was in doubt
+  if (other_) {
     const Innovation without(*other_, normal, covariance);
-    if (without.ratio <= kGate) {
-      std::swap(*estimate_, *other_);
+    const bool agrees = innovation.ratio <= kGate, other_agrees = without.ratio <= kGate;
+    if (!agrees && other_agrees) {
+      denied = other_is_turn_;
       innovation = without;
       predicted = Prediction::kGuessed;
+      std::swap(*estimate_, *other_);
+      doubts_left_ = kDoubtPairs;
     }
-  } else if (innovation.ratio <= kGate) {
-    turn_doubted_ = false;
+    if (agrees) turn_doubted_ = false;
+    if (other_is_turn_ && agrees != other_agrees) other_.reset();
   }
   estimate_->ratio = innovation.ratio;
   estimate_->agrees = estimate_->ratio <= kGate;
@@ -156,7 +162,8 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   agreed_ = stamp;
   agreements_ = std::min(agreements_ + 1, kConfirmed);
   const bool guessed = predicted == Prediction::kGuessed;
-  if (!other_ && agreements_ >= kConfirmed && (guessed || innovation.ratio > kDoubtful)) doubt(*estimate_);
+  const bool doubtful = !denied && (guessed || innovation.ratio > kDoubtful);
+  if (doubtful && !other_ && agreements_ >= kConfirmed) doubt(*estimate_, false);
   if (guessed) {
     // A guess is good enough to contradict, but nothing to average with.
     estimate_->normal = normal;

@@ -67,16 +67,36 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, doub
   carry(patches_, R, step, 0, 0);
 }
 
-void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T) {
-  if (!(path_time_ > 0) || ++coasts_ > kMostCoasts) return reset();
-  if (!gap_) gap_ = Gap{patches_};
+void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
+                         const std::optional<Eigen::Vector3d>& normal, bool doubted) {
+  if (!(path_time_ > 0) || (!doubted && ++coasts_ > kMostCoasts)) return reset();
+  if (!gap_) {
+    gap_.emplace();
+    gap_->patches = patches_;
+    gap_->path = path_;
+    gap_->normal = normal;
+  }
   gap_->R = R * gap_->R;
   gap_->turn_variance += turn_stddev * turn_stddev;
   gap_->time += T;
   path_ = R * path_;
+  carry(patches_, R, path_ * (T / path_time_), turn_stddev * turn_stddev, climbVariance(T));
+}
+
+// Of steps over T at the usual speed.
+double GroundMemory::climbVariance(double T) const {
   const double steps = steps_ * T / path_time_, usual = path_.norm() / steps_;
-  carry(patches_, R, path_ * (T / path_time_), turn_stddev * turn_stddev,
-        steps * std::pow(kClimbChange * usual, 2));
+  return steps * std::pow(kClimbChange * usual, 2);
+}
+
+void GroundMemory::settleTurn(const Eigen::Vector3d& normal, double turn_stddev) {
+  if (!gap_ || !gap_->normal) return;
+  gap_->R = Eigen::Quaterniond::FromTwoVectors(*gap_->normal, normal).toRotationMatrix();
+  gap_->turn_variance = turn_stddev * turn_stddev;
+  path_ = gap_->R * gap_->path;
+  std::deque<Patch> patches = gap_->patches;
+  carry(patches, gap_->R, path_ * (gap_->time / path_time_), gap_->turn_variance, climbVariance(gap_->time));
+  replaceBefore(std::move(patches));
 }
 
 // Between two speeds that are known the way is as certain as that of one usual step. usual_time: of that, s.
@@ -84,9 +104,14 @@ void GroundMemory::closeGap(const Eigen::Vector3d& speed_after, double usual_tim
   const Eigen::Vector3d speed = 0.5 * (path_ / path_time_ + speed_after);
   carry(gap_->patches, gap_->R, speed * gap_->time, gap_->turn_variance,
         std::pow(kClimbChange * speed.norm() * usual_time, 2));
+  replaceBefore(std::move(gap_->patches));
+}
+
+// Patches from before the gap, carried over it in another way than so far; those seen since stay.
+void GroundMemory::replaceBefore(std::deque<Patch> patches) {
   const auto seen = static_cast<std::ptrdiff_t>(std::min(gap_->seen, patches_.size()));
-  gap_->patches.insert(gap_->patches.end(), patches_.end() - seen, patches_.end());
-  patches_ = std::move(gap_->patches);
+  patches.insert(patches.end(), patches_.end() - seen, patches_.end());
+  patches_ = std::move(patches);
 }
 
 void GroundMemory::wait() {

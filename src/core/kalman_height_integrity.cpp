@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pair_skew.h"
 #include "rotation.h"
 #include "text.h"
 #include "uav_landing/kalman_height_stage.h"
@@ -25,8 +26,6 @@ constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
 constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
 // 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
 constexpr double kSlope = 0.05;
-// Stamps of the same two pairs may differ by this, s.
-constexpr double kStampRounding = 1e-3;
 
 }  // namespace
 
@@ -99,9 +98,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   const bool bent = tests_.failed(Consistency::kRigRotation);
   if (bent || pairs_failed_ == 0 || !rig_change_.settled())
     rig_change_.learn(T, stereo.vertical_rotation, !bent);
-  if (const BaselineDirection& baseline = stereo.baseline_direction; baseline.known())
-    tests_.add(Consistency::kBaselineDirection, baseline.t,
-               baseline.covariance + std::pow(kBaselineCalibration, 2) * Eigen::Matrix2d::Identity());
+  testBaseline(stereo, approach.step);
   testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
@@ -125,6 +122,16 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   result.raw_height_variance = reconstruction.variance;
   result.rejected = true;
   ++consecutive_rejections_;
+}
+
+void KalmanHeightStage::testBaseline(const StereoDepthResult& stereo,
+                                     const ApproachAngleResult::Motion& step) {
+  const BaselineDirection& measured = stereo.baseline_direction;
+  const BaselineDirection by_skew = baselineOfSkew(rig_, stereo, step);
+  if (!measured.known() || !by_skew.known()) return;
+  const Eigen::Matrix2d calibration = std::pow(kBaselineCalibration, 2) * Eigen::Matrix2d::Identity();
+  tests_.add(Consistency::kBaselineDirection, measured.t - by_skew.t,
+             measured.covariance + by_skew.covariance + calibration);
 }
 
 void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePrior& imu) {
@@ -245,14 +252,13 @@ void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) co
   if (!result.failure) result.failure = failure;
 }
 
-// Whether a step can be the way of the camera over T: one wrong step would lift or tilt all that is
-// remembered. height: above the plane ahead. normal: of the ground now, where known.
+// Whether a step can be the way of the camera over T: one wrong step would lift all that is remembered.
+// height: above the plane ahead. normal: of the ground now, where known.
 bool KalmanHeightStage::agreesWithFlight(const ApproachAngleResult::Motion& step, double T, double height,
                                          const std::optional<Eigen::Vector3d>& normal) const {
   const Eigen::Vector3d& t = step.translation_over_height;
-  if (!t.allFinite() || !step.rotation.allFinite() || !(height > 0)) return false;
-  if (T > 0 && !(std::abs(T - step.duration) <= kStampRounding)) return false;
-  if (attitude_.doubtsTurn()) return false;
+  if (!t.allFinite() || !(height > 0)) return false;
+  if (T > 0 && !(std::abs(T - step.duration) <= AttitudeFilter::kStampRounding)) return false;
   if (!filter_.initialised() || !normal) return true;
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   const double off = height * normal->dot(t) + T * filter_.state()[1];
@@ -271,21 +277,25 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   ground_stamp_ = stereo.stamp;
   // Above the plane ahead, which the motion is of.
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
+  const bool believed = !rejected && reconstruction.plane.valid() && attitude_.settled();
   const std::optional<Eigen::Vector3d> before = last_normal_;
-  last_normal_.reset();
-  if (reconstruction.plane.valid()) last_normal_ = reconstruction.normal.mean;
-  const Eigen::Matrix3d R = rotationMatrix(step.rotation);
-  std::optional<Eigen::Vector3d> now = last_normal_;
-  if (!now && before) now = R * *before;
-  if (agreesWithFlight(step, T, height, now)) {
+  const bool turn_known = step.rotation.allFinite();
+  const Eigen::Matrix3d R = turn_known ? rotationMatrix(step.rotation) : Eigen::Matrix3d::Identity();
+  if (believed)
+    last_normal_ = reconstruction.normal.mean;
+  else if (before)
+    last_normal_ = R * *before;
+
+  if (turn_known && !attitude_.doubtsTurn() && agreesWithFlight(step, T, height, last_normal_)) {
+    if (believed) ground_.settleTurn(R.transpose() * *last_normal_, kTurnByNormals);
     ground_.move(R, height * step.translation_over_height, T);
-  } else if (before && last_normal_) {
-    ground_.coast(Eigen::Quaterniond::FromTwoVectors(*before, *last_normal_).toRotationMatrix(),
-                  kTurnByNormals, T);
   } else {
-    ground_.coast(Eigen::Matrix3d::Identity(), kTurnUnknown * T, T);
+    const bool doubted = turn_known && attitude_.doubtsTurn();
+    const double turn_stddev = doubted ? step.rotation.norm() : kTurnUnknown * T;
+    ground_.coast(doubted ? R : Eigen::Matrix3d::Identity(), turn_stddev, T, before, doubted);
+    if (believed) ground_.settleTurn(*last_normal_, kTurnByNormals);
   }
-  if (rejected || reconstruction.failure || reconstruction.by_width || !reconstruction.plane.valid()) return;
+  if (!believed || reconstruction.failure || reconstruction.by_width) return;
   const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
                           reconstruction.plane.covariance};
   ground_.look(rig_, stereo.points, plane, stereo.plane.g);

@@ -14,8 +14,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-// 1 sigma of a plane over itself: with more, what is linear in its errors has no meaning. Good ones have
-// 0.02.
+// 1 sigma of a plane's height over itself: with more, what is linear in its errors has no meaning, and any
+// direction seems to lie in it.
 constexpr double kLargestRelative = 0.3;
 
 /// plane: with what the pair's skew adds to its covariance.
@@ -23,10 +23,10 @@ Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) 
   if (stereo.failure) return stereo.failure;
   if (!plane.valid() || !plane.covariance.allFinite())
     return {Reason::kNoPlane, "the ground plane has no finite value and covariance"};
-  const double relative = std::sqrt(plane.covariance.trace()) / plane.g.norm();
+  const double relative = std::sqrt(plane.heightVariance()) / plane.height();
   if (!(relative <= kLargestRelative))
-    return {Reason::kUncertain,
-            text("the ground plane has 1 sigma of ", relative, " of itself, more than ", kLargestRelative)};
+    return {Reason::kUncertain, text("the height of the ground plane has 1 sigma of ", relative,
+                                     " of itself, more than ", kLargestRelative)};
   return {};
 }
 

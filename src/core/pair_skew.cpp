@@ -5,6 +5,9 @@
 namespace uav_landing {
 namespace {
 
+// Of a small aircraft, m/s.
+constexpr double kSpeed = 20, kSideways = 2;
+
 double meanInverseDepth(const StereoRig& rig, const StereoDepthResult& stereo) {
   double sum = 0;
   int count = 0;
@@ -41,13 +44,30 @@ GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
     // The step's rotation is that of the scene in the camera, opposite to the camera's.
     add(speed_scale * step.translation_over_height, -step.rotation / step.duration);
   } else {
-    constexpr double kSpeed = 20, kSideways = 2, kTurnRate = 0.3;  // m/s, m/s, rad/s
+    constexpr double kTurnRate = 0.3;  // rad/s
     add(kSpeed * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
     add(kSideways * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
     for (int axis = 0; axis < 3; ++axis)
       add(Eigen::Vector3d::Zero(), kTurnRate * Eigen::Vector3d::Unit(axis));
   }
   return plane;
+}
+
+BaselineDirection baselineOfSkew(const StereoRig& rig, const StereoDepthResult& stereo,
+                                 const ApproachAngleResult::Motion& step) {
+  constexpr double kShare = 0.2;  // 1 sigma, of the way
+  const double over_baseline = stereo.skew / rig.baseline;
+  BaselineDirection direction{Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  if (stereo.skew == 0) return direction;
+  if (!step.failure && step.duration > 0) {
+    const double speed_scale = stereo.plane.height() / step.duration;
+    direction.t = over_baseline * speed_scale * step.translation_over_height.tail<2>();
+    direction.covariance = std::pow(kShare, 2) * direction.t.squaredNorm() * Eigen::Matrix2d::Identity();
+  } else {
+    direction.covariance.diagonal() << std::pow(over_baseline * kSideways, 2),
+        std::pow(over_baseline * kSpeed, 2);
+  }
+  return direction;
 }
 
 }  // namespace uav_landing

@@ -23,4 +23,9 @@ Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g,
 GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
                      const ApproachAngleResult::Motion& step);
 
+/// Where the right camera was beside its place when its image was taken, skew after the left one. step: tells
+/// the way, to a fifth; without it the camera may be as fast as that of a small aircraft.
+BaselineDirection baselineOfSkew(const StereoRig& rig, const StereoDepthResult& stereo,
+                                 const ApproachAngleResult::Motion& step);
+
 }  // namespace uav_landing

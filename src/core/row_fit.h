@@ -15,7 +15,7 @@
 
 /// Robust fit of what moves the rows of the right image: the first N of its rotation (3) and the direction of
 /// the baseline (2).
-namespace uav_landing {
+namespace uav_landing::row_fit {
 
 constexpr int kCellsAcross = 4, kCellsDown = 3;
 /// Part of the image, in which errors of rows are alike.
@@ -29,6 +29,7 @@ inline int imageCell(const StereoRig& rig, double u, double v) {
 struct RowShift {
   Eigen::Matrix<double, 1, 5> by;  ///< derivatives, pixels per rad
   double shift, stddev;            ///< pixels
+  double below_centre;             ///< place in the image, pixels
   int cell;                        ///< of the image
 };
 
@@ -105,6 +106,19 @@ Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, co
   return common;
 }
 
+/// The same of a focal length of the right camera that is wrong by a share of 1 sigma, which moves rows in
+/// proportion to their distance from the centre.
+template <int N>
+Eigen::Matrix<double, N, N> focalVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
+                                          double sigma) {
+  const double scale = residualScale<N>(rows, fit.value);
+  Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero();
+  for (const RowShift& row : rows)
+    sum += weightOf<N>(row, fit.value, scale) * row.below_centre * row.by.head<N>().transpose();
+  const Eigen::Matrix<double, N, 1> moved = sigma * fit.covariance * sum;
+  return moved * moved.transpose();
+}
+
 template <int N>
 Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
   using Matrix = Eigen::Matrix<double, N, N>;
@@ -145,4 +159,4 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
   return fit;
 }
 
-}  // namespace uav_landing
+}  // namespace uav_landing::row_fit

@@ -13,6 +13,9 @@
 namespace uav_landing {
 namespace {
 
+using row_fit::RowFit;
+using row_fit::RowShift;
+
 // Corners measured: enough, as the filter behind averages over frames.
 constexpr size_t kMeasured = 240, kSearched = 80;
 // Error of a row that its residuals do not show, pixels.
@@ -37,23 +40,27 @@ void addRow(const StereoLevel& level, int u, int v, double disparity, const Eige
       verticalDisparityByBaseline(level.rig, disparity, v);
   row.shift = place.position.y() - v;
   row.stddev = stddev;
-  row.cell = imageCell(level.rig, u, v);
+  row.below_centre = v - level.rig.cy;
+  row.cell = row_fit::imageCell(level.rig, u, v);
   rows.push_back(row);
 }
 
 Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
-  const Expected<RowFit<3>> fit = fitRows<3>(rows);
+  const Expected<RowFit<3>> fit = row_fit::fitRows<3>(rows);
   if (!fit) return tl::make_unexpected(fit.error());
-  return RigRotation{fit->value, fit->covariance + sharedVariance<3>(rows, *fit), fit->count};
+  return RigRotation{fit->value, fit->covariance + row_fit::sharedVariance<3>(rows, *fit), fit->count};
 }
 
 BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
   // What a lens or texture leaves in a part of the image, the same for all corners there, pixels.
   constexpr double kCommon = 0.1;
-  const Expected<RowFit<5>> fit = fitRows<5>(rows);
+  // 1 sigma of the right focal length over the left one after a calibration.
+  constexpr double kFocal = 0.0015;
+  const Expected<RowFit<5>> fit = row_fit::fitRows<5>(rows);
   if (!fit) return {};
-  const Eigen::Matrix<double, 5, 5> covariance =
-      fit->covariance + sharedVariance<5>(rows, *fit) + commonVariance<5>(rows, *fit, kCommon);
+  const Eigen::Matrix<double, 5, 5> covariance = fit->covariance + row_fit::sharedVariance<5>(rows, *fit) +
+                                                 row_fit::commonVariance<5>(rows, *fit, kCommon) +
+                                                 row_fit::focalVariance<5>(rows, *fit, kFocal);
   return {fit->value.tail<2>(), covariance.bottomRightCorner<2, 2>()};
 }
 

@@ -220,7 +220,7 @@ TEST_F(SuddenTurn, ThatTheNormalsConfirmIsOne) {
   for (++k_; k_ < 40; ++k_) EXPECT_TRUE(update(kTurn).agrees) << k_;
 }
 
-TEST_F(SuddenTurn, IsForgottenAfterAFifthOfASecond) {
+TEST_F(SuddenTurn, IsBelievedAfterFourPairsWithoutANormal) {
   filter_.carry(k_ * kStep, turning());
   for (++k_; k_ < 27; ++k_) filter_.carry(k_ * kStep, flight_.step(k_));
   EXPECT_FALSE(update(0).agrees);

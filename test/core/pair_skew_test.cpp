@@ -55,6 +55,22 @@ double meanInverseDepth(const StereoRig& rig, const std::vector<StereoDepthResul
   return sum / points.size();
 }
 
+TEST(PairSkew, PutsTheRightCameraWhereItIsByThen) {
+  const StereoRig rig = makeRig();
+  StereoDepthResult stereo;
+  stereo.plane.g = kTruePlane;
+  stereo.skew = 0.004;
+  ApproachAngleResult::Motion step;
+  step.duration = 0.05;
+  step.translation_over_height = Eigen::Vector3d(0.02, 0.1, 1.0) / 12;  // 20 m/s ahead, 2 m/s down
+  const BaselineDirection direction = baselineOfSkew(rig, stereo, step);
+  EXPECT_NEAR(direction.t.x(), 2 * 0.004 / 0.8, 1e-3);
+  EXPECT_NEAR(direction.t.y(), 20 * 0.004 / 0.8, 1e-3);
+  stereo.skew = 0;
+  EXPECT_EQ(baselineOfSkew(rig, stereo, step).t, Eigen::Vector2d(0, 0));
+  EXPECT_EQ(baselineOfSkew(rig, stereo, step).covariance, Eigen::Matrix2d::Zero());
+}
+
 TEST(PairSkew, PredictsHowThePlaneOfAMovedRigIsWrong) {
   const StereoRig rig = makeRig();
   const double skew = 0.002;

@@ -195,7 +195,8 @@ TEST_F(ForeignMessages, APlaneThatIsNothingButItsCovarianceGivesNoHeight) {
   ApproachAngleResult no_width = toResult(messages_.approach);
   no_width.runway.failure = {Reason::kNoRunway, ""};
   const LandingResult result = copy.process(toResult(stereo), no_width);
-  EXPECT_NE(result.failure.message().find("uncertain: the ground plane has 1 sigma of 1"), std::string::npos)
+  EXPECT_NE(result.failure.message().find("uncertain: the height of the ground plane has 1 sigma of 1"),
+            std::string::npos)
       << result.failure.message();
   expectRecovery(stage, stereo, messages_.approach);
 }
