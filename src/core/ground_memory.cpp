@@ -70,12 +70,7 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, doub
 void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
                          const std::optional<Eigen::Vector3d>& normal, bool doubted) {
   if (!(path_time_ > 0) || (!doubted && ++coasts_ > kMostCoasts)) return reset();
-  if (!gap_) {
-    gap_.emplace();
-    gap_->patches = patches_;
-    gap_->path = path_;
-    gap_->normal = normal;
-  }
+  if (!gap_) gap_ = Gap{patches_, path_, normal};
   gap_->R = R * gap_->R;
   gap_->turn_variance += turn_stddev * turn_stddev;
   gap_->time += T;

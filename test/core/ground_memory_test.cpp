@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -198,6 +199,55 @@ TEST(GroundMemory, CarriesOnOverMissingPairsByTheTimeThatPassed) {
     EXPECT_NEAR(below->height, z - slope(x), 0.03) << x;
     EXPECT_LT(std::sqrt(below->variance), 0.1) << x;
   }
+}
+
+/// Flown up to x = 30 over flat ground, and a step of which the rotation is doubted: 10 deg that were none.
+class DoubtedTurn : public testing::Test {
+ protected:
+  static constexpr double kTurn = 10 * kDegree;
+
+  DoubtedTurn() {
+    for (; x_ <= 30; ++x_) {
+      if (x_ > 0) memory_.move(Eigen::Matrix3d::Identity(), forward_, kPeriod);
+      see();
+    }
+    const Eigen::Matrix3d wrong = Eigen::AngleAxisd(kTurn, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    memory_.coast(wrong, kTurn, kPeriod, down_, true);
+  }
+  void see() {
+    const GroundPlane plane{down_ / kHeight, 1e-10 * Eigen::Matrix3d::Identity()};
+    memory_.look(rig_, look(rig_, x_, kHeight, [](double) { return 0; }), plane, plane.g);
+  }
+
+  static constexpr double kHeight = 12;
+  const StereoRig rig_ = makeRig();
+  const Eigen::Vector3d down_ = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward_{0, -std::sin(-kPitch), std::cos(kPitch)};
+  GroundMemory memory_;
+  double x_ = 0;
+};
+
+TEST_F(DoubtedTurn, MakesTheGroundBelowAsUncertainAsItIsLarge) {
+  memory_.move(Eigen::Matrix3d::Identity(), forward_, kPeriod);
+  const std::optional<GroundMemory::Below> below = memory_.below(down_);
+  ASSERT_TRUE(below);
+  EXPECT_LT(std::abs(below->height - kHeight), 3 * std::sqrt(below->variance));
+  EXPECT_GT(std::sqrt(below->variance), kTurn * kHeight);
+}
+
+TEST_F(DoubtedTurn, IsSettledByTheNextNormal) {
+  memory_.settleTurn(down_, 0.1 * kDegree);
+  memory_.move(Eigen::Matrix3d::Identity(), forward_, kPeriod);
+  const std::optional<GroundMemory::Below> below = memory_.below(down_);
+  ASSERT_TRUE(below);
+  EXPECT_NEAR(below->height, kHeight, 0.03);
+  EXPECT_LT(std::sqrt(below->variance), 0.1);
+}
+
+TEST_F(DoubtedTurn, DoesNotEraseTheMemoryHoweverOftenItComes) {
+  for (int i = 0; i < 6; ++i)
+    memory_.coast(Eigen::Matrix3d::Identity(), kTurn, 0.1 * kPeriod, std::nullopt, true);
+  EXPECT_TRUE(memory_.below(down_));
 }
 
 TEST(GroundMemory, AMotionOverMissingPairsIsNotTooLong) {
