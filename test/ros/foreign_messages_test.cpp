@@ -67,6 +67,7 @@ class ForeignMessages : public ::testing::Test {
     const double truth = healthy.height(kPairsBefore + kPairsAfter);
     EXPECT_NEAR(result.height, truth, 0.001 * truth);
     EXPECT_NEAR(std::sqrt(result.height_variance / usual_.height_variance), 1, 0.2);
+    EXPECT_LT(result.height_protection_level, 1.4 * usual_.height_protection_level);
     EXPECT_NEAR(result.vertical_speed, -ApproachMessages::kSink, 0.1);
     EXPECT_NEAR(result.approach_angle, ApproachMessages::angle(), 0.001);
     EXPECT_NEAR(result.pitch, ApproachMessages::kPitch, 0.001);
@@ -77,6 +78,19 @@ class ForeignMessages : public ::testing::Test {
     EXPECT_NEAR(result.width_height, truth, 0.02 * truth);
     EXPECT_TRUE(result.rig_rotation.known());
     EXPECT_LT((result.rig_rotation.w - usual_.rig_rotation.w).cwiseAbs().maxCoeff(), 1e-4);
+  }
+
+  /// Healthy pairs after a spoiled one, as long as it takes until the ground in view then is below: the
+  /// protection level must stay of the size that it would have had.
+  void expectProtectionAsUsual(KalmanHeightStage spoiled, KalmanHeightStage usual) {
+    ApproachMessages healthy;
+    for (int pair = kPairsBefore + 1; pair <= kPairsBefore + 3 * kPairsAfter; ++pair) {
+      healthy.make(pair);
+      const LandingResult result = spoiled.process(toResult(healthy.stereo), toResult(healthy.approach));
+      const LandingResult expected = usual.process(toResult(healthy.stereo), toResult(healthy.approach));
+      EXPECT_TRUE(result.height_valid) << pair << ": " << result.failure.message();
+      EXPECT_LT(result.height_protection_level, 2 * expected.height_protection_level) << pair;
+    }
   }
 
   void rememberTheUsual(KalmanHeightStage stage) {
@@ -184,6 +198,28 @@ TEST_F(ForeignMessages, AStepThatTheCameraDidNotTakeIsForgottenWithinASecond) {
   }
 }
 
+TEST_F(ForeignMessages, ATiltThatNoStepContradictsDoesNotTiltTheGroundThatIsRemembered) {
+  const KalmanHeightStage stage = settled();
+  const ApproachAngle healthy_approach = messages_.approach;
+  ApproachAngle& approach = messages_.approach;
+  approach.step.duration *= 0.8;
+  const StereoDepthResult healthy = toResult(messages_.stereo);
+  for (const double tilt : {1.0, 1.8}) {
+    for (const double height : {1.0, 1.5}) {  // the latter contradicts: the pair is left out
+      SCOPED_TRACE(testing::Message() << tilt << " deg, " << height);
+      const Eigen::Matrix3d turn =
+          Eigen::AngleAxisd(tilt * M_PI / 180, Eigen::Vector3d::UnitX()).toRotationMatrix();
+      const Eigen::Vector3d g = turn * healthy.plane.g / height;
+      StereoDepth tilted = messages_.stereo;
+      for (int i = 0; i < 3; ++i) tilted.plane[i] = g[i];
+      KalmanHeightStage spoiled = stage, usual = stage;
+      spoiled.process(toResult(tilted), toResult(approach));
+      usual.process(healthy, toResult(healthy_approach));
+      expectProtectionAsUsual(spoiled, usual);
+    }
+  }
+}
+
 TEST_F(ForeignMessages, APlaneThatIsNothingButItsCovarianceGivesNoHeight) {
   const KalmanHeightStage stage = settled();
   rememberTheUsual(stage);
@@ -199,6 +235,20 @@ TEST_F(ForeignMessages, APlaneThatIsNothingButItsCovarianceGivesNoHeight) {
             std::string::npos)
       << result.failure.message();
   expectRecovery(stage, stereo, messages_.approach);
+}
+
+TEST_F(ForeignMessages, ThePointsOfAPairThatIsLeftOutAreNotRemembered) {
+  const KalmanHeightStage stage = settled();
+  for (const double height : {0.9, 1.1, 1.5}) {
+    SCOPED_TRACE(height);
+    StereoDepth other = messages_.stereo;
+    for (double& number : other.plane) number /= height;
+    for (double& number : other.disparity) number /= height;
+    KalmanHeightStage spoiled = stage, usual = stage;
+    EXPECT_TRUE(spoiled.process(toResult(other), toResult(messages_.approach)).rejected);
+    usual.process(toResult(messages_.stereo), toResult(messages_.approach));
+    expectProtectionAsUsual(spoiled, usual);
+  }
 }
 
 TEST_F(ForeignMessages, CovariancesOfAnotherScaleAreForgottenWithinASecond) {
