@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <optional>
 
 #include "uav_landing/camera_step.h"
@@ -17,8 +18,9 @@ class SpeedMemory {
   struct Shortfall {
     double difference = 0, variance = 0;  ///< m, negative when it moved enough; m^2
   };
-  /// Against the slower of the two steps known last, less what can be lost since. A third of that way is
-  /// enough: late stamps make steps look longer or shorter than they were. None where it may have stopped.
+  /// Against the slowest of the three steps known last (some may be wrong), less what can be lost since. A
+  /// third of that way is enough: late stamps make steps look longer or shorter than they were. None where it
+  /// may have stopped.
   std::optional<Shortfall> compare(const CameraStep& step) const;
   /// A step that agrees, as compared. One that does not leaves the speed as it was: the aircraft does not
   /// slow down while its pictures stand still. After that as many steps in a row (up to three) must be long
@@ -36,7 +38,7 @@ class SpeedMemory {
     double mean = 0, variance = 0;  // m/s, m^2/s^2
   };
   double max_deceleration_;
-  std::optional<Speed> before_, last_;
+  std::deque<Speed> last_;     // of the last steps known, up to three
   double since_ = 0;           // s, since the last known step
   double contradicted_ = 0;    // s
   int still_ = 0, moved_ = 0;  // steps that stood still, up to three, and those in a row since that did not

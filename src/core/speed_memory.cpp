@@ -7,17 +7,18 @@ namespace {
 
 constexpr double kShare = 0.3;      // of the expected way that is enough
 constexpr double kPatience = 30.0;  // s
-constexpr int kSteps = 3;           // that are asked for at most
+constexpr int kSteps = 3;           // that are asked for at most, and that are remembered
 
 }  // namespace
 
 std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const CameraStep& step) const {
-  if (!before_ || !last_) return std::nullopt;
-  const Speed& slower = before_->mean < last_->mean ? *before_ : *last_;
-  const double least = slower.mean - max_deceleration_ * (since_ + step.duration);
+  if (last_.size() < kSteps) return std::nullopt;
+  const Speed& slowest = *std::min_element(last_.begin(), last_.end(),
+                                           [](const Speed& a, const Speed& b) { return a.mean < b.mean; });
+  const double least = slowest.mean - max_deceleration_ * (since_ + step.duration);
   if (!(least > 0)) return std::nullopt;
   const double share = kShare * step.duration;
-  return Shortfall{share * least - step.way, step.variance + share * share * slower.variance};
+  return Shortfall{share * least - step.way, step.variance + share * share * slowest.variance};
 }
 
 void SpeedMemory::learn(const CameraStep& step, bool agrees) {
@@ -32,8 +33,8 @@ void SpeedMemory::learn(const CameraStep& step, bool agrees) {
   }
   contradicted_ = since_ = 0;
   still_ = moved_ = 0;
-  before_ = last_;
-  last_ = Speed{step.way / step.duration, step.variance / (step.duration * step.duration)};
+  last_.push_back({step.way / step.duration, step.variance / (step.duration * step.duration)});
+  if (last_.size() > kSteps) last_.pop_front();
 }
 
 }  // namespace uav_landing
