@@ -7,4 +7,5 @@ uav_landing_add_gtest(approach_simulator_test test/simulator/approach_simulator_
 uav_landing_add_gtest(simulator_parameters_test test/simulator/simulator_parameters_test.cpp LIBS yaml-cpp)
 uav_landing_add_gtest(approach_lag_test test/simulator/approach_lag_test.cpp)
 uav_landing_add_gtest(approach_position_test test/simulator/approach_position_test.cpp)
+uav_landing_add_gtest(skewed_pairs_test test/simulator/skewed_pairs_test.cpp)
 uav_landing_add_gtest(bent_ground_test test/simulator/bent_ground_test.cpp)
