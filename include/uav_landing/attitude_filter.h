@@ -42,6 +42,8 @@ class AttitudeFilter {
   void carry(double stamp, const ApproachAngleResult::Motion& step);
   /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
   bool doubtsTurn() const { return turn_doubted_; }
+  /// Nothing is in doubt.
+  bool settled() const { return !other_; }
   void reset();
 
  private:

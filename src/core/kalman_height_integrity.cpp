@@ -277,7 +277,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   ground_stamp_ = stereo.stamp;
   // Above the plane ahead, which the motion is of.
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
-  const bool believed = !rejected && reconstruction.plane.valid();
+  const bool believed = !rejected && reconstruction.plane.valid() && attitude_.settled();
   const std::optional<Eigen::Vector3d> before = last_normal_;
   const bool turn_known = step.rotation.allFinite();
   const Eigen::Matrix3d R = turn_known ? rotationMatrix(step.rotation) : Eigen::Matrix3d::Identity();
