@@ -25,7 +25,8 @@ class GroundMemory {
   /// row, and nothing is known, but for those of which only the rotation is doubted.
   void coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
              const std::optional<Eigen::Vector3d>& normal = std::nullopt, bool doubted = false);
-  /// After such steps: the ground's normal now, which tells their rotation in pitch and roll to 1 sigma, rad.
+  /// After such steps, and for doubted ones also after the next motions: the ground's normal now, which tells
+  /// their rotation in pitch and roll to 1 sigma, rad.
   void settleTurn(const Eigen::Vector3d& normal, double turn_stddev);
   /// A step that the next motion has in it, as the pair shows the same picture once more.
   void wait();
@@ -57,15 +58,29 @@ class GroundMemory {
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
     double turn_variance = 0, time = 0;  // rad^2, s
     size_t seen = 0;                     // patches since, the last ones
+    bool doubted = false;
+  };
+  /// A gap of doubted rotation that motions have followed.
+  struct Unsettled {
+    std::deque<Patch> patches;                        // as they were before it
+    Eigen::Vector3d normal;                           // before it
+    Eigen::Vector3d speed_before, speed_after;        // m/s, in the frames before and after it
+    double time;                                      // s, of it
+    double climb_variance;                            // m^2, of that
+    size_t seen;                                      // patches since it began, the last ones
+    Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  // since the gap
+    Eigen::Vector3d t = Eigen::Vector3d::Zero();
   };
   double climbVariance(double T) const;
-  void replaceBefore(std::deque<Patch> patches);
+  void replaceBefore(std::deque<Patch> patches, size_t seen);
+  void settleLater(const Eigen::Vector3d& normal, double turn_stddev);
   void closeGap(const Eigen::Vector3d& speed_after, double usual_time);
   static void carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,
                     double turn_variance, double climb_variance);
 
   std::deque<Patch> patches_;                       // nearest first
   std::optional<Gap> gap_;                          // just before now
+  std::optional<Unsettled> unsettled_;              // before that
   Eigen::Vector3d path_ = Eigen::Vector3d::Zero();  // m, over the last pairs: a single one can be wrong
   double path_time_ = 0;                            // s, that the path took
   double steps_ = 0;                                // that the path is of

@@ -65,12 +65,17 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, doub
   path_time_ = kPathKept * path_time_ + T;
   steps_ = kPathKept * steps_ + 1;
   carry(patches_, R, step, 0, 0);
+  if (!unsettled_) return;
+  unsettled_->R = R * unsettled_->R;
+  unsettled_->t = R * unsettled_->t + step;
 }
 
 void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
                          const std::optional<Eigen::Vector3d>& normal, bool doubted) {
   if (!(path_time_ > 0) || (!doubted && ++coasts_ > kMostCoasts)) return reset();
+  unsettled_.reset();
   if (!gap_) gap_ = Gap{patches_, path_, normal};
+  gap_->doubted |= doubted;
   gap_->R = R * gap_->R;
   gap_->turn_variance += turn_stddev * turn_stddev;
   gap_->time += T;
@@ -85,27 +90,44 @@ double GroundMemory::climbVariance(double T) const {
 }
 
 void GroundMemory::settleTurn(const Eigen::Vector3d& normal, double turn_stddev) {
+  if (unsettled_) return settleLater(normal, turn_stddev);
   if (!gap_ || !gap_->normal) return;
   gap_->R = Eigen::Quaterniond::FromTwoVectors(*gap_->normal, normal).toRotationMatrix();
   gap_->turn_variance = turn_stddev * turn_stddev;
+  gap_->doubted = false;
   path_ = gap_->R * gap_->path;
   std::deque<Patch> patches = gap_->patches;
   carry(patches, gap_->R, path_ * (gap_->time / path_time_), gap_->turn_variance, climbVariance(gap_->time));
-  replaceBefore(std::move(patches));
+  replaceBefore(std::move(patches), gap_->seen);
+}
+
+void GroundMemory::settleLater(const Eigen::Vector3d& normal, double turn_stddev) {
+  const Eigen::Vector3d then = unsettled_->R.transpose() * normal;
+  const Eigen::Matrix3d R = Eigen::Quaterniond::FromTwoVectors(unsettled_->normal, then).toRotationMatrix();
+  std::deque<Patch> patches = std::move(unsettled_->patches);
+  const Eigen::Vector3d way =
+      0.5 * (R * unsettled_->speed_before + unsettled_->speed_after) * unsettled_->time;
+  carry(patches, R, way, turn_stddev * turn_stddev, unsettled_->climb_variance);
+  carry(patches, unsettled_->R, unsettled_->t, 0, 0);
+  replaceBefore(std::move(patches), unsettled_->seen);
+  unsettled_.reset();
 }
 
 // Between two speeds that are known the way is as certain as that of one usual step. usual_time: of that, s.
 void GroundMemory::closeGap(const Eigen::Vector3d& speed_after, double usual_time) {
   const Eigen::Vector3d speed = 0.5 * (path_ / path_time_ + speed_after);
-  carry(gap_->patches, gap_->R, speed * gap_->time, gap_->turn_variance,
-        std::pow(kClimbChange * speed.norm() * usual_time, 2));
-  replaceBefore(std::move(gap_->patches));
+  const double climb_variance = std::pow(kClimbChange * speed.norm() * usual_time, 2);
+  if (gap_->doubted && gap_->normal)
+    unsettled_ = Unsettled{gap_->patches,  *gap_->normal, gap_->path / path_time_, speed_after, gap_->time,
+                           climb_variance, gap_->seen};
+  carry(gap_->patches, gap_->R, speed * gap_->time, gap_->turn_variance, climb_variance);
+  replaceBefore(std::move(gap_->patches), gap_->seen);
 }
 
-// Patches from before the gap, carried over it in another way than so far; those seen since stay.
-void GroundMemory::replaceBefore(std::deque<Patch> patches) {
-  const auto seen = static_cast<std::ptrdiff_t>(std::min(gap_->seen, patches_.size()));
-  patches.insert(patches.end(), patches_.end() - seen, patches_.end());
+// Patches from before a gap, carried over it in another way than so far; those seen since stay.
+void GroundMemory::replaceBefore(std::deque<Patch> patches, size_t seen) {
+  const auto kept = static_cast<std::ptrdiff_t>(std::min(seen, patches_.size()));
+  patches.insert(patches.end(), patches_.end() - kept, patches_.end());
   patches_ = std::move(patches);
 }
 
@@ -149,6 +171,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
   if (!patches_.empty() && place < distance(patches_.back()) + kSpacing * h) return;
   patches_.push_back({place * ahead + height * n, medianVariance(strip, height), place - nearest, 0});
   if (gap_) ++gap_->seen;
+  if (unsettled_) ++unsettled_->seen;
 }
 
 std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& normal) const {

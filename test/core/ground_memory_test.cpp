@@ -244,6 +244,23 @@ TEST_F(DoubtedTurn, IsSettledByTheNextNormal) {
   EXPECT_LT(std::sqrt(below->variance), 0.1);
 }
 
+TEST_F(DoubtedTurn, IsSettledByALaterNormal) {
+  for (int i = 0; i < 5; ++i, ++x_) {
+    memory_.move(Eigen::Matrix3d::Identity(), forward_, kPeriod);
+    EXPECT_GT(memory_.below(down_)->variance, 1) << "nothing has settled it";
+    see();
+  }
+  memory_.settleTurn(down_, 0.1 * kDegree);
+  for (int i = 0; i < 30; ++i) {
+    memory_.move(Eigen::Matrix3d::Identity(), forward_, kPeriod);
+    const std::optional<GroundMemory::Below> below = memory_.below(down_);
+    if (!below) break;  // beyond what was seen
+    EXPECT_NEAR(below->height, kHeight, 0.05) << i;
+    EXPECT_LT(std::sqrt(below->variance), 0.15) << i;
+    EXPECT_TRUE(below) << i;
+  }
+}
+
 TEST_F(DoubtedTurn, DoesNotEraseTheMemoryHoweverOftenItComes) {
   for (int i = 0; i < 6; ++i)
     memory_.coast(Eigen::Matrix3d::Identity(), kTurn, 0.1 * kPeriod, std::nullopt, true);
