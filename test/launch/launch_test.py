@@ -2,6 +2,7 @@
 """What a user sees who starts stereo.launch: on a bag, on a bag that loops, with a camera that is silent."""
 
 import math
+import os
 import shutil
 import signal
 import subprocess
@@ -57,8 +58,9 @@ class Process:
         self.log.close()
 
     def text(self):
-        self.log.seek(0)
-        return self.log.read()
+        # At a place of its own: the program goes on writing where the file's place is.
+        size = os.fstat(self.log.fileno()).st_size
+        return os.pread(self.log.fileno(), size, 0).decode(errors="replace")
 
 
 class Listener:
