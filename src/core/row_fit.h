@@ -37,7 +37,8 @@ template <int N>
 struct RowFit {
   Eigen::Matrix<double, N, 1> value;  ///< rad
   Eigen::Matrix<double, N, N> covariance;
-  int count = 0;  ///< rows that count
+  int count = 0;                ///< rows that count
+  std::vector<double> weights;  ///< of the rows, by their residuals after the fit
 };
 
 template <int N>
@@ -72,14 +73,13 @@ template <int N>
 Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit) {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  const double scale = residualScale<N>(rows, fit.value);
   std::array<Vector, kCellsAcross * kCellsDown> sums;
   sums.fill(Vector::Zero());
   Matrix shared = Matrix::Zero();
-  for (const RowShift& row : rows) {
-    const double residual = residualOf<N>(row, fit.value);
-    const Vector pull = weightOf<N>(row, fit.value, scale) * residual * row.by.head<N>().transpose();
-    sums[row.cell] += pull;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const double residual = residualOf<N>(rows[i], fit.value);
+    const Vector pull = fit.weights[i] * residual * rows[i].by.head<N>().transpose();
+    sums[rows[i].cell] += pull;
     shared -= pull * pull.transpose();
   }
   for (const Vector& sum : sums) shared += sum * sum.transpose();
@@ -93,11 +93,10 @@ template <int N>
 Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
                                            double sigma) {
   using Vector = Eigen::Matrix<double, N, 1>;
-  const double scale = residualScale<N>(rows, fit.value);
   std::array<Vector, kCellsAcross * kCellsDown> sums;
   sums.fill(Vector::Zero());
-  for (const RowShift& row : rows)
-    sums[row.cell] += weightOf<N>(row, fit.value, scale) * row.by.head<N>().transpose();
+  for (size_t i = 0; i < rows.size(); ++i)
+    sums[rows[i].cell] += fit.weights[i] * rows[i].by.head<N>().transpose();
   Eigen::Matrix<double, N, N> common = Eigen::Matrix<double, N, N>::Zero();
   for (const Vector& sum : sums) {
     const Vector moved = sigma * fit.covariance * sum;
@@ -111,10 +110,9 @@ Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, co
 template <int N>
 Eigen::Matrix<double, N, N> focalVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
                                           double sigma) {
-  const double scale = residualScale<N>(rows, fit.value);
   Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero();
-  for (const RowShift& row : rows)
-    sum += weightOf<N>(row, fit.value, scale) * row.below_centre * row.by.head<N>().transpose();
+  for (size_t i = 0; i < rows.size(); ++i)
+    sum += fit.weights[i] * rows[i].below_centre * rows[i].by.head<N>().transpose();
   const Eigen::Matrix<double, N, 1> moved = sigma * fit.covariance * sum;
   return moved * moved.transpose();
 }
@@ -156,6 +154,9 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
     fit.covariance = information.inverse();
     fit.value = fit.covariance * right;
   }
+  const double scale = residualScale<N>(rows, fit.value);
+  fit.weights.reserve(rows.size());
+  for (const RowShift& row : rows) fit.weights.push_back(weightOf<N>(row, fit.value, scale));
   return fit;
 }
 
