@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/small_pictures.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -13,14 +14,7 @@ constexpr double kRate = 20;  // Hz
 
 /// Low over the runway, with small pictures and noise.
 SimulatorParameters lowPass() {
-  SimulatorParameters p;
-  p.image.width = 320;
-  p.image.height = 240;
-  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
-    camera->fx = camera->fy = 277;
-    camera->cx = 159.5;
-    camera->cy = 119.5;
-  }
+  SimulatorParameters p = test::smallPictures(320, 240, 277);
   p.path.rate = kRate;
   p.path.speed = 20;
   p.path.start_x = -40;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/small_pictures.h"
 #include "uav_landing/simulator/sensor.h"
 
 namespace uav_landing {
@@ -11,14 +12,7 @@ namespace {
 
 /// Two seconds with small pictures.
 SimulatorParameters smallApproach() {
-  SimulatorParameters p;
-  p.image.width = 160;
-  p.image.height = 120;
-  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
-    camera->fx = camera->fy = 138;
-    camera->cx = 79.5;
-    camera->cy = 59.5;
-  }
+  SimulatorParameters p = test::smallPictures(160, 120, 138);
   p.path.duration = 2;
   p.path.rate = 10;
   return p;

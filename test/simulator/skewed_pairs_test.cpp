@@ -2,6 +2,7 @@
 // not.
 #include <gtest/gtest.h>
 
+#include "support/small_pictures.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -12,14 +13,7 @@ constexpr double kTick = 0.005;          // s, between the simulated pictures
 constexpr int kTicks = 10, kPairs = 36;  // of a pair, and how many
 
 SimulatorParameters approach() {
-  SimulatorParameters p;
-  p.image.width = 320;
-  p.image.height = 240;
-  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
-    camera->fx = camera->fy = 277;
-    camera->cx = 159.5;
-    camera->cy = 119.5;
-  }
+  SimulatorParameters p = test::smallPictures(320, 240, 277);
   p.path.rate = 1 / kTick;
   p.path.speed = 20;
   p.path.start_x = -60;
