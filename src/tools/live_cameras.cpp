@@ -6,6 +6,7 @@
 #include <sensor_msgs/image_encodings.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "stereo_bag_writer.h"
@@ -15,7 +16,20 @@ namespace {
 
 const ros::Duration kTick(0.01);  // of the clock
 constexpr uint32_t kQueue = 10;
-constexpr double kPatience = 600;  // s, until somebody subscribes
+constexpr double kPatience = 600;           // s, until somebody subscribes
+constexpr double kConnectionPatience = 10;  // s, until all that subscribe are connected
+
+/// How many nodes the master knows to subscribe each topic; nothing when it does not answer.
+std::map<std::string, uint32_t> countSubscribers() {
+  std::map<std::string, uint32_t> counts;
+  XmlRpc::XmlRpcValue request, response, state;
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false)) return counts;
+  XmlRpc::XmlRpcValue& subscribers = state[1];  // after the publishers
+  for (int i = 0; i < subscribers.size(); ++i)
+    counts[subscribers[i][0]] = static_cast<uint32_t>(subscribers[i][1].size());
+  return counts;
+}
 
 }  // namespace
 
@@ -37,18 +51,37 @@ LiveCameras::Camera LiveCameras::advertise(const std::string& topic, const std::
   return camera;
 }
 
-bool LiveCameras::waitForSubscribers(const ros::Time& start) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
-  while (ros::ok()) {
-    const bool seen = left_.image.getNumSubscribers() > 0 && right_.image.getNumSubscribers() > 0 &&
-                      left_.info.getNumSubscribers() > 0 && right_.info.getNumSubscribers() > 0;
-    if (seen) return true;
-    if (ros::WallTime::now() > deadline)
-      throw std::runtime_error("nobody has subscribed the cameras for 10 minutes");
-    setClock(start);
-    ros::WallDuration(kTick.toSec()).sleep();
+bool LiveCameras::seen() const {
+  return left_.image.getNumSubscribers() > 0 && right_.image.getNumSubscribers() > 0 &&
+         left_.info.getNumSubscribers() > 0 && right_.info.getNumSubscribers() > 0;
+}
+
+bool LiveCameras::allConnected() const {
+  const std::map<std::string, uint32_t> registered = countSubscribers();
+  for (const ros::Publisher& topic : {left_.image, left_.info, right_.image, right_.info, truth_, clock_}) {
+    const auto found = registered.find(topic.getTopic());
+    if (found != registered.end() && topic.getNumSubscribers() < found->second) return false;
   }
-  return false;
+  return true;
+}
+
+bool LiveCameras::waitForSubscribers(const ros::Time& start) {
+  const auto waitFor = [&](double patience, auto&& condition) {
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(patience);
+    while (ros::ok() && ros::WallTime::now() < deadline) {
+      if (condition()) return true;
+      setClock(start);
+      ros::WallDuration(kTick.toSec()).sleep();
+    }
+    return false;
+  };
+  if (!waitFor(kPatience, [&] { return seen(); })) {
+    if (!ros::ok()) return false;
+    throw std::runtime_error("nobody has subscribed the cameras for 10 minutes");
+  }
+  if (!waitFor(kConnectionPatience, [&] { return allConnected(); }))
+    ROS_WARN("not all subscribers of the cameras, the truth and the clock are connected: starting without");
+  return ros::ok();
 }
 
 bool LiveCameras::publish(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right,

@@ -21,8 +21,9 @@ class LiveCameras {
   LiveCameras(const std::string& camera, const sensor_msgs::CameraInfo& left,
               const sensor_msgs::CameraInfo& right, double speed);
 
-  /// Until both cameras have a subscriber; the clock stands at start. False when ROS was shut down;
-  /// throws when nobody subscribes for ten minutes.
+  /// Until both cameras have a subscriber, and all that the master knows to subscribe one of the topics are
+  /// connected, so that nobody misses the first pairs; for those ten seconds at most, as one may have died.
+  /// The clock stands at start. False when ROS was shut down; throws when nobody subscribes for ten minutes.
   bool waitForSubscribers(const ros::Time& start);
   /// Puts the clock forward.
   void setClock(const ros::Time& now);
@@ -38,6 +39,8 @@ class LiveCameras {
                    const sensor_msgs::CameraInfo& calibration);
   static void publish(Camera& camera, const ros::Time& stamp, const cv::Mat& image);
   bool runClock(const ros::Time& until);
+  bool seen() const;
+  bool allConnected() const;
 
   const double speed_;
   ros::NodeHandle handle_;

@@ -1,28 +1,57 @@
 #!/usr/bin/python3
 """simulate.launch: cameras that run, a clock that never goes ahead of them, and an estimate that agrees with the truth."""
 
+import signal
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+import rosbag
+import rosgraph
 import rospy
 import yaml
-from launch_test import SOURCE_DIR, Listener, eventually, launch_file
+from launch_test import SOURCE_DIR, Listener, Process, chain_is_connected, eventually, launch_file
 from rosgraph_msgs.msg import Clock
 from uav_landing.msg import LandingEstimate
 
+TRUTH = "/truth/landing_estimate"
+
+
+def is_recorded():
+    _, subscribers, _ = rosgraph.Master(rospy.get_name()).getSystemState()
+    return any(node.startswith("/record") for node in dict(subscribers).get(TRUTH, []))
+
+
+def write_approach(folder, duration):
+    config = yaml.safe_load((SOURCE_DIR / "config/simulator/lab.yaml").read_text())
+    config["path"].update(duration=duration)
+    file = Path(folder) / "approach.yaml"
+    file.write_text(yaml.safe_dump(config))
+    return file
+
 
 class SimulateTest(unittest.TestCase):
+    def test_who_is_slow_to_connect_misses_nothing(self):
+        clock, truth = Listener("/clock", Clock), Listener(TRUTH, LandingEstimate)
+        with tempfile.TemporaryDirectory() as folder:
+            bag = Path(folder) / "truth.bag"
+            with Process("rosrun", "rosbag", "record", "-O", bag, TRUTH) as record:
+                self.assertTrue(eventually(is_recorded), record.text())
+                record.process.send_signal(signal.SIGSTOP)
+                with launch_file("simulate.launch", f"simulation:={write_approach(folder, 2)}", "loop:=false") as launched:
+                    self.assertTrue(eventually(chain_is_connected), launched.text())
+                    ticks = len(clock.all())
+                    self.assertTrue(eventually(lambda: len(clock.all()) > ticks + 100), launched.text())
+                    record.process.send_signal(signal.SIGCONT)
+                    self.assertTrue(eventually(lambda: len(truth.all()) > 10), launched.text())
+            self.assertEqual(next(rosbag.Bag(str(bag)).read_messages())[1].header.stamp, rospy.Time(100))
+
     def test_estimate_agrees_with_the_truth_and_the_clock_goes_on(self):
-        clock, truth = Listener("/clock", Clock), Listener("/truth/landing_estimate", LandingEstimate)
+        clock, truth = Listener("/clock", Clock), Listener(TRUTH, LandingEstimate)
         estimates = Listener("/uav_landing/landing_estimate", LandingEstimate)
         with tempfile.TemporaryDirectory() as folder:
-            config = yaml.safe_load((SOURCE_DIR / "config/simulator/lab.yaml").read_text())
-            config["path"].update(duration=3)
-            file = Path(folder) / "approach.yaml"
-            file.write_text(yaml.safe_dump(config))
-            with launch_file("simulate.launch", f"simulation:={file}", "loop:=true") as launched:
+            with launch_file("simulate.launch", f"simulation:={write_approach(folder, 3)}", "loop:=true") as launched:
                 # Into the second round, which goes on in time.
                 self.assertTrue(eventually(lambda: len(truth.all()) > 40), launched.text())
                 last = truth.all()[39].header.stamp
