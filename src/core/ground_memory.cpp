@@ -60,8 +60,9 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, doub
   if (gap_ && !wrong && T > 0) closeGap(R.transpose() * t / T, path_time_ / steps_);
   gap_.reset();
   coasts_ = 0;
-  // As long as can be believed: a speed that did change is after some pairs.
-  path_ = kPathKept * before + (wrong ? Eigen::Vector3d(longest * t.normalized()) : t);
+  // As long as can be believed: a speed that did change is after some pairs. The direction of a step that
+  // cannot be says nothing.
+  path_ = kPathKept * before + (wrong ? longest * usual.normalized() : t);
   path_time_ = kPathKept * path_time_ + T;
   steps_ = kPathKept * steps_ + 1;
   carry(patches_, R, step, 0, 0);

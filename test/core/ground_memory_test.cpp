@@ -132,6 +132,22 @@ TEST(GroundMemory, TakesTheUsualStepForOneThatCannotBe) {
   EXPECT_GT(known, 30);
 }
 
+TEST(GroundMemory, DoesNotCoastWhereAStepThatCannotBeWent) {
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  int known = 0;
+  const auto jump = [&](double x, double z, GroundMemory memory) {
+    if (x < 24) return;
+    memory.move(Eigen::Matrix3d::Identity(), -z * down, kPeriod);
+    memory.coast(Eigen::Matrix3d::Identity(), 0, kPeriod);
+    ++known;
+    ASSERT_TRUE(memory.below(down));
+    // One usual step, and one that is longer, as the speed may have changed, but goes the same way.
+    EXPECT_NEAR(memory.below(down)->height, z - 2.5 / 20, 1.0 / 20) << "sinks as in the pairs before";
+  };
+  flyMemory([](double) { return 0; }, jump);
+  EXPECT_GT(known, 30);
+}
+
 TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
   const StereoRig rig = makeRig();
   const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);

@@ -199,6 +199,35 @@ TEST_F(ForeignMessages, AStepThatTheCameraDidNotTakeIsForgottenWithinASecond) {
   }
 }
 
+TEST_F(ForeignMessages, AStepThatClaimsToKnowNothingDoesNotLiftTheGroundThatIsRemembered) {
+  const KalmanHeightStage stage = settled();
+  const ApproachAngle usual_approach = messages_.approach;
+  ApproachAngle& approach = messages_.approach;
+  for (const double way : {-0.15, -0.05, 0.05, 0.15}) {  // of the height; the whole step has 0.06
+    SCOPED_TRACE(way);
+    approach = usual_approach;
+    approach.step.translation_over_height[1] += way;
+    approach.step.covariance[6 * 4 + 4] = 1;
+    KalmanHeightStage spoiled = stage, usual = stage;
+    spoiled.process(toResult(messages_.stereo), toResult(approach));
+    usual.process(toResult(messages_.stereo), toResult(usual_approach));
+    expectProtectionAsUsual(spoiled, usual);
+  }
+}
+
+TEST_F(ForeignMessages, ABendOfOnePairDoesNotBendTheRig) {
+  const KalmanHeightStage stage = settled();
+  rememberTheUsual(stage);
+  for (const int axis : {0, 2}) {
+    for (const double angle : {-0.09, 0.004, 0.02}) {
+      SCOPED_TRACE(testing::Message() << axis << ": " << angle << " rad");
+      StereoDepth bent = messages_.stereo;
+      bent.vertical_rotation[axis] += angle;
+      expectRecovery(stage, bent, messages_.approach);
+    }
+  }
+}
+
 TEST_F(ForeignMessages, ATiltThatNoStepContradictsDoesNotTiltTheGroundThatIsRemembered) {
   const KalmanHeightStage stage = settled();
   const ApproachAngle healthy_approach = messages_.approach;
