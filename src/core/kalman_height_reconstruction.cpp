@@ -208,7 +208,7 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
                                  Reconstruction& reconstruction) {
   rig_rotation_.advance(stereo.stamp);
   rig_rotation_.setPrior(stereo.disparity_bias_stddev);
-  rig_rotation_.updateVertical(stereo.vertical_rotation);
+  if (!rig_change_.doubts(stereo.vertical_rotation)) rig_rotation_.updateVertical(stereo.vertical_rotation);
   // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
   GroundPlane without = reconstruction.plane;
   without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);

@@ -51,6 +51,11 @@ std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measu
   return mean_.compare(measured);
 }
 
+bool RigChange::doubts(const RigRotation& measured) const {
+  const std::optional<Innovation> off = compare(measured);
+  return off && off->difference.norm() > kSmall && other_.learned < kSettled;
+}
+
 bool RigChange::settled() const { return !anew_ || mean_.learned >= kSettled; }
 
 void RigChange::learnOther(double T, const RigRotation& measured) {

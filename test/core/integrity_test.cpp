@@ -258,6 +258,18 @@ TEST(RigChange, ASmallBendIsTheRigsAfterASecondAndALargeOneAfterFour) {
   EXPECT_NEAR(secondsUntilKnown(1), 4, 0.11);
 }
 
+TEST(RigChange, DoubtsALargeBendUntilItHasStayedForASecond) {
+  RigChange change;
+  EXPECT_FALSE(change.doubts(rotation(1, 0))) << "nothing is known before";
+  for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
+  EXPECT_FALSE(change.doubts(rotation(0.05, 0)));
+  EXPECT_FALSE(change.doubts({})) << "not measured";
+  double waited = 0;
+  for (; change.doubts(rotation(0, -0.3)) && waited < 10; waited += 0.05)
+    change.learn(0.05, rotation(0, -0.3), false);
+  EXPECT_NEAR(waited, 1, 0.06);
+}
+
 TEST(RigChange, ASmallRotationThatChangesIsNotTheRigs) {
   RigChange change;
   for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
