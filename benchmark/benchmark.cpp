@@ -19,7 +19,7 @@
 #include "resources.h"
 #include "sequences.h"
 #include "times.h"
-#include "uav_landing/parameter_file.h"
+#include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/pipeline.h"
 
 namespace {

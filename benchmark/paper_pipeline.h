@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/rectification.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 namespace benchmark {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "uav_landing/rectification.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 namespace benchmark {

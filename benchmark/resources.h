@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "sequences.h"
-#include "uav_landing/parameters.h"
+#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 namespace benchmark {

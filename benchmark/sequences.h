@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/calibration.h"
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 namespace benchmark {

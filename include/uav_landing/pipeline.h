@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "uav_landing/approach_angle_stage.h"
-#include "uav_landing/kalman_height_stage.h"
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/stages/approach_angle_stage.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {
 

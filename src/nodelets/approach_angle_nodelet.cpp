@@ -9,7 +9,7 @@
 #include "pairs_in_flight.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
-#include "uav_landing/approach_angle_stage.h"
+#include "uav_landing/stages/approach_angle_stage.h"
 
 namespace uav_landing {
 

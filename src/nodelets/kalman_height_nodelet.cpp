@@ -19,7 +19,7 @@
 #include "rig_watch.h"
 #include "runway_path.h"
 #include "stage_nodelet.h"
-#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
 

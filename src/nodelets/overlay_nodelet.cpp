@@ -10,8 +10,8 @@
 #include "reconfigure_server.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
-#include "uav_landing/overlay.h"
-#include "uav_landing/timings.h"
+#include "uav_landing/base/timings.h"
+#include "uav_landing/overlay/overlay.h"
 
 namespace uav_landing {
 

@@ -14,8 +14,8 @@
 #include "pairing.h"
 #include "pairs_in_flight.h"
 #include "stage_nodelet.h"
-#include "uav_landing/rectification.h"
-#include "uav_landing/timings.h"
+#include "uav_landing/base/timings.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 

@@ -9,7 +9,7 @@
 #include "rig_watch.h"
 #include "stage_nodelet.h"
 #include "time_difference.h"
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "uav_landing/stage_results.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

@@ -2,7 +2,7 @@
 
 #include <sensor_msgs/CameraInfo.h>
 
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 

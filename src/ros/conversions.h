@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "uav_landing/stage_results.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

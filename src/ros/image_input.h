@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "rig_frames.h"
-#include "uav_landing/imu_buffer.h"
+#include "uav_landing/motion/imu_buffer.h"
 
 namespace uav_landing {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/stamp_order.h"
+#include "uav_landing/integrity/stamp_order.h"
 
 namespace uav_landing {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "node_parameters.h"
-#include "uav_landing/stage_results.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

@@ -3,7 +3,7 @@
 #include <ros/param.h>
 
 #include "autopilot_messages.h"
-#include "uav_landing/section_loader.h"
+#include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "uav_landing/parameter_file.h"
+#include "uav_landing/parameters/parameter_file.h"
 
 namespace uav_landing {
 

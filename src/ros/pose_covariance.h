@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "uav_landing/ground_plane.h"
-#include "uav_landing/stage_results.h"
+#include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

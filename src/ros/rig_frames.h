@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
 
 namespace uav_landing {
 

@@ -6,7 +6,7 @@
 
 #include "camera_info.h"
 #include "image_input.h"
-#include "uav_landing/rectification.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "uav_landing/stage_results.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

@@ -5,8 +5,8 @@
 
 #include "pending_file.h"
 #include "uav_landing/pipeline.h"
+#include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/parameters.h"
-#include "uav_landing/truth.h"
 
 namespace uav_landing {
 

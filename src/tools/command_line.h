@@ -7,7 +7,7 @@
 #include <regex>
 #include <string>
 
-#include "uav_landing/parameter_file.h"
+#include "uav_landing/parameters/parameter_file.h"
 
 namespace uav_landing {
 

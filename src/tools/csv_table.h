@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
 
 namespace uav_landing {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/failure.h"
-#include "uav_landing/truth.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/results/truth.h"
 
 namespace uav_landing {
 

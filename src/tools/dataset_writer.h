@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "uav_landing/failure.h"
-#include "uav_landing/truth.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/results/truth.h"
 
 namespace uav_landing {
 

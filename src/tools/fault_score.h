@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "uav_landing/stage_results.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

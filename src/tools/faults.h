@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/approach_simulator.h"
-#include "uav_landing/truth.h"
 
 namespace uav_landing {
 

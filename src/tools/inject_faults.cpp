@@ -19,10 +19,10 @@
 #include "pending_file.h"
 #include "progress_bar.h"
 #include "random_approach.h"
+#include "uav_landing/integrity/stamp_order.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/attitude.h"
 #include "uav_landing/simulator/ground_profile.h"
-#include "uav_landing/stamp_order.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "uav_landing/truth.h"
+#include "uav_landing/results/truth.h"
 
 namespace uav_landing {
 

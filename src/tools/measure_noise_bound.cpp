@@ -14,7 +14,7 @@
 #include "progress_bar.h"
 #include "uav_landing/simulator/renderer.h"
 #include "uav_landing/simulator/sensor.h"
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace {
 

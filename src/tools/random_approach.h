@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "uav_landing/parameters.h"
+#include "uav_landing/parameters/parameters.h"
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "decimal_time.h"
-#include "uav_landing/overlay.h"
+#include "uav_landing/overlay/overlay.h"
 
 namespace uav_landing {
 namespace {

@@ -10,7 +10,7 @@
 #include "command_line.h"
 #include "progress_bar.h"
 #include "random_approach.h"
-#include "uav_landing/imu_buffer.h"
+#include "uav_landing/motion/imu_buffer.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
 namespace {

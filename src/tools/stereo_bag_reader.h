@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pairing.h"
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
 
 namespace uav_landing {
 

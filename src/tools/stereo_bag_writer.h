@@ -8,9 +8,9 @@
 #include <string>
 
 #include "uav_landing/LandingEstimate.h"
-#include "uav_landing/failure.h"
-#include "uav_landing/imu_buffer.h"
-#include "uav_landing/truth.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/motion/imu_buffer.h"
+#include "uav_landing/results/truth.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "uav_landing/approach_angle_stage.h"
+#include "uav_landing/stages/approach_angle_stage.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "support/bad_configurations.h"
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 namespace {

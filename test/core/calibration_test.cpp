@@ -1,4 +1,4 @@
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "cubic_window.h"
+#include "image/cubic_window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/ground_memory.h"
+#include "uav_landing/integrity/ground_memory.h"
 
 #include <gtest/gtest.h>
 

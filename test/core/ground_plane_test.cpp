@@ -1,4 +1,4 @@
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 #include <gtest/gtest.h>
 

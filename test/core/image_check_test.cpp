@@ -1,4 +1,4 @@
-#include "uav_landing/image_check.h"
+#include "uav_landing/image/image_check.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "support/ground_renderer.h"
-#include "uav_landing/ground_plane.h"
-#include "uav_landing/match_image.h"
+#include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/image/match_image.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/imu_buffer.h"
+#include "uav_landing/motion/imu_buffer.h"
 
 #include <gtest/gtest.h>
 

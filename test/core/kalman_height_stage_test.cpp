@@ -1,4 +1,4 @@
-#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/stages/kalman_height_stage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mask_bounds.h"
+#include "image/mask_bounds.h"
 
 #include <gtest/gtest.h>
 

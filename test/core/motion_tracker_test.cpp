@@ -1,4 +1,4 @@
-#include "uav_landing/motion_tracker.h"
+#include "uav_landing/motion/motion_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/counting_allocator.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/corners.h"
+#include "uav_landing/image/corners.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "order_statistic.h"
+#include "base/order_statistic.h"
 
 #include <gtest/gtest.h>
 

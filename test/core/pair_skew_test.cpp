@@ -1,4 +1,4 @@
-#include "pair_skew.h"
+#include "rig/pair_skew.h"
 
 #include <gtest/gtest.h>
 

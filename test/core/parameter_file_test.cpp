@@ -1,4 +1,4 @@
-#include "uav_landing/parameter_file.h"
+#include "uav_landing/parameters/parameter_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/patch_matching.h"
+#include "uav_landing/image/patch_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "support/random_texture.h"
-#include "uav_landing/match_image.h"
+#include "uav_landing/image/match_image.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/path_angle_filter.h"
+#include "uav_landing/motion/path_angle_filter.h"
 
 #include <gtest/gtest.h>
 

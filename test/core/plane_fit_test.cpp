@@ -1,4 +1,4 @@
-#include "uav_landing/plane_fit.h"
+#include "uav_landing/stereo/plane_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/plane_consensus.h"
-#include "uav_landing/surface_variance.h"
+#include "uav_landing/stereo/plane_consensus.h"
+#include "uav_landing/stereo/surface_variance.h"
 
 namespace uav_landing {
 namespace {

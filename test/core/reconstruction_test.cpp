@@ -1,4 +1,4 @@
-#include "uav_landing/reconstruction.h"
+#include "uav_landing/height/reconstruction.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "support/rigs.h"
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/rectification.h"
+#include "uav_landing/image/rectification.h"
 
 #include <gtest/gtest.h>
 

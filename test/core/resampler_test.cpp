@@ -1,4 +1,4 @@
-#include "resampler.h"
+#include "image/resampler.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/rig_rotation_filter.h"
+#include "uav_landing/rig/rig_rotation_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway_direction.h"
+#include "uav_landing/runway/runway_direction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway_edges.h"
+#include "uav_landing/runway/runway_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway_tracker.h"
+#include "uav_landing/runway/runway_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/ground_renderer.h"
-#include "uav_landing/runway_threshold.h"
+#include "uav_landing/runway/runway_threshold.h"
 
 namespace uav_landing {
 namespace {

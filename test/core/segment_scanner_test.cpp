@@ -1,4 +1,4 @@
-#include "segment_scanner.h"
+#include "lines/segment_scanner.h"
 
 #include <gtest/gtest.h>
 

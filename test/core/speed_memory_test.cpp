@@ -1,11 +1,11 @@
-#include "uav_landing/speed_memory.h"
+#include "uav_landing/integrity/speed_memory.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "support/rigs.h"
-#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/stamp_order.h"
+#include "uav_landing/integrity/stamp_order.h"
 
 #include <gtest/gtest.h>
 

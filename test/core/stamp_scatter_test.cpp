@@ -1,4 +1,4 @@
-#include "uav_landing/stamp_scatter.h"
+#include "uav_landing/integrity/stamp_scatter.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "support/rigs.h"
-#include "uav_landing/kalman_height_stage.h"
+#include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
 namespace {

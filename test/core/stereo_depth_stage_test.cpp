@@ -1,4 +1,4 @@
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "support/ground_renderer.h"
-#include "uav_landing/image_check.h"
+#include "uav_landing/image/image_check.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "stripe_line.h"
+#include "lines/stripe_line.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "uav_landing/parameters.h"
+#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/surface_profile.h"
+#include "uav_landing/stereo/surface_profile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/temporal_matching.h"
+#include "uav_landing/motion/temporal_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "support/ground_renderer.h"
-#include "uav_landing/corners.h"
+#include "uav_landing/image/corners.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/vanishing_point.h"
+#include "uav_landing/lines/vanishing_point.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 namespace {

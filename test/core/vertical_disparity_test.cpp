@@ -1,4 +1,4 @@
-#include "uav_landing/vertical_disparity.h"
+#include "uav_landing/stereo/vertical_disparity.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/ground_renderer.h"
-#include "uav_landing/rig_rotation.h"
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/rig/rig_rotation.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {
 namespace {

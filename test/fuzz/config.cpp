@@ -1,5 +1,5 @@
 #include "fuzz/harnesses.h"
-#include "uav_landing/parameter_file.h"
+#include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/simulator/parameter_file.h"
 
 namespace uav_landing {

@@ -5,7 +5,7 @@
 #include "fuzz/harnesses.h"
 #include "fuzz/input.h"
 #include "image_input.h"
-#include "uav_landing/rectification.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 namespace fuzz {

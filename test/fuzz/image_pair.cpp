@@ -4,7 +4,7 @@
 #include "fuzz/harnesses.h"
 #include "fuzz/input.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/overlay.h"
+#include "uav_landing/overlay/overlay.h"
 #include "uav_landing/pipeline.h"
 
 namespace uav_landing {

@@ -9,8 +9,8 @@
 #include "ros/approach_messages.h"
 #include "ros/message_fields.h"
 #include "runway_path.h"
-#include "uav_landing/kalman_height_stage.h"
-#include "uav_landing/overlay.h"
+#include "uav_landing/overlay/overlay.h"
+#include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
 namespace fuzz {

@@ -1,4 +1,4 @@
-#include "uav_landing/overlay.h"
+#include "uav_landing/overlay/overlay.h"
 
 #include <gtest/gtest.h>
 

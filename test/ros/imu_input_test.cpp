@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 namespace {

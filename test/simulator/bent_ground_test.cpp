@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "uav_landing/simulator/approach_simulator.h"
-#include "uav_landing/stereo_depth_stage.h"
+#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "simulator/lens.h"
-#include "uav_landing/ground_plane.h"
-#include "uav_landing/rectification.h"
+#include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 namespace {

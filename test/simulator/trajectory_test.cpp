@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "simulator/lens.h"
-#include "uav_landing/ground_plane.h"
+#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 namespace {

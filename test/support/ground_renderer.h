@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "support/random_texture.h"
-#include "uav_landing/rectification.h"
-#include "uav_landing/stage_results.h"
+#include "uav_landing/image/rectification.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 namespace test {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "uav_landing/calibration.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 namespace test {

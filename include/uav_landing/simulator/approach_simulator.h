@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
+#include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/camera_rig.h"
 #include "uav_landing/simulator/imu.h"
 #include "uav_landing/simulator/renderer.h"
 #include "uav_landing/simulator/trajectory.h"
-#include "uav_landing/truth.h"
 
 namespace uav_landing {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "uav_landing/calibration.h"
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {

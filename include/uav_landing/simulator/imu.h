@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "uav_landing/imu_buffer.h"
+#include "uav_landing/motion/imu_buffer.h"
 #include "uav_landing/simulator/parameters.h"
 #include "uav_landing/simulator/trajectory.h"
 

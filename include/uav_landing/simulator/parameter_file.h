@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "uav_landing/failure.h"
+#include "uav_landing/base/failure.h"
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/attitude.h"
 #include "uav_landing/simulator/parameters.h"
-#include "uav_landing/truth.h"
 
 namespace uav_landing {
 

@@ -1,6 +1,6 @@
 #include "uav_landing/simulator/parameter_file.h"
 
-#include "parameter_sections.h"
+#include "parameters/parameter_sections.h"
 
 namespace uav_landing {
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+#include "uav_landing/geometry/calibration.h"
+
+namespace uav_landing {
+
+/// The ground as seen from the rectified left camera: g = n / h with n the unit normal pointing down and h
+/// the height. A ground point X has g.X = 1; a ground pixel has the disparity d = f b g.r, linear in (u, v).
+/// Three numbers are height, pitch and roll at once.
+struct GroundPlane {
+  Eigen::Vector3d g = Eigen::Vector3d::Constant(std::nan(""));           ///< 1/m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::nan(""));  ///< of g, 1/m^2
+
+  bool valid() const { return g.allFinite() && g.norm() > 0; }
+  double height() const { return 1.0 / g.norm(); }
+  Eigen::Vector3d normal() const { return g.normalized(); }
+  double heightVariance() const;             ///< m^2, first order
+  Eigen::Matrix3d normalCovariance() const;  ///< of n, rank 2
+  double inverseDepth(const Eigen::Vector3d& ray) const { return g.dot(ray); }
+  double disparity(const StereoRig& rig, double u, double v) const { return rig.fb() * g.dot(rig.ray(u, v)); }
+};
+
+/// Pitch = -asin(n_z): elevation of the optical axis above the plane, looking down is negative. Radians.
+double pitchOf(const Eigen::Vector3d& normal);
+/// Roll = atan2(n_x, n_y): right side down is positive. Radians.
+double rollOf(const Eigen::Vector3d& normal);
+/// First-order variances of the two from the covariance of the normal. rad^2.
+double pitchVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
+double rollVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
+/// Normal of a camera with this attitude: inverse of pitchOf and rollOf.
+Eigen::Vector3d normalFromPitchRoll(double pitch, double roll);
+/// Horizon l = K^-T n: pixels (u, v) with l.[u v 1] = 0 have disparity zero.
+Eigen::Vector3d horizonLine(const StereoRig& rig, const Eigen::Vector3d& normal);
+
+/// Adds the independent knowledge that the unit direction p lies in the ground plane (p.g = 0), as a
+/// vanishing point gives it, to a plane measured by stereo. Scalar Kalman update in Joseph form;
+/// p_covariance is that of p (rad^2, 3x3, rank 2). The test ratio (squared innovation over variance) is
+/// returned through nis; beyond max_nis the plane comes back unchanged.
+GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& p,
+                               const Eigen::Matrix3d& p_covariance, double max_nis, double* nis);
+
+/// A direction that lies in the ground plane.
+struct GroundDirection {
+  Eigen::Vector3d direction;   ///< unit
+  Eigen::Matrix3d covariance;  ///< rad^2
+};
+/// What a normal known from elsewhere says as two directions in the ground plane: forward (the optical axis
+/// above the ground) and to the left. covariance: of the normal, rad^2.
+std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
+                                               const Eigen::Matrix3d& covariance);
+
+/// Adds a normal known independently of stereo, as an attitude sensor gives it, in the same way. nis: the
+/// larger test ratio of its two directions; beyond max_nis the plane comes back unchanged.
+GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,
+                       const Eigen::Matrix3d& covariance, double max_nis, double* nis);
+
+/// Yaw of the camera: angle of the optical axis from the landing direction p about the up axis, left
+/// positive. Radians.
+double yawOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& landing_direction);
+
+}  // namespace uav_landing

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "uav_landing/geometry/calibration.h"
+
+namespace uav_landing {
+
+class Resampler;
+
+/// The paper's pre-process: turns a raw image into the rectified one by precomputed fixed-point maps.
+/// Honours R and P even when D is zero, and binning and ROI of the camera_info.
+class Rectifier {
+ public:
+  /// Maps and mask for one camera, or what is wrong with its calibration.
+  static Expected<Rectifier> create(const CameraCalibration& calibration);
+
+  /// raw: mono8 of calibration.imageSize(). out: mono8 of the same size, memory is reused.
+  /// Where the raw image has nothing to give, out is 0 (see mask()).
+  Failure rectify(const cv::Mat& raw, cv::Mat& out) const;
+
+  /// 255 where the rectified image has all its source pixels, 0 elsewhere; mono8, size of the image.
+  const cv::Mat& mask() const { return mask_; }
+  const CameraCalibration& calibration() const { return calibration_; }
+
+ private:
+  CameraCalibration calibration_;
+  cv::Mat mask_;
+  std::shared_ptr<const Resampler> resampler_;  // none where there is nothing to do but copy
+};
+
+/// What the stages behind rectification know of the cameras: the rig and where the rectified images have
+/// picture (mono8, 255 inside). The one place that derives both from the two camera_infos.
+struct RigModel {
+  StereoRig rig;
+  cv::Mat left_mask, right_mask;
+};
+Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right);
+
+}  // namespace uav_landing

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "uav_landing/base/failure.h"
+#include "uav_landing/lines/line_segments.h"
+
+namespace uav_landing {
+
+/// Vanishing point of the runway as a direction, so that none is special when it is far away.
+struct VanishingPoint {
+  Eigen::Vector3d direction;   ///< unit, camera frame, z > 0
+  Eigen::Matrix3d covariance;  ///< rad^2, rank 2 (direction is in its null space)
+  std::vector<char> inliers;   ///< per line: 1 when it passes through the point
+  int inlier_count = 0;
+};
+
+/// Stage 4: RANSAC over pairs of lines (until those of the best point must have been drawn often), then least
+/// squares on the sphere over the inliers (great circles K' l, weighted by the lines' own uncertainty, scaled
+/// by the residuals). Only directions within max_yaw and max_elevation of the optical axis count as along the
+/// runway. K: 3x3 of the rectified view. Deterministic: the random numbers have a fixed seed. prior_normal:
+/// ground normal known from elsewhere, or null; then the direction must lie within 5 degrees of the ground.
+/// Fails when too few lines meet, when as many lines of random direction would, when the lines are parallel
+/// in the image within 3 degrees (all from one edge), and when the direction is uncertain by more than 5
+/// degrees.
+Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                            const ApproachAngleParameters& parameters,
+                                            const Eigen::Vector3d* prior_normal = nullptr);
+
+/// The same fit to lines that are known to be along the runway (members: 1), at least two. Fails as above,
+/// but does not ask whether they could meet by chance.
+Expected<VanishingPoint> fitVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                           const ApproachAngleParameters& parameters,
+                                           const std::vector<char>& members,
+                                           const Eigen::Vector3d* prior_normal = nullptr);
+
+/// Both views see the same direction: their mean weighted by covariance. The runway's own slope and curve
+/// (runway_straightness, rad) is added once, as it is common to both. Either may be missing. Views that
+/// disagree enlarge the covariance, and beyond 1 degree (and 5 sigma) nothing is claimed. The inliers of the
+/// result are empty: they belong to one view each; inlier_count is that of both.
+Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& left,
+                                                const Expected<VanishingPoint>& right,
+                                                double runway_straightness);
+
+/// Stage 5, the paper's vanishing line: ground normal of a rig that is level but for roll. The vanishing
+/// line runs through the vanishing point with the slope of the given roll (0: the paper's assumption).
+struct GroundNormal {
+  Eigen::Vector3d n;
+  Eigen::Matrix3d covariance;  ///< rad^2, rank 2: pitch from the vanishing point, roll from roll_stddev
+};
+GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev);
+
+}  // namespace uav_landing

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/image/match_image.h"
+#include "uav_landing/motion/ego_motion.h"
+
+namespace uav_landing {
+
+/// A corner of the image now with what is known of its depth (see TemporalMatch).
+struct TrackedCorner {
+  int u = 0, v = 0;
+  bool on_plane = true;
+  double inverse_depth = 0, inverse_depth_stddev = 0;
+};
+
+struct TemporalMatchOptions {
+  int window_radius = 5;
+  double min_zncc = 0.75;
+  int coarse_steps = 10;  ///< searched around the prediction at the coarse level; 0: the prediction is good
+};
+
+/// Stage 6's image velocity field: finds corners of the image now in the image then, with windows warped as
+/// the ground plane (unit normal n) and the predicted motion say. memory: a list that is no longer needed.
+std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
+                                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
+                                         const Eigen::Vector3d& normal, const CameraMotion& predicted,
+                                         const TemporalMatchOptions& options,
+                                         std::vector<TemporalMatch> memory = {});
+
+}  // namespace uav_landing

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+// Pictures of what the stages found, for people. Pure functions: images are rectified mono8 of the rig's
+// size, the pictures are new BGR8 images. Results that were not found (NaN, empty) are left out.
+
+/// Factor by which a picture of this width is enlarged: the parameter, or for 0 the smallest that makes it at
+/// least 640 pixels wide.
+int overlayScale(int width, const OverlayParameters& parameters);
+
+/// The left image with lines (through the vanishing point bright, others dim), vanishing point, horizon of
+/// the stereo plane and of the fused ground normal, focus of expansion, matches coloured by disparity (those
+/// off the plane dim); below it a strip of instruments: height, sink rate, approach angle, attitude, status
+/// and reason. The picture proper is the top left (scale * size) part.
+cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepthResult& stereo,
+                    const ApproachAngleResult& approach, const LandingResult& landing,
+                    const OverlayParameters& parameters);
+
+/// One view's Hough lines alone (the paper's Fig. 4).
+cv::Mat drawLines(const cv::Mat& image, const ApproachAngleResult::View& view,
+                  const OverlayParameters& parameters);
+
+/// Harris corners in both views, left and right side by side, each match joined by a line (the paper's Fig.
+/// 5). The right view begins at column scale * width.
+cv::Mat drawMatches(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
+                    const StereoDepthResult& stereo, const OverlayParameters& parameters);
+
+}  // namespace uav_landing

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <initializer_list>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "uav_landing/base/failure.h"
+
+namespace uav_landing {
+
+/// "; did you mean X?" for the nearest of the names, or "" when none is near.
+std::string suggestName(const std::string& word, const std::vector<std::string>& names);
+
+/// Checks that a node is a map (or empty) with every key once. section: "" for the whole file.
+Failure checkMap(const YAML::Node& node, const std::string& section);
+
+/// The visitor (see parameters.h) that takes a parameter struct's values from one YAML map. Values that the
+/// map does not give stay; the first failure stays. text() is for plain strings.
+class SectionLoader {
+ public:
+  SectionLoader(const YAML::Node& node, std::string section) : node_(node), section_(std::move(section)) {}
+
+  template <class Number>
+  void number(const char* name, Number& value, double min, double max, const char* unit, const char*) {
+    Number given;
+    if (!read(name, std::is_integral<Number>::value ? "a whole number" : "a number", given)) return;
+    if (given >= min && given <= max) {
+      value = given;
+      return;
+    }
+    std::ostringstream problem;  // also for NaN
+    problem << given << " is out of range, expected " << min << " to " << max;
+    refuse(name, problem.str() + (*unit == '\0' ? "" : " ") + unit);
+  }
+
+  void flag(const char* name, bool& value, const char*) { read(name, "true or false", value); }
+
+  void text(const char* name, std::string& value, const char*) { read(name, "a word", value); }
+
+  template <class Enum>
+  void choice(const char* name, Enum& value, std::initializer_list<const char*> choices, const char*) {
+    std::string given, all;
+    if (!read(name, "a word", given)) return;
+    int index = 0;
+    for (const char* candidate : choices) {
+      if (given == candidate) {
+        value = static_cast<Enum>(index);
+        return;
+      }
+      all += std::string(index++ == 0 ? "" : " or ") + candidate;
+    }
+    refuse(name, "'" + given + "' is not a choice, expected " + all);
+  }
+
+  /// The first thing that was wrong, keys that no parameter asked for included.
+  Failure finish() const;
+
+ private:
+  /// True when the section gives this parameter and its type is right.
+  template <class T>
+  bool read(const char* name, const char* type, T& value) {
+    names_.emplace_back(name);
+    if (failure_ || !node_.IsMap()) return false;
+    const YAML::Node given = node_[name];
+    if (!given) return false;
+    if (given.IsScalar() && YAML::convert<T>::decode(given, value)) return true;
+    const std::string quoted = given.IsScalar() ? "'" + given.Scalar() + "'"
+                               : given.IsNull() ? "nothing"
+                                                : "a list or map";
+    refuse(name, quoted + " is not " + type);
+    return false;
+  }
+
+  void refuse(const std::string& name, const std::string& problem) {
+    failure_ = {Reason::kInputInvalid, section_ + "/" + name + ": " + problem};
+  }
+
+  const YAML::Node node_;  // const: operator[] of another node would add the missing keys
+  std::string section_;
+  std::vector<std::string> names_;
+  Failure failure_;
+};
+
+}  // namespace uav_landing

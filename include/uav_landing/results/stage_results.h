@@ -1,0 +1,174 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/results/attitude_prior.h"
+#include "uav_landing/results/consistency_test.h"
+
+namespace uav_landing {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Rotation of the right camera against its calibration, as a small rotation vector (see rig_rotation.h).
+struct RigRotation {
+  Eigen::Vector3d w = Eigen::Vector3d::Constant(kUnknown);           ///< rectified axes, rad
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2
+  int count = 0;                                                     ///< corners it was measured by
+
+  bool known() const { return w.allFinite() && covariance.allFinite(); }
+};
+
+/// Where the right camera is from the left one, against its calibration: at b (1, t.x, t.y), rectified axes
+/// (right, down, forward). Other than 0 for images that were not taken at the same time, or with a focal
+/// length that is not as calibrated.
+struct BaselineDirection {
+  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down, forward over the baseline, rad
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);  ///< rad^2
+
+  bool known() const { return t.allFinite() && covariance.allFinite(); }
+};
+
+/// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
+struct StereoDepthResult {
+  /// One matched corner. Coordinates in the rectified left image, pixels.
+  struct Point {
+    double u = kUnknown, v = kUnknown;
+    double disparity = kUnknown;         ///< pixels, (u_l - u_r) - (cx_l - cx_r)
+    double disparity_stddev = kUnknown;  ///< pixels, of the match itself
+    bool on_plane = false;               ///< agrees with the ground plane
+  };
+  double stamp = 0;  ///< seconds, of the left image
+  Failure failure;   ///< set when there is no plane
+  int corners = 0;   ///< corners looked for in the right image
+  std::vector<Point> points;
+  GroundPlane plane;
+  /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
+  /// 1/m^2.
+  Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
+  /// Tangent of the surface straight below the camera, for the height: the plane is that of the surface
+  /// ahead. Not known without direct refinement.
+  GroundPlane below;
+  /// Mean change of the surface's slope over distance, positive in a sag, 1/m, and its variance, 1/m^2;
+  /// unknown without direct refinement.
+  double curvature = kUnknown, curvature_variance = kUnknown;
+  double residual_stddev = kUnknown;   ///< of the points on the plane, pixels of disparity
+  double surface_variance = kUnknown;  ///< of the surface ahead about the plane, unbiased (may be < 0), m^2
+  bool from_search = false;            ///< found without a plane from the previous pair
+  double skew = 0;                     ///< stamp of right minus left image, seconds
+  /// What vertical disparities say of the rig, of this pair alone; random errors only.
+  RigRotation vertical_rotation;
+  /// What they say of the baseline, of this pair alone; with the errors that all pairs may have.
+  BaselineDirection baseline_direction;
+  /// Share of the corners matched along the rows that are found when they may move across the rows as well:
+  /// wrong matches mostly are not. Unknown where nothing was measured.
+  double row_agreement = kUnknown;
+  /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
+  double disparity_bias_stddev = 0;
+  /// Share of the image blocks over the ground that look alike in both images and lie on one plane; unknown
+  /// without direct refinement.
+  double photometric_agreement = kUnknown;
+  /// An image is the very one of the pair before, bit by bit: sensors have noise, a frozen driver has not.
+  bool left_repeated = false, right_repeated = false;
+};
+
+/// Result of the monocular branch (paper 2) for one pair. Mirrors ApproachAngle.msg.
+struct ApproachAngleResult {
+  struct Line {
+    Eigen::Vector2d a, b;  ///< end points, pixels of the rectified image
+    bool inlier = false;   ///< passes through the vanishing point
+  };
+  struct View {
+    std::vector<Line> lines;
+    Failure failure;
+    Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);   ///< unit, towards +z
+    Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2, rank 2
+  };
+  /// Camera motion over an interval that ends at this frame.
+  struct Motion {
+    Failure failure;
+    double duration = kUnknown;  ///< s
+    int matches = 0, inliers = 0;
+    /// Rotation vector w of R = exp(w): x_now = R (x_then - c) with c the movement, see t. rad.
+    Eigen::Vector3d rotation = Eigen::Vector3d::Constant(kUnknown);
+    /// Camera motion expressed in the current frame, over the current height: t / h.
+    Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
+    Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
+    double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
+    double angle_variance = kUnknown;  ///< rad^2, includes the normal's
+  };
+  /// Position over the runway, of this pair alone: frames before only tell which edges are the runway's.
+  struct Runway {
+    Failure failure;                                     ///< set when the centre line is not known
+    double y = kUnknown, y_variance = kUnknown;          ///< camera left of the centre line, over h
+    double width = kUnknown, width_variance = kUnknown;  ///< between the outermost edges, over h
+    Failure threshold_failure;                           ///< set when the threshold is not seen
+    double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
+    double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
+  };
+  double stamp = 0;
+  Failure failure;  ///< set when there is no approach angle
+  View left, right;
+  /// Vanishing point of the runway from both views, left frame. Independent of stereo.
+  Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  /// Ground normal from the vanishing points alone (level rig, roll variance large).
+  Eigen::Vector3d n_vp = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d n_vp_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  /// Ground normal fused from stereo and the vanishing points: what the angles here refer to.
+  Eigen::Vector3d n = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d n_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  Motion step;    ///< from the previous frame
+  Motion window;  ///< over up to angle_window seconds; its angle is the path's now (angle_smoothing)
+  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
+  Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
+  Runway runway;
+  /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
+  AttitudePrior imu;
+};
+
+enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
+const char* toString(Status status);
+
+/// The estimate for one pair. Mirrors LandingEstimate.msg. All of the left rectified camera.
+struct LandingResult {
+  double stamp = 0;
+  Status status = Status::kSearching;
+  Failure failure;  ///< why the status is not tracking, or why valid is false
+  bool height_valid = false;
+  bool angle_valid = false;
+  bool valid() const { return height_valid && angle_valid; }
+  double height = kUnknown, height_variance = kUnknown;          ///< filtered, m, m^2
+  double raw_height = kUnknown, raw_height_variance = kUnknown;  ///< measured on this pair alone
+  double points_height = kUnknown;  ///< eqs (4), (5) averaged over the points on the plane, m
+  double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< positive up
+  double approach_angle = kUnknown, approach_angle_variance = kUnknown;
+  double raw_approach_angle = kUnknown, raw_approach_angle_variance = kUnknown;
+  double pitch = kUnknown, pitch_variance = kUnknown;
+  double roll = kUnknown, roll_variance = kUnknown;
+  double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
+  double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
+  double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
+  double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
+  double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
+  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
+  Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
+  double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
+  bool rejected = false;                                           ///< the raw height failed the gate
+  int consecutive_rejections = 0;
+  int resets = 0;                             ///< filter resets since start
+  RigRotation rig_rotation;                   ///< unknown when rig_watch is off
+  double height_protection_level = kUnknown;  ///< m, see solution_separation.h
+  double height_alert_limit = kUnknown;       ///< m, what the protection level may be
+  std::string protection_source;              ///< what the protection level is because of
+  std::vector<TestResult> tests;              ///< of the sources against each other; empty when switched off
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+/// Watch on the rig: the right camera's rotation w against its calibration (rig_rotation.h) as a slow state.
+///
+/// State: w; the slope s of the runway's direction against the ground plane (p.n = s), which is what a
+/// vanishing point p is mostly wrong by and the same in every frame; the error c that lens residuals make in
+/// the rx and rz of vertical disparities. Measured by
+///   vertical disparities:  (rx, rz) + c    (ry's weak trace there looks like that of a lens: left out)
+///   vanishing direction:   h p.g = s + h p.A w,  with g the stereo plane and A its derivative by w.
+/// s and h p.A w are told apart by the change of h. An attitude sensor's normal measures in the same way by
+/// its two directions in the ground (levelDirections()), each with a slope of its own: that of the ground,
+/// and the sensor's slow error. Information form, with old measurements forgotten. Successive frames see the
+/// same texture and lines: all frames of a second count as one.
+///
+/// The prior of w is a Student t: a good calibration, seldom a bent rig. Its variance is found by expectation
+/// maximisation (Dempster, Laird, Rubin 1977) along the way.
+class RigRotationFilter {
+ public:
+  /// memory: s, after which a measurement counts 1/e.
+  RigRotationFilter(const StereoRig& rig, double memory);
+
+  /// Time of the pair that the next measurements are of, s; must not go back.
+  void advance(double stamp);
+  /// bias_stddev: 1 sigma of w at a good calibration, in pixels at the middle of the image.
+  void setPrior(double bias_stddev);
+  void updateVertical(const RigRotation& measured);
+
+  /// The plane with w taken out, and, jointly, w with what the vanishing direction says. plane: its
+  /// covariance without any error of w. A: planeByRotation(). direction: unit, covariance rad^2; NaN: none.
+  /// gate: sigmas, beyond which a direction does not turn the plane and counts less for w. The covariance
+  /// returned has w's share, which common() alone tells.
+  struct Corrected {
+    GroundPlane plane;
+    Eigen::Matrix3d common;  ///< share of the plane's covariance that is the same in every frame, 1/m^2
+    Eigen::Matrix3d kept;    ///< by which errors of the plane given are in the corrected one
+  };
+  /// level: normal of level ground from an attitude sensor, with the ground's slope in its covariance; null:
+  /// none.
+  Corrected correct(const GroundPlane& plane, const Eigen::Matrix3d& A, const Eigen::Vector3d& direction,
+                    const Eigen::Matrix3d& direction_covariance, double gate,
+                    const AttitudePrior* level = nullptr);
+
+  RigRotation rotation() const;
+  void reset();
+
+ private:
+  static constexpr int kSize = 8;
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  /// A direction in the ground plane but for the slope that is a state of its own.
+  struct Sloping {
+    GroundDirection ground;
+    int slope;  // index of the state
+  };
+  /// What the errors of a plane are: by_state times those of the state, and noise of this frame.
+  struct Joint {
+    GroundPlane plane;  // covariance: of the noise
+    Eigen::Matrix<double, 3, kSize> by_state;
+    Eigen::Matrix3d kept;  // of the errors of the plane before
+  };
+  double fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const;
+  void solve();
+  double learnSlopeVariance(int slope, double variance);
+
+  StereoRig rig_;
+  double memory_;
+  std::optional<double> stamp_;
+  double share_ = 0;                        // that a frame's measurements count for
+  double calibrated_variance_ = 0;          // of each component of w, rad^2
+  Vector slope_variance_ = Vector::Zero();  // of each s, rad^2; 0: no direction yet
+  Vector prior_ = Vector::Ones();           // variances
+  Matrix information_ = Matrix::Zero();
+  Vector right_ = Vector::Zero();  // information times value
+  Vector state_ = Vector::Zero();  // rx, ry, rz, s, c of rx, c of rz, s of level forward and left. rad
+  Matrix covariance_ = Matrix::Zero();
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "uav_landing/base/timings.h"
+#include "uav_landing/image/rectification.h"
+#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+/// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane.
+/// Keeps the plane of the previous pair to predict where to search, nothing else.
+class StereoDepthStage {
+ public:
+  StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
+  ~StereoDepthStage();
+  StereoDepthStage(StereoDepthStage&&) noexcept;
+
+  /// left, right: rectified mono8 of the rig's size. skew: stamp of right minus left, s.
+  /// A stamp that does not increase starts the search anew.
+  StereoDepthResult process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
+  void reset();
+  const Timings& timings() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace uav_landing

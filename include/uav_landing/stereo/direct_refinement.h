@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "uav_landing/results/stage_results.h"
+#include "uav_landing/stereo/plane_fit.h"
+
+namespace uav_landing {
+
+/// Direct photometric refinement of the ground plane: aligns the left image with the right one warped by the
+/// plane's homography (along the rows only, as the images are rectified), over the blocks of ground that have
+/// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
+/// projected out. A block's normal equations say by how much the plane's disparity is off there; the plane is
+/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight.
+class DirectRefinement {
+ public:
+  /// Masks of the rectified images (mono8, 255 inside), eroded by at least two pixels.
+  DirectRefinement(const StereoRig& rig, const cv::Mat& left_mask, const cv::Mat& right_mask);
+  ~DirectRefinement();
+  DirectRefinement(DirectRefinement&&) noexcept;
+
+  /// left, right: rectified mono8. start: plane vector good to a fraction of a pixel of disparity, 1/m.
+  /// bias_stddev: as for refinePlane, pixels. limits.tolerance: by how much blocks of
+  /// ground may be off the plane, pixels. rows: rotation that the vertical disparities of the images have
+  /// (rig_rotation.h): along a row, slanted edges seem moved by them. Fails when the images show too little,
+  /// or when most of what they show is not on one plane.
+  Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
+                            const PlaneLimits& limits, double bias_stddev, const RigRotation& rows);
+  /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
+  /// last refinement; NaN when it had fewer than 20 such blocks.
+  double agreement() const;
+  /// What the last refinement was fitted to: one disparity for each block.
+  const std::vector<DisparitySample>& samples() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Whether two planes from the same pair are the same within their covariances. Errors common to both make
+/// this lenient, which is meant: it is to find a refinement that went astray.
+bool samePlane(const GroundPlane& a, const GroundPlane& b);
+
+}  // namespace uav_landing

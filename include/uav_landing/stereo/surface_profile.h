@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/stereo/plane_fit.h"
+
+namespace uav_landing {
+
+/// The surface ahead where it is not a plane: its slope along the line of sight wanders, as a random walk
+/// over the distance from the camera.
+struct SurfaceProfile {
+  /// Tangent plane straight below the camera: its height is the clearance.
+  GroundPlane below;
+  /// Mean change of slope over distance, from below the camera to the farthest sample; positive in a sag.
+  /// 1/m.
+  double curvature = 0;
+  double curvature_variance = 0;  ///< 1/m^2
+};
+
+/// Fits plane and profile to disparities that are good to their stddevs. flat: plane through all of them,
+/// where the fit starts. slope_change: 1 sigma by which slopes may change over 100 m, rad; how much of it
+/// this surface has, nothing included, is found from the disparities by their likelihood, and where they
+/// leave that open the mean and the covariance are those of the mixture. limits, bias_stddev: as for
+/// refinePlane. Nothing where there are too few samples, or too near each other.
+std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
+                                                const std::vector<DisparitySample>& samples,
+                                                const PlaneFit& flat, const PlaneLimits& limits,
+                                                double bias_stddev, double slope_change);
+
+}  // namespace uav_landing

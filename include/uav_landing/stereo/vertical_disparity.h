@@ -1,0 +1,90 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/results/disparity_sample.h"
+#include "uav_landing/results/stage_results.h"
+#include "uav_landing/stereo/stereo_matching.h"
+
+namespace uav_landing {
+
+/// What the rows of matched corners show of the right camera. They do not depend on the ground: no plane or
+/// height enters.
+struct VerticalDisparities {
+  /// See rig_rotation.h: rx and rz well, ry weakly. Fails when fewer than 20 corners have a row.
+  Expected<RigRotation> rotation;
+  /// The rotation is fitted with it once more. Its covariance has in it what lenses and focal lengths are
+  /// wrong by after a calibration. Unknown with fewer corners as well.
+  BaselineDirection baseline;
+  /// Share of the corners whose row was found; NaN when there are none.
+  double agreement = kUnknown;
+};
+
+/// samples: matched corners with the disparity found in the level's right image. The right row of a few of
+/// them is measured to sub-pixel (gain and offset free, within 2 rows), then the rotation and the direction
+/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m.
+VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<DisparitySample>& samples,
+                                               const Eigen::Vector3d& g, int window_radius);
+
+/// The rotation with nothing matched yet: looks for corners around the places that a rough plane predicts,
+/// within 3 columns and 3 rows of whole pixels first.
+Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
+                                                const std::vector<cv::Point>& corners,
+                                                const Eigen::Vector3d& g, int window_radius);
+
+/// Largest vertical disparity in the image of a rotation w, pixels.
+double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w);
+
+/// Takes the vertical disparities of w out of the right image: its rows then match the left image's. Columns
+/// are not moved, so that disparities keep what w does to them. right: CV_32F, of the rig's size.
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out);
+
+/// Keeps the right image's rows level with the left image's from pair to pair, so that a bent rig still
+/// matches along rows, and measures what it bends by.
+class RowAlignment {
+ public:
+  /// enabled: false leaves the images as they are and measures nothing.
+  RowAlignment(bool enabled, int window_radius) : enabled_(enabled), window_radius_(window_radius) {}
+
+  /// The right image (CV_32F, at the rig's resolution) with its rows made level, in buffer, or itself when
+  /// they are.
+  cv::Mat level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const;
+  bool isLevel() const { return taken_out_.isZero(); }
+  /// Looks for the rows of corners with a rough plane. True when level() now gives another image.
+  bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g);
+  struct Measured {
+    RigRotation rotation;
+    BaselineDirection baseline;
+    /// Share of the corners matched along the rows that are found when they may move across the rows as well.
+    /// Wrong matches mostly are not. NaN when nothing was measured.
+    double agreement = kUnknown;
+  };
+  /// By the rows of the matched corners; adapts level() for the next pair. The level is one whose right image
+  /// is from level().
+  Measured measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
+                   const Eigen::Vector3d& g);
+  /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
+  /// with what a calibration that is good to bias_stddev (pixels in the middle of the image) leads to expect,
+  /// as long as the two do not contradict each other.
+  RigRotation residual(const StereoRig& rig, double bias_stddev) const;
+  void reset() { *this = RowAlignment(enabled_, window_radius_); }
+
+ private:
+  bool adapt(const StereoRig& rig, const RigRotation& residual);
+  void average(const RigRotation& measured);
+
+  bool enabled_;
+  int window_radius_;
+  Eigen::Vector3d taken_out_ = Eigen::Vector3d::Zero();  // w of which the rows are freed, rad
+  // Of the sum of what is taken out and what is left, old pairs forgotten.
+  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d levelled_by_ =
+      Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
+  bool measured_ = false;
+};
+
+}  // namespace uav_landing

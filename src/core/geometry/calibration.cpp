@@ -1,0 +1,210 @@
+#include "uav_landing/geometry/calibration.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace uav_landing {
+
+namespace {
+
+constexpr int kMaxImageSide = 16384;  // keeps maps in fixed point and in memory
+constexpr double kRotationTolerance = 1e-3;
+constexpr double kFocalTolerance = 1e-5;  // relative; 0.01 px at the edge of a 1000 px image
+constexpr double kRowTolerance = 0.01;    // px
+constexpr double kRowShift = 1e-3;        // of the baseline
+
+std::string text(double value) {
+  std::ostringstream out;
+  out.precision(10);
+  out << value;
+  return out.str();
+}
+
+Failure invalid(const std::string& field, const std::string& value, const std::string& expected) {
+  return {Reason::kInputInvalid, field + ": " + value + ", expected " + expected};
+}
+
+Failure invalid(const std::string& field, double value, const std::string& expected) {
+  return invalid(field, text(value), expected);
+}
+
+std::string element(const char* matrix, int index) {
+  return std::string(matrix) + "[" + std::to_string(index) + "]";
+}
+
+/// The first three columns of K or P: focal lengths and principal point, no skew, last row 0 0 1.
+template <class Matrix>
+Failure checkPinhole(const char* name, const Matrix& m) {
+  const int columns = static_cast<int>(m.cols());
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < columns; ++column)
+      if (!std::isfinite(m(row, column)))
+        return invalid(element(name, row * columns + column), m(row, column), "a number");
+  for (int row = 0; row < 2; ++row)
+    if (m(row, row) <= 0)
+      return invalid(element(name, row * columns + row), m(row, row), "a positive focal length in pixels");
+  for (int row = 0; row < 2; ++row)
+    if (m(row, 2) == 0)
+      return invalid(element(name, row * columns + 2), m(row, 2),
+                     row == 0 ? "the column of the principal point in pixels"
+                              : "the row of the principal point in pixels");
+  for (const auto& [row, column] : {std::pair{0, 1}, {1, 0}, {2, 0}, {2, 1}})
+    if (m(row, column) != 0) return invalid(element(name, row * columns + column), m(row, column), "0");
+  if (m(2, 2) != 1) return invalid(element(name, 2 * columns + 2), m(2, 2), "1");
+  return {};
+}
+
+Failure checkDistortion(const CameraCalibration& c) {
+  for (size_t i = 0; i < c.D.size(); ++i)
+    if (!std::isfinite(c.D[i])) return invalid(element("D", static_cast<int>(i)), c.D[i], "a number");
+  if (c.D.empty() && c.distortion_model.empty()) return {};
+  const size_t n = c.D.size();
+  if (c.distortion_model == "plumb_bob") {
+    if (n != 0 && n != 4 && n != 5)
+      return invalid("D", std::to_string(n) + " coefficients", "0, 4 or 5 for plumb_bob");
+  } else if (c.distortion_model == "rational_polynomial") {
+    if (n != 0 && n != 8)
+      return invalid("D", std::to_string(n) + " coefficients", "0 or 8 for rational_polynomial");
+  } else {
+    return invalid("distortion_model", "\"" + c.distortion_model + "\"", "plumb_bob or rational_polynomial");
+  }
+  return {};
+}
+
+Failure checkRotation(const Eigen::Matrix3d& R) {
+  for (int i = 0; i < 9; ++i)
+    if (!std::isfinite(R(i / 3, i % 3))) return invalid(element("R", i), R(i / 3, i % 3), "a number");
+  if (R.isZero(0)) return invalid("R", "all zero", "a rotation matrix");
+  const double deviation = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (deviation > kRotationTolerance)
+    return invalid("R", "R R' differs from the identity by " + text(deviation), "a rotation matrix");
+  if (R.determinant() < 0) return invalid("R", "a reflection", "a rotation matrix");
+  return {};
+}
+
+Failure checkReduction(const CameraCalibration& c) {
+  if (c.binning_x < 0) return invalid("binning_x", c.binning_x, "0 or more");
+  if (c.binning_y < 0) return invalid("binning_y", c.binning_y, "0 or more");
+  if (c.roi != cv::Rect()) {
+    if (c.roi.x < 0 || c.roi.x >= c.width) return invalid("roi.x_offset", c.roi.x, "a column of the image");
+    if (c.roi.y < 0 || c.roi.y >= c.height) return invalid("roi.y_offset", c.roi.y, "a row of the image");
+    if (c.roi.width <= 0 || c.roi.width > c.width - c.roi.x)
+      return invalid("roi.width", c.roi.width, "1 to " + std::to_string(c.width - c.roi.x) + " pixels");
+    if (c.roi.height <= 0 || c.roi.height > c.height - c.roi.y)
+      return invalid("roi.height", c.roi.height, "1 to " + std::to_string(c.height - c.roi.y) + " pixels");
+  }
+  const cv::Size size = c.imageSize();
+  if (size.width < 1) return invalid("binning_x", c.binning_x, "at most the width of the image");
+  if (size.height < 1) return invalid("binning_y", c.binning_y, "at most the height of the image");
+  return {};
+}
+
+Failure prefixed(const char* side, Failure failure) {
+  failure.detail = std::string(side) + " " + failure.detail;
+  return failure;
+}
+
+Failure mismatch(const std::string& field, double value, double left) {
+  return invalid("right " + field, value, text(left) + " as on the left");
+}
+
+/// What makes the rows of the two rectified images differ.
+Failure checkPair(const CameraCalibration& left, const CameraCalibration& right) {
+  const auto same = [](const char* field, int l, int r) {
+    return l == r ? Failure{} : mismatch(field, r, l);
+  };
+  for (const Failure& failure :
+       {same("width", left.width, right.width), same("height", left.height, right.height),
+        same("binning_x", std::max(left.binning_x, 1), std::max(right.binning_x, 1)),
+        same("binning_y", std::max(left.binning_y, 1), std::max(right.binning_y, 1)),
+        same("roi.y_offset", left.roi.y, right.roi.y), same("roi.width", left.roi.width, right.roi.width),
+        same("roi.height", left.roi.height, right.roi.height)})
+    if (failure) return failure;
+  const auto &Pl = left.P, &Pr = right.P;
+  for (int i = 0; i < 2; ++i)
+    if (std::abs(Pr(i, i) - Pl(i, i)) > kFocalTolerance * Pl(i, i))
+      return mismatch(element("P", 5 * i), Pr(i, i), Pl(i, i));
+  if (std::abs(Pr(1, 2) - Pl(1, 2)) > kRowTolerance) return mismatch("P[6]", Pr(1, 2), Pl(1, 2));
+  if (Pl(0, 3) != 0) return invalid("left P[3]", Pl(0, 3), "0: the left camera is the origin");
+  if (Pl(1, 3) != 0) return invalid("left P[7]", Pl(1, 3), "0: the left camera is the origin");
+  if (Pr(0, 3) >= 0)
+    return invalid("right P[3]", Pr(0, 3), "-P[0] times the baseline in metres, a negative number");
+  if (std::abs(Pr(1, 3)) > -kRowShift * Pr(0, 3))
+    return invalid("right P[7]", Pr(1, 3), "0: the same row in both images");
+  return {};
+}
+
+}  // namespace
+
+bool CameraCalibration::operator==(const CameraCalibration& other) const {
+  return width == other.width && height == other.height && distortion_model == other.distortion_model &&
+         D == other.D && K == other.K && R == other.R && P == other.P && binning_x == other.binning_x &&
+         binning_y == other.binning_y && roi == other.roi;
+}
+
+cv::Size CameraCalibration::imageSize() const {
+  const cv::Size full = roi == cv::Rect() ? cv::Size(width, height) : roi.size();
+  return {full.width / std::max(binning_x, 1), full.height / std::max(binning_y, 1)};
+}
+
+CameraCalibration CameraCalibration::ofDeliveredImage() const {
+  CameraCalibration reduced = *this;
+  const Eigen::Vector2d offset(roi.x, roi.y);
+  const Eigen::Vector2d binning(std::max(binning_x, 1), std::max(binning_y, 1));
+  for (int i = 0; i < 2; ++i) {
+    reduced.K(i, 2) -= offset[i];
+    reduced.P(i, 2) -= offset[i];
+    reduced.K.row(i) /= binning[i];
+    reduced.P.row(i) /= binning[i];
+  }
+  reduced.width = imageSize().width;
+  reduced.height = imageSize().height;
+  reduced.binning_x = reduced.binning_y = 0;
+  reduced.roi = {};
+  return reduced;
+}
+
+Eigen::Matrix3d StereoRig::K() const {
+  Eigen::Matrix3d K;
+  K << fx, 0, cx, 0, fy, cy, 0, 0, 1;
+  return K;
+}
+
+Eigen::Matrix3d StereoRig::Kinv() const {
+  Eigen::Matrix3d K;
+  K << 1 / fx, 0, -cx / fx, 0, 1 / fy, -cy / fy, 0, 0, 1;
+  return K;
+}
+
+Failure checkCalibration(const CameraCalibration& calibration) {
+  const std::string side = "1 to " + std::to_string(kMaxImageSide) + " pixels";
+  if (calibration.width < 1 || calibration.width > kMaxImageSide)
+    return invalid("width", calibration.width, side);
+  if (calibration.height < 1 || calibration.height > kMaxImageSide)
+    return invalid("height", calibration.height, side);
+  if (Failure failure = checkReduction(calibration)) return failure;
+  if (Failure failure = checkPinhole("K", calibration.K)) return failure;
+  if (Failure failure = checkDistortion(calibration)) return failure;
+  if (Failure failure = checkRotation(calibration.R)) return failure;
+  return checkPinhole("P", calibration.P);
+}
+
+Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCalibration& right) {
+  if (Failure failure = checkCalibration(left)) return tl::unexpected(prefixed("left", failure));
+  if (Failure failure = checkCalibration(right)) return tl::unexpected(prefixed("right", failure));
+  if (Failure failure = checkPair(left, right)) return tl::unexpected(failure);
+  const CameraCalibration l = left.ofDeliveredImage(), r = right.ofDeliveredImage();
+  StereoRig rig;
+  rig.size = l.imageSize();
+  rig.fx = l.P(0, 0);
+  rig.fy = l.P(1, 1);
+  rig.cx = l.P(0, 2);
+  rig.cy = l.P(1, 2);
+  rig.cx_right = r.P(0, 2);
+  rig.baseline = -r.P(0, 3) / r.P(0, 0);
+  return rig;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,22 @@
+#include "uav_landing/geometry/half_plane.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+
+void keepHalfPlane(cv::Mat& mask, double a, double b, double c) {
+  for (int v = 0; v < mask.rows; ++v) {
+    const double rest = b * v + c;
+    // Kept are the columns first..last - 1.
+    int first = 0, last = mask.cols;
+    if (a > 0) first = static_cast<int>(std::clamp(std::ceil(-rest / a), 0.0, double(mask.cols)));
+    if (a < 0) last = static_cast<int>(std::clamp(std::floor(-rest / a) + 1, 0.0, double(mask.cols)));
+    if (a == 0 && rest < 0) last = 0;
+    uchar* row = mask.ptr<uchar>(v);
+    std::fill(row, row + first, uchar(0));
+    std::fill(row + std::max(first, last), row + mask.cols, uchar(0));
+  }
+}
+
+}  // namespace uav_landing

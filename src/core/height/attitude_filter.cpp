@@ -1,0 +1,198 @@
+#include "uav_landing/height/attitude_filter.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/rotation.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kMemory = 1.0;    // s
+constexpr double kPatience = 3.0;  // s, with normals that contradict
+// Pairs in a row that agree make a normal that others are measured by.
+constexpr int kConfirmed = 3;
+// 1 sigma of the camera's angular velocity where no step tells the rotation, rad/s.
+constexpr double kTurnRate = 5 * M_PI / 180;
+// A turn by this, rad/s, may as well be a wrong one.
+constexpr double kUnusualTurn = 5 * kTurnRate;
+// Squared sigmas from which a normal that agrees is in doubt, and for how many pairs.
+constexpr double kDoubtful = 9;
+constexpr int kDoubtPairs = 4;
+// 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
+constexpr double kUnevenness = 0.3 * M_PI / 180;
+
+/// Root of a covariance that may be negative by rounding.
+Eigen::Matrix3d rootOf(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(covariance);
+  const Eigen::Vector3d roots = solved.eigenvalues().cwiseMax(0).cwiseSqrt();
+  return solved.eigenvectors() * roots.asDiagonal() * solved.eigenvectors().transpose();
+}
+
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
+
+/// A pair's normal against an estimate, in the tangent plane of that.
+struct Innovation {
+  Eigen::Matrix<double, 3, 2> basis;
+  Eigen::Matrix2d P, measured, S;  // covariances of the estimate, of the pair's normal, and their sum
+  Eigen::Vector2d difference;
+  double ratio;
+
+  Innovation(const AttitudeFilter::Estimate& estimate, const Eigen::Vector3d& normal,
+             const Eigen::Matrix3d& covariance)
+      : basis(tangents(estimate.normal)) {
+    P = symmetric(basis.transpose() * estimate.covariance * basis);
+    difference = basis.transpose() * (normal - estimate.normal);
+    measured = symmetric(basis.transpose() * covariance * basis);
+    S = P + measured;
+    const Eigen::Matrix2d allowed = S + kUnevenness * kUnevenness * Eigen::Matrix2d::Identity();
+    ratio = difference.dot(allowed.inverse() * difference);
+  }
+};
+
+/// Memory fades with each of these.
+void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step,
+            AttitudeFilter::Estimate& estimate) {
+  estimate.normal = R * estimate.normal;
+  estimate.common_root = (R * estimate.common_root * R.transpose()).eval();
+  const Eigen::Matrix3d by_rotation = crossMatrix(estimate.normal);
+  estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() +
+                        by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+}
+
+/// Nobody knows how the camera turned.
+void addTurn(double T, AttitudeFilter::Estimate& estimate) {
+  const Eigen::Vector3d& n = estimate.normal;
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance +
+                        std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+}
+
+}  // namespace
+
+AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
+  const double T = stamp - stamp_;
+  stamp_ = stamp;
+  if (!estimate_ || !(T > 0)) return Prediction::kNone;
+  if (other_ && --doubts_left_ < 0) other_.reset();
+  turn_doubted_ = false;
+  // A step that spans another time is not the way from the last normal to this one.
+  const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
+                     std::abs(T - step.duration) <= kStampRounding;
+  if (known) {
+    turn(T, rotationMatrix(step.rotation), step);
+    return Prediction::kTurned;
+  }
+  if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
+  guess(T);
+  return Prediction::kGuessed;
+}
+
+void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step) {
+  const Eigen::Vector3d& n = estimate_->normal;
+  turn_doubted_ = agreements_ >= kConfirmed && angleBetween(n, R * n) > kUnusualTurn * T;
+  if (turn_doubted_) {
+    if (!other_) doubt(*estimate_, true);
+    addTurn(T, *other_);
+  } else if (other_) {
+    rotate(T, R, step, *other_);
+  }
+  rotate(T, R, step, *estimate_);
+}
+
+void AttitudeFilter::guess(double T) {
+  if (other_) addTurn(T, *other_);
+  addTurn(T, *estimate_);
+}
+
+void AttitudeFilter::doubt(const Estimate& other, bool turn) {
+  other_ = other;
+  other_is_turn_ = turn;
+  doubts_left_ = kDoubtPairs;
+}
+
+void AttitudeFilter::carry(double stamp, const ApproachAngleResult::Motion& step) {
+  if (predict(stamp, step) == Prediction::kNone) reset();
+}
+
+void AttitudeFilter::reset() {
+  estimate_.reset();
+  other_.reset();
+  turn_doubted_ = false;
+  agreements_ = 0;
+}
+
+AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
+                                                const Eigen::Matrix3d& covariance,
+                                                const ApproachAngleResult::Motion& step,
+                                                const Eigen::Matrix3d& common) {
+  Prediction predicted = predict(stamp, step);
+  const Eigen::Matrix3d common_root = rootOf(common);
+  if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
+  Innovation innovation(*estimate_, normal, covariance);
+  bool denied = false;  // the turn that was in doubt
+  if (other_) {
+    const Innovation without(*other_, normal, covariance);
+    const bool agrees = innovation.ratio <= kGate, other_agrees = without.ratio <= kGate;
+    if (!agrees && other_agrees) {
+      denied = other_is_turn_;
+      innovation = without;
+      predicted = Prediction::kGuessed;
+      std::swap(*estimate_, *other_);
+      doubts_left_ = kDoubtPairs;
+    }
+    if (agrees) turn_doubted_ = false;
+    if (other_is_turn_ && agrees != other_agrees) other_.reset();
+  }
+  estimate_->ratio = innovation.ratio;
+  estimate_->agrees = estimate_->ratio <= kGate;
+  if (!estimate_->agrees) {
+    // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
+    if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience)
+      return start(normal, covariance, common_root);
+    return *estimate_;
+  }
+  agreed_ = stamp;
+  agreements_ = std::min(agreements_ + 1, kConfirmed);
+  const bool guessed = predicted == Prediction::kGuessed;
+  const bool doubtful = !denied && (guessed || innovation.ratio > kDoubtful);
+  if (doubtful && !other_ && agreements_ >= kConfirmed) doubt(*estimate_, false);
+  if (guessed) {
+    // A guess is good enough to contradict, but nothing to average with.
+    estimate_->normal = normal;
+    estimate_->covariance = covariance;
+    estimate_->common_root = common_root;
+    return *estimate_;
+  }
+  const Eigen::Matrix<double, 3, 2>& basis = innovation.basis;
+  const Eigen::Matrix2d gain = innovation.P * innovation.S.inverse();
+  estimate_->normal = (estimate_->normal + basis * (gain * innovation.difference)).normalized();
+  // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
+  const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
+  const Eigen::Matrix2d joint =
+      kept * innovation.P * kept.transpose() + gain * innovation.measured * gain.transpose();
+  estimate_->covariance = basis * joint * basis.transpose();
+  // Roots and not covariances: what is common adds up with its sign.
+  estimate_->common_root =
+      basis * (kept * basis.transpose() * estimate_->common_root + gain * basis.transpose() * common_root);
+  return *estimate_;
+}
+
+AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
+                                               const Eigen::Matrix3d& covariance,
+                                               const Eigen::Matrix3d& common_root) {
+  other_.reset();
+  agreed_ = stamp_;
+  agreements_ = 1;
+  estimate_ = Estimate{normal, covariance, common_root, kUnknown, true};
+  return *estimate_;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,57 @@
+#include "uav_landing/height/height_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+
+HeightFilter::HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate)
+    : acceleration_stddev_(acceleration_stddev), initial_speed_stddev_(initial_speed_stddev), gate_(gate) {}
+
+void HeightFilter::initialise(double height, double variance, double common) {
+  state_ << height, 0;
+  covariance_ << variance, 0, 0, initial_speed_stddev_ * initial_speed_stddev_;
+  own_ = covariance_;
+  own_(0, 0) = std::max(0.0, variance - common);
+  initialised_ = true;
+}
+
+void HeightFilter::predict(double T) {
+  Eigen::Matrix2d transition;
+  transition << 1, T, 0, 1;
+  const Eigen::Vector2d noise_gain(0.5 * T * T, T);
+  state_ = transition * state_;
+  const Eigen::Matrix2d noise =
+      acceleration_stddev_ * acceleration_stddev_ * noise_gain * noise_gain.transpose();
+  covariance_ = transition * covariance_ * transition.transpose() + noise;
+  own_ = transition * own_ * transition.transpose() + noise;
+}
+
+HeightFilter::Update HeightFilter::update(double height, double variance, double common) {
+  return fuse(Eigen::RowVector2d(1, 0), height, variance, common);
+}
+
+HeightFilter::Update HeightFilter::updateSpeed(double speed, double variance) {
+  return fuse(Eigen::RowVector2d(0, 1), speed, variance, 0);
+}
+
+HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, double measured,
+                                        double variance, double common) {
+  Update update;
+  update.innovation = measured - observation * state_;
+  update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
+  // Written so that a NaN is refused too; what is infinite or has a negative variance would leave no state.
+  update.accepted = variance >= 0 && std::isfinite(update.innovation_variance) &&
+                    update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
+  if (!update.accepted) return update;
+
+  const Eigen::Vector2d gain = covariance_ * observation.transpose() / update.innovation_variance;
+  state_ += gain * update.innovation;
+  const Eigen::Matrix2d remaining = Eigen::Matrix2d::Identity() - gain * observation;
+  covariance_ = remaining * covariance_ * remaining.transpose() + variance * gain * gain.transpose();
+  own_ =
+      remaining * own_ * remaining.transpose() + std::max(0.0, variance - common) * gain * gain.transpose();
+  return update;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,39 @@
+#include "uav_landing/height/reconstruction.h"
+
+#include <cmath>
+
+namespace uav_landing {
+
+double depthFromDisparity(const StereoRig& rig, double disparity) { return rig.fb() / disparity; }
+
+Eigen::Vector3d rotateToWorld(const Eigen::Vector3d& paper_point, double theta) {
+  Eigen::Matrix3d rotation;
+  rotation << 1, 0, 0, 0, std::cos(theta), -std::sin(theta), 0, std::sin(theta), std::cos(theta);
+  return rotation * paper_point;
+}
+
+double heightOverPoint(double y_c, double z_c, double theta) {
+  return y_c * std::sin(theta) + z_c * std::cos(theta);
+}
+
+AveragedHeight averageHeight(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                             double theta, double roll, bool only_on_plane) {
+  // Welford's recursion: keeps its accuracy where the scatter is small against the height.
+  double mean = 0, squares = 0;
+  AveragedHeight averaged;
+  for (const StereoDepthResult::Point& point : points) {
+    if (!(point.disparity > 0) || (only_on_plane && !point.on_plane)) continue;
+    const Eigen::Vector3d X = depthFromDisparity(rig, point.disparity) * rig.ray(point.u, point.v);
+    const double down = X.x() * std::sin(roll) + X.y() * std::cos(roll);
+    const double height = heightOverPoint(X.z(), down, theta);
+    const double deviation = height - mean;
+    mean += deviation / ++averaged.points;
+    squares += deviation * (height - mean);
+  }
+  const int n = averaged.points;
+  if (n > 0) averaged.height = mean;
+  if (n > 1) averaged.variance = squares / (n - 1) / n;
+  return averaged;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,71 @@
+#include "uav_landing/height/width_height.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kKnownStddev = 0.002;  // of a known width
+constexpr double kSame = 0.02;          // of the width: beyond this (and 4 sigma) other edges are seen
+constexpr double kGate = 4;             // sigma
+constexpr int kAgreeing = 5;            // pairs in a row before a width is learned
+
+}  // namespace
+
+WidthHeight::WidthHeight(double known_width) : known_(known_width > 0), known_width_(known_width) { reset(); }
+
+void WidthHeight::reset() {
+  width_.reset();
+  other_.reset();
+  if (known_) width_ = Width{known_width_, std::pow(kKnownStddev * known_width_, 2), kAgreeing};
+}
+
+std::optional<WidthHeight::Estimate> WidthHeight::height(double ratio, double variance) const {
+  if (!width_ || width_->pairs < kAgreeing || !(ratio > 0) || !(variance > 0)) return std::nullopt;
+  Estimate estimate;
+  estimate.height = width_->mean / ratio;
+  estimate.common = width_->variance / (ratio * ratio);
+  estimate.variance = estimate.common + std::pow(estimate.height / ratio, 2) * variance;
+  return estimate;
+}
+
+WidthHeight::Width WidthHeight::seen(double ratio, double variance, double height, double height_variance) {
+  return {ratio * height, height * height * variance + ratio * ratio * height_variance, 1};
+}
+
+bool WidthHeight::agree(const Width& a, const Width& b) {
+  return std::abs(a.mean - b.mean) <= std::max(kSame * b.mean, kGate * std::sqrt(a.variance + b.variance));
+}
+
+void WidthHeight::merge(const Width& seen, Width& width) {
+  // Errors of pairs in a row are much the same: the width is as good as the best of them, not as their mean.
+  const double gain = width.variance / (width.variance + seen.variance);
+  width.mean += gain * (seen.mean - width.mean);
+  width.variance = std::min(width.variance, seen.variance);
+  width.pairs = std::min(width.pairs + 1, kAgreeing);
+}
+
+bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance) const {
+  return known_ || !width_ || agree(seen(ratio, variance, height, height_variance), *width_);
+}
+
+void WidthHeight::learn(double ratio, double variance, double height, double height_variance) {
+  if (known_ || !(ratio > 0) || !(variance > 0) || !(height > 0) || !(height_variance > 0)) return;
+  const Width now = seen(ratio, variance, height, height_variance);
+  if (width_ && agree(now, *width_)) {
+    merge(now, *width_);
+    other_.reset();
+    return;
+  }
+  if (other_ && agree(now, *other_)) {
+    merge(now, *other_);
+  } else {
+    other_ = now;
+  }
+  if (width_ && width_->pairs >= kAgreeing && other_->pairs < kAgreeing) return;
+  width_ = other_;
+  other_.reset();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,133 @@
+#include "uav_landing/image/rectification.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "image/resampler.h"
+
+namespace uav_landing {
+
+namespace {
+
+constexpr float kOutside = -2;  // a source coordinate of which no pixel is in the image
+constexpr double kMaxRadius =
+    20.0;  // on the plane z = 1: 87 degrees off the axis, no lens of these models sees it
+
+/// Radius at which the radial distortion (OpenCV's model of plumb_bob and rational_polynomial, on the plane
+/// z = 1) stops growing: beyond it the polynomial folds back into the picture and means nothing.
+/// Searched up to max_radius; infinity when it grows all the way.
+double foldRadius(const std::vector<double>& D, double max_radius) {
+  const auto k = [&D](size_t i) { return i < D.size() ? D[i] : 0.0; };
+  constexpr int kSteps = 10000;
+  double previous = 0;
+  for (int i = 1; i <= kSteps; ++i) {
+    const double r = max_radius * i / kSteps, r2 = r * r;
+    const double denominator = 1 + r2 * (k(5) + r2 * (k(6) + r2 * k(7)));
+    const double distorted = r * (1 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)))) / denominator;
+    if (denominator <= 0 || distorted <= previous) return r;
+    previous = distorted;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Distance from the axis, on the plane z = 1 of the raw camera, of what a rectified pixel looks at; false
+/// when that is behind the camera or nearly so.
+bool seenRadius(const Eigen::Matrix3d& from_pixel, int u, int v, double& radius) {
+  const Eigen::Vector3d ray = from_pixel * Eigen::Vector3d(u, v, 1);
+  radius = std::hypot(ray.x(), ray.y()) / ray.z();
+  return ray.z() > 0 && radius < kMaxRadius;
+}
+
+/// Moves out of the image what only seems to be in it: folded distortion, rays from behind, overflows.
+void excludeUnreal(const CameraCalibration& c, cv::Mat& x, cv::Mat& y) {
+  const Eigen::Matrix3d from_pixel = (c.P.leftCols<3>() * c.R).inverse();
+  double max_radius = 0, radius = 0;
+  for (const int u : {0, c.width - 1})
+    for (const int v : {0, c.height - 1})
+      max_radius = std::max(max_radius, seenRadius(from_pixel, u, v, radius) ? radius : kMaxRadius);
+  const double fold = foldRadius(c.D, max_radius);
+  for (int v = 0; v < y.rows; ++v)
+    for (int u = 0; u < y.cols; ++u) {
+      float &xs = x.at<float>(v, u), &ys = y.at<float>(v, u);
+      const bool near = xs > kOutside && xs <= c.width && ys > kOutside && ys <= c.height;
+      if (near && seenRadius(from_pixel, u, v, radius) && radius < fold) continue;
+      xs = ys = kOutside;
+    }
+}
+
+/// 255 where all source pixels that the interpolation weighs are in an image of this size.
+cv::Mat sourceMask(const cv::Mat& map1, const cv::Mat& map2, cv::Size source) {
+  cv::Mat mask(map1.size(), CV_8UC1);
+  for (int v = 0; v < mask.rows; ++v)
+    for (int u = 0; u < mask.cols; ++u) {
+      const cv::Vec2s p = map1.at<cv::Vec2s>(v, u);
+      const int fraction = map2.at<ushort>(v, u);
+      const int right = p[0] + (fraction % cv::INTER_TAB_SIZE > 0),
+                below = p[1] + (fraction / cv::INTER_TAB_SIZE > 0);
+      mask.at<uchar>(v, u) =
+          p[0] >= 0 && p[1] >= 0 && right < source.width && below < source.height ? 255 : 0;
+    }
+  return mask;
+}
+
+/// Whether the maps lead every pixel to itself, as those of an image that is rectified already.
+bool isIdentity(const cv::Mat& map1, const cv::Mat& map2) {
+  for (int v = 0; v < map1.rows; ++v)
+    for (int u = 0; u < map1.cols; ++u)
+      if (map1.at<cv::Vec2s>(v, u) != cv::Vec2s(static_cast<short>(u), static_cast<short>(v)) ||
+          map2.at<ushort>(v, u) != 0)
+        return false;
+  return true;
+}
+
+}  // namespace
+
+Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
+  if (Failure failure = checkCalibration(calibration)) return tl::unexpected(failure);
+  const CameraCalibration c = calibration.ofDeliveredImage();
+  const Eigen::Matrix3d projection = c.P.leftCols<3>();
+  cv::Mat K, R, P, x, y;
+  cv::eigen2cv(c.K, K);
+  cv::eigen2cv(c.R, R);
+  cv::eigen2cv(projection, P);
+  // An empty D is no distortion; R and P still count.
+  cv::initUndistortRectifyMap(K, cv::Mat(c.D, true), R, P, c.imageSize(), CV_32FC1, x, y);
+  excludeUnreal(c, x, y);
+
+  Rectifier rectifier;
+  rectifier.calibration_ = calibration;
+  cv::Mat map1, map2;
+  cv::convertMaps(x, y, map1, map2, CV_16SC2);
+  rectifier.mask_ = sourceMask(map1, map2, c.imageSize());
+  if (isIdentity(map1, map2)) return rectifier;
+  if (c.width < 2 || c.height < 2) rectifier.mask_.setTo(0);  // nothing to interpolate between
+  rectifier.resampler_ = std::make_shared<Resampler>(map1, map2, rectifier.mask_, c.imageSize());
+  return rectifier;
+}
+
+Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
+  if (raw.type() != CV_8UC1) return {Reason::kInputInvalid, "image is not 8 bit grey"};
+  const auto text = [](cv::Size s) { return std::to_string(s.width) + "x" + std::to_string(s.height); };
+  if (raw.size() != mask_.size())
+    return {Reason::kInputInvalid,
+            "image is " + text(raw.size()) + ", its camera_info says " + text(mask_.size())};
+  if (resampler_)
+    resampler_->resample(raw, out);
+  else
+    raw.copyTo(out);
+  return {};
+}
+
+Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right) {
+  const Expected<StereoRig> rig = makeStereoRig(left, right);
+  if (!rig) return tl::unexpected(rig.error());
+  // makeStereoRig has accepted both, so neither can fail.
+  return RigModel{*rig, Rectifier::create(left).value().mask(), Rectifier::create(right).value().mask()};
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,97 @@
+#include "uav_landing/integrity/solution_separation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uav_landing/results/consistency_test.h"
+
+namespace uav_landing {
+namespace {
+
+// The gate of the filter that has everything in it decides for all.
+constexpr double kNoGate = 1e6;
+
+}  // namespace
+
+const char* toString(FaultySource source) {
+  switch (source) {
+    case FaultySource::kVanishingPoint:
+      return "vanishing_point";
+    case FaultySource::kNear:
+      return "near_region";
+    case FaultySource::kMiddle:
+      return "middle_region";
+    case FaultySource::kFar:
+      return "far_region";
+    case FaultySource::kLeft:
+      return "left_region";
+    case FaultySource::kRight:
+      return "right_region";
+    case FaultySource::kMotion:
+      return "motion";
+  }
+  return "";
+}
+
+SolutionSeparation::SolutionSeparation(const KalmanHeightParameters& parameters)
+    : factor_(normalQuantile(parameters.integrity_risk)),
+      fault_factor_(normalQuantile(std::min(1.0, parameters.integrity_risk / parameters.fault_probability))),
+      unwatched_scale_(parameters.unwatched_scale_error),
+      acceleration_stddev_(parameters.acceleration_stddev),
+      initial_speed_stddev_(parameters.initial_speed_stddev) {}
+
+void SolutionSeparation::reset() { solutions_.fill(std::nullopt); }
+
+void SolutionSeparation::start(const Measurements& without, double height) {
+  for (int i = 0; i < kFaultySources; ++i) {
+    HeightFilter filter(acceleration_stddev_, initial_speed_stddev_, kNoGate);
+    const Measurement& first = without[i];
+    // What is not known is somewhere.
+    filter.initialise(first.known() ? first.height : height, first.known() ? first.variance : height * height,
+                      first.known() ? first.common : 0);
+    solutions_[i].emplace(Solution{filter, first.known() ? first.common : 0});
+  }
+}
+
+void SolutionSeparation::predict(double T) {
+  for (std::optional<Solution>& solution : solutions_)
+    if (solution) solution->filter.predict(T);
+}
+
+void SolutionSeparation::update(const Measurements& without) {
+  for (int i = 0; i < kFaultySources; ++i) {
+    if (!solutions_[i] || !without[i].known()) continue;
+    solutions_[i]->filter.update(without[i].height, without[i].variance, without[i].common);
+    solutions_[i]->common = without[i].common;
+  }
+}
+
+void SolutionSeparation::updateSpeed(double speed, double variance) {
+  for (int i = 0; i < kFaultySources; ++i)
+    if (solutions_[i] && i != static_cast<int>(FaultySource::kMotion))
+      solutions_[i]->filter.updateSpeed(speed, variance);
+}
+
+SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance,
+                                                              double factor) const {
+  const double sigma = std::sqrt(variance);
+  Level level{factor_ * sigma, "noise"};
+  const double scaled = unwatched_scale_ * height + fault_factor_ * sigma;
+  if (!(scaled <= level.bound)) level = {scaled, "scale"};
+  for (int i = 0; i < kFaultySources; ++i) {
+    if (!solutions_[i]) continue;
+    const HeightFilter& filter = solutions_[i]->filter;
+    level = larger(level, height, filter.state()[0],
+                   factor * filter.ownCovariance()(0, 0) + solutions_[i]->common,
+                   toString(static_cast<FaultySource>(i)));
+  }
+  return level;
+}
+
+SolutionSeparation::Level SolutionSeparation::larger(const Level& level, double height, double solution,
+                                                     double variance, const char* source) const {
+  const double bound = std::abs(height - solution) + fault_factor_ * std::sqrt(variance);
+  return bound <= level.bound ? level : Level{bound, source};
+}
+
+}  // namespace uav_landing

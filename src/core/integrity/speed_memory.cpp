@@ -1,0 +1,40 @@
+#include "uav_landing/integrity/speed_memory.h"
+
+#include <algorithm>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kShare = 0.3;      // of the expected way that is enough
+constexpr double kPatience = 30.0;  // s
+constexpr int kSteps = 3;           // that are asked for at most, and that are remembered
+
+}  // namespace
+
+std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const CameraStep& step) const {
+  if (last_.size() < kSteps) return std::nullopt;
+  const Speed& slowest = *std::min_element(last_.begin(), last_.end(),
+                                           [](const Speed& a, const Speed& b) { return a.mean < b.mean; });
+  const double least = slowest.mean - max_deceleration_ * (since_ + step.duration);
+  if (!(least > 0)) return std::nullopt;
+  const double share = kShare * step.duration;
+  return Shortfall{share * least - step.way, step.variance + share * share * slowest.variance};
+}
+
+void SpeedMemory::learn(const CameraStep& step, bool agrees) {
+  if (!agrees) still_ = std::min(still_ + 1, kSteps);
+  if (still_ > 0) {
+    const std::optional<Shortfall> shortfall = compare(step);
+    const bool moved = agrees && shortfall && shortfall->difference <= 0;
+    moved_ = moved ? moved_ + 1 : 0;
+    contradicted_ += step.duration;
+    if (contradicted_ > kPatience) return reset();
+    if (moved_ < still_) return;
+  }
+  contradicted_ = since_ = 0;
+  still_ = moved_ = 0;
+  last_.push_back({step.way / step.duration, step.variance / (step.duration * step.duration)});
+  if (last_.size() > kSteps) last_.pop_front();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,218 @@
+#include "lines/line_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lines/line_fit.h"
+
+namespace uav_landing {
+
+using namespace line_fit;
+
+namespace {
+
+constexpr int kRadius = 3;  // px to both sides, first pass
+constexpr int kMinStations = 6;
+constexpr int kFewStations = 80;  // looked at in the first pass, roughly: fewer are led astray by heavy noise
+constexpr double kMinSupport = 0.6;  // share of stations that must show the edge
+constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; more is no straight edge
+constexpr int kGrowStep = 2;         // rows or columns
+constexpr int kMaxMisses = 2;        // steps without edge at which a growing line ends
+
+/// A vector's parts along the image axis that a line runs along, and along the other one.
+struct Parts {
+  double major, minor;
+
+  Parts(const Eigen::Vector2d& v, const Axis& axis) : major(v[axis.major]), minor(v[axis.minor]) {}
+  double dot(double other_major, double other_minor) const {
+    return major * other_major + minor * other_minor;
+  }
+};
+
+/// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
+/// interpolating between them biases the peak by up to 0.1 px.
+struct Station {
+  int number;                ///< row or column
+  int centre;                ///< column or row of the pixel nearest to the line
+  const uchar* grey;         ///< of that pixel
+  std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
+
+  /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
+  int twiceGradient(int k) const { return grey[(k + 1) * neighbour] - grey[(k - 1) * neighbour]; }
+};
+
+/// Looks along one line.
+class EdgeSampler {
+ public:
+  EdgeSampler(const cv::Mat& image, const cv::Mat& ground, const Axis& axis)
+      : image_(image.ptr<uchar>()),
+        ground_(ground.ptr<uchar>()),
+        axis_(axis),
+        origin_(axis.origin, axis),
+        along_(axis.along, axis),
+        across_(axis.across, axis),
+        scale_(0.5 / across_.minor),
+        size_(axis.minor == 0 ? image.cols : image.rows),
+        stations_(axis.minor == 0 ? image.rows : image.cols),
+        image_step_(axis, image),
+        ground_step_(axis, ground) {}
+
+  const Axis& axis() const { return axis_; }
+  /// From twice the gradient along a row or column to that across the line, grey/px, positive when brighter
+  /// `across`.
+  double scale() const { return scale_; }
+
+  /// Nothing outside image and ground.
+  std::optional<Station> at(int station) const {
+    const int centre = cvRound(origin_.minor + along_.minor * ((station - origin_.major) / along_.major));
+    constexpr int kReach = kRadius + 1;
+    if (centre < kReach || centre >= size_ - kReach || station < 0 || station >= stations_ ||
+        ground_[ground_step_.to(station, centre)] == 0)
+      return std::nullopt;
+    return Station{station, centre, image_ + image_step_.to(station, centre), image_step_.minor};
+  }
+  /// Of an edge this far from the station's pixel.
+  Peak peak(const Station& station, double distance, double gradient) const {
+    const double major = station.number - origin_.major;
+    const double minor = station.centre + distance - origin_.minor;
+    return {along_.dot(major, minor), across_.dot(major, minor), gradient};
+  }
+
+ private:
+  struct Steps {
+    std::ptrdiff_t major, minor;
+
+    Steps(const Axis& axis, const cv::Mat& image)
+        : major(axis.major == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
+          minor(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)) {}
+    std::ptrdiff_t to(int station, int place) const { return station * major + place * minor; }
+  };
+
+  const uchar *image_, *ground_;
+  const Axis& axis_;
+  Parts origin_, along_, across_;
+  double scale_;
+  int size_, stations_;  // of the image, across and along
+  Steps image_step_, ground_step_;
+};
+
+/// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
+struct EdgeKind {
+  int sign;
+  double min_gradient;
+};
+
+/// The strongest gradient within `reach` px of the line, interpolated by a parabola.
+std::optional<Peak> findPeak(const EdgeSampler& sampler, int station, const EdgeKind& kind, int reach) {
+  const std::optional<Station> sample = sampler.at(station);
+  if (!sample) return std::nullopt;
+  const double scale = kind.sign * sampler.scale();
+  const int sign = scale >= 0 ? 1 : -1;
+  int best = 0, strongest = std::numeric_limits<int>::min();
+  for (int k = -reach - 1; k <= reach + 1; ++k) {
+    const int gradient = sign * sample->twiceGradient(k);
+    best = gradient > strongest ? k : best;
+    strongest = std::max(strongest, gradient);
+  }
+  const auto g = [&](int k) { return scale * sample->twiceGradient(k); };
+  if (std::abs(best) > reach || g(best) < kind.min_gradient) return std::nullopt;
+  const double before = g(best - 1), after = g(best + 1);
+  return sampler.peak(*sample, best + 0.5 * (before - after) / (before - 2 * g(best) + after), g(best));
+}
+
+/// Peaks at so many rows or columns, or all, between two distances along the line.
+void collect(const EdgeSampler& sampler, double from, double to, int most, const EdgeKind& kind, int reach,
+             Peaks& peaks) {
+  const Axis& axis = sampler.axis();
+  const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
+  const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
+  const int step = std::max(1, (last - first) / most);
+  peaks.stations = 0;
+  peaks.resize(2 * kMaxStations);
+  int count = 0;
+  for (int station = first; station <= last; station += step) {
+    ++peaks.stations;
+    if (const auto peak = findPeak(sampler, station, kind, reach)) peaks.set(count++, *peak);
+  }
+  peaks.resize(count);
+}
+
+/// How far the edge goes on beyond `from`, in steps of this many rows or columns.
+double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& kind) {
+  const Axis& axis = sampler.axis();
+  double end = from;
+  int misses = 0;
+  for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
+    const auto peak = findPeak(sampler, station, kind, 1);
+    if (peak && std::abs(peak->across) < 1) {
+      end = peak->along;
+      misses = 0;
+    } else {
+      ++misses;
+    }
+  }
+  return end;
+}
+
+/// Sign of the edge: the one of which more gradient is found along the line.
+int edgeSign(const EdgeSampler& sampler, double half) {
+  const Axis& axis = sampler.axis();
+  double sum = 0;
+  const int first = cvRound(axis.point(-half)[axis.major]), last = cvRound(axis.point(half)[axis.major]);
+  const int step = std::max(1, (last - first) / 16);
+  for (int station = first; station <= last; station += step)
+    if (const std::optional<Station> sample = sampler.at(station)) {
+      int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+      for (int k = 1 - kRadius; k < kRadius; ++k) {
+        lowest = std::min(lowest, sample->twiceGradient(k));
+        highest = std::max(highest, sample->twiceGradient(k));
+      }
+      sum += sampler.scale() * (highest + lowest);
+    }
+  return sum >= 0 ? 1 : -1;
+}
+
+}  // namespace
+
+LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double offset_stddev,
+                            double angle_stddev) {
+  const Eigen::Vector2d along = (b - a).normalized(), across(-along.y(), along.x());
+  return {a, b, {across.x(), across.y(), -across.dot(0.5 * (a + b))}, offset_stddev, angle_stddev};
+}
+
+Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
+                             const Eigen::Vector2d& b) {
+  const Axis axis(0.5 * (a + b), b - a);
+  return edgeSign(EdgeSampler(image, ground, axis), 0.5 * (b - a).norm()) * axis.across;
+}
+
+std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const RoughSegment& rough,
+                                      double min_gradient) {
+  Axis axis(0.5 * (rough.a + rough.b), rough.b - rough.a);
+  double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
+  const EdgeKind kind{axis.across.dot(rough.brighter) >= 0 ? 1 : -1, min_gradient};
+  Peaks peaks;
+  double scale = 0;
+  const auto isLine = [&] {
+    const auto used = (peaks.weight > 0).count();
+    return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
+  };
+  collect(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, 2, peaks);
+  if (peaks.size() < kMinStations) return std::nullopt;
+  const Fit coarse = fitRobustly(peaks, scale);
+  if (!isLine()) return std::nullopt;
+
+  axis =
+      Axis(axis.point(coarse.centre) + coarse.offset * axis.across, axis.along + coarse.slope * axis.across);
+  const EdgeSampler sampler(image, ground, axis);
+  from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
+  to = grow(sampler, to - coarse.centre, kGrowStep, kind);
+  collect(sampler, from, to, kMaxStations, kind, 1, peaks);
+  if (peaks.size() < kMinStations) return std::nullopt;
+  const Fit fit = refit(peaks, scale);
+  if (!isLine()) return std::nullopt;
+  return segmentOf(axis, peaks, fit, kind.sign);
+}
+
+}  // namespace uav_landing

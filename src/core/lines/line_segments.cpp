@@ -1,0 +1,217 @@
+#include "uav_landing/lines/line_segments.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <tuple>
+
+#include "image/mask_bounds.h"
+#include "lines/line_refinement.h"
+#include "lines/segment_scanner.h"
+
+namespace uav_landing {
+
+namespace {
+
+constexpr int kMaxCandidates = 250;  // segments refined, longest first
+constexpr int kMaxLines = 150;       // lines returned, longest first
+constexpr int kMaxHoughLines = 400;  // infinite lines of the standard transform, most votes first
+constexpr double kHoughAngle = CV_PI / 180;
+constexpr double kUnrefinedStddev = 0.5;  // px, of a Hough line's ends
+constexpr double kSobelScale = 8;         // of a 3x3 Sobel response over the gradient in grey/px
+constexpr double kSameEdge = 1.0;         // px between segments of one edge
+
+using Ends = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
+
+/// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not,
+/// and leaving it out makes the Hough transform both faster and cleaner.
+bool isStraightHere(const cv::Mat& dx, const cv::Mat& dy, int u, int v) {
+  constexpr float kStep = 3, kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // px; within 25 degrees; 40 %
+  constexpr int kSteps = 2, kNeeded = 3;                               // to each side; in all
+  const float gx = dx.at<short>(v, u), gy = dy.at<short>(v, u), g2 = gx * gx + gy * gy;
+  const float scale = kStep / std::max(std::abs(gx), std::abs(gy));
+  int agreeing = 0;
+  for (const int side : {-1, 1}) {
+    for (int i = 1; i <= kSteps; ++i) {
+      const int x = u - cvRound(gy * scale * side * i), y = v + cvRound(gx * scale * side * i);
+      if (x < 0 || y < 0 || x >= dx.cols || y >= dx.rows) break;
+      const float hx = dx.at<short>(y, x), hy = dy.at<short>(y, x), h2 = hx * hx + hy * hy;
+      const float product = gx * hx + gy * hy;
+      if (product <= 0 || product * product < kMinCos2 * g2 * h2 || h2 < kMinStrength2 * g2) break;
+      ++agreeing;
+    }
+    if (agreeing + kSteps < kNeeded) return false;
+  }
+  return agreeing >= kNeeded;
+}
+
+cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,
+                      const ApproachAngleParameters& parameters) {
+  cv::Mat dx, dy, edges;
+  cv::Sobel(image, dx, CV_16S, 1, 0);
+  cv::Sobel(image, dy, CV_16S, 0, 1);
+  cv::Canny(dx, dy, edges, parameters.canny_low, std::max(parameters.canny_low, parameters.canny_high));
+  for (int v = 0; v < edges.rows; ++v) {
+    uchar* edge = edges.ptr<uchar>(v);
+    const uchar* inside = ground.ptr<uchar>(v);
+    for (int u = 0; u < edges.cols; ++u)
+      if (edge[u] != 0 && (inside[u] == 0 || !isStraightHere(dx, dy, u, v))) edge[u] = 0;
+  }
+  return edges;
+}
+
+/// Stretches of an infinite line (rho, theta) along which there are edge pixels within 1 px, with gaps up
+/// to max_gap px.
+void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, double max_gap,
+             std::vector<RoughSegment>& segments) {
+  const Eigen::Vector2d normal(std::cos(theta), std::sin(theta)), along(-normal.y(), normal.x());
+  const Eigen::Vector2d foot = rho * normal;
+  const bool steep = std::abs(along.y()) > std::abs(along.x());
+  const int steps = steep ? edges.rows : edges.cols;
+  const auto point = [&](int i) -> Eigen::Vector2d {
+    const int axis = steep ? 1 : 0;
+    return foot + along * ((i - foot[axis]) / along[axis]);
+  };
+  const auto supported = [&](const Eigen::Vector2d& p) {
+    for (const int side : {0, -1, 1}) {
+      const int x = cvRound(p.x()) + (steep ? side : 0), y = cvRound(p.y()) + (steep ? 0 : side);
+      if (x >= 0 && y >= 0 && x < edges.cols && y < edges.rows && edges.at<uchar>(y, x) != 0) return true;
+    }
+    return false;
+  };
+  std::optional<Ends> open;
+  const auto close = [&] {
+    if (open && (open->second - open->first).norm() >= min_length)
+      segments.push_back({open->first, open->second});
+    open.reset();
+  };
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::Vector2d p = point(i);
+    if (!supported(p)) continue;
+    if (open && (p - open->second).norm() > max_gap + 1) close();
+    if (!open) open = Ends(p, p);
+    open->second = p;
+  }
+  close();
+}
+
+std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
+                                        const ApproachAngleParameters& parameters) {
+  std::vector<RoughSegment> segments;
+  if (parameters.hough_method == HoughMethod::kStandard) {
+    std::vector<cv::Vec2f> lines;
+    cv::HoughLines(edges, lines, 1, kHoughAngle, parameters.hough_threshold);
+    if (lines.size() > kMaxHoughLines) lines.resize(kMaxHoughLines);
+    for (const cv::Vec2f& line : lines)
+      cutLine(edges, line[0], line[1], min_length, parameters.max_line_gap, segments);
+  } else {
+    std::vector<cv::Vec4i> lines;
+    cv::HoughLinesP(edges, lines, 1, kHoughAngle, parameters.hough_threshold, min_length,
+                    parameters.max_line_gap);
+    for (const cv::Vec4i& l : lines)
+      segments.push_back({{double(l[0]), double(l[1])}, {double(l[2]), double(l[3])}});
+  }
+  return segments;
+}
+
+std::vector<RoughSegment> roughSegments(const cv::Mat& image, const cv::Mat& ground, double min_length,
+                                        const ApproachAngleParameters& parameters) {
+  if (parameters.hough_method != HoughMethod::kScanLines)
+    return houghSegments(straightEdges(image, ground, parameters), min_length, parameters);
+  static thread_local SegmentScanner scanner;  // keeps its memory
+  return scanner.find(image, ground,
+                      {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
+}
+
+/// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same
+/// on every machine.
+template <class T, class EndsOf>
+void keepLongest(std::vector<T>& items, size_t count, const EndsOf& ends) {
+  const auto key = [&](const T& item) {
+    const auto [a, b] = ends(item);
+    return std::make_tuple(-(b - a).squaredNorm(), a.x(), a.y(), b.x(), b.y());
+  };
+  std::sort(items.begin(), items.end(), [&](const T& l, const T& r) { return key(l) < key(r); });
+  if (items.size() > count) items.resize(count);
+}
+
+/// Whether both ends of a segment lie on this line, and part of it within its ends.
+bool overlaps(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (std::abs(line.line.dot(a.homogeneous())) > kSameEdge ||
+      std::abs(line.line.dot(b.homogeneous())) > kSameEdge)
+    return false;
+  const Eigen::Vector2d along = (line.b - line.a).normalized();
+  const double p = along.dot(a - line.a), q = along.dot(b - line.a);
+  return std::max(p, q) >= 0 && std::min(p, q) <= line.length();
+}
+
+/// Adds a refined line, or lets the longer one stand when it is an edge already found. The other edge of a
+/// thin stripe is another line: its brighter side is the opposite one.
+void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
+  const auto same = std::find_if(lines.begin(), lines.end(), [&line](const LineSegment& other) {
+    return other.line.head<2>().dot(line.line.head<2>()) > 0 &&
+           (overlaps(other, line.a, line.b) || overlaps(line, other.a, other.b));
+  });
+  if (same == lines.end())
+    lines.push_back(line);
+  else if (line.length() > same->length())
+    *same = line;
+}
+
+/// Whether this rough segment is a piece of a line already found: saves refining it again.
+bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment) {
+  return std::any_of(lines.begin(), lines.end(), [&](const LineSegment& line) {
+    return line.line.head<2>().dot(segment.brighter) > 0 && overlaps(line, segment.a, segment.b);
+  });
+}
+
+std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const cv::Mat& image,
+                                 const cv::Mat& ground, double min_length, double min_gradient) {
+  std::vector<LineSegment> lines;
+  for (RoughSegment& segment : candidates) {
+    if (segment.brighter.isZero()) segment.brighter = brighterSide(image, ground, segment.a, segment.b);
+    if (isKnown(lines, segment)) continue;
+    const auto line = refineLine(image, ground, segment, min_gradient);
+    if (line && line->length() >= min_length) addOrMerge(lines, *line);
+  }
+  return lines;
+}
+
+std::vector<LineSegment> asFound(const std::vector<RoughSegment>& candidates) {
+  std::vector<LineSegment> lines;
+  for (const RoughSegment& s : candidates)
+    if (std::none_of(lines.begin(), lines.end(),
+                     [&s](const LineSegment& line) { return overlaps(line, s.a, s.b); }))
+      lines.push_back(makeLineSegment(s.a, s.b, kUnrefinedStddev,
+                                      kUnrefinedStddev * std::sqrt(12.0) / (s.b - s.a).norm()));
+  return lines;
+}
+
+void shift(LineSegment& line, const Eigen::Vector2d& by) {
+  line.a += by;
+  line.b += by;
+  line.line.z() -= line.line.head<2>().dot(by);
+}
+
+}  // namespace
+
+std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
+                                   const ApproachAngleParameters& parameters) {
+  const cv::Rect part = boundsOf(ground);
+  if (part.width < 8 || part.height < 8) return {};
+  const double min_length = parameters.min_line_length * image.rows;
+  std::vector<RoughSegment> candidates = roughSegments(image(part), ground(part), min_length, parameters);
+  keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
+
+  const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
+  std::vector<LineSegment> lines =
+      parameters.refine_lines ? refined(candidates, image(part), ground(part), min_length, min_gradient)
+                              : asFound(candidates);
+  for (LineSegment& line : lines) shift(line, {part.x, part.y});
+  keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Ends(l.a, l.b); });
+  return lines;
+}
+
+}  // namespace uav_landing

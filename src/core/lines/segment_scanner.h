@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "base/image_memory.h"
+
+namespace uav_landing {
+
+/// A straight edge to about a pixel.
+struct RoughSegment {
+  Eigen::Vector2d a, b;                                ///< ends, px
+  Eigen::Vector2d brighter = Eigen::Vector2d::Zero();  ///< roughly towards the brighter side; 0: not known
+};
+
+/// What counts as an edge, and how long a straight one must be.
+struct EdgeLimits {
+  double low, high;   ///< weak edges, and those that a line starts from: |gu| + |gv| of 3x3 Sobel responses
+  double min_length;  ///< px
+  double max_gap;     ///< px, inside a line
+};
+
+/// Finds straight edges without looking at every pixel: an edge as long as min_length crosses scan lines that
+/// lie a third of it apart, and is followed from there by a straight line fitted as it grows, one row (or
+/// column, when it is flat) after the other. Keeps its memory.
+class SegmentScanner {
+ public:
+  /// image: mono8. ground: mono8, edges only where it is not 0.
+  std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
+
+ private:
+  ImageMemory transposed_, taken_;
+  std::vector<short> across_, along_;  // of one row
+  std::vector<uchar> starts_;
+};
+
+}  // namespace uav_landing

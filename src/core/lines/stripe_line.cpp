@@ -1,0 +1,247 @@
+#include "lines/stripe_line.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <opencv2/core/hal/intrin.hpp>
+#include <optional>
+
+#include "lines/line_fit.h"
+
+namespace uav_landing {
+
+using namespace line_fit;
+
+namespace {
+
+constexpr int kReach = 12;     // px to both sides of the line, where its other side is looked for
+constexpr int kOffLine = 1;    // px by which the edge may be off its line
+constexpr int kStations = 40;  // rows or columns looked at, roughly
+constexpr int kMinStations = 6;
+constexpr double kApart = 4.0;       // px between sides that do not disturb each other, at blurs up to 1.3 px
+constexpr double kBlur = 0.8;        // px, 1 sigma: by how much it misplaces a side that cannot be mended
+constexpr double kMinShare = 0.4;    // gradient of the other side, of this one's
+constexpr double kMinSupport = 0.6;  // share of the stations that must show the other side
+constexpr double kMaxScatter = 0.6;  // px
+
+/// What is seen across the line at one station.
+struct Profile {
+  static constexpr int kHalf = kReach + 1;
+  static constexpr int kPixels = 2 * kHalf + 3, kPadded = 32;  // across; filled up to whole vectors
+
+  std::array<short, kPadded + 2> gradient;
+  int station, centre;  // row and column of the middle, or the other way round
+
+  /// Twice the gradient along the row or column, k pixels from the middle, positive towards the line's
+  /// brighter side.
+  int at(int k) const { return gradient[k + kHalf]; }
+  /// Extremum at pixel k and its neighbours, px from the middle.
+  double peak(int k) const {
+    const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
+    return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
+  }
+  /// Where the gradient has a minimum of at most -least: bit k + kHalf - 1 for pixel k, |k| <= kReach; bits
+  /// beyond mean nothing.
+  unsigned minima(int least) const {
+    alignas(16) std::array<schar, kPadded> is_minimum;
+    const short highest = static_cast<short>(-least);
+    for (int i = 0; i < kPadded; ++i) {
+      const short before = gradient[i], here = gradient[i + 1], after = gradient[i + 2];
+      is_minimum[i] = static_cast<schar>((here <= highest) & (here <= before) & (here <= after) ? -1 : 0);
+    }
+    return static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data()))) |
+           static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data() + kPadded / 2)))
+               << (kPadded / 2);
+  }
+};
+static_assert(Profile::kPixels <= Profile::kPadded, "all of a profile is in it");
+
+/// Looks at the pixels across one line.
+class Profiles {
+ public:
+  /// sign: of the gradient across the line that is its own.
+  Profiles(const cv::Mat& image, const cv::Mat& ground, const Axis& axis, int sign)
+      : image_(image),
+        ground_(ground),
+        axis_(axis),
+        sign_(axis.across[axis.minor] < 0 ? -sign : sign),
+        size_(axis.minor == 0 ? image.cols : image.rows),
+        length_(axis.major == 0 ? image.cols : image.rows),
+        neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
+        slope_(axis.along[axis.minor] / axis.along[axis.major]) {}
+
+  /// False where the line is not on the ground, or too near the border.
+  bool look(int station, Profile& profile) const {
+    const int centre = cvRound(axis_.origin[axis_.minor] + slope_ * (station - axis_.origin[axis_.major]));
+    constexpr int kMargin = Profile::kPixels / 2;
+    if (centre < kMargin || centre >= size_ - kMargin || station < 0 || station >= length_) return false;
+    const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
+    if (ground_.at<uchar>(pixel) == 0) return false;
+    std::array<uchar, Profile::kPadded + 4> grey{};
+    const uchar* first = image_.ptr<uchar>(pixel.y) + pixel.x - neighbour_ * kMargin;
+    if (neighbour_ == 1)
+      std::memcpy(grey.data(), first, Profile::kPixels);
+    else
+      for (int i = 0; i < Profile::kPixels; ++i) grey[i] = first[i * neighbour_];
+    const short sign = static_cast<short>(sign_);
+    for (int i = 0; i < Profile::kPadded + 2; ++i)
+      profile.gradient[i] = static_cast<short>(sign * (grey[i + 2] - grey[i]));
+    profile.station = station;
+    profile.centre = centre;
+    return true;
+  }
+  /// Of a place this many pixels from the profile's middle: distances along and across the line.
+  Eigen::Vector2d place(const Profile& profile, double k) const {
+    const double major = profile.station - axis_.origin[axis_.major];
+    const double minor = profile.centre + k - axis_.origin[axis_.minor];
+    return {axis_.along[axis_.major] * major + axis_.along[axis_.minor] * minor,
+            axis_.across[axis_.major] * major + axis_.across[axis_.minor] * minor};
+  }
+  /// Across the line, grey/px.
+  double gradient(int twice) const { return 0.5 * twice / std::abs(axis_.across[axis_.minor]); }
+
+ private:
+  const cv::Mat &image_, &ground_;
+  const Axis& axis_;
+  int sign_, size_, length_;
+  std::ptrdiff_t neighbour_;
+  double slope_;
+};
+
+/// The edge at one station and, to each side, the nearest edge of the other sign; pixels across the line.
+struct Station {
+  double along, edge, gradient;
+  std::array<double, 2> other;  // position; unset: NaN
+  std::array<double, 2> other_gradient;
+};
+
+std::optional<Station> stationOf(const Profiles& profiles, const Profile& profile) {
+  int own = 0;
+  for (int k = -kOffLine; k <= kOffLine; ++k)
+    if (profile.at(k) > profile.at(own)) own = k;
+  const int strength = profile.at(own);
+  if (!(strength > 0) || profile.at(own - 1) > strength || profile.at(own + 1) > strength)
+    return std::nullopt;
+  const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
+  Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
+  const unsigned minima = profile.minima(static_cast<int>(std::ceil(kMinShare * strength)));
+  const auto isMinimum = [&](int k) { return (minima >> (k + kReach) & 1U) != 0; };
+  for (const int side : {0, 1}) {
+    const int step = side == 0 ? -1 : 1;
+    int k = own + step;
+    while (std::abs(k) <= kReach && !isMinimum(k)) k += step;
+    if (std::abs(k) > kReach) continue;
+    station.other[side] = profiles.place(profile, profile.peak(k)).y();
+    station.other_gradient[side] = profiles.gradient(-profile.at(k));
+  }
+  return station;
+}
+
+std::optional<LineSegment> fitted(const Axis& axis, const std::vector<Peak>& seen, int sign) {
+  if (static_cast<int>(seen.size()) < kMinStations) return std::nullopt;
+  Peaks peaks;
+  peaks.resize(static_cast<int>(seen.size()));
+  for (int i = 0; i < peaks.size(); ++i) peaks.set(i, seen[i]);
+  double scale = 0;
+  const Fit fit = fitRobustly(peaks, scale);
+  if ((peaks.weight > 0).count() < kMinStations || scale > kMaxScatter) return std::nullopt;
+  return segmentOf(axis, peaks, fit, sign);
+}
+
+/// Which side the stripe is on; nothing when there is none that is narrow enough to disturb the edge.
+/// Between two neighbours at the same distance an edge is pushed both ways alike.
+std::optional<int> narrowSide(const std::vector<Station>& stations) {
+  std::array<int, 2> seen{}, close{};
+  for (const Station& station : stations)
+    for (const int side : {0, 1}) {
+      const double width = std::abs(station.other[side] - station.edge);
+      seen[side] += std::isfinite(width) ? 1 : 0;
+      close[side] += width < kApart ? 1 : 0;
+    }
+  if (std::max(close[0], close[1]) < kMinStations / 2) return std::nullopt;
+  return close[0] >= close[1] ? 0 : 1;
+}
+
+/// Of a line that reaches this far to both sides of its middle.
+std::vector<Station> stationsAlong(const Profiles& profiles, const Axis& axis, double half) {
+  std::vector<Station> stations;
+  const int first = static_cast<int>(std::ceil(axis.point(-half)[axis.major]));
+  const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
+  const int step = std::max(1, (last - first) / kStations);
+  stations.reserve(2 * kStations);
+  Profile profile;
+  for (int at = first; at <= last; at += step)
+    if (profiles.look(at, profile))
+      if (const auto station = stationOf(profiles, profile)) stations.push_back(*station);
+  return stations;
+}
+
+struct Replacement {
+  LineSegment line;
+  bool middle;  // of a stripe
+};
+
+std::optional<Replacement> replacementOf(const cv::Mat& image, const cv::Mat& ground,
+                                         const LineSegment& line) {
+  const Axis axis(line.middle(), line.b - line.a);
+  const int sign = axis.across.dot(line.line.head<2>()) >= 0 ? 1 : -1;
+  const Profiles profiles(image, ground, axis, sign);
+  const std::vector<Station> stations = stationsAlong(profiles, axis, 0.5 * line.length());
+  const std::optional<int> side = narrowSide(stations);
+  if (!side) return std::nullopt;
+
+  std::vector<Peak> clear, middle;
+  clear.reserve(stations.size());
+  middle.reserve(stations.size());
+  for (const Station& station : stations) {
+    const double other = station.other[*side];
+    if (!(std::abs(other - station.edge) < kApart))
+      clear.push_back({station.along, station.edge, station.gradient});
+    if (std::isfinite(other))
+      middle.push_back({station.along, 0.5 * (station.edge + other),
+                        std::min(station.gradient, station.other_gradient[*side])});
+  }
+  if (static_cast<double>(middle.size()) < kMinSupport * static_cast<double>(stations.size())) middle.clear();
+  const std::optional<LineSegment> edge = fitted(axis, clear, sign);
+  const std::optional<LineSegment> centre = fitted(axis, middle, sign);
+  if (!edge && !centre) {
+    LineSegment uncertain = line;
+    uncertain.offset_stddev = std::hypot(uncertain.offset_stddev, kBlur);
+    return Replacement{uncertain, false};
+  }
+  if (centre && (!edge || centre->angle_stddev < edge->angle_stddev)) return Replacement{*centre, true};
+  return Replacement{*edge, false};
+}
+
+bool isSame(const LineSegment& a, const LineSegment& b) {
+  constexpr double kSame = 0.5;  // px
+  return std::abs(a.line.dot(b.middle().homogeneous())) < kSame &&
+         std::abs(b.line.dot(a.middle().homogeneous())) < kSame;
+}
+
+}  // namespace
+
+std::vector<LineSegment> withoutStripeBias(const cv::Mat& image, const cv::Mat& ground,
+                                           const std::vector<LineSegment>& lines) {
+  std::vector<LineSegment> result = lines;
+  std::vector<size_t> middles;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const std::optional<Replacement> replacement = replacementOf(image, ground, lines[i]);
+    if (!replacement) continue;
+    result[i] = replacement->line;
+    if (replacement->middle) middles.push_back(i);
+  }
+  std::vector<double> shared;
+  for (const size_t i : middles)
+    shared.push_back(std::sqrt(static_cast<double>(std::count_if(
+        middles.begin(), middles.end(), [&](size_t j) { return i == j || isSame(result[i], result[j]); }))));
+  for (size_t k = 0; k < middles.size(); ++k) {
+    result[middles[k]].offset_stddev *= shared[k];
+    result[middles[k]].angle_stddev *= shared[k];
+  }
+  return result;
+}
+
+}  // namespace uav_landing

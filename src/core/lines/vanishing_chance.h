@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lines/vanishing_lines.h"
+
+namespace uav_landing {
+
+/// Chance from which on a line that passes says nothing.
+constexpr double kLikelyChance = 0.05;
+
+/// How many meeting points as well supported as this one are expected of lines of random direction on the
+/// ground. used: indices of the lines that pass, in order. meetings: pairs of lines that meet along the
+/// runway.
+double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& direction,
+                            const std::vector<int>& used, double meetings);
+
+}  // namespace uav_landing

@@ -1,0 +1,130 @@
+#include "uav_landing/motion/ego_motion.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "geometry/rotation.h"
+#include "motion/motion_rows.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr int kRansacIterations = 80;
+
+// Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
+// the matches is right.
+double triplesNeeded(double share) {
+  constexpr double kMissed = 1e-3;
+  const double all_right = std::min(share * share * share, 1 - kMissed);
+  return all_right > 0 ? std::log(kMissed) / std::log1p(-all_right) : kRansacIterations;
+}
+
+// Rotation and translation that carry three matches exactly, by two Newton steps with the normal held.
+bool solveTriple(MotionRows& triple, MotionState& state) {
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    triple.linearise(state);
+    const Eigen::Matrix<double, 6, 1> x = triple.solveExactly();
+    if (!x.allFinite() || x.head<3>().norm() > 0.5) return false;
+    Vector9d step = Vector9d::Zero();
+    step.head<6>() = x;
+    state = state.apply(step);
+  }
+  return true;
+}
+
+MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
+  MotionState best = start;
+  MotionSupport most = all.support(start);
+  static thread_local MotionRows triple;  // kept for its memory
+  std::mt19937 random(20100602u);
+  double needed = triplesNeeded(double(most.close) / all.size());
+  for (int iteration = 0; iteration < std::min<double>(needed, kRansacIterations); ++iteration) {
+    const std::array<size_t, 3> chosen = {random() % all.size(), random() % all.size(),
+                                          random() % all.size()};
+    if (chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2]) continue;
+    MotionState candidate = best;
+    triple.assign(all, chosen);
+    if (!solveTriple(triple, candidate)) continue;
+    const MotionSupport found = all.support(candidate);
+    if (found.votes > most.votes) {
+      most = found;
+      best = candidate;
+      needed = triplesNeeded(double(most.close) / all.size());
+    }
+  }
+  return best;
+}
+
+// Adds a rotation known beforehand to the normal equations: as a perturbation of Q on the left.
+void addRotation(const RotationPrior& prior, const MotionState& state, MotionNormal& sums) {
+  const Eigen::Matrix3d information = (state.Q * prior.covariance * state.Q.transpose()).inverse();
+  sums.information.topLeftCorner<3, 3>() += information;
+  sums.right.head<3>() += information * rotationVector(prior.R.transpose() * state.Q.transpose());
+}
+
+// The prior's covariance has rank 2; along the normal itself nothing may change, because it sets the scale.
+Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) {
+  constexpr double kFixed = 1e-6;
+  return (covariance + kFixed * kFixed * (Eigen::Matrix3d::Identity() + normal * normal.transpose()))
+      .inverse();
+}
+
+}  // namespace
+
+Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                                        const Eigen::Vector3d& normal,
+                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
+                                        int min_matches, const RotationPrior* rotation) {
+  constexpr int kIterations = 8;
+  constexpr double kConverged = 1e-5;  // rad and shares of the height: a hundredth of a pixel
+  if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
+    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
+                                                                   " corners followed, at least " +
+                                                                   std::to_string(min_matches) + " needed"});
+  }
+  static thread_local MotionRows rows;  // kept, as they are large
+  rows.assign(rig, matches);
+  MotionState state = bestByConsensus(rows, {start.R.transpose(), start.t, normal});
+  const Eigen::Matrix3d prior = priorInformation(normal, normal_covariance);
+  MotionEstimate result;
+  result.inliers.assign(matches.size(), 0);
+  Matrix9d information;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    rows.linearise(state);
+    MotionNormal sums = rows.accumulate(result.inliers);
+    result.inlier_count = sums.count;
+    if (sums.count < min_matches) {
+      return tl::make_unexpected(Failure{
+          Reason::kMotionInconsistent, std::to_string(sums.count) + " of " + std::to_string(matches.size()) +
+                                           " matches agree, at least " + std::to_string(min_matches) +
+                                           " needed"});
+    }
+    sums.information.bottomRightCorner<3, 3>() += prior;
+    sums.right.tail<3>() += prior * (normal - state.n);
+    if (rotation != nullptr) addRotation(*rotation, state, sums);
+    information = sums.information.selfadjointView<Eigen::Lower>();
+    const Vector9d step = information.ldlt().solve(sums.right);
+    state = state.apply(step);
+    if (step.norm() < kConverged) break;
+  }
+  const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
+  if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
+    return tl::make_unexpected(
+        Failure{Reason::kMotionInconsistent, "the matches do not determine the motion"});
+  }
+  result.motion = {state.Q.transpose(), state.t};
+  result.normal = state.n;
+  // Perturbations of Q on the left (frame then) to those of R on the left (frame now): -R w.
+  Matrix9d turn = Matrix9d::Identity();
+  turn.topLeftCorner<3, 3>() = -state.Q.transpose();
+  result.covariance = turn * covariance * turn.transpose();
+  return result;
+}
+
+}  // namespace uav_landing

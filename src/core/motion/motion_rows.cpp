@@ -1,0 +1,360 @@
+#include "motion/motion_rows.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/lanes.h"
+#include "base/median.h"
+#include "base/multiversion.h"
+#include "geometry/rotation.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kTukey = 4.5;
+// Nearer than this, in units of what is seen, nothing is in front of the camera.
+constexpr double kLeastDepth = 1e-6;
+// Squared error of what lies behind it, pixels^2.
+constexpr double kBehind = 1e9;
+constexpr size_t kTile = 32;  // matches whose columns stay in the cache
+
+using Mask = decltype(DoubleLanes{} > DoubleLanes{});
+
+// A state and a camera, by numbers.
+struct Terms {
+  double Q[3][3], t[3], n[3], Qt[3];
+  double fx, fy, cx, cy;
+
+  Terms(const MotionState& state, double fx_, double fy_, double cx_, double cy_)
+      : fx(fx_), fy(fy_), cx(cx_), cy(cy_) {
+    const Eigen::Vector3d turned = state.Q * state.t;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) Q[i][j] = state.Q(i, j);
+      t[i] = state.t[i];
+      n[i] = state.n[i];
+      Qt[i] = turned[i];
+    }
+  }
+};
+
+// Where four matches are seen then: the ray now, its inverse depth, the point in the frame then, the pixel's
+// error. seen: in front of the camera.
+struct Seen {
+  DoubleLanes rx, ry, w, x, y, z, error_u, error_v;
+  Mask on_plane, seen;
+};
+
+// in: the columns x, y, u, v, ... of the input.
+[[gnu::always_inline]] inline void look(const Terms& s, const double* x, const double* y, const double* u,
+                                        const double* v, const double* on_plane, const double* depth,
+                                        Seen& out) {
+  DoubleLanes then_u, then_v, plane, own;
+  load(x, out.rx);
+  load(y, out.ry);
+  load(u, then_u);
+  load(v, then_v);
+  load(on_plane, plane);
+  load(depth, own);
+  out.on_plane = plane > 0;
+  out.w = out.on_plane ? s.n[0] * out.rx + s.n[1] * out.ry + s.n[2] : own;
+  const DoubleLanes px = out.rx + out.w * s.t[0], py = out.ry + out.w * s.t[1], pz = 1 + out.w * s.t[2];
+  const DoubleLanes z = s.Q[2][0] * px + s.Q[2][1] * py + s.Q[2][2] * pz, one = DoubleLanes{} + 1;
+  out.seen = z > kLeastDepth;
+  out.x = s.Q[0][0] * px + s.Q[0][1] * py + s.Q[0][2] * pz;
+  out.y = s.Q[1][0] * px + s.Q[1][1] * py + s.Q[1][2] * pz;
+  out.z = out.seen ? z : one;
+  out.error_u = then_u - (s.fx * out.x / out.z + s.cx);
+  out.error_v = then_v - (s.fy * out.y / out.z + s.cy);
+}
+
+// Votes and good fits of four matches.
+UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, size_t padded, size_t count,
+                                   MotionSupport& support) {
+  constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance
+  constexpr double kUnit = 1 / (MotionRows::kTolerance * MotionRows::kTolerance);
+  const DoubleLanes none{}, one = none + 1, last = none + static_cast<double>(count);
+  DoubleLanes votes{}, close{}, index{0, 1, 2, 3};
+  for (size_t i = 0; i < padded; i += kDoubleLanes, index += kDoubleLanes) {
+    Seen at;
+    const double* in = inputs + i;
+    look(terms, in, in + padded, in + 2 * padded, in + 3 * padded, in + 7 * padded, in + 8 * padded, at);
+    const DoubleLanes ratio = kUnit * (at.error_u * at.error_u + at.error_v * at.error_v);
+    const Mask counts = at.seen & (index < last) & (ratio < 1);
+    votes += counts ? 1 - ratio : none;
+    close += (counts & (ratio < kClose)) ? one : none;
+  }
+  support.votes = sum(votes);
+  support.close = static_cast<int>(sum(close));
+}
+
+// A row of the Jacobian by (rotation, t, n), where the projection's derivatives by the point are a by its
+// component `axis` (0 or 1) and c by the third.
+template <int axis>
+[[gnu::always_inline]] inline void derive(const Terms& s, const Seen& at, const DoubleLanes& a,
+                                          const DoubleLanes& c, const DoubleLanes& by_depth,
+                                          DoubleLanes (&row)[9]) {
+  const DoubleLanes none{};
+  // The point turns by -[y]x.
+  if (axis == 0) {
+    row[0] = c * at.y;
+    row[1] = a * at.z - c * at.x;
+    row[2] = -a * at.y;
+  } else {
+    row[0] = c * at.y - a * at.z;
+    row[1] = -c * at.x;
+    row[2] = a * at.x;
+  }
+  for (int j = 0; j < 3; ++j) row[3 + j] = at.w * (a * s.Q[axis][j] + c * s.Q[2][j]);
+  row[6] = at.on_plane ? by_depth * at.rx : none;
+  row[7] = at.on_plane ? by_depth * at.ry : none;
+  row[8] = at.on_plane ? by_depth : none;
+}
+
+// outputs: columns of both rows, squares, ratio.
+UAV_LANDING_MULTIVERSION void lineariseAll(const Terms& s, const double* inputs, size_t padded,
+                                           double* outputs) {
+  constexpr double kLeastVariance = 1e-12;
+  const DoubleLanes none{}, behind = none + kBehind;
+  for (size_t i = 0; i < padded; i += kDoubleLanes) {
+    Seen at;
+    const double* in = inputs + i;
+    double* out = outputs + i;
+    look(s, in, in + padded, in + 2 * padded, in + 3 * padded, in + 7 * padded, in + 8 * padded, at);
+    const DoubleLanes au = s.fx / at.z, av = s.fy / at.z, cu = -au * at.x / at.z, cv = -av * at.y / at.z;
+    const DoubleLanes depth_u = au * s.Qt[0] + cu * s.Qt[2], depth_v = av * s.Qt[1] + cv * s.Qt[2];
+    DoubleLanes first[9], second[9];
+    derive<0>(s, at, au, cu, depth_u, first);
+    derive<1>(s, at, av, cv, depth_v, second);
+    DoubleLanes xx, xy, yy, depth_stddev;
+    load(in + 4 * padded, xx);
+    load(in + 5 * padded, xy);
+    load(in + 6 * padded, yy);
+    load(in + 9 * padded, depth_stddev);  // none on the plane
+    const DoubleLanes du = depth_u * depth_stddev, dv = depth_v * depth_stddev;
+    xx += du * du;
+    xy += du * dv;
+    yy += dv * dv;
+    const DoubleLanes mixed = xy / xx, left = yy - mixed * xy;
+    const DoubleLanes precision_u = 1 / xx,
+                      precision_v = 1 / (left > kLeastVariance ? left : none + kLeastVariance);
+    const DoubleLanes error_v = at.error_v - mixed * at.error_u;
+    for (int j = 0; j < 9; ++j) {
+      store(first[j], out + j * padded);
+      store(second[j] - mixed * first[j], out + (11 + j) * padded);
+    }
+    store(at.error_u, out + 9 * padded);
+    store(precision_u, out + 10 * padded);
+    store(error_v, out + 20 * padded);
+    store(precision_v, out + 21 * padded);
+    const DoubleLanes squares = at.error_u * at.error_u + at.error_v * at.error_v;
+    store(at.seen ? squares : behind, out + 22 * padded);
+    store(at.error_u * at.error_u * precision_u + error_v * error_v * precision_v, out + 23 * padded);
+  }
+}
+
+// unit: 1 / scale^2. Tukey weights of the matches below count.
+UAV_LANDING_MULTIVERSION void weigh(const double* squares, const double* ratios, size_t padded, double unit,
+                                    double* weights) {
+  const DoubleLanes none{};
+  for (size_t i = 0; i < padded; i += kDoubleLanes) {
+    DoubleLanes square, ratio;
+    load(squares + i, square);
+    load(ratios + i, ratio);
+    const DoubleLanes left = 1 - unit / (kTukey * kTukey) * ratio;
+    store((square < kBehind) & (left > 0) ? unit * left * left : none, weights + i);
+  }
+}
+
+// Sums of the products of three columns with three others of a row, by its weights.
+[[gnu::always_inline]] inline void addBlock(const double* a, const double* b, const double* weights,
+                                            size_t padded, size_t size, double (&sums)[9][kDoubleLanes]) {
+  DoubleLanes s[9];
+  for (int k = 0; k < 9; ++k) load(sums[k], s[k]);
+  for (size_t i = 0; i < size; i += kDoubleLanes) {
+    DoubleLanes a0, a1, a2, b0, b1, b2, weight;
+    load(weights + i, weight);
+    load(a + i, a0);
+    load(a + padded + i, a1);
+    load(a + 2 * padded + i, a2);
+    load(b + i, b0);
+    load(b + padded + i, b1);
+    load(b + 2 * padded + i, b2);
+    b0 *= weight;
+    b1 *= weight;
+    b2 *= weight;
+    s[0] += a0 * b0;
+    s[1] += a0 * b1;
+    s[2] += a0 * b2;
+    s[3] += a1 * b0;
+    s[4] += a1 * b1;
+    s[5] += a1 * b2;
+    s[6] += a2 * b0;
+    s[7] += a2 * b1;
+    s[8] += a2 * b2;
+  }
+  for (int k = 0; k < 9; ++k) store(s[k], sums[k]);
+}
+
+// Sums of the products of three columns with the residual.
+[[gnu::always_inline]] inline void addRight(const double* a, const double* residual, const double* weights,
+                                            size_t padded, size_t size, double (&sums)[9][kDoubleLanes]) {
+  DoubleLanes s[3];
+  for (int k = 0; k < 3; ++k) load(sums[k], s[k]);
+  for (size_t i = 0; i < size; i += kDoubleLanes) {
+    DoubleLanes a0, a1, a2, r, weight;
+    load(weights + i, weight);
+    load(residual + i, r);
+    load(a + i, a0);
+    load(a + padded + i, a1);
+    load(a + 2 * padded + i, a2);
+    r *= weight;
+    s[0] += a0 * r;
+    s[1] += a1 * r;
+    s[2] += a2 * r;
+  }
+  for (int k = 0; k < 3; ++k) store(s[k], sums[k]);
+}
+
+// Blocks of three by three of the normal equations, the lower ones, and the right side by three.
+struct BlockSums {
+  alignas(32) double information[6][9][kDoubleLanes];
+  alignas(32) double right[3][9][kDoubleLanes];
+};
+
+// row: the columns of one row of all matches.
+UAV_LANDING_MULTIVERSION void addUp(const double* row, const double* precision, const double* match_weights,
+                                    size_t padded, BlockSums& sums) {
+  alignas(32) double weights[kTile];
+  for (size_t begin = 0; begin < padded; begin += kTile) {
+    const size_t size = std::min(kTile, padded - begin);
+    for (size_t i = 0; i < size; ++i) weights[i] = match_weights[begin + i] * precision[begin + i];
+    const double* columns = row + begin;
+    int block = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double* a = columns + 3 * i * padded;
+      for (int j = 0; j <= i; ++j)
+        addBlock(a, columns + 3 * j * padded, weights, padded, size, sums.information[block++]);
+      addRight(a, columns + 9 * padded, weights, padded, size, sums.right[i]);
+    }
+  }
+}
+
+double total(const double (&lanes)[kDoubleLanes]) {
+  DoubleLanes values;
+  load(lanes, values);
+  return sum(values);
+}
+
+}  // namespace
+
+MotionState MotionState::apply(const Vector9d& step) const {
+  return {rotationMatrix(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
+}
+
+void MotionRows::resize(size_t count) {
+  count_ = count;
+  padded_ = wholeDoubleLanes(count);
+  inputs_.assign(kInputs * padded_, 0.0);
+  outputs_.resize(kOutputs * padded_);
+  for (size_t i = count_; i < padded_; ++i) inputs_[kXX * padded_ + i] = inputs_[kYY * padded_ + i] = 1;
+}
+
+void MotionRows::assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches) {
+  fx_ = rig.fx;
+  fy_ = rig.fy;
+  cx_ = rig.cx;
+  cy_ = rig.cy;
+  resize(matches.size());
+  for (size_t i = 0; i < count_; ++i) {
+    const TemporalMatch& match = matches[i];
+    const Eigen::Vector3d ray = rig.ray(match.now.x(), match.now.y());
+    const auto set = [&](Input column, double value) { inputs_[column * padded_ + i] = value; };
+    set(kX, ray.x());
+    set(kY, ray.y());
+    set(kU, match.then.x());
+    set(kV, match.then.y());
+    set(kXX, match.covariance(0, 0));
+    set(kXY, match.covariance(1, 0));
+    set(kYY, match.covariance(1, 1));
+    set(kOnPlane, match.on_plane ? 1 : 0);
+    set(kDepth, match.inverse_depth);
+    set(kDepthStddev, match.on_plane ? 0 : match.inverse_depth_stddev);
+  }
+}
+
+void MotionRows::assign(const MotionRows& all, const std::array<size_t, 3>& chosen) {
+  fx_ = all.fx_;
+  fy_ = all.fy_;
+  cx_ = all.cx_;
+  cy_ = all.cy_;
+  resize(chosen.size());
+  for (size_t column = 0; column < kInputs; ++column)
+    for (size_t i = 0; i < count_; ++i)
+      inputs_[column * padded_ + i] = all.inputs_[column * all.padded_ + chosen[i]];
+}
+
+MotionSupport MotionRows::support(const MotionState& state) const {
+  MotionSupport result;
+  vote(Terms(state, fx_, fy_, cx_, cy_), inputs_.data(), padded_, count_, result);
+  return result;
+}
+
+void MotionRows::linearise(const MotionState& state) {
+  lineariseAll(Terms(state, fx_, fy_, cx_, cy_), inputs_.data(), padded_, outputs_.data());
+  for (size_t i = count_; i < padded_; ++i) outputs_[kSquares * padded_ + i] = kBehind;
+}
+
+// Robust size of the residuals over their stddevs, at least 1.
+double MotionRows::residualScale() {
+  const double *squares = &outputs_[kSquares * padded_], *ratios = &outputs_[kRatio * padded_];
+  ratios_.resize(count_);
+  size_t used = 0;
+  for (size_t i = 0; i < count_; ++i) {
+    ratios_[used] = ratios[i];
+    used += squares[i] <= 4 * kTolerance * kTolerance;
+  }
+  if (used == 0) return 1;
+  ratios_.resize(used);
+  // The median of chi-square with two degrees of freedom is 2 ln 2.
+  return std::max(1.0, std::sqrt(medianOf(ratios_) / (2 * std::log(2.0))));
+}
+
+MotionNormal MotionRows::accumulate(std::vector<char>& inliers) {
+  const double scale = residualScale();
+  const auto column = [&](int index) { return outputs_.data() + index * padded_; };
+  weigh(column(kSquares), column(kRatio), padded_, 1 / (scale * scale), column(kWeight));
+  BlockSums sums{};
+  for (const int row : {0, kRowColumns})
+    addUp(column(row), column(row + kPrecision), column(kWeight), padded_, sums);
+  MotionNormal normal;
+  for (int i = 0, block = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j, ++block)
+      for (int k = 0; k < 9; ++k)
+        normal.information(3 * i + k / 3, 3 * j + k % 3) = total(sums.information[block][k]);
+    for (int k = 0; k < 3; ++k) normal.right[3 * i + k] = total(sums.right[i][k]);
+  }
+  for (size_t i = 0; i < count_; ++i) {
+    inliers[i] = column(kWeight)[i] > 0;
+    normal.count += inliers[i];
+  }
+  return normal;
+}
+
+Eigen::Matrix<double, 6, 1> MotionRows::solveExactly() const {
+  Eigen::Matrix<double, 6, 6> A;
+  Eigen::Matrix<double, 6, 1> b;
+  for (int match = 0; match < 3; ++match) {
+    const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
+    if (value(kSquares) >= kBehind)
+      return Eigen::Matrix<double, 6, 1>::Constant(std::numeric_limits<double>::quiet_NaN());
+    for (int row = 0; row < 2; ++row) {
+      for (int j = 0; j < 6; ++j) A(2 * match + row, j) = value(row * kRowColumns + j);
+      b[2 * match + row] = value(row * kRowColumns + kResidual);
+    }
+  }
+  return A.partialPivLu().solve(b);
+}
+
+}  // namespace uav_landing

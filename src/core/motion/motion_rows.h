@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "uav_landing/motion/ego_motion.h"
+
+namespace uav_landing {
+
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// The unknowns of ego-motion: rotation now -> then (perturbed on the left), translation, ground normal.
+struct MotionState {
+  Eigen::Matrix3d Q;
+  Eigen::Vector3d t, n;
+
+  MotionState apply(const Vector9d& step) const;
+};
+
+/// How well a motion is supported: votes weighted by closeness, and how many matches it fits well.
+struct MotionSupport {
+  double votes = 0;
+  int close = 0;
+};
+
+/// Sums of the normal equations by (rotation, t, n).
+struct MotionNormal {
+  Matrix9d information = Matrix9d::Zero();
+  Vector9d right = Vector9d::Zero();
+  int count = 0;  // of the matches with a weight
+};
+
+/// The least squares problem of a camera's motion: for each match two residuals (pixels) where it was then
+/// less where the motion puts it, by columns, so that four matches are worked on at once. Keeps its memory.
+class MotionRows {
+ public:
+  /// Distance, in pixels, by which a match may miss a motion in the consensus step.
+  static constexpr double kTolerance = 2.0;
+
+  void assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches);
+  size_t size() const { return count_; }
+  /// The problem of these three alone.
+  void assign(const MotionRows& all, const std::array<size_t, 3>& chosen);
+
+  MotionSupport support(const MotionState& state) const;
+
+  /// Residuals and Jacobians at a state. The two rows of a match are made independent of each other (LDL' of
+  /// its covariance), each with its precision.
+  void linearise(const MotionState& state);
+
+  /// Sums with Tukey weights of the residuals, which are as large as their median says, at least as claimed.
+  /// inliers: which matches have a weight. After linearise().
+  MotionNormal accumulate(std::vector<char>& inliers);
+
+  /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
+  /// one lies behind the camera. After linearise().
+  Eigen::Matrix<double, 6, 1> solveExactly() const;
+
+ private:
+  enum Input { kX, kY, kU, kV, kXX, kXY, kYY, kOnPlane, kDepth, kDepthStddev, kInputs };
+  static constexpr int kUnknowns = 9, kResidual = 9, kPrecision = 10, kRowColumns = 11;
+  // Of both rows, and then for both: squared error in pixels, the same over the covariance, weight.
+  static constexpr int kSquares = 2 * kRowColumns, kRatio = kSquares + 1, kWeight = kSquares + 2;
+  static constexpr int kOutputs = kSquares + 3;
+
+  void resize(size_t count);
+  double residualScale();
+
+  double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
+  size_t count_ = 0, padded_ = 0;
+  std::vector<double> inputs_, outputs_;  // by columns of padded_
+  std::vector<double> ratios_;
+};
+
+}  // namespace uav_landing

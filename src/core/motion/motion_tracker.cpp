@@ -1,0 +1,374 @@
+#include "uav_landing/motion/motion_tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "geometry/rotation.h"
+#include "uav_landing/image/image_check.h"
+#include "uav_landing/motion/approach_angle.h"
+#include "uav_landing/results/consistency_test.h"
+
+namespace uav_landing {
+namespace {
+
+// Share of the followed corners that must agree with a motion that grew from the last one.
+constexpr double kLeastShare = 0.35;
+
+// Fewest matches that make a motion good enough to search from.
+constexpr int kFewestScouts = 6;
+
+// Images kept however close their stamps are: 0.5 s of 100 Hz.
+constexpr size_t kMostFrames = 50;
+
+// Images whose memory is taken beforehand: 0.5 s of 30 Hz.
+constexpr size_t kMostAtOnce = 17;
+
+// Stamps may be off by this much for a frame still to be in the window, s.
+constexpr double kWindowSlack = 0.05;
+
+// At most count of the corners, spread as the corners are.
+std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
+  if (corners.size() <= count) return corners;
+  std::vector<TrackedCorner> some;
+  for (size_t i = 0; i < count; ++i) some.push_back(corners[i * corners.size() / count]);
+  return some;
+}
+
+// The angle's variance from the joint covariance of t and n (both enter asin(n.t/|t|)).
+double jointAngleVariance(const MotionEstimate& estimate) {
+  const Eigen::Vector3d& t = estimate.motion.t;
+  const Eigen::Vector3d n = estimate.normal.normalized();
+  const Eigen::Vector3d m = t.normalized();
+  const double sine = n.dot(m);
+  Eigen::Matrix<double, 6, 1> gradient;
+  gradient << (n - sine * m) / t.norm(), m - sine * n;
+  return gradient.dot(estimate.covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
+}
+
+// The part of it that the matches answer for: t's own variance with the normal taken as exact.
+double matchAngleVariance(const MotionEstimate& estimate) {
+  const Eigen::Matrix3d cross = estimate.covariance.block<3, 3>(3, 6);
+  const Eigen::Matrix3d normal = estimate.covariance.bottomRightCorner<3, 3>();
+  const Eigen::Matrix3d of_t =
+      estimate.covariance.block<3, 3>(3, 3) -
+      cross * normal.completeOrthogonalDecomposition().pseudoInverse() * cross.transpose();
+  return approachAngleVariance(estimate.normal.normalized(), Eigen::Matrix3d::Zero(), estimate.motion.t,
+                               of_t);
+}
+
+// The inertial sensor's rotation, when it is that of this step.
+std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
+  constexpr double kStampRounding = 1e-3;
+  if (!imu.hasRotation() || std::abs(imu.duration - duration) > kStampRounding) return std::nullopt;
+  return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
+}
+
+// The rotation that the matches want is one that the prior allows.
+bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
+  static const double gate = chiSquareLimit(1e-3, 3);
+  const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
+  return off.dot(prior.covariance.inverse() * off) <= gate;
+}
+
+double largestEigenvalue(const Eigen::Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+}  // namespace
+
+MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
+    : rig_(model.rig),
+      mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
+      parameters_(parameters),
+      filter_(parameters.angle_window) {
+  reset();
+}
+
+MotionTracker::Result MotionTracker::repeat() const {
+  Result result;
+  result.step.failure = {Reason::kNoMotion, "the image is the one of the pair before"};
+  result.window = last_window_;
+  return result;
+}
+
+void MotionTracker::reset() {
+  for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
+  past_.clear();
+  last_step_.reset();
+  filter_.reset();
+  last_window_ = {};
+  last_window_.failure = {Reason::kNotYet, "no earlier frame"};
+}
+
+int MotionTracker::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
+
+TemporalMatchOptions MotionTracker::matchOptions(int coarse_steps) const {
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps};
+}
+
+MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
+  if (!past_.empty() && !(stamp > past_.back().stamp)) reset();
+  Frame frame;
+  frame.stamp = stamp;
+  if (!spare_.empty()) {
+    frame.image = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  if (frame.image.coarse.empty()) frame.image.coarse = std::move(spare_coarse_);
+  frame.image.assign(left);
+  return frame;
+}
+
+// What the frames of the window will need, as soon as their rate is known: with each of the first dozen pairs
+// it would take longer to get memory from the system than to fill it.
+void MotionTracker::takeMemory(const Frame& now) {
+  const double duration = now.stamp - past_.back().stamp;
+  const double kept = std::floor((parameters_.angle_window + kWindowSlack) / duration) + 1;
+  const size_t needed = static_cast<size_t>(std::min<double>(kMostAtOnce, kept));
+  while (past_.size() + spare_.size() < needed) {
+    spare_.emplace_back();
+    spare_.back().fine = cv::Mat::zeros(now.image.fine.size(), now.image.fine.type());
+  }
+}
+
+void MotionTracker::skip(double stamp, const cv::Mat& left) {
+  Result nothing;
+  nothing.window.failure = {Reason::kNotYet, "no motion to the frame before"};
+  advance(takeFrame(stamp, left), nothing);
+}
+
+MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
+                                             const Eigen::Matrix3d& normal_covariance,
+                                             const Corners& all_corners, Timings& timings,
+                                             const AttitudePrior& imu) {
+  Result result;
+  step_matches_.clear();
+  const Corners corners = thinned(all_corners, static_cast<size_t>(parameters_.corner_count));
+  Frame now;
+  {
+    ScopedTimer timer(timings, "match_images_motion");
+    now = takeFrame(stamp, left);
+  }
+  if (past_.empty()) {
+    result.step.failure = {Reason::kNotYet, "no earlier frame"};
+  } else {
+    ScopedTimer timer(timings, "feature_matching_motion");
+    const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
+    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, result);
+  }
+  ScopedTimer timer(timings, "window_motion");
+  estimateWindow(now, normal, normal_covariance, corners, result);
+  smoothAngle(stamp, result);
+  advance(std::move(now), result);
+  return result;
+}
+
+void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
+                                 const Eigen::Matrix3d& covariance, const Corners& corners,
+                                 const RotationPrior* rotation, Result& result) {
+  const double duration = now.stamp - past_.back().stamp;
+  Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+  const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * step_matches_.size(); };
+  for (const CameraMotion& predicted : predictions(duration, rotation)) {
+    estimate = followFrom(now, predicted, normal, covariance, corners, rotation);
+    if (good()) break;
+  }
+  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
+  if (rotation != nullptr) rotations.insert(rotations.begin(), rotation->R);
+  for (const Eigen::Matrix3d& R : rotations) {
+    if (good()) break;
+    const CameraMotion first = searchFirst(now, normal, corners, R);
+    estimate = followFrom(now, first, normal, covariance, corners, rotation);
+  }
+  result.step = describe(estimate, duration, step_matches_.size(), &result.step_match_variance);
+  if (!estimate) return;
+  result.step_estimate = *estimate;
+  last_duration_ = duration;
+}
+
+// As the camera moved last, with the known rotation first.
+std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
+  std::vector<CameraMotion> predictions;
+  if (!last_step_) return predictions;
+  CameraMotion predicted = *last_step_;
+  predicted.t *= duration / last_duration_;
+  predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
+                                  Eigen::AngleAxisd(predicted.R).axis())
+                    .toRotationMatrix();
+  if (rotation != nullptr) predictions.push_back({rotation->R, predicted.t});
+  predictions.push_back(predicted);
+  return predictions;
+}
+
+Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const CameraMotion& predicted,
+                                                   const Eigen::Vector3d& normal,
+                                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+                                                   const RotationPrior* rotation) {
+  // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
+  // moves on as it did, so a small one comes first.
+  constexpr size_t kScouts = 60;
+  constexpr int kSmallSteps = 3;
+  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // share of the scouts, and of those matched
+  const MatchImage& then = past_.back().image;
+  const Corners scouts = thinned(corners, kScouts);
+  CameraMotion start = predicted;
+  const int wide = wideSteps();
+  for (const int steps : {std::min(kSmallSteps, wide), wide}) {
+    const std::vector<TemporalMatch> matches =
+        matchOverTime(rig_, now.image, then, mask_, scouts, normal, predicted, matchOptions(steps));
+    const Expected<MotionEstimate> scouted =
+        estimateMotion(rig_, matches, normal, covariance, predicted, kFewestScouts);
+    if (scouted) start = scouted->motion;
+    if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * matches.size()))
+      break;
+  }
+  step_matches_ = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0),
+                                std::move(step_matches_));
+  return estimate(step_matches_, normal, covariance, start, rotation);
+}
+
+Expected<MotionEstimate> MotionTracker::estimate(const std::vector<TemporalMatch>& matches,
+                                                 const Eigen::Vector3d& normal,
+                                                 const Eigen::Matrix3d& covariance, const CameraMotion& start,
+                                                 const RotationPrior* rotation) const {
+  if (rotation != nullptr) {
+    // Three of the six unknowns are known already.
+    const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
+    const Expected<MotionEstimate> aided =
+        estimateMotion(rig_, matches, normal, covariance, start, needed, rotation);
+    if (aided && agrees(*aided, *rotation)) return aided;
+  }
+  return estimateMotion(rig_, matches, normal, covariance, start, parameters_.min_matches);
+}
+
+CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d& normal,
+                                        const Corners& corners, const Eigen::Matrix3d& R) const {
+  constexpr size_t kCorners = 90;
+  const Corners some = thinned(corners, kCorners);
+  // Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
+  // is left to the search radius.
+  const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
+  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
+  CameraMotion best{R, Eigen::Vector3d::Zero()};
+  double most = 0;
+  for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1}) {
+    const CameraMotion guess{R, share * ahead};
+    const std::vector<TemporalMatch> matches = matchOverTime(rig_, now.image, past_.back().image, mask_, some,
+                                                             normal, guess, matchOptions(wideSteps()));
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, matches, normal, loose, guess, kFewestScouts);
+    if (estimate && estimate->inlier_count > most) {
+      most = estimate->inlier_count;
+      best = estimate->motion;
+    }
+  }
+  return best;
+}
+
+void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
+                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+                                   Result& result) {
+  constexpr double kStampRounding = 1e-3;
+  if (!result.step_estimate) {
+    result.window.failure = result.step.failure;
+    return;
+  }
+  if (parameters_.angle_window <= 0) {
+    result.window = result.step;
+    return;
+  }
+  for (const Frame& then : past_) {
+    const double duration = now.stamp - then.stamp;
+    if (duration > parameters_.angle_window + kStampRounding) continue;
+    if (&then == &past_.back()) break;
+    if (!then.since) continue;
+    const CameraMotion& step = result.step_estimate->motion;
+    // Lengths change from units of the previous height to those of the height now.
+    const double unit = 1 + normal.dot(step.t);
+    const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
+    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
+                                    matchOptions(0), std::move(window_matches_));
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
+    if (!estimate) continue;
+    result.window = describe(estimate, duration, window_matches_.size(), &result.window_match_variance);
+    return;
+  }
+  result.window = result.step;
+}
+
+ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimate>& estimate, double duration,
+                                                    size_t matches, double* match_variance) const {
+  ApproachAngleResult::Motion motion;
+  motion.duration = duration;
+  motion.matches = static_cast<int>(matches);
+  if (!estimate) {
+    motion.failure = estimate.error();
+    return motion;
+  }
+  motion.inliers = estimate->inlier_count;
+  motion.rotation = rotationVector(estimate->motion.R);
+  motion.translation_over_height = estimate->motion.t;
+  motion.covariance = estimate->covariance.topLeftCorner<6, 6>();
+  const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
+  if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
+    motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};
+    return motion;
+  }
+  motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
+  motion.angle_variance = jointAngleVariance(*estimate);
+  *match_variance = matchAngleVariance(*estimate);
+  return motion;
+}
+
+// The chord's angle is that of half its duration ago; the published one is that of now.
+void MotionTracker::smoothAngle(double stamp, Result& result) {
+  if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
+  if (result.step.failure) {
+    filter_.reset();
+    return;
+  }
+  const PathAngleFilter::Measurement step{result.step.angle, result.step_match_variance,
+                                          result.step.duration};
+  PathAngleFilter::Measurement chord = step;
+  if (!result.window.failure && std::isfinite(result.window_match_variance)) {
+    chord = {result.window.angle, result.window_match_variance, result.window.duration};
+  }
+  const double of_normal = std::max(0.0, result.step.angle_variance - result.step_match_variance);
+  const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, chord);
+  if (result.window.failure) result.window = result.step;
+  result.window.angle = estimate.angle;
+  result.window.angle_variance = estimate.variance + of_normal;
+}
+
+void MotionTracker::advance(Frame&& now, const Result& result) {
+  for (Frame& frame : past_) {
+    const bool previous = &frame == &past_.back();
+    if (!result.step_estimate || !(previous || frame.since)) {
+      frame.since.reset();
+      continue;
+    }
+    const CameraMotion& step = result.step_estimate->motion;
+    if (previous) {
+      frame.since = step;
+    } else {
+      const double unit = 1 + result.step_estimate->normal.dot(step.t);
+      frame.since = CameraMotion{step.R * frame.since->R, step.R * frame.since->t * unit + step.t};
+    }
+  }
+  last_window_ = result.window;
+  last_step_.reset();
+  if (result.step_estimate) last_step_ = result.step_estimate->motion;
+  if (past_.size() == 1) takeMemory(now);
+  // Wide searches, at the coarse level, are in the frame before only.
+  if (!past_.empty() && past_.back().image.factor > 1) spare_coarse_ = std::move(past_.back().image.coarse);
+  past_.push_back(std::move(now));
+  const double oldest = past_.back().stamp - parameters_.angle_window - kWindowSlack;
+  while (past_.size() > 2 && (past_.front().stamp < oldest || past_.size() > kMostFrames)) {
+    spare_.push_back(std::move(past_.front().image));
+    past_.pop_front();
+  }
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,142 @@
+#include "uav_landing/motion/temporal_matching.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/touch_ahead.h"
+#include "uav_landing/image/patch_matching.h"
+
+namespace uav_landing {
+namespace {
+
+// Whole shifts tried at full size around a place known to about a pixel.
+constexpr int kFineSteps = 3;
+// Error of a match that its residuals do not show (interpolation, surface in the window not flat), pixels.
+constexpr double kStddevFloor = 0.04;
+// Windows that shrink or grow more than this (as areas) do not look alike any more.
+constexpr double kSmallestScale = 0.12, kLargestScale = 6.0;
+// A second peak at least this share of the best makes a match ambiguous.
+constexpr double kUniqueness = 0.92;
+
+// Affine appearance of the surroundings of a corner in the other image.
+struct LocalWarp {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
+};
+
+// Image of pixel x (full size) under the plane-induced homography now -> then; false when it lies behind.
+class PointWarp {
+ public:
+  PointWarp(const StereoRig& rig, const CameraMotion& motion, const Eigen::Vector3d& plane)
+      : H_(rig.K() * motion.R.transpose() * (Eigen::Matrix3d::Identity() + motion.t * plane.transpose()) *
+           rig.Kinv()) {}
+
+  bool at(const Eigen::Vector2d& x, LocalWarp* local) const {
+    const Eigen::Vector3d y = H_ * x.homogeneous();
+    if (!(y.z() > 1e-6)) return false;
+    local->centre = y.hnormalized();
+    local->warp = (H_.topLeftCorner<2, 2>() - local->centre * H_.block<1, 2>(2, 0)) / y.z();
+    const double scale = local->warp.determinant();
+    return scale > kSmallestScale && scale < kLargestScale;
+  }
+
+ private:
+  Eigen::Matrix3d H_;
+};
+
+bool visible(const cv::Mat& mask, const Eigen::Vector2d& x) {
+  const int u = cvRound(x.x()), v = cvRound(x.y());
+  return u >= 0 && v >= 0 && u < mask.cols && v < mask.rows && mask.at<uchar>(v, u) != 0;
+}
+
+// Says where corners are to be looked for, and touches the pixels there.
+class Predictions {
+ public:
+  Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
+              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius)
+      : rig_(rig),
+        now_(now),
+        then_(then),
+        mask_(mask),
+        motion_(motion),
+        plane_(rig, motion, plane),
+        radius_(radius) {}
+
+  // False when there is none.
+  bool at(const TrackedCorner& corner, LocalWarp* local) const {
+    constexpr int kAround = 3;  // for interpolation and the steps of refinement
+    const Eigen::Vector2d x(corner.u, corner.v);
+    const bool seen = corner.on_plane ? plane_.at(x, local)
+                                      : PointWarp(rig_, motion_, {0, 0, corner.inverse_depth}).at(x, local);
+    if (!seen) return false;
+    touchPixel(mask_, local->centre.x(), local->centre.y());
+    touchWindow(now_.fine, corner.u, corner.v, radius_ + 1, radius_ + 1);
+    touchWindow(then_.fine, local->centre.x(), local->centre.y(), radius_ + kAround, radius_ + kAround);
+    return true;
+  }
+
+ private:
+  const StereoRig& rig_;
+  const MatchImage &now_, &then_;
+  const cv::Mat& mask_;
+  const CameraMotion& motion_;
+  PointWarp plane_;
+  int radius_;
+};
+
+}  // namespace
+
+std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
+                                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
+                                         const Eigen::Vector3d& normal, const CameraMotion& predicted,
+                                         const TemporalMatchOptions& options,
+                                         std::vector<TemporalMatch> memory) {
+  const int factor = now.factor, radius = options.window_radius;
+  const Predictions predictions(rig, now, then, mask, predicted, normal, radius);
+  PatchSearch coarse(now.coarse, then.coarse, radius), fine(now.fine, then.fine, radius);
+  std::vector<TemporalMatch> matches = std::move(memory);
+  matches.clear();
+  matches.reserve(corners.size());
+  LocalWarp local, next;
+  bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const TrackedCorner& corner = corners[i];
+    const Eigen::Vector2d x(corner.u, corner.v);
+    const bool seen = next_seen;
+    local = next;
+    if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
+    if (!seen || !visible(mask, local.centre)) continue;
+    if (options.coarse_steps > 0) {
+      // The window at the coarse level is centred on a whole pixel near the corner; its displacement is what
+      // is carried over.
+      const int cu = cvRound(toCoarse(x.x(), factor)), cv = cvRound(toCoarse(x.y(), factor));
+      const Eigen::Vector2d centre(toCoarse(x.x(), factor), toCoarse(x.y(), factor));
+      const Eigen::Vector2d there(toCoarse(local.centre.x(), factor), toCoarse(local.centre.y(), factor));
+      const Eigen::Vector2d start = there + local.warp * (Eigen::Vector2d(cu, cv) - centre);
+      const PatchSearch::Best best = coarse.run(cu, cv, start, local.warp, options.coarse_steps);
+      if (!best.found || best.score < options.min_zncc || best.second > kUniqueness * best.score) continue;
+      local.centre += factor * (best.position - start);
+    }
+    PatchRefinement refined =
+        refinePatch(now.fine, then.fine, corner.u, corner.v, local.centre, local.warp, radius);
+    if (!refined.converged || refined.score < options.min_zncc) {
+      // The prediction was not good enough for that after all.
+      const PatchSearch::Best best = fine.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
+      if (!best.found || best.score < options.min_zncc) continue;
+      refined = refinePatch(now.fine, then.fine, corner.u, corner.v, best.position, local.warp, radius);
+    }
+    if (!refined.converged || refined.score < options.min_zncc || !visible(mask, refined.position)) continue;
+    TemporalMatch match;
+    match.now = x;
+    match.then = refined.position;
+    match.covariance = refined.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
+    match.on_plane = corner.on_plane;
+    match.inverse_depth = corner.inverse_depth;
+    match.inverse_depth_stddev = corner.inverse_depth_stddev;
+    matches.push_back(match);
+  }
+  return matches;
+}
+
+}  // namespace uav_landing

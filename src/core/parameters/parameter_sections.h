@@ -1,0 +1,73 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "uav_landing/base/failure.h"
+#include "uav_landing/parameters/parameter_file.h"
+#include "uav_landing/parameters/section_loader.h"
+
+namespace uav_landing {
+
+// Loading of any set of parameter structs, such as Parameters: a struct whose visitSections() names its
+// sections.
+
+template <class ParameterStruct>
+Failure loadSection(const YAML::Node& node, const std::string& section, ParameterStruct& parameters) {
+  const Failure failure = checkMap(node, section);
+  if (failure) return failure;
+  ParameterStruct loaded = parameters;
+  SectionLoader loader(node, section);
+  loaded.visit(loader);
+  const Failure wrong = loader.finish();
+  if (!wrong) parameters = loaded;
+  return wrong;
+}
+
+template <class ParameterSet>
+Failure loadSections(const YAML::Node& root, ParameterSet& parameters) {
+  Failure failure = checkMap(root, "");
+  if (failure || root.IsNull()) return failure;
+  std::vector<std::string> sections;
+  parameters.visitSections([&](const char* section, auto& values) {
+    sections.emplace_back(section);
+    if (!failure && root[section]) failure = loadSection(root[section], section, values);
+  });
+  if (failure) return failure;
+  for (const auto& entry : root) {
+    const std::string key = entry.first.Scalar();
+    if (std::find(sections.begin(), sections.end(), key) == sections.end())
+      return {Reason::kInputInvalid, key + ": no such section" + suggestName(key, sections)};
+  }
+  return {};
+}
+
+/// The failure begins with the name.
+template <class ParameterSet>
+Expected<ParameterSet> parseSections(const std::string& yaml_text, const std::string& name) {
+  ParameterSet parameters;
+  Failure failure;
+  try {
+    failure = loadSections(YAML::Load(yaml_text), parameters);
+  } catch (const YAML::Exception& error) {
+    failure = {Reason::kInputInvalid, error.what()};
+  }
+  if (failure) return tl::make_unexpected(Failure{Reason::kInputInvalid, name + ": " + failure.detail});
+  return parameters;
+}
+
+template <class ParameterSet>
+Expected<ParameterSet> loadSectionFile(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream content;
+  if (!file || !(content << file.rdbuf() || file.eof()) || file.bad())
+    return tl::make_unexpected(Failure{Reason::kInputInvalid, path + ": cannot be read"});
+  return parseSections<ParameterSet>(content.str(), path);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,187 @@
+#include "uav_landing/results/result_check.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace uav_landing {
+namespace {
+
+// Wider than anything that flies, narrow enough that no square or product of them leaves the range of
+// numbers.
+constexpr double kLeastHeight = 1e-3, kLargestHeight = 1e5;  // m
+constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the picture: no ground rises like a wall
+constexpr double kFastestTurn = 6;  // rad/s: one roll a second
+constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
+constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
+constexpr double kLargestSkew = 0.1;                         // s, what max_skew can be
+constexpr double kLargestVariance = 1e9;  // in squares of the units below: says "unknown" in numbers
+constexpr double kLeastRelative = 1e-6;   // 1 sigma over the value: no camera sees better
+constexpr double kRounding = 1e-6;        // of covariances that went through calculations
+constexpr size_t kMostPoints = 100000;
+
+bool within(double value, double limit) { return std::abs(value) <= limit; }  // false for NaN
+
+bool isVariance(double value) { return value > 0 && value <= kLargestVariance; }
+
+/// Symmetric, without a negative direction, and not all zero.
+template <int kSize>
+bool isCovariance(const Eigen::Matrix<double, kSize, kSize>& matrix) {
+  const double size = matrix.trace();
+  if (!matrix.allFinite() || !isVariance(size)) return false;
+  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > kRounding * size) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> solver(matrix,
+                                                                                  Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] >= -kRounding * size;
+}
+
+/// A covariance, or none at all, that another one has in it.
+bool isShare(const Eigen::Matrix3d& share, const Eigen::Matrix3d& whole) {
+  if (share.isZero(0)) return true;
+  return isCovariance<3>(share) &&
+         (share.diagonal().array() <= (1 + kRounding) * whole.diagonal().array()).all();
+}
+
+/// A unit vector with its covariance.
+bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
+  constexpr double kLength = 1e-3;
+  return within(direction.norm() - 1, kLength) && isCovariance<3>(covariance) &&
+         covariance.trace() >= kLeastRelative * kLeastRelative;
+}
+
+/// Of the right camera as rows that do not match show it: the rows of larger ones are never found.
+bool isRotation(const RigRotation& rotation) {
+  constexpr double kLargest = 0.2, kLeastStddev = 1e-6;  // rad
+  return rotation.w.allFinite() && within(rotation.w.x(), kLargest) && within(rotation.w.z(), kLargest) &&
+         isCovariance<3>(rotation.covariance) &&
+         rotation.covariance.diagonal().minCoeff() >= kLeastStddev * kLeastStddev;
+}
+
+/// Of the right camera against the left one: further than any that has its picture.
+bool isBaseline(const BaselineDirection& baseline) {
+  constexpr double kLargest = 100;  // baselines
+  return within(baseline.t.norm(), kLargest) && isCovariance<2>(baseline.covariance);
+}
+
+/// Both become unknown unless they are a direction.
+void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
+  if (isDirection(direction, covariance)) return;
+  direction.setConstant(kUnknown);
+  covariance.setConstant(kUnknown);
+}
+
+void keepMotion(ApproachAngleResult::Motion& motion) {
+  const bool possible = motion.rotation.norm() <= std::min(M_PI, kFastestTurn * motion.duration) &&
+                        motion.translation_over_height.norm() <= kLargestRatio &&
+                        motion.duration >= kShortestStep && motion.duration <= kLongestStep &&
+                        isCovariance<6>(motion.covariance);
+  if (!possible) {
+    motion.duration = kUnknown;
+    motion.rotation.setConstant(kUnknown);
+    motion.translation_over_height.setConstant(kUnknown);
+    motion.covariance.setConstant(kUnknown);
+  }
+  if (!within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
+    motion.angle = motion.angle_variance = kUnknown;
+}
+
+void keepImu(AttitudePrior& imu) {
+  keepDirection(imu.normal, imu.normal_covariance);
+  const bool possible = imu.rotation.norm() <= M_PI && imu.duration >= kShortestStep &&
+                        imu.duration <= kLongestStep && isCovariance<3>(imu.rotation_covariance);
+  if (possible) return;
+  imu.duration = kUnknown;
+  imu.rotation.setConstant(kUnknown);
+  imu.rotation_covariance.setConstant(kUnknown);
+}
+
+void keepRunway(ApproachAngleResult::Runway& runway) {
+  const auto isLength = [](double value, double variance) {
+    return within(value, kLargestRatio) && isVariance(variance);
+  };
+  const auto refuse = [](const char* field, Failure& failure) {
+    if (!failure) failure = {Reason::kInputInvalid, text("runway.", field, ": not a length with a variance")};
+  };
+  if (!isLength(runway.y, runway.y_variance)) {
+    runway.y = runway.y_variance = kUnknown;
+    refuse("y", runway.failure);
+  }
+  if (!isLength(runway.width, runway.width_variance) || runway.width <= 0)
+    runway.width = runway.width_variance = kUnknown;
+  const bool is_part = runway.x_systematic_variance >= 0 && runway.x_systematic_variance <= runway.x_variance;
+  if (!isLength(runway.x, runway.x_variance) || !is_part) {
+    runway.x = runway.x_variance = kUnknown;
+    runway.x_systematic_variance = 0;
+    refuse("x", runway.threshold_failure);
+  }
+}
+
+/// "" or the field that makes the plane useless, and why.
+std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result) {
+  const Eigen::Vector3d& g = result.plane.g;
+  const double size = g.norm();
+  if (!(size >= 1 / kLargestHeight && size <= 1 / kLeastHeight && g.y() > kSteepest * size))
+    return text("plane: ", g.x(), ", ", g.y(), ", ", g.z(), " is no ground below the camera");
+  if (!isCovariance<3>(result.plane.covariance) ||
+      !(result.plane.covariance.trace() >= std::pow(kLeastRelative * size, 2)))
+    return "plane_covariance: not a covariance of this plane";
+  if (!isShare(result.row_covariance, result.plane.covariance))
+    return "plane_row_covariance: not a part of plane_covariance";
+  const double bias = std::pow(result.disparity_bias_stddev / rig.fb(), 2);
+  const double with_bias = result.plane.covariance(2, 2);
+  if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))
+    return text("disparity_bias_stddev: ", result.disparity_bias_stddev,
+                " px is not part of plane_covariance");
+  // The noise of an unbiased variance makes it negative, but not by much.
+  constexpr double kLeastSurface = -1e-2, kLargestSurface = 1;
+  const double surface = result.surface_variance * size * size;
+  if (!std::isnan(surface) && !(surface >= kLeastSurface && surface <= kLargestSurface))
+    return text("surface_variance: ", result.surface_variance, " m^2 at a height of ", 1 / size, " m");
+  if (!result.below.g.array().isNaN().all()) {
+    const double below = result.below.g.norm() / size;
+    if (!(below > 0.5 && below < 2 && isCovariance<3>(result.below.covariance)))
+      return "plane_below: no tangent of the surface that the plane is of";
+  }
+  if (!within(result.skew, kLargestSkew))
+    return text("skew: ", result.skew, " s, at most ", kLargestSkew, " expected");
+  if (result.points.size() > kMostPoints)
+    return text("u: ", result.points.size(), " points, at most ", kMostPoints, " expected");
+  return "";
+}
+
+}  // namespace
+
+StereoDepthResult checked(const StereoRig& rig, const StereoDepthResult& result) {
+  StereoDepthResult kept = result;
+  const auto impossible = [&](const StereoDepthResult::Point& point) {
+    return !(point.u >= 0 && point.u < rig.size.width && point.v >= 0 && point.v < rig.size.height &&
+             within(point.disparity, 2 * rig.size.width) && isVariance(point.disparity_stddev));
+  };
+  if (kept.points.size() > kMostPoints) kept.points.clear();
+  kept.points.erase(std::remove_if(kept.points.begin(), kept.points.end(), impossible), kept.points.end());
+  if (!isRotation(kept.vertical_rotation)) kept.vertical_rotation = {};
+  if (!isBaseline(kept.baseline_direction)) kept.baseline_direction = {};
+  if (kept.failure) return kept;
+  const std::string problem = problemOfPlane(rig, result);
+  if (problem.empty()) return kept;
+  kept.failure = {Reason::kInputInvalid, problem};
+  kept.plane = {};
+  return kept;
+}
+
+ApproachAngleResult checked(const ApproachAngleResult& result) {
+  ApproachAngleResult kept = result;
+  keepDirection(kept.vanishing_direction, kept.vanishing_covariance);
+  keepDirection(kept.n_vp, kept.n_vp_covariance);
+  keepDirection(kept.n, kept.n_covariance);
+  keepMotion(kept.step);
+  keepMotion(kept.window);
+  keepRunway(kept.runway);
+  keepImu(kept.imu);
+  if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);
+  return kept;
+}
+
+}  // namespace uav_landing

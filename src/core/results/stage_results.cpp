@@ -1,0 +1,19 @@
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+const char* toString(Status status) {
+  switch (status) {
+    case Status::kSearching:
+      return "searching";
+    case Status::kTracking:
+      return "tracking";
+    case Status::kCoasting:
+      return "coasting";
+    case Status::kLost:
+      return "lost";
+  }
+  return "unknown";
+}
+
+}  // namespace uav_landing

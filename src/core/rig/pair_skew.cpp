@@ -1,0 +1,73 @@
+#include "rig/pair_skew.h"
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+// Of a small aircraft, m/s.
+constexpr double kSpeed = 20, kSideways = 2;
+
+double meanInverseDepth(const StereoRig& rig, const StereoDepthResult& stereo) {
+  double sum = 0;
+  int count = 0;
+  for (const StereoDepthResult::Point& point : stereo.points) {
+    if (!point.on_plane) continue;
+    sum += point.disparity;
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count / rig.fb();
+}
+
+}  // namespace
+
+Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g, double mean_inverse_depth,
+                                 const CameraRates& rates, double skew) {
+  const Eigen::Vector3d& v = rates.velocity;
+  const Eigen::Vector3d& w = rates.angular_velocity;
+  const double q = mean_inverse_depth, b = rig.baseline;
+  return skew / b * ((v.x() + b * q * v.z()) * g + Eigen::Vector3d(-v.z() * q, -w.z(), w.y()));
+}
+
+GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
+                     const ApproachAngleResult::Motion& step) {
+  GroundPlane plane = stereo.plane;
+  if (stereo.skew == 0) return plane;
+  const double q = meanInverseDepth(rig, stereo);
+  const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity) {
+    const Eigen::Vector3d error =
+        planeErrorOfSkew(rig, plane.g, q, {velocity, angular_velocity}, stereo.skew);
+    plane.covariance += error * error.transpose();
+  };
+  if (!step.failure && step.duration > 0) {
+    const double speed_scale = plane.height() / step.duration;
+    // The step's rotation is that of the scene in the camera, opposite to the camera's.
+    add(speed_scale * step.translation_over_height, -step.rotation / step.duration);
+  } else {
+    constexpr double kTurnRate = 0.3;  // rad/s
+    add(kSpeed * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
+    add(kSideways * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
+    for (int axis = 0; axis < 3; ++axis)
+      add(Eigen::Vector3d::Zero(), kTurnRate * Eigen::Vector3d::Unit(axis));
+  }
+  return plane;
+}
+
+BaselineDirection baselineOfSkew(const StereoRig& rig, const StereoDepthResult& stereo,
+                                 const ApproachAngleResult::Motion& step) {
+  constexpr double kShare = 0.2;  // 1 sigma, of the way
+  const double over_baseline = stereo.skew / rig.baseline;
+  BaselineDirection direction{Eigen::Vector2d::Zero(), Eigen::Matrix2d::Zero()};
+  if (stereo.skew == 0) return direction;
+  if (!step.failure && step.duration > 0) {
+    const double speed_scale = stereo.plane.height() / step.duration;
+    direction.t = over_baseline * speed_scale * step.translation_over_height.tail<2>();
+    direction.covariance = std::pow(kShare, 2) * direction.t.squaredNorm() * Eigen::Matrix2d::Identity();
+  } else {
+    direction.covariance.diagonal() << std::pow(over_baseline * kSideways, 2),
+        std::pow(over_baseline * kSpeed, 2);
+  }
+  return direction;
+}
+
+}  // namespace uav_landing

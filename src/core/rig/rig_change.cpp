@@ -1,0 +1,89 @@
+#include "uav_landing/rig/rig_change.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kMemory = 2.0;                // s that the mean is of
+constexpr double kFirst = 0.4;                 // s before there is anything to compare with
+constexpr double kPatience = 3.0;              // s of something else, after which that may be the rig
+constexpr double kSettled = 1.0;               // s of it without a change, after which it is
+constexpr double kSmall = 0.1 * M_PI / 180;    // rad: of unsynchronised images, 0.1 % of the height at most
+constexpr double kSame = 13.8;                 // chi-square limit of 1e-3 with two degrees of freedom
+constexpr double kMostDisorder = 2.0;          // stddev of a pair over that of the pairs before
+constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
+
+Eigen::Vector2d valueOf(const RigRotation& rotation) { return {rotation.w.x(), rotation.w.z()}; }
+
+Eigen::Matrix2d covarianceOf(const RigRotation& rotation) {
+  Eigen::Matrix2d result;
+  result << rotation.covariance(0, 0), rotation.covariance(0, 2), rotation.covariance(2, 0),
+      rotation.covariance(2, 2);
+  return result + kFloor * kFloor * Eigen::Matrix2d::Identity();
+}
+
+}  // namespace
+
+RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) const {
+  // What neighbouring rows share is estimated from few parts of one image: where it is small by chance, the
+  // pairs before know better, and where it is large, images of two scenes must not be excused by the disorder
+  // they make.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> against(covarianceOf(measured), covariance);
+  const Eigen::Vector2d ratios = against.eigenvalues().cwiseMax(1).cwiseMin(kMostDisorder * kMostDisorder);
+  const Eigen::Matrix2d axes = covariance * against.eigenvectors();
+  return {valueOf(measured) - value, covariance + axes * ratios.asDiagonal() * axes.transpose()};
+}
+
+void RigChange::Mean::add(double T, const RigRotation& measured) {
+  const double share = learned > 0 ? std::clamp(T / std::min(learned + T, kMemory), 0.0, 1.0) : 1.0;
+  value += share * (valueOf(measured) - value);
+  // Pairs in a row see the same texture: their mean is not better than the best of them.
+  covariance += share * (covarianceOf(measured) - covariance);
+  learned += T > 0 ? T : 1e-3;
+}
+
+std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measured) const {
+  if (!measured.known() || mean_.learned < kFirst) return std::nullopt;
+  return mean_.compare(measured);
+}
+
+bool RigChange::doubts(const RigRotation& measured) const {
+  const std::optional<Innovation> off = compare(measured);
+  return off && off->difference.norm() > kSmall && other_.learned < kSettled;
+}
+
+bool RigChange::settled() const { return !anew_ || mean_.learned >= kSettled; }
+
+void RigChange::learnOther(double T, const RigRotation& measured) {
+  if (other_.learned > 0) {
+    const Innovation off = other_.compare(measured);
+    if (!(off.difference.dot(off.covariance.inverse() * off.difference) <= kSame)) other_ = {};
+  }
+  other_.add(T, measured);
+}
+
+void RigChange::learn(double T, const RigRotation& measured, bool agrees) {
+  if (!measured.known()) return;
+  if (!agrees) {
+    disagreed_ += T;
+    learnOther(T, measured);
+    if (other_.learned >= kSettled && (other_.value - mean_.value).norm() <= kSmall) {
+      mean_ = other_;
+      other_ = {};
+      disagreed_ = 0;
+      return;
+    }
+    if (settled() && disagreed_ < kPatience) return;
+    reset();
+    anew_ = true;
+  }
+  other_ = {};
+  disagreed_ = 0;
+  mean_.add(T, measured);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,61 @@
+#include "uav_landing/rig/rig_rotation.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "base/median.h"
+
+namespace uav_landing {
+namespace {
+
+double residualOf(const StereoRig& rig, const StereoDepthResult::Point& point, const Eigen::Vector3d& g) {
+  return (point.disparity - rig.fb() * g.dot(rig.ray(point.u, point.v))) / point.disparity_stddev;
+}
+
+// Robust size of the residuals as a multiple of the claimed stddevs.
+double residualScale(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                     const Eigen::Vector3d& g) {
+  std::vector<double> sizes;
+  for (const StereoDepthResult::Point& point : points)
+    if (point.on_plane) sizes.push_back(std::abs(residualOf(rig, point, g)));
+  if (sizes.empty()) return 1;
+  return std::max(1.0, robustStddev(sizes));
+}
+
+}  // namespace
+
+Eigen::RowVector3d disparityByRotation(const StereoRig& rig, double column, double v) {
+  const double x = (column - rig.cx_right) / rig.fx, y = (v - rig.cy) / rig.fy;
+  return rig.fx * Eigen::RowVector3d(-x * y, 1 + x * x, -y);
+}
+
+Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double column, double v) {
+  const double x = (column - rig.cx_right) / rig.fx, y = (v - rig.cy) / rig.fy;
+  return rig.fy * Eigen::RowVector3d(1 + y * y, -x * y, -x);
+}
+
+Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disparity, double v) {
+  const double y = (v - rig.cy) / rig.fy;
+  return rig.fy / rig.fx * disparity * Eigen::RowVector2d(-1, y);
+}
+
+Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                                const Eigen::Vector3d& g) {
+  constexpr double kTukey = 4.0;
+  const double scale = residualScale(rig, points, g);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  for (const StereoDepthResult::Point& point : points) {
+    const double ratio = residualOf(rig, point, g) / (kTukey * scale);
+    if (!point.on_plane || std::abs(ratio) >= 1) continue;
+    const double weight = std::pow((1 - ratio * ratio) / point.disparity_stddev, 2);
+    const Eigen::Vector3d by_plane = rig.fb() * rig.ray(point.u, point.v);
+    const double column = point.u - point.disparity - rig.principalOffset();
+    information += weight * by_plane * by_plane.transpose();
+    right += weight * by_plane * disparityByRotation(rig, column, point.v);
+  }
+  const Eigen::FullPivLU<Eigen::Matrix3d> lu(information);
+  if (!lu.isInvertible()) return Eigen::Matrix3d::Zero();
+  return lu.solve(right);
+}
+
+}  // namespace uav_landing

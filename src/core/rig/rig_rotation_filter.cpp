@@ -1,0 +1,187 @@
+#include "uav_landing/rig/rig_rotation_filter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace uav_landing {
+namespace {
+
+// Seconds after which texture is another.
+constexpr double kCorrelationTime = 1.0;
+// The same of a vanishing direction: the lines of a runway far ahead are the same ones for longer, and are
+// misjudged by much the same (blur, ragged paint, which of them are found) until they are seen from much
+// nearer.
+constexpr double kLinesTime = 5.0;
+// Vertical disparities that a good lens calibration leaves, pixels, and how far from the middle of the image,
+// in focal lengths, they tell a roll.
+constexpr double kLensError = 0.03, kLensReach = 0.3;
+// Degrees of freedom of the Student t: the fewer, the sooner a bent rig is believed.
+constexpr double kFreedom = 2.0;
+// Share of the vanishing point's smallest variance seen that is not the runway's slope.
+constexpr double kNoiseShare = 0.1;
+
+}  // namespace
+
+RigRotationFilter::RigRotationFilter(const StereoRig& rig, double memory) : rig_(rig), memory_(memory) {}
+
+void RigRotationFilter::reset() {
+  const double calibrated = calibrated_variance_;
+  *this = RigRotationFilter(rig_, memory_);
+  if (calibrated > 0) setPrior(std::sqrt(calibrated) * rig_.fx);
+}
+
+void RigRotationFilter::advance(double stamp) {
+  constexpr double kFirstShare = 0.1;
+  const double T = stamp_ ? std::max(0.0, stamp - *stamp_) : kFirstShare * kCorrelationTime;
+  stamp_ = stamp;
+  share_ = std::min(1.0, T / kCorrelationTime);
+  const double kept = std::exp(-T / memory_);
+  information_ *= kept;
+  right_ *= kept;
+}
+
+void RigRotationFilter::setPrior(double bias_stddev) {
+  constexpr double kExact = 1e-7;  // rad
+  const double variance = std::pow(std::max(bias_stddev / rig_.fx, kExact), 2);
+  if (variance == calibrated_variance_) return;
+  calibrated_variance_ = variance;
+  prior_.head<3>().setConstant(variance);
+  prior_[4] = std::pow(kLensError / rig_.fy, 2);
+  prior_[5] = std::pow(kLensError / (kLensReach * rig_.fy), 2);
+  solve();
+}
+
+void RigRotationFilter::updateVertical(const RigRotation& measured) {
+  if (!measured.known() || !(calibrated_variance_ > 0)) return;
+  // Marginal over ry.
+  Eigen::Matrix2d covariance;
+  covariance << measured.covariance(0, 0), measured.covariance(0, 2), measured.covariance(2, 0),
+      measured.covariance(2, 2);
+  // Without a definite covariance, as in a message whose field was never filled in, it would leave no state.
+  const Eigen::LLT<Eigen::Matrix2d> decomposed(covariance);
+  if (!(covariance.trace() > 0) || decomposed.info() != Eigen::Success) return;
+  const Eigen::Matrix2d weight = share_ * decomposed.solve(Eigen::Matrix2d::Identity());
+  Eigen::Matrix<double, 2, kSize> rows = Eigen::Matrix<double, 2, kSize>::Zero();
+  rows(0, 0) = rows(0, 4) = rows(1, 2) = rows(1, 5) = 1;
+  information_ += rows.transpose() * weight * rows;
+  right_ += rows.transpose() * weight * Eigen::Vector2d(measured.w.x(), measured.w.z());
+  solve();
+}
+
+void RigRotationFilter::solve() {
+  constexpr int kIterations = 3;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Matrix all = information_;
+    all.diagonal() += prior_.cwiseInverse();
+    covariance_ = all.inverse();
+    state_ = covariance_ * right_;
+    for (int i = 0; i < 3; ++i) {
+      prior_[i] =
+          (kFreedom * calibrated_variance_ + state_[i] * state_[i] + covariance_(i, i)) / (kFreedom + 1);
+    }
+  }
+}
+
+double RigRotationFilter::learnSlopeVariance(int slope, double variance) {
+  double& smallest = slope_variance_[slope];
+  if (!(smallest > 0) || (1 - kNoiseShare) * variance < smallest) {
+    smallest = prior_[slope] = (1 - kNoiseShare) * variance;
+    solve();
+  }
+  return smallest;
+}
+
+// Jointly with the state: 0 = p.g - s / h. Returns how many sigmas off the direction is.
+double RigRotationFilter::fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const {
+  const Eigen::Vector3d& p = sloping.ground.direction;
+  const double h = joint.plane.height();
+  const Eigen::Matrix<double, 3, kSize>& B = joint.by_state;
+  const Eigen::Matrix3d all = joint.plane.covariance + B * covariance_ * B.transpose();
+  const Eigen::Vector3d with_slope = B * covariance_.col(sloping.slope);
+  const double innovation = state_[sloping.slope] / h - p.dot(joint.plane.g);
+  const double variance = p.dot(all * p) - 2 * p.dot(with_slope) / h +
+                          (covariance_(sloping.slope, sloping.slope) + noise) / (h * h);
+  const double ratio = std::abs(innovation) / std::sqrt(variance);
+  if (!(ratio <= gate)) return ratio;
+  const Eigen::Vector3d gain = (all * p - with_slope / h) / variance;
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
+  joint.plane.g += gain * innovation;
+  joint.plane.covariance =
+      kept * joint.plane.covariance * kept.transpose() + noise / (h * h) * gain * gain.transpose();
+  joint.by_state = (kept * B).eval();
+  joint.kept = (kept * joint.kept).eval();
+  joint.by_state.col(sloping.slope) += gain / h;
+  return ratio;
+}
+
+RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane, const Eigen::Matrix3d& A,
+                                                        const Eigen::Vector3d& direction,
+                                                        const Eigen::Matrix3d& direction_covariance,
+                                                        double gate, const AttitudePrior* level) {
+  constexpr int kVanishing = 3, kForward = 6, kLeft = 7;
+  std::vector<Sloping> directions;
+  if (direction.allFinite() && direction_covariance.allFinite())
+    directions.push_back({{direction, direction_covariance}, kVanishing});
+  if (level != nullptr && level->hasNormal()) {
+    const auto [forward, left] = levelDirections(level->normal, level->normal_covariance);
+    directions.push_back({forward, kForward});
+    directions.push_back({left, kLeft});
+  }
+
+  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity()};
+  joint.plane.g = plane.g - A * state_.head<3>();
+  joint.by_state.leftCols<3>() = -A;
+  // For the frames to come: all directions at once, as they share the noise of the plane.
+  const double h = joint.plane.height();
+  Eigen::MatrixXd rows(0, kSize), tips(0, 3);
+  Eigen::VectorXd values, noises, inflations;
+  for (const Sloping& sloping : directions) {
+    const Eigen::Vector3d n = joint.plane.normal();
+    const double total = n.dot(sloping.ground.covariance * n);
+    if (!(total > 0)) continue;
+    const double noise = total - learnSlopeVariance(sloping.slope, total);
+    const double ratio = fuse(sloping, noise, gate, joint);
+    if (!(ratio >= 0)) continue;
+    const Eigen::Index i = rows.rows();
+    rows.conservativeResize(i + 1, kSize);
+    tips.conservativeResize(i + 1, 3);
+    values.conservativeResize(i + 1);
+    noises.conservativeResize(i + 1);
+    inflations.conservativeResize(i + 1);
+    tips.row(i) = h * sloping.ground.direction.transpose();
+    rows.row(i).setZero();
+    rows.row(i).head<3>() = tips.row(i) * A;
+    rows(i, sloping.slope) = 1;
+    values[i] = tips.row(i) * plane.g;
+    noises[i] = noise;
+    const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
+    inflations[i] = std::sqrt(std::max(1.0, ratio / gate) * lasting);
+  }
+  Corrected corrected;
+  corrected.plane = joint.plane;
+  corrected.kept = joint.kept;
+  corrected.common = joint.by_state * covariance_ * joint.by_state.transpose();
+  corrected.plane.covariance += corrected.common;
+  if (values.size() == 0) return corrected;
+  Eigen::MatrixXd of_frame = tips * plane.covariance * tips.transpose();
+  of_frame.diagonal() += noises;
+  of_frame = (inflations.asDiagonal() * of_frame * inflations.asDiagonal()).eval();
+  const Eigen::MatrixXd weighted = share_ * of_frame.llt().solve(rows);
+  information_ += rows.transpose() * weighted;
+  right_ += weighted.transpose() * values;
+  solve();
+  return corrected;
+}
+
+RigRotation RigRotationFilter::rotation() const {
+  RigRotation rotation;
+  if (!(calibrated_variance_ > 0)) return rotation;
+  rotation.w = state_.head<3>();
+  rotation.covariance = covariance_.topLeftCorner<3, 3>();
+  return rotation;
+}
+
+}  // namespace uav_landing

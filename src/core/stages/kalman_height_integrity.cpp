@@ -1,0 +1,322 @@
+// The integrity part of KalmanHeightStage: what a pair says with each source left out, and the protection
+// level.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "geometry/rotation.h"
+#include "height/vertical_speed.h"
+#include "rig/pair_skew.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+#include "uav_landing/stereo/region_planes.h"
+
+namespace uav_landing {
+namespace {
+
+// Edges of the runway that are farther than this from the width learned are not believed (width_height.cpp).
+constexpr double kWidthTolerance = 0.02;
+// Share of the matches along the rows that must hold across the rows.
+constexpr double kLeastRowAgreement = 0.5;
+// 1 sigma of the baseline's direction after a calibration, beside what its measurement claims, rad.
+constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
+// 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, rad,
+// and where these are not known either, rad/s.
+constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
+// 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
+constexpr double kSlope = 0.05;
+
+}  // namespace
+
+void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction) const {
+  if (!parameters_.integrity_monitor || reconstruction.failure) return;
+  const double height = reconstruction.height;
+  const GroundPlane& plane = reconstruction.plane;
+  const bool by_width = reconstruction.by_width;
+  SolutionSeparation::Measurement everything{height, reconstruction.variance, commonVariance(height)};
+  // A height by the width has nothing in it of the stereo images but depends on what the edges are.
+  if (by_width) everything.common += std::pow(kWidthTolerance * height / 3, 2);
+  reconstruction.without.fill(everything);
+  if (by_width || !plane.valid()) return;
+
+  SolutionSeparation::Measurement& stereo_alone =
+      reconstruction.without[static_cast<int>(FaultySource::kVanishingPoint)];
+  const GroundPlane& alone = reconstruction.alone;
+  stereo_alone.height = height + alone.height() - plane.height();
+  stereo_alone.variance = alone.heightVariance() + modelVariance(height);
+  stereo_alone.common =
+      GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() + modelVariance(height);
+  leaveOutRegions(stereo, approach, reconstruction);
+}
+
+void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction) const {
+  if (stereo.points.empty()) return;
+  const RegionPlanes regions = planesWithoutRegions(rig_, stereo.points, stereo.plane.g);
+  const GroundPlane& alone = reconstruction.alone;
+  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+                    approach.vanishing_covariance.allFinite();
+  const auto withVanishingPoint = [&](const GroundPlane& plane) {
+    if (!fuse) return plane;
+    return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
+                              std::pow(parameters_.vanishing_point_gate, 2), nullptr);
+  };
+  const double base = withVanishingPoint(alone).height();
+  for (int i = 0; i < kImageRegions; ++i) {
+    SolutionSeparation::Measurement& measurement =
+        reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
+    const GroundPlane& fitted = regions.without[i];
+    if (!fitted.valid()) {
+      measurement = {};
+      continue;
+    }
+    const GroundPlane plane = withVanishingPoint(
+        {alone.g + fitted.g - regions.all.g, fitted.covariance + reconstruction.alone_common});
+    measurement.height = reconstruction.height + plane.height() - base;
+    measurement.variance = plane.heightVariance() + modelVariance(measurement.height);
+    measurement.common = commonVariance(measurement.height);
+  }
+}
+
+void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
+                                 const ApproachAngleResult& approach, Reconstruction& reconstruction,
+                                 LandingResult& result) {
+  confirming_ = false;
+  if (!parameters_.integrity_monitor) return;
+  if (stereo.left_repeated || stereo.right_repeated) tests_.addRatio(Consistency::kRepeatedImage, 1, 1, 0);
+  // Reported alone: on real streets a tenth of the blocks is enough, so that no share is a limit.
+  if (std::isfinite(stereo.photometric_agreement))
+    tests_.addRatio(Consistency::kPhotometric, stereo.photometric_agreement, 1 - stereo.photometric_agreement,
+                    1);
+  if (std::isfinite(stereo.row_agreement))
+    tests_.addRatio(Consistency::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement,
+                    1 - kLeastRowAgreement);
+  if (const auto change = rig_change_.compare(stereo.vertical_rotation))
+    tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
+  const bool bent = tests_.failed(Consistency::kRigRotation);
+  if (bent || pairs_failed_ == 0 || !rig_change_.settled())
+    rig_change_.learn(T, stereo.vertical_rotation, !bent);
+  testBaseline(stereo, approach.step);
+  testStandstill(T, approach.step, reconstruction);
+  testRegions(reconstruction);
+  if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
+    tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.height,
+               result.width_height_variance + reconstruction.variance);
+  if (reconstruction.alone.valid() && approach.vanishing_direction.allFinite()) {
+    const GroundPlane& plane = reconstruction.alone;
+    const Eigen::Vector3d& p = approach.vanishing_direction;
+    const double h = plane.height();
+    tests_.add(Consistency::kVanishingPoint, h * p.dot(plane.g),
+               h * h * p.dot(plane.covariance * p) +
+                   plane.normal().dot(approach.vanishing_covariance * plane.normal()));
+  }
+  testAttitude(reconstruction.alone, approach.imu);
+  if (reconstruction.failure) return;
+  const std::string problem = problemOfPair();
+  if (problem.empty()) return;
+  confirming_ = !failedTestOfPair() && rig_change_.settled();
+  reconstruction.failure = {Reason::kInconsistent, problem};
+  result.raw_height = reconstruction.height;
+  result.raw_height_variance = reconstruction.variance;
+  result.rejected = true;
+  ++consecutive_rejections_;
+}
+
+void KalmanHeightStage::testBaseline(const StereoDepthResult& stereo,
+                                     const ApproachAngleResult::Motion& step) {
+  const BaselineDirection& measured = stereo.baseline_direction;
+  const BaselineDirection by_skew = baselineOfSkew(rig_, stereo, step);
+  if (!measured.known() || !by_skew.known()) return;
+  const Eigen::Matrix2d calibration = std::pow(kBaselineCalibration, 2) * Eigen::Matrix2d::Identity();
+  tests_.add(Consistency::kBaselineDirection, measured.t - by_skew.t,
+             measured.covariance + by_skew.covariance + calibration);
+}
+
+void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePrior& imu) {
+  if (!plane.valid() || !imu.hasNormal()) return;
+  const Eigen::Matrix<double, 3, 2> basis = tangents(plane.normal());
+  tests_.add(Consistency::kImu, basis.transpose() * (imu.normal - plane.normal()),
+             basis.transpose() * (plane.normalCovariance() + imu.normal_covariance) * basis);
+}
+
+std::optional<Consistency> KalmanHeightStage::failedTestOfPair() const {
+  for (const Consistency test :
+       {Consistency::kRepeatedImage, Consistency::kRowAgreement, Consistency::kRigRotation,
+        Consistency::kBaselineDirection, Consistency::kStandstill, Consistency::kImageRegions})
+    if (tests_.failed(test)) return test;
+  return std::nullopt;
+}
+
+std::string KalmanHeightStage::problemOfPair() {
+  if (const std::optional<Consistency> test = failedTestOfPair()) {
+    pairs_failed_ = std::min(pairs_failed_ + 1, kConfirmations);
+    pairs_passed_ = 0;
+    return toString(*test);
+  }
+  if (!rig_change_.settled()) {
+    pairs_passed_ = 0;
+    return "rig_rotation: another one than before is not known for long enough";
+  }
+  if (speed_.stands()) return "standstill: no motion has been seen since for long enough";
+  if (pairs_failed_ == 0) return "";
+  // Among pairs of a lasting fault some pass by chance: as many in a row are asked for as failed.
+  if (++pairs_passed_ >= pairs_failed_) {
+    pairs_failed_ = pairs_passed_ = 0;
+    return "";
+  }
+  return text(pairs_passed_, " of ", pairs_failed_, " pairs that pass the tests again");
+}
+
+void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction) {
+  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  if (!way) return speed_.skip(std::max(T, 0.0));
+  const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(*way);
+  if (shortfall) tests_.addOneSided(Consistency::kStandstill, shortfall->difference, shortfall->variance);
+  speed_.learn(*way, !tests_.failed(Consistency::kStandstill));
+}
+
+void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {
+  if (reconstruction.failure || reconstruction.by_width) return;
+  double worst = 0, difference = 0, variance = 0;
+  int count = 0;
+  for (int i = 0; i < kImageRegions; ++i) {
+    const SolutionSeparation::Measurement& without =
+        reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
+    if (!without.known()) continue;
+    ++count;
+    const double d = without.height - reconstruction.height;
+    // The whole has the rest in it, but the grey levels besides.
+    const double allowed = without.variance;
+    if (d * d <= worst * allowed) continue;
+    worst = d * d / allowed;
+    difference = d;
+    variance = allowed;
+  }
+  if (count > 0) tests_.addLargest(Consistency::kImageRegions, difference, variance, count);
+}
+
+void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstruction,
+                                   const ApproachAngleResult& approach, LandingResult& result) {
+  if (!parameters_.integrity_monitor) return;
+  const std::optional<HeightMemory::Expected> before = memory_.expected();
+  const double scale = before ? before->height : filter_.initialised() ? filter_.state()[0] : kUnknown;
+  VerticalSpeed speed;
+  double velocity = kUnknown;
+  const Eigen::Vector3d normal = reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n;
+  // While normals contradict each other nobody knows which part of the motion was downwards.
+  const bool level_known = normal.allFinite() && !tests_.failed(Consistency::kTilt);
+  if (!approach.step.failure && level_known && std::isfinite(scale) && scale > 0) {
+    const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
+    speed = withStamps(verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev));
+    velocity = approach.step.translation_over_height.norm() * scale / approach.step.duration;
+  }
+  if (T > 0) memory_.carry(T, speed.speed, speed.variance, velocity);
+  const std::optional<HeightMemory::Expected> expected = memory_.expected();
+  if (expected && filter_.initialised())
+    tests_.add(Consistency::kSinkRate, filter_.state()[0] - expected->height,
+               expected->variance + filter_.ownCovariance()(0, 0) + modelVariance(expected->height));
+  const bool agrees = !tests_.failed(Consistency::kSinkRate);
+  if (!agrees) {
+    const double off = filter_.state()[0] - expected->height;
+    refuse(result, {Reason::kInconsistent, text("sink_rate: the height is off by ", off,
+                                                " m from the one before and the motion since")});
+  }
+  memory_.refresh(filter_, agrees,
+                  std::max(parameters_.alert_limit, parameters_.alert_limit_relative * scale));
+}
+
+void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
+  if (!parameters_.integrity_monitor) return;
+  // A pair that passes, but not as long as others failed, is left out and contradicts nothing.
+  const bool contradicted = (result.rejected && !confirming_) || tests_.failed(Consistency::kSinkRate);
+  Recovery::Pair pair = Recovery::Pair::kSilent;
+  if (contradicted)
+    pair = Recovery::Pair::kContradicts;
+  else if ((confirming_ || result.status == Status::kTracking) &&
+           !tests_.failed(Consistency::kVanishingPoint))  // says that what was contradicted is still wrong
+    pair = Recovery::Pair::kAgrees;
+  // What is missing without a contradiction is no fault.
+  const bool outdated = consecutive_rejections_ > 0 && result.stamp - last_accepted_ > parameters_.max_age;
+  recovery_.follow(std::min(T, parameters_.max_age), pair, outdated || tests_.failed(Consistency::kSinkRate));
+  if (!recovery_.pending()) return;
+  refuse(result,
+         {Reason::kInconsistent, text("after contradictions nothing has contradicted for ", recovery_.quiet(),
+                                      " s only, ", parameters_.recovery_time, " s needed")});
+}
+
+void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) const {
+  result.height_valid = false;
+  if (!result.failure) result.failure = failure;
+}
+
+// Whether a step can be the way of the camera over T: one wrong step would lift all that is remembered.
+// height: above the plane ahead. normal: of the ground now, where known.
+bool KalmanHeightStage::agreesWithFlight(const ApproachAngleResult::Motion& step, double T, double height,
+                                         const std::optional<Eigen::Vector3d>& normal) const {
+  const Eigen::Vector3d& t = step.translation_over_height;
+  if (!t.allFinite() || !(height > 0)) return false;
+  if (T > 0 && !(std::abs(T - step.duration) <= AttitudeFilter::kStampRounding)) return false;
+  if (!filter_.initialised() || !normal) return true;
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  const double off = height * normal->dot(t) + T * filter_.state()[1];
+  // A step that claims to know less than the flight so far is not one to carry the ground by.
+  const double slope_variance = std::pow(kSlope, 2) * t.squaredNorm();
+  const double own_variance = std::min(normal->dot(covariance * *normal), slope_variance);
+  const double variance =
+      height * height * (own_variance + slope_variance) + T * T * filter_.covariance()(1, 1);
+  return off * off <= std::pow(parameters_.gate, 2) * variance;
+}
+
+void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
+                                       const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction, bool rejected) {
+  if (!parameters_.integrity_monitor) return;
+  if (stereo.left_repeated) return ground_.wait();
+  const double T = ground_stamp_ ? stereo.stamp - *ground_stamp_ : 0;
+  ground_stamp_ = stereo.stamp;
+  // Above the plane ahead, which the motion is of.
+  const double height = heightSoFar(reconstruction) - reconstruction.bend;
+  const bool believed = !rejected && reconstruction.plane.valid() && attitude_.settled();
+  const std::optional<Eigen::Vector3d> before = last_normal_;
+  const bool turn_known = step.rotation.allFinite();
+  const Eigen::Matrix3d R = turn_known ? rotationMatrix(step.rotation) : Eigen::Matrix3d::Identity();
+  if (believed)
+    last_normal_ = reconstruction.normal.mean;
+  else if (before)
+    last_normal_ = R * *before;
+
+  if (turn_known && !attitude_.doubtsTurn() && agreesWithFlight(step, T, height, last_normal_)) {
+    if (believed) ground_.settleTurn(R.transpose() * *last_normal_, kTurnByNormals);
+    ground_.move(R, height * step.translation_over_height, T);
+  } else {
+    const bool doubted = turn_known && attitude_.doubtsTurn();
+    const double turn_stddev = doubted ? step.rotation.norm() : kTurnUnknown * T;
+    ground_.coast(doubted ? R : Eigen::Matrix3d::Identity(), turn_stddev, T, before, doubted);
+    if (believed) ground_.settleTurn(*last_normal_, kTurnByNormals);
+  }
+  if (!believed || reconstruction.failure || reconstruction.by_width) return;
+  const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
+                          reconstruction.plane.covariance};
+  ground_.look(rig_, stereo.points, plane, stereo.plane.g);
+}
+
+void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const {
+  if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
+  SolutionSeparation::Level level =
+      separation_.protectionLevel(result.height, result.height_variance, varianceFactor());
+  if (const std::optional<GroundMemory::Below> below = ground_.below(normal))
+    level = separation_.larger(level, result.height, below->height, below->variance, "surface_below");
+  result.height_protection_level = level.bound;
+  result.protection_source = level.source;
+  result.height_alert_limit =
+      std::max(parameters_.alert_limit, parameters_.alert_limit_relative * result.height);
+  if (level.bound <= result.height_alert_limit) return;
+  refuse(result, {Reason::kUncertain,
+                  text("height ", result.height, " m has a protection level of ", level.bound,
+                       " m because of ", level.source, ", alert limit ", result.height_alert_limit, " m")});
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,268 @@
+// The part of KalmanHeightStage that makes a height of one pair: the plane, freed of the rig's rotation and
+// fused with what else is known of the ground, its attitude, and the second height by the runway's width.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "rig/pair_skew.h"
+#include "uav_landing/height/reconstruction.h"
+#include "uav_landing/rig/rig_rotation.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+// 1 sigma of a plane's height over itself: with more, what is linear in its errors has no meaning, and any
+// direction seems to lie in it.
+constexpr double kLargestRelative = 0.3;
+
+/// plane: with what the pair's skew adds to its covariance.
+Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) {
+  if (stereo.failure) return stereo.failure;
+  if (!plane.valid() || !plane.covariance.allFinite())
+    return {Reason::kNoPlane, "the ground plane has no finite value and covariance"};
+  const double relative = std::sqrt(plane.heightVariance()) / plane.height();
+  if (!(relative <= kLargestRelative))
+    return {Reason::kUncertain, text("the height of the ground plane has 1 sigma of ", relative,
+                                     " of itself, more than ", kLargestRelative)};
+  return {};
+}
+
+/// How the camera turned since the pair before, for the attitude: where the images do not tell, by the imu.
+ApproachAngleResult::Motion rotationOf(const ApproachAngleResult& approach, bool use_imu) {
+  const AttitudePrior& imu = approach.imu;
+  if (!use_imu || !approach.step.failure || !imu.hasRotation()) return approach.step;
+  ApproachAngleResult::Motion turn;
+  turn.duration = imu.duration;
+  turn.rotation = imu.rotation;
+  turn.covariance.setZero();
+  turn.covariance.topLeftCorner<3, 3>() = imu.rotation_covariance;
+  return turn;
+}
+
+}  // namespace
+
+const ApproachAngleResult::Motion& KalmanHeightStage::publishedMotion(const ApproachAngleResult& approach) {
+  const bool window_known = !approach.window.failure && std::isfinite(approach.window.angle);
+  return window_known ? approach.window : approach.step;
+}
+
+double KalmanHeightStage::modelVariance(double height) const {
+  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_ + bend_variance_;
+}
+
+double KalmanHeightStage::commonVariance(double height) const {
+  return modelVariance(height) + width_variance_ + rig_variance_;
+}
+
+void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
+                                 LandingResult& result) {
+  constexpr double kAgreement = 3;  // sigma
+  width_variance_ = 0;
+  if (runway.failure) return;
+  std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
+  if (filter_.initialised() && confirmations_ >= kConfirmations &&
+      !width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
+                     filter_.ownCovariance()(0, 0) + commonVariance(filter_.state()[0])))
+    seen.reset();
+  if (seen) {
+    result.width_height = seen->height + reconstruction.bend;
+    result.width_height_variance = seen->variance + modelVariance(seen->height);
+  }
+  const bool by_stereo = !reconstruction.failure;
+  if (seen && parameters_.fuse_width_height) {
+    if (!by_stereo && confirmations_ >= kConfirmations) {
+      reconstruction.failure = {};
+      reconstruction.height = seen->height;
+      reconstruction.variance = result.width_height_variance;
+      width_variance_ = seen->common;
+      reconstruction.by_width = true;
+    } else if (by_stereo && width_.independent()) {
+      const double difference = result.width_height - reconstruction.height;
+      const double sum = seen->variance + reconstruction.variance;
+      if (difference * difference <= kAgreement * kAgreement * sum) {
+        const double model = modelVariance(reconstruction.height), own = reconstruction.variance - model;
+        reconstruction.height += own / (own + seen->variance) * difference;
+        reconstruction.variance = own * seen->variance / (own + seen->variance) + model;
+      }
+    }
+  }
+  if (by_stereo && confirmations_ >= kConfirmations)
+    width_.learn(runway.width, runway.width_variance, reconstruction.height - reconstruction.bend,
+                 reconstruction.variance);
+}
+
+void KalmanHeightStage::followSurface(double surface_variance) {
+  constexpr int kPairs = 20;
+  if (!std::isfinite(surface_variance)) return;
+  surface_pairs_ = filter_.initialised() ? std::min(surface_pairs_ + 1, kPairs) : 1;
+  const double share = 1.0 / surface_pairs_, before = surface_pairs_ > 1 ? surface_mean_ : surface_variance;
+  surface_mean_ = before + share * (surface_variance - before);
+  const double square = (surface_variance - before) * (surface_variance - surface_mean_);
+  surface_scatter_ += share * (square - surface_scatter_);
+  // Each pair's is the small difference of two large variances: of flat ground it scatters around zero. What
+  // is within its mean's own error is not believed, once there are enough of them to tell.
+  constexpr int kEnough = 5;
+  const double error = surface_pairs_ < kEnough ? 0 : std::sqrt(surface_scatter_ / surface_pairs_);
+  surface_variance_ = std::max(0.0, surface_mean_ - error);
+}
+
+void KalmanHeightStage::followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction) {
+  reconstruction.below = reconstruction.plane;
+  bend_variance_ = 0;
+  if (!stereo.below.valid() || parameters_.height_source != HeightSource::kPlane) return;
+  // What corrects the plane of the surface ahead corrects the tangent likewise: both are of the same images.
+  reconstruction.below.g += stereo.below.g - stereo.plane.g;
+  reconstruction.bend = reconstruction.below.height() - reconstruction.plane.height();
+  bend_variance_ = std::max(0.0, stereo.below.heightVariance() - stereo.plane.heightVariance());
+}
+
+KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
+                                                                 const ApproachAngleResult& approach) {
+  const ScopedTimer timer(timings_, "reconstruction");
+  Reconstruction reconstruction;
+  const GroundPlane measured = withSkew(rig_, stereo, approach.step);
+  reconstruction.failure = missingPlane(stereo, measured);
+  if (reconstruction.failure) return reconstruction;
+
+  followSurface(stereo.surface_variance);
+  findPlane(measured, stereo, approach, reconstruction);
+  followBend(stereo, reconstruction);
+  const Eigen::Vector3d n = reconstruction.plane.normal();
+  reconstruction.normal = {n, reconstruction.plane.normalCovariance()};
+  reconstruction.points_height = averageHeight(rig_, stereo.points, -pitchOf(n), rollOf(n), true).height;
+  if (parameters_.height_source == HeightSource::kPlane) {
+    reconstruction.height = reconstruction.below.height();
+    reconstruction.variance = reconstruction.plane.heightVariance();
+  } else {
+    reconstructFromPoints(stereo, approach, reconstruction);
+  }
+  reconstruction.variance += modelVariance(reconstruction.height);
+  if (!reconstruction.failure && !(reconstruction.height > 0 && reconstruction.variance >= 0))
+    reconstruction.failure = {Reason::kNoPlane,
+                              text("height of ", reconstruction.height, " m is not above the ground")};
+  return reconstruction;
+}
+
+void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepthResult& stereo,
+                                  const ApproachAngleResult& approach, Reconstruction& reconstruction) {
+  GroundPlane& plane = reconstruction.plane;
+  Eigen::Matrix3d& common = reconstruction.common;
+  plane = measured;
+  common = stereo.row_covariance;
+  common(2, 2) += std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  reconstruction.alone = plane;
+  reconstruction.alone_common = common;
+  if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
+  // Only the vanishing direction and the imu are independent of the stereo plane; the fused normal of the
+  // approach angle contains the plane already.
+  if (parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+      approach.vanishing_covariance.allFinite())
+    fuseDirection({approach.vanishing_direction, approach.vanishing_covariance}, reconstruction);
+  if (!parameters_.fuse_imu || !approach.imu.hasNormal()) return;
+  for (const GroundDirection& level : levelDirections(approach.imu.normal, approach.imu.normal_covariance))
+    fuseDirection(level, reconstruction);
+}
+
+void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const {
+  const GroundPlane alone = reconstruction.plane;
+  const Eigen::Vector3d& p = ground.direction;
+  double nis = 0;
+  reconstruction.plane =
+      fuseVanishingPoint(alone, p, ground.covariance, std::pow(parameters_.vanishing_point_gate, 2), &nis);
+  if (reconstruction.plane.g == alone.g) return;
+  // What the direction is wrong by is mostly the ground's own slope: the next pairs have the same.
+  const double variance = alone.g.dot(ground.covariance * alone.g);
+  const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
+  Eigen::Matrix3d& common = reconstruction.common;
+  common = (kept * common * kept.transpose()).eval() + variance * gain * gain.transpose();
+}
+
+void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult& approach,
+                                        Reconstruction& reconstruction, LandingResult& result) {
+  const GroundPlane& plane = reconstruction.plane;
+  const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
+  if (!plane.valid()) return attitude_.carry(stamp, turn);
+  Reconstruction::Normal& average = reconstruction.normal;
+  if (!parameters_.average_attitude) return;
+  const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
+  const Eigen::Matrix3d own = average.covariance - common;
+  const AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn, common);
+  average = {estimate.normal, estimate.covariance + estimate.commonCovariance()};
+  const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
+  if (std::isfinite(estimate.ratio))
+    tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
+  if (estimate.agrees || reconstruction.failure) return;
+  reconstruction.failure = {Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
+                                                    " deg against the pairs before and the rotation since")};
+  result.raw_height = reconstruction.height;
+  result.raw_height_variance = reconstruction.variance;
+  result.rejected = true;
+  ++consecutive_rejections_;
+}
+
+void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                                 Reconstruction& reconstruction) {
+  rig_rotation_.advance(stereo.stamp);
+  rig_rotation_.setPrior(stereo.disparity_bias_stddev);
+  if (!rig_change_.doubts(stereo.vertical_rotation)) rig_rotation_.updateVertical(stereo.vertical_rotation);
+  // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
+  GroundPlane without = reconstruction.plane;
+  without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  const Eigen::Vector3d direction =
+      parameters_.fuse_vanishing_point ? approach.vanishing_direction : Eigen::Vector3d::Constant(kUnknown);
+  const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);
+  const RigRotation rotation = rig_rotation_.rotation();
+  if (rotation.known()) {
+    const Eigen::Matrix3d by_rotation = A * rotation.covariance * A.transpose();
+    reconstruction.alone_common = by_rotation + stereo.row_covariance;
+    reconstruction.alone = {without.g - A * rotation.w, without.covariance + by_rotation};
+  }
+  const RigRotationFilter::Corrected corrected =
+      rig_rotation_.correct(without, A, direction, approach.vanishing_covariance,
+                            parameters_.vanishing_point_gate, parameters_.fuse_imu ? &approach.imu : nullptr);
+  reconstruction.plane = corrected.plane;
+  reconstruction.common =
+      corrected.common + corrected.kept * stereo.row_covariance * corrected.kept.transpose();
+  rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();
+}
+
+void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
+                                              const ApproachAngleResult& approach,
+                                              Reconstruction& reconstruction) const {
+  const Eigen::Vector3d n = reconstruction.plane.normal();
+  double theta = -pitchOf(n), roll = rollOf(n);
+  double theta_variance = pitchVariance(n, reconstruction.plane.normalCovariance());
+  bool only_on_plane = true;
+  if (parameters_.reconstruction_angle == ReconstructionAngle::kApproach) {
+    // The paper to the letter: no roll, and a statistical average over every depth.
+    theta = publishedMotion(approach).angle;
+    theta_variance = publishedMotion(approach).angle_variance;
+    roll = 0;
+    only_on_plane = false;
+  }
+  if (!std::isfinite(theta) || !std::isfinite(theta_variance)) {
+    reconstruction.failure = approach.failure ? approach.failure : publishedMotion(approach).failure;
+    if (!reconstruction.failure)
+      reconstruction.failure = {Reason::kNoMotion, "no approach angle to reconstruct the height with"};
+    return;
+  }
+  const AveragedHeight averaged = averageHeight(rig_, stereo.points, theta, roll, only_on_plane);
+  if (averaged.points < 2) {
+    reconstruction.failure = {Reason::kTooFewMatches,
+                              text(averaged.points, " of at least 2 points to average")};
+    return;
+  }
+  // d height / d theta of eq (5) is the rotated depth: the same sum a quarter turn further.
+  const double by_theta = averageHeight(rig_, stereo.points, theta + M_PI / 2, roll, only_on_plane).height;
+  reconstruction.height = averaged.height;
+  reconstruction.variance = averaged.variance + by_theta * by_theta * theta_variance;
+  // An angle of another meaning and matches off the ground make an error of their own, of which the scatter
+  // knows nothing. What they differ from the plane by is a measure of it.
+  if (!only_on_plane) reconstruction.variance += std::pow(averaged.height - reconstruction.plane.height(), 2);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,345 @@
+#include "uav_landing/stages/kalman_height_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "height/attitude.h"
+#include "height/vertical_speed.h"
+#include "uav_landing/height/reconstruction.h"
+#include "uav_landing/results/result_check.h"
+#include "uav_landing/rig/rig_rotation.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+/// Variance of an angle for the sake of the rig: approach_angle knows nothing of its rotation and took
+/// another normal than the plane's here. Its matches may have made up for that or not, so the turn of the
+/// normal along the direction of motion counts as 1 sigma.
+double rigAngleVariance(const GroundPlane& plane, const ApproachAngleResult& approach,
+                        const ApproachAngleResult::Motion& motion) {
+  const double turn =
+      (plane.normal() - approach.n).dot(motion.translation_over_height.normalized()) / std::cos(motion.angle);
+  return std::isfinite(turn) ? turn * turn : 0;
+}
+
+/// motion: of which the angle is published; plane: of which the rig's rotation was taken out, or null.
+void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion,
+                 const GroundPlane* plane, double max_stddev, LandingResult& result) {
+  result.raw_approach_angle = approach.step.angle;
+  result.raw_approach_angle_variance = approach.step.angle_variance;
+  result.foe = approach.foe;
+  result.approach_angle = motion.angle;
+  result.approach_angle_variance = motion.angle_variance;
+  if (plane != nullptr) {
+    result.raw_approach_angle_variance += rigAngleVariance(*plane, approach, approach.step);
+    result.approach_angle_variance += rigAngleVariance(*plane, approach, motion);
+  }
+
+  Failure failure = approach.failure ? approach.failure : motion.failure;
+  if (!failure && !std::isfinite(motion.angle))
+    failure = {Reason::kNoMotion, "the approach angle is not finite"};
+  const double stddev = std::sqrt(result.approach_angle_variance);
+  if (!failure && !(stddev <= max_stddev)) {
+    failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", stddev / kDegree,
+                                        " deg, more than ", max_stddev / kDegree, " deg")};
+  }
+  result.angle_valid = !failure;
+  if (!result.failure) result.failure = failure;
+}
+
+}  // namespace
+
+KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
+    : rig_(rig),
+      parameters_(parameters),
+      filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
+      scatter_(parameters.gate * parameters.gate),
+      rig_rotation_(rig, parameters.rig_memory),
+      width_(parameters.known_runway_width),
+      separation_(parameters),
+      tests_(parameters.false_alarm_rate),
+      speed_(parameters.max_deceleration),
+      stamps_(parameters.max_deceleration),
+      recovery_(parameters.recovery_time) {}
+
+LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
+                                         const ApproachAngleResult& given_approach) {
+  timings_.clear();
+  const StereoDepthResult stereo = checked(rig_, given_stereo);
+  ApproachAngleResult approach = checked(given_approach);
+  if (stereo.left_repeated)  // seen from where the camera was before
+    approach.runway.failure =
+        approach.runway.threshold_failure = {Reason::kInconsistent, toString(Consistency::kRepeatedImage)};
+  tests_.begin();
+  LandingResult result;
+  result.stamp = stereo.stamp;
+  if (!std::isfinite(stereo.stamp)) return withoutStamp(result);
+  const double T = last_stamp_ ? stereo.stamp - *last_stamp_ : 0;
+  Reconstruction reconstruction = reconstruct(stereo, approach);
+  {
+    const ScopedTimer timer(timings_, "kalman_filter");
+    result.failure = followTime(stereo.stamp);
+    if (!stereo.left_repeated) {  // else the next motion is from the pair before
+      averageAttitude(stereo.stamp, approach, reconstruction, result);
+      followStamps(approach.step, reconstruction);
+    }
+    useWidth(approach.runway, reconstruction, result);
+    leaveOutSources(stereo, approach, reconstruction);
+    testPair(T, stereo, approach, reconstruction, result);
+    if (!result.failure) result.failure = reconstruction.failure;
+    filterHeight(stereo.stamp, reconstruction, approach.step, result);
+    reportHeight(result);
+    testMemory(T, reconstruction, approach, result);
+    awaitRecovery(T, result);
+    rememberGround(stereo, approach.step, reconstruction, result.rejected);
+    reportProtection(reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n, result);
+  }
+  const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
+  reportAngle(approach, publishedMotion(approach), corrected ? &reconstruction.plane : nullptr,
+              parameters_.max_angle_stddev_deg * kDegree, result);
+  reportPlane(reconstruction, approach, result);
+  if (!approach.step.failure)
+    result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
+                      approach.step.duration;
+  {
+    const ScopedTimer timer(timings_, "runway_filter");
+    position_.process(approach, reconstruction.plane.valid() ? reconstruction.plane.normal() : approach.n,
+                      result.height_valid ? result.height - reconstruction.bend : kUnknown,
+                      result.height_variance, result);
+  }
+  reportRig(result);
+  if (parameters_.integrity_monitor) result.tests = tests_.finish();
+  return result;
+}
+
+// A pair of no time says nothing, and what is known stays as it is.
+LandingResult KalmanHeightStage::withoutStamp(LandingResult result) const {
+  result.failure = {Reason::kInputInvalid, "the stamp is not a finite number"};
+  result.status = filter_.initialised() ? Status::kCoasting : lost_ ? Status::kLost : Status::kSearching;
+  result.resets = resets_;
+  return result;
+}
+
+LandingResult KalmanHeightStage::timeout(double stamp) {
+  if (last_stamp_ && filter_.initialised() && stamp - *last_stamp_ > parameters_.reset_timeout) loseTrack();
+  LandingResult result;
+  result.stamp = stamp;
+  result.status = Status::kLost;
+  result.failure = {Reason::kTimeout, text("no image pair for ", parameters_.max_age, " s")};
+  result.resets = resets_;
+  return result;
+}
+
+void KalmanHeightStage::reset() {
+  position_.reset();
+  attitude_.reset();
+  width_.reset();
+  width_variance_ = 0;
+  rig_rotation_.reset();
+  rig_variance_ = 0;
+  rig_change_.reset();
+  pairs_failed_ = pairs_passed_ = 0;
+  if (filter_.initialised()) loseTrack();
+  memory_.reset();
+  speed_.reset();
+  stamps_.reset();
+  recovery_.reset();
+  ground_.reset();
+  ground_stamp_.reset();
+  last_normal_.reset();
+  last_stamp_.reset();
+  lost_ = false;
+}
+
+void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                                    LandingResult& result) {
+  const bool known = reconstruction.plane.valid();
+  reportAttitude(known ? reconstruction.normal.mean : approach.n,
+                 known ? reconstruction.normal.covariance : approach.n_covariance,
+                 approach.vanishing_direction, approach.vanishing_covariance, result);
+}
+
+void KalmanHeightStage::reportRig(LandingResult& result) const {
+  if (!parameters_.rig_watch) return;
+  constexpr double kSigmas = 3;
+  constexpr const char* kAxes[] = {"pitch", "yaw", "roll"};
+  result.rig_rotation = rig_rotation_.rotation();
+  if (!result.rig_rotation.known()) return;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = result.rig_rotation.w[i];
+    const double stddev = std::sqrt(result.rig_rotation.covariance(i, i));
+    if (std::abs(angle) - kSigmas * stddev <= parameters_.max_rig_rotation_deg * kDegree) continue;
+    result.height_valid = result.angle_valid = false;
+    result.failure = {Reason::kRigBent,
+                      text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
+                           " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
+                           parameters_.max_rig_rotation_deg, " deg allowed")};
+    return;
+  }
+}
+
+Failure KalmanHeightStage::followTime(double stamp) {
+  const std::optional<double> last = last_stamp_;
+  const double T = last ? stamp - *last : 0;
+  if (last && (T <= 0 || T > parameters_.reset_timeout)) {
+    reset();
+    last_stamp_ = stamp;
+    return {Reason::kTimeJump, text("the stamp went ", T < 0 ? "back" : "ahead", " by ", std::abs(T), " s")};
+  }
+  last_stamp_ = stamp;
+  if (filter_.initialised()) {
+    filter_.predict(T);
+    separation_.predict(T);
+  }
+  return {};
+}
+
+void KalmanHeightStage::start(double stamp, const Reconstruction& reconstruction) {
+  filter_.initialise(reconstruction.height, reconstruction.variance, commonVariance(reconstruction.height));
+  if (parameters_.integrity_monitor) separation_.start(reconstruction.without, reconstruction.height);
+  confirmations_ = 0;
+  accept(stamp);
+}
+
+void KalmanHeightStage::accept(double stamp) {
+  last_accepted_ = stamp;
+  confirmations_ = std::min(confirmations_ + 1, kConfirmations);
+  consecutive_rejections_ = 0;
+  lost_ = false;
+}
+
+void KalmanHeightStage::loseTrack() {
+  ++resets_;
+  filter_.reset();
+  scatter_.reset();
+  separation_.reset();
+  confirmations_ = 0;
+  consecutive_rejections_ = 0;
+  lost_ = true;
+}
+
+void KalmanHeightStage::filterHeight(double stamp, const Reconstruction& reconstruction,
+                                     const ApproachAngleResult::Motion& step, LandingResult& result) {
+  result.points_height = reconstruction.points_height;
+  const bool measured = !reconstruction.failure;
+  if (measured) {
+    result.raw_height = reconstruction.height;
+    result.raw_height_variance = reconstruction.variance;
+    if (filter_.initialised()) {
+      updateHeight(stamp, reconstruction, step, result);
+    } else {
+      start(stamp, reconstruction);
+    }
+  }
+  const double age = stamp - last_accepted_;
+  if (filter_.initialised() && age >= parameters_.reset_timeout) {
+    loseTrack();
+    if (measured) start(stamp, reconstruction);
+  }
+
+  const bool tracking = filter_.initialised() && stamp == last_accepted_;
+  if (filter_.initialised()) {
+    result.status = tracking ? Status::kTracking : Status::kCoasting;
+  } else {
+    result.status = lost_ ? Status::kLost : Status::kSearching;
+  }
+  result.consecutive_rejections = consecutive_rejections_;
+  result.resets = resets_;
+}
+
+void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconstruction,
+                                     const ApproachAngleResult::Motion& step, LandingResult& result) {
+  const HeightFilter::Update update =
+      filter_.update(reconstruction.height, reconstruction.variance, commonVariance(reconstruction.height));
+  result.innovation = update.innovation;
+  result.innovation_variance = update.innovation_variance;
+  scatter_.add(update.innovation * update.innovation / update.innovation_variance);
+  tests_.addRatio(Consistency::kInnovation, update.innovation,
+                  update.innovation * update.innovation / update.innovation_variance,
+                  parameters_.gate * parameters_.gate);
+  if (update.accepted) {
+    accept(stamp);
+    separation_.update(reconstruction.without);
+    if (parameters_.use_motion && reconstruction.plane.valid()) updateSpeed(reconstruction, step);
+    return;
+  }
+  result.rejected = true;
+  ++consecutive_rejections_;
+  result.failure = {Reason::kRejected, text("raw height ", reconstruction.height, " m, expected ",
+                                            reconstruction.height - update.innovation, " m with 1 sigma of ",
+                                            std::sqrt(update.innovation_variance), " m")};
+  if (confirmations_ < kConfirmations) {
+    // Two measurements that contradict each other, and nothing yet that says which one is wrong.
+    loseTrack();
+    start(stamp, reconstruction);
+  }
+}
+
+double KalmanHeightStage::heightSoFar(const Reconstruction& reconstruction) const {
+  return filter_.initialised() ? filter_.state()[0] : reconstruction.height;
+}
+
+// Whether the motion is certain enough for an angle does not matter here: that of a picture that stands still
+// is not.
+std::optional<CameraStep> KalmanHeightStage::cameraStep(const ApproachAngleResult::Motion& step,
+                                                        const Reconstruction& reconstruction) const {
+  const Eigen::Vector3d& t = step.translation_over_height;
+  const double height = heightSoFar(reconstruction);
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0)) return std::nullopt;
+  // Of any direction: the length of a vector that is nothing but noise has none.
+  return CameraStep{step.duration, t.norm() * height, height * height * covariance.trace()};
+}
+
+void KalmanHeightStage::followStamps(const ApproachAngleResult::Motion& step,
+                                     Reconstruction& reconstruction) {
+  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  way ? stamps_.follow(*way) : stamps_.skip();
+  if (!filter_.initialised() || !(step.duration > 0)) return;
+  // A duration has the errors of two stamps in it.
+  const double stamp_variance = 0.5 * stamps_.ofDuration() * step.duration * step.duration;
+  reconstruction.variance += std::pow(filter_.state()[1], 2) * stamp_variance;
+}
+
+VerticalSpeed KalmanHeightStage::withStamps(VerticalSpeed speed) const {
+  speed.variance += speed.speed * speed.speed * stamps_.ofDuration();
+  return speed;
+}
+
+void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
+                                    const ApproachAngleResult::Motion& step) {
+  const VerticalSpeed measured = withStamps(verticalSpeed(
+      step, reconstruction.below, reconstruction.height - reconstruction.bend, reconstruction.variance,
+      parameters_.height_model_error, parameters_.acceleration_stddev));
+  filter_.updateSpeed(measured.speed, measured.variance);
+  separation_.updateSpeed(measured.speed, measured.variance);
+}
+
+void KalmanHeightStage::reportHeight(LandingResult& result) const {
+  if (!filter_.initialised()) return;
+  const double h = filter_.state()[0];
+  result.height = h;
+  result.height_variance = varianceFactor() * filter_.ownCovariance()(0, 0) + commonVariance(h);
+  result.vertical_speed = filter_.state()[1];
+  result.vertical_speed_variance = filter_.covariance()(1, 1);
+
+  const double limit = std::max(parameters_.min_height_error, parameters_.max_height_error * h);
+  const double bound = 3 * std::sqrt(result.height_variance);
+  const double age = result.stamp - last_accepted_;
+  Failure failure;
+  if (confirmations_ < kConfirmations) {
+    failure = {Reason::kNotYet, text(confirmations_, " of ", kConfirmations, " agreeing heights")};
+  } else if (!(age <= parameters_.max_age)) {
+    failure = {Reason::kTimeout, text("no believable height for ", age, " s")};
+  } else if (!(h > 0 && bound <= limit)) {
+    failure = {Reason::kUncertain,
+               text("height ", h, " m has 3 sigma of ", bound, " m, more than ", limit, " m")};
+  }
+  result.height_valid = !failure;
+  if (!result.failure) result.failure = failure;
+}
+
+}  // namespace uav_landing

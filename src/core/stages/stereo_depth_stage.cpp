@@ -1,0 +1,290 @@
+#include "uav_landing/stages/stereo_depth_stage.h"
+
+#include <optional>
+#include <string>
+
+#include "uav_landing/image/image_check.h"
+#include "uav_landing/image/match_image.h"
+#include "uav_landing/stereo/direct_refinement.h"
+#include "uav_landing/stereo/plane_consensus.h"
+#include "uav_landing/stereo/plane_fit.h"
+#include "uav_landing/stereo/stereo_matching.h"
+#include "uav_landing/stereo/surface_profile.h"
+#include "uav_landing/stereo/surface_variance.h"
+#include "uav_landing/stereo/vertical_disparity.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+// Failing frames for which the last plane stays the first guess.
+constexpr int kKeepPlaneFor = 5;
+// In how many searches that find nothing one is also tried with left and right swapped.
+constexpr int kSwapCheckInterval = 10;
+// Share of the image's rows by which the horizon mostly moves less from pair to pair.
+constexpr double kSlack = 0.02;
+
+}  // namespace
+
+struct StereoDepthStage::Implementation {
+  RigModel model;
+  StereoDepthParameters parameters;
+  PlaneLimits limits;
+  StereoLevel fine, coarse;
+  MatchImage left, right;
+  RowAlignment rows;
+  cv::Mat level_fine, level_coarse;  // right images with their rows made level
+  std::unique_ptr<DirectRefinement> direct;
+  cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
+  Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
+  bool has_last = false;
+  double last_stamp = 0;
+  bool started = false;
+  RepeatedImage left_repeated, right_repeated;
+  int failures = 0, failed_searches = 0;
+  bool looks_swapped = false;
+  Timings timings;
+
+  Implementation(const RigModel& rig, const StereoDepthParameters& p)
+      : model(rig), parameters(p), rows(p.vertical_disparities, p.window_radius) {
+    limits.max_roll = p.max_roll_deg * kDegree;
+    limits.max_pitch = p.max_pitch_deg * kDegree;
+    limits.min_points = p.min_points;
+    limits.tolerance = p.plane_tolerance;
+    fine.rig = rig.rig;
+    fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
+    fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
+    coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
+    if (p.direct_refinement) {
+      direct = std::make_unique<DirectRefinement>(rig.rig, fine.left_mask, fine.right_mask);
+    }
+  }
+
+  StereoDepthResult process(double stamp, const cv::Mat& left_image, const cv::Mat& right_image) {
+    timings.clear();
+    StereoDepthResult result;
+    result.stamp = stamp;
+    if (started && !(stamp > last_stamp)) has_last = false;
+    started = true;
+    last_stamp = stamp;
+    result.failure = checkPair(model, left_image, right_image);
+    if (result.failure.reason != Reason::kInputInvalid) {
+      result.left_repeated = left_repeated.check(left_image);
+      result.right_repeated = right_repeated.check(right_image);
+    }
+    if (!result.failure) estimate(left_image, right_image, result);
+    failures = result.failure ? failures + 1 : 0;
+    if (!result.failure) {
+      last_g = result.plane.g;
+      failed_searches = 0;
+    }
+    // One bad pair does not make the last plane a bad guess; many do.
+    has_last = !result.failure || (has_last && failures < kKeepPlaneFor);
+    return result;
+  }
+
+  void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
+    {
+      ScopedTimer timer(timings, "match_images");
+      // Rows that are made level come from other rows.
+      const FirstRows first = has_last && rows.isLevel() ? groundRows(last_g, kSlack) : FirstRows();
+      left.assign(left_image, first);
+      right.assign(right_image, first);
+    }
+    fine.left = left.fine;
+    coarse.left = left.coarse;
+    levelRows();
+    const auto extend = [&](const FirstRows& first) {
+      ScopedTimer timer(timings, "match_images");
+      left.extend(left_image, first);
+      right.extend(right_image, first);
+    };
+    std::optional<Eigen::Vector3d> tracked = trackedPlane();
+    if (!tracked) extend({});
+    const Expected<Eigen::Vector3d> start = tracked ? *tracked : searchedPlane(result);
+    if (!start) {
+      result.failure = start.error();
+      return;
+    }
+    extend(groundRows(*start, 0));
+    refine(*start, result);
+    if (direct && !result.failure) refineDirectly(left_image, right_image, result);
+  }
+
+  void levelRows() {
+    ScopedTimer timer(timings, "vertical_disparities");
+    fine.right = rows.level(fine.rig, right.fine, level_fine);
+    coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
+  }
+
+  // Where windows on the ground of this plane may reach.
+  FirstRows groundRows(const Eigen::Vector3d& g, double slack) const {
+    constexpr int kInterpolation = 8;  // px that they are moved, and that is interpolated from
+    const int above = parameters.window_radius + kInterpolation;
+    return firstGroundRows(model.rig, g, {above, above}, slack);
+  }
+
+  // A plane good to about a pixel of disparity: followed from the previous pair ...
+  std::optional<Eigen::Vector3d> trackedPlane() {
+    if (!has_last) return std::nullopt;
+    ScopedTimer timer(timings, "feature_matching_coarse");
+    const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
+    if (!tracked.found) return std::nullopt;
+    return tracked.g;
+  }
+
+  // ... or searched.
+  Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
+    ScopedTimer timer(timings, "plane_search");
+    result.from_search = true;
+    const Consensus found = searchPlane(coarse, parameters, limits);
+    if (found.found || failed_searches % kSwapCheckInterval == 0) {
+      // Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
+      const Consensus behind = searchPlane(swapped(coarse), parameters, limits);
+      looks_swapped = behind.found && behind.score > found.score;
+    }
+    if (found.found && !looks_swapped) return found.g;
+    ++failed_searches;
+    return tl::make_unexpected(whyNotFound());
+  }
+
+  Failure whyNotFound() const {
+    if (looks_swapped) {
+      return {
+          Reason::kNegativeDisparity,
+          "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
+    }
+    return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+  }
+
+  void refine(const Eigen::Vector3d& start, StereoDepthResult& result) {
+    std::vector<cv::Point> corners;
+    {
+      ScopedTimer timer(timings, "harris_corners");
+      corners = findGroundCorners(fine, start, parameters.corner_count, parameters);
+    }
+    result.corners = static_cast<int>(corners.size());
+    // A bent rig's rows must be level before anything is matched along them.
+    if (result.from_search && rows.search(fine, corners, start)) levelRows();
+    std::vector<DisparitySample> samples;
+    {
+      ScopedTimer timer(timings, "feature_matching");
+      samples = matchCorners(fine, corners, start, parameters);
+    }
+    fitOrSayWhyNot(samples, result);
+    measureRows(samples, result);
+  }
+
+  void fitOrSayWhyNot(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "plane_fit");
+    if (static_cast<int>(samples.size()) < parameters.min_points) {
+      const bool few_corners = result.corners < parameters.min_points;
+      result.failure = {few_corners ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
+                        std::to_string(samples.size()) + " matches of " + std::to_string(result.corners) +
+                            " corners, at least " + std::to_string(parameters.min_points) + " needed"};
+    }
+    fit(samples, result);
+  }
+
+  void fit(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+    for (const DisparitySample& sample : samples) {
+      result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
+    }
+    if (result.failure) return;
+    const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr, true);
+    if (!consensus.found) {
+      result.failure = {Reason::kNoPlane,
+                        "no plausible ground plane in " + std::to_string(samples.size()) + " matches"};
+      return;
+    }
+    const Expected<PlaneFit> plane =
+        refinePlane(model.rig, samples, consensus.g, limits, parameters.disparity_bias_stddev);
+    if (!plane) {
+      result.failure = plane.error();
+      return;
+    }
+    result.plane = plane->plane;
+    result.residual_stddev = plane->residual_stddev;
+    result.surface_variance = surfaceVariance(model.rig, samples, *plane, 2 * parameters.window_radius + 1);
+    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
+    result.disparity_bias_stddev = parameters.disparity_bias_stddev;
+  }
+
+  void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "vertical_disparities");
+    if (result.failure) return;
+    const RowAlignment::Measured measured = rows.measure(fine, samples, result.plane.g);
+    result.vertical_rotation = measured.rotation;
+    result.baseline_direction = measured.baseline;
+    result.row_agreement = measured.agreement;
+    result.row_covariance = rowLeak(rows.residual(fine.rig, parameters.disparity_bias_stddev));
+    result.plane.covariance += result.row_covariance;
+  }
+
+  // Where a row is off by dv, a slanted line seems moved along the row by dv times its slope; the two sides
+  // of a runway lean to opposite sides, which looks like roll. For the corners' plane by a rule of thumb.
+  Eigen::Matrix3d rowLeak(const RigRotation& residual) const {
+    constexpr double kLean = 2.5;  // rms over simulated runways
+    const double square = residual.w.x() * residual.w.x() + residual.covariance(0, 0);
+    Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
+    leak(0, 0) = square * std::pow(kLean / fine.rig.baseline, 2);
+    return leak;
+  }
+
+  // The right image as the camera saw it but with its rows made level, where they are not.
+  cv::Mat withLevelRows(const cv::Mat& right_image) {
+    if (fine.right.data == right.fine.data) return right_image;
+    right_image.convertTo(right_grey, CV_32F);
+    rows.level(fine.rig, right_grey, level_grey).convertTo(level_image, CV_8U);
+    return level_image;
+  }
+
+  // The plane of the corners stays when the images' alignment leads elsewhere.
+  void refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "direct_refinement");
+    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
+                                                  limits, parameters.disparity_bias_stddev,
+                                                  rows.residual(fine.rig, parameters.disparity_bias_stddev));
+    result.photometric_agreement = direct->agreement();
+    if (!fit || !samePlane(fit->plane, result.plane)) return;
+    result.plane = fit->plane;
+    result.row_covariance = fit->row_covariance;
+    if (parameters.surface_curvature) bend(*fit, result);
+  }
+
+  void bend(const PlaneFit& flat, StereoDepthResult& result) {
+    ScopedTimer timer(timings, "surface_profile");
+    const std::optional<SurfaceProfile> profile =
+        fitSurfaceProfile(model.rig, direct->samples(), flat, limits, parameters.disparity_bias_stddev,
+                          parameters.slope_change_deg * kDegree);
+    if (!profile) return;
+    result.below = profile->below;
+    result.below.covariance += result.row_covariance;
+    result.curvature = profile->curvature;
+    result.curvature_variance = profile->curvature_variance;
+  }
+};
+
+StereoDepthStage::StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters)
+    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+StereoDepthStage::~StereoDepthStage() = default;
+StereoDepthStage::StereoDepthStage(StereoDepthStage&&) noexcept = default;
+
+StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
+                                            double skew) {
+  StereoDepthResult result = implementation_->process(stamp, left, right);
+  result.skew = skew;
+  return result;
+}
+
+void StereoDepthStage::reset() {
+  implementation_->has_last = false;
+  implementation_->rows.reset();
+  implementation_->left_repeated.reset();
+  implementation_->right_repeated.reset();
+  implementation_->started = false;
+}
+
+const Timings& StereoDepthStage::timings() const { return implementation_->timings; }
+
+}  // namespace uav_landing

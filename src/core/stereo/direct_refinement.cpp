@@ -1,0 +1,168 @@
+#include "uav_landing/stereo/direct_refinement.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/median.h"
+#include "stereo/photometric_blocks.h"
+#include "uav_landing/results/stage_results.h"
+#include "uav_landing/rig/rig_rotation.h"
+
+namespace uav_landing {
+namespace {
+
+// Blocks compared: about 100 thousand pixels, which hold nearly all that a noisy image says.
+constexpr int kBlocks = 800;
+// Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them.
+constexpr int kSteps = 5;
+constexpr double kConverged = 0.003;
+// By how much disparities of the first plane may be off, pixels.
+constexpr double kStartStddev = 0.3;
+// The comparison is first order in the shift: farther than this (pixels) it means nothing.
+constexpr double kLargestShift = 1.5;
+
+// Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
+// where much of the picture stands on the ground, those that are on the plane by chance would have too much
+// to say.
+constexpr double kLeastShare = 0.5;
+// By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
+constexpr double kLargestFactor = 2.0;
+
+// Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
+// independent, and an error that all samples have besides, from the surface and the calibration. The factor
+// shows in the noisier half of the samples, the error in the other.
+void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
+  std::vector<double> residuals, stddevs, ratios, missing;
+  for (const DisparitySample& sample : samples) {
+    residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
+    stddevs.push_back(sample.stddev);
+  }
+  const double offset = medianOf(residuals), middle = medianOf(stddevs);
+  for (size_t i = 0; i < samples.size(); ++i)
+    if (stddevs[i] >= middle) ratios.push_back(std::abs(residuals[i] - offset) / stddevs[i]);
+  const double factor = std::min(robustStddev(ratios), kLargestFactor);
+  // The variance without which half of the quieter samples were off by more than normal errors are.
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (stddevs[i] >= middle) continue;
+    const double off = kPerMedian * (residuals[i] - offset), noise = factor * stddevs[i];
+    missing.push_back(off * off - noise * noise);
+  }
+  const double common =
+      missing.empty() ? 0 : std::clamp(medianOf(missing), 0.0, kLargestShift * kLargestShift);
+  for (DisparitySample& sample : samples)
+    sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common);
+}
+
+}  // namespace
+
+struct DirectRefinement::Implementation {
+  StereoRig rig;
+  PhotometricBlocks blocks;
+  std::vector<PhotometricBlocks::Match> matches;
+  std::vector<DisparitySample> samples;
+  std::vector<Eigen::RowVector3d> leaks;  // of each sample: its disparity's derivative by the rows' rotation
+  int informative = 0;                    // blocks that show anything
+  int agreeing = 0;                       // of them, look alike and are on the plane
+
+  Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
+      : rig(r), blocks(left_mask, right_mask) {}
+
+  // One disparity for each block, found with the right image warped by g.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const Eigen::Vector3d& rows) {
+    const ShiftModel shift(rig, g);
+    informative = blocks.compare(right, shift, matches);
+    const double density = 1 - shift.a;  // of right pixels over left ones
+    samples.clear();
+    leaks.clear();
+    for (const PhotometricBlocks::Match& match : matches) {
+      if (!(std::abs(match.shift) < kLargestShift)) continue;
+      // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a
+      // place that has the error of the shift in it would pull the plane.
+      const double disparity = shift.at(match.u, match.v) + match.shift * density - rig.principalOffset();
+      const double column = match.u - shift.at(match.u, match.v);
+      leaks.push_back(-density * match.lean * verticalDisparityByRotation(rig, column, match.v));
+      samples.push_back({match.u, match.v, density * match.stddev, {disparity - leaks.back().dot(rows)}});
+    }
+  }
+
+  // What an error of the rows' rotation does to the plane. 1/m per rad.
+  Eigen::Matrix3d planeByRows(const PlaneFit& fit) const {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+    for (size_t i = 0; i < samples.size(); ++i) {
+      if (!fit.agrees[i]) continue;
+      const Eigen::Vector3d by_plane = rig.fb() * rig.ray(samples[i].u, samples[i].v) / samples[i].stddev;
+      information += by_plane * by_plane.transpose();
+      right += by_plane * leaks[i] / samples[i].stddev;
+    }
+    return information.inverse() * right;
+  }
+
+  // Largest change of disparity at the bottom of the image, where disparities are largest.
+  double change(const Eigen::Vector3d& before, const Eigen::Vector3d& after) const {
+    const double bottom = rig.size.height - 1, right = rig.size.width - 1;
+    const Eigen::Vector3d step = rig.fb() * (after - before);
+    return std::max(std::abs(step.dot(rig.ray(0, bottom))), std::abs(step.dot(rig.ray(right, bottom))));
+  }
+};
+
+DirectRefinement::DirectRefinement(const StereoRig& rig, const cv::Mat& left_mask, const cv::Mat& right_mask)
+    : implementation_(std::make_unique<Implementation>(rig, left_mask, right_mask)) {}
+DirectRefinement::~DirectRefinement() = default;
+DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
+
+Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& right,
+                                            const Eigen::Vector3d& start, const PlaneLimits& limits,
+                                            double bias_stddev, const RigRotation& rows) {
+  Implementation& own = *implementation_;
+  own.blocks.choose(left, own.rig, ShiftModel(own.rig, start), kBlocks);
+  Eigen::Vector3d g = start;
+  own.agreeing = 0;
+  for (int step = 0;; ++step) {
+    own.measure(right, g, rows.w);
+    if (static_cast<int>(own.samples.size()) < limits.min_points) {
+      return tl::make_unexpected(
+          Failure{Reason::kTooFewMatches, std::to_string(own.samples.size()) + " blocks match, at least " +
+                                              std::to_string(limits.min_points) + " needed"});
+    }
+    calibrate(own.rig, g, own.samples);
+    if (step == 0) {
+      for (DisparitySample& sample : own.samples)
+        sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
+    }
+    Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
+    own.agreeing = fit ? fit->count : 0;
+    if (fit && fit->count < kLeastShare * own.informative) {
+      return tl::make_unexpected(
+          Failure{Reason::kNoPlane, std::to_string(fit->count) + " of " + std::to_string(own.informative) +
+                                        " blocks are on the plane: too few to tell which are ground"});
+    }
+    if (!fit) return fit;
+    if (step + 1 == kSteps || (step > 0 && own.change(g, fit->plane.g) < kConverged)) {
+      const Eigen::Matrix3d by_rows = own.planeByRows(*fit);
+      fit->row_covariance = by_rows * rows.covariance * by_rows.transpose();
+      fit->plane.covariance += fit->row_covariance;
+      return fit;
+    }
+    g = fit->plane.g;
+  }
+}
+
+double DirectRefinement::agreement() const {
+  constexpr int kFewest = 20;
+  const Implementation& own = *implementation_;
+  return own.informative < kFewest ? kUnknown : static_cast<double>(own.agreeing) / own.informative;
+}
+
+const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }
+
+bool samePlane(const GroundPlane& a, const GroundPlane& b) {
+  constexpr double kSigmas = 5.0;
+  const Eigen::Vector3d difference = a.g - b.g;
+  const Eigen::Matrix3d covariance = a.covariance + b.covariance;
+  return difference.dot(covariance.ldlt().solve(difference)) < kSigmas * kSigmas;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,202 @@
+#include "uav_landing/stereo/plane_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "base/lanes.h"
+#include "base/median.h"
+#include "base/multiversion.h"
+
+namespace uav_landing {
+namespace {
+
+// Robust size of the residuals as a multiple of the claimed stddevs, at least 1.
+double scaleOf(const std::vector<double>& ratios) {
+  if (ratios.empty()) return 1;
+  const auto small =
+      std::count_if(ratios.begin(), ratios.end(), [](double r) { return kPerMedian * r <= 1; });
+  if (static_cast<size_t>(small) > ratios.size() / 2) return 1;  // the median is among them
+  return std::max(1.0, robustStddev(ratios));
+}
+
+struct NormalEquations {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double weighted_squares = 0;
+  int count = 0;
+};
+
+// The least squares problem by columns, filled up to whole lanes with samples of no weight.
+class PlaneProblem {
+ public:
+  PlaneProblem(const StereoRig& rig, const std::vector<DisparitySample>& samples)
+      : count_(samples.size()),
+        fb_(rig.fb()),
+        x_(wholeDoubleLanes(count_), 0),
+        y_(x_),
+        disparity_(x_),
+        precision_(x_),
+        expected_(x_),
+        weight_(x_) {
+    ratios_.reserve(count_);
+    for (size_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3d row = fb_ * rig.ray(samples[i].u, samples[i].v);
+      x_[i] = row.x();
+      y_[i] = row.y();
+      disparity_[i] = samples[i].disparity;
+      precision_[i] = 1 / samples[i].stddev;
+    }
+  }
+
+  // The disparities that a plane gives.
+  UAV_LANDING_MULTIVERSION void expect(const Eigen::Vector3d& g) {
+    const double gx = g.x(), gy = g.y(), constant = g.z() * fb_;
+    const double *x = x_.data(), *y = y_.data();
+    double* __restrict expected = expected_.data();
+    for (size_t i = 0; i < x_.size(); ++i) expected[i] = gx * x[i] + gy * y[i] + constant;
+  }
+
+  // Robust size of the residuals as a multiple of the claimed stddevs, over samples near the plane. What
+  // stands on the ground makes residuals positive only, so the negative ones alone tell the size of the
+  // ground's own.
+  double residualScale(double tolerance) {
+    ratios_.resize(count_);
+    size_t used = 0;
+    for (size_t i = 0; i < count_; ++i) {
+      const double residual = disparity_[i] - expected_[i];
+      ratios_[used] = -residual * precision_[i];
+      used += (residual <= 0) & (residual > -2 * tolerance);  // no branch: half of them are, at random
+    }
+    ratios_.resize(used);
+    return scaleOf(ratios_);
+  }
+
+  // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
+  UAV_LANDING_MULTIVERSION NormalEquations accumulate(double scale) {
+    constexpr double kTukey = 4.0;
+    const double unit = 1 / (kTukey * kTukey * scale * scale);
+    const DoubleLanes none{}, one = none + 1;
+    DoubleLanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
+    for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
+      DoubleLanes x, y, precision, disparity, expected;
+      load(&x_[i], x);
+      load(&y_[i], y);
+      load(&precision_[i], precision);
+      load(&disparity_[i], disparity);
+      load(&expected_[i], expected);
+      const DoubleLanes residual = disparity - expected, information = precision * precision;
+      const DoubleLanes missing = 1 - residual * residual * information * unit;
+      const auto inside = (missing > 0) & (expected > 0) & (information > 0);
+      const DoubleLanes weight = inside ? missing * missing * information : none;
+      const DoubleLanes weight_x = weight * x, weight_y = weight * y;
+      store(weight, &weight_[i]);
+      count += inside ? one : none;
+      w += weight;
+      wx += weight_x;
+      wy += weight_y;
+      wxx += weight_x * x;
+      wxy += weight_x * y;
+      wyy += weight_y * y;
+      wd += weight * disparity;
+      wxd += weight_x * disparity;
+      wyd += weight_y * disparity;
+      squares += weight * residual * residual;
+    }
+    NormalEquations sums;
+    sums.information << sum(wxx), sum(wxy), fb_ * sum(wx),  //
+        sum(wxy), sum(wyy), fb_ * sum(wy),                  //
+        fb_ * sum(wx), fb_ * sum(wy), fb_ * fb_ * sum(w);
+    sums.right << sum(wxd), sum(wyd), fb_ * sum(wd);
+    sums.weighted_squares = sum(squares);
+    sums.count = static_cast<int>(sum(count));
+    return sums;
+  }
+
+  // Which samples had a weight.
+  std::vector<char> agreeing() const {
+    std::vector<char> agrees(count_);
+    for (size_t i = 0; i < count_; ++i) agrees[i] = weight_[i] > 0;
+    return agrees;
+  }
+
+ private:
+  size_t count_;
+  double fb_;
+  std::vector<double> x_, y_;  // derivatives of the disparity by the plane vector; by its third component: fb
+  std::vector<double> disparity_, precision_;  // precision: 1 / stddev
+  std::vector<double> expected_, weight_, ratios_;
+};
+
+// How much larger the covariance is than independent errors would make it. Surfaces are not planes, and their
+// undulations, like errors of texture, are common to neighbouring points: scores are summed over patches of
+// the image first (cluster-robust covariance: Liang, Zeger 1986). information: normal matrix already divided
+// by the squared scale of the residuals.
+double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                        const Eigen::Vector3d& g, const std::vector<char>& agrees, double scale,
+                        const Eigen::Matrix3d& information) {
+  constexpr int kColumns = 8, kRows = 8;
+  std::array<Eigen::Vector3d, kColumns * kRows> scores;
+  scores.fill(Eigen::Vector3d::Zero());
+  double top = rig.size.height, bottom = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!agrees[i]) continue;
+    top = std::min(top, samples[i].v);
+    bottom = std::max(bottom, samples[i].v);
+  }
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!agrees[i]) continue;
+    const DisparitySample& sample = samples[i];
+    const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
+    const double residual = sample.disparity - row.dot(g);
+    const int column = std::min(kColumns - 1, static_cast<int>(kColumns * sample.u / rig.size.width));
+    const int line = std::min(kRows - 1, static_cast<int>(kRows * (sample.v - top) / (bottom - top + 1)));
+    scores[line * kColumns + column] += row * (residual / (sample.stddev * sample.stddev * scale * scale));
+  }
+  Eigen::Matrix3d middle = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& score : scores) middle += score * score.transpose();
+  return std::max(1.0, (information.inverse() * middle).trace() / 3.0);
+}
+
+}  // namespace
+
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
+  constexpr int kIterations = 6;
+  constexpr double kConverged = 1e-5;  // of the height, and rad: far less than what pixels tell
+  Eigen::Vector3d g = start;
+  double scale = 1;
+  PlaneProblem problem(rig, samples);
+  NormalEquations sums;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    problem.expect(g);
+    scale = problem.residualScale(limits.tolerance);
+    sums = problem.accumulate(scale);
+    if (sums.count < limits.min_points) {
+      return tl::make_unexpected(Failure{
+          Reason::kNoPlane, std::to_string(sums.count) + " of " + std::to_string(samples.size()) +
+                                " matches agree, at least " + std::to_string(limits.min_points) + " needed"});
+    }
+    const Eigen::Vector3d before = g;
+    g = sums.information.ldlt().solve(sums.right);
+    if ((g - before).norm() < kConverged * g.norm()) break;
+  }
+  if (!isPlausibleGround(g, limits)) {
+    return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});
+  }
+  PlaneFit fit;
+  fit.agrees = problem.agreeing();
+  fit.count = sums.count;
+  fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
+  fit.plane.g = g;
+  const Eigen::Vector3d common = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
+  const Eigen::Matrix3d information = sums.information / (scale * scale);
+  const double inflation = clusterInflation(rig, samples, g, fit.agrees, scale, information);
+  fit.plane.covariance = inflation * information.inverse() + common * common.transpose();
+  return fit;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/median.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
+
+/// Robust fit of what moves the rows of the right image: the first N of its rotation (3) and the direction of
+/// the baseline (2).
+namespace uav_landing::row_fit {
+
+constexpr int kCellsAcross = 4, kCellsDown = 3;
+/// Part of the image, in which errors of rows are alike.
+inline int imageCell(const StereoRig& rig, double u, double v) {
+  const auto part = [](double at, int size, int parts) {
+    return std::clamp(static_cast<int>(at * parts / size), 0, parts - 1);
+  };
+  return part(v, rig.size.height, kCellsDown) * kCellsAcross + part(u, rig.size.width, kCellsAcross);
+}
+
+struct RowShift {
+  Eigen::Matrix<double, 1, 5> by;  ///< derivatives, pixels per rad
+  double shift, stddev;            ///< pixels
+  double below_centre;             ///< place in the image, pixels
+  int cell;                        ///< of the image
+};
+
+template <int N>
+struct RowFit {
+  Eigen::Matrix<double, N, 1> value;  ///< rad
+  Eigen::Matrix<double, N, N> covariance;
+  int count = 0;                ///< rows that count
+  std::vector<double> weights;  ///< of the rows, by their residuals after the fit
+};
+
+template <int N>
+double residualOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value) {
+  return row.shift - row.by.head<N>().dot(value);
+}
+
+/// Robust size of the residuals as a multiple of the claimed stddevs.
+template <int N>
+double residualScale(const std::vector<RowShift>& rows, const Eigen::Matrix<double, N, 1>& value) {
+  std::vector<double> ratios;
+  ratios.reserve(rows.size());
+  for (const RowShift& row : rows) ratios.push_back(std::abs(residualOf<N>(row, value)) / row.stddev);
+  return std::max(1.0, robustStddev(ratios));
+}
+
+/// Weight of a row by Tukey's function of its residual; 0 for outliers.
+template <int N>
+double weightOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value, double scale) {
+  constexpr double kTukey = 4.0;
+  const double stddev = scale * row.stddev;
+  const double ratio = residualOf<N>(row, value) / (kTukey * stddev);
+  if (std::abs(ratio) >= 1) return 0;
+  return (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
+}
+
+/// What neighbouring rows share adds to the covariance of a fit that took them as independent: residuals of a
+/// lens, or of what stands on the ground, are the same in a part of the image, and pull at the fit as the
+/// corners come and go there. After the sandwich estimator with clusters (Liang, Zeger 1986), of which only
+/// the products of different rows count; by chance they are negative as often as positive.
+template <int N>
+Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Matrix = Eigen::Matrix<double, N, N>;
+  std::array<Vector, kCellsAcross * kCellsDown> sums;
+  sums.fill(Vector::Zero());
+  Matrix shared = Matrix::Zero();
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const double residual = residualOf<N>(rows[i], fit.value);
+    const Vector pull = fit.weights[i] * residual * rows[i].by.head<N>().transpose();
+    sums[rows[i].cell] += pull;
+    shared -= pull * pull.transpose();
+  }
+  for (const Vector& sum : sums) shared += sum * sum.transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix> axes(fit.covariance * shared * fit.covariance);
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
+}
+
+/// What an error of 1 sigma (pixels) that all rows in a part of the image have adds to the covariance,
+/// independent between the parts. The fit may have taken it for what it fits, so that no residual shows it.
+template <int N>
+Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
+                                           double sigma) {
+  using Vector = Eigen::Matrix<double, N, 1>;
+  std::array<Vector, kCellsAcross * kCellsDown> sums;
+  sums.fill(Vector::Zero());
+  for (size_t i = 0; i < rows.size(); ++i)
+    sums[rows[i].cell] += fit.weights[i] * rows[i].by.head<N>().transpose();
+  Eigen::Matrix<double, N, N> common = Eigen::Matrix<double, N, N>::Zero();
+  for (const Vector& sum : sums) {
+    const Vector moved = sigma * fit.covariance * sum;
+    common += moved * moved.transpose();
+  }
+  return common;
+}
+
+/// The same of a focal length of the right camera that is wrong by a share of 1 sigma, which moves rows in
+/// proportion to their distance from the centre.
+template <int N>
+Eigen::Matrix<double, N, N> focalVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
+                                          double sigma) {
+  Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero();
+  for (size_t i = 0; i < rows.size(); ++i)
+    sum += fit.weights[i] * rows[i].below_centre * rows[i].by.head<N>().transpose();
+  const Eigen::Matrix<double, N, 1> moved = sigma * fit.covariance * sum;
+  return moved * moved.transpose();
+}
+
+template <int N>
+Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  constexpr int kIterations = 6, kFewest = 20;
+  // Without corners on all sides a component is not determined; rad.
+  constexpr double kAnything = 0.1, kAnyBaseline = 10;
+  const auto few = [](int count) {
+    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(count) + " rows, at least " +
+                                                                   std::to_string(kFewest) + " needed"});
+  };
+  if (static_cast<int>(rows.size()) < kFewest) return few(static_cast<int>(rows.size()));
+  Eigen::Matrix<double, 5, 1> loose;
+  loose << Eigen::Vector3d::Constant(kAnything), Eigen::Vector2d::Constant(kAnyBaseline);
+  const Matrix prior = loose.head<N>().array().square().inverse().matrix().asDiagonal();
+  // The median row shift is a start from which outliers show.
+  std::vector<double> shifts;
+  for (const RowShift& row : rows) shifts.push_back(row.shift / row.by[0]);
+  RowFit<N> fit;
+  fit.value.setZero();
+  fit.value[0] = medianOf(shifts);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double scale = residualScale<N>(rows, fit.value);
+    Matrix information = prior;
+    Eigen::Matrix<double, N, 1> right = Eigen::Matrix<double, N, 1>::Zero();
+    fit.count = 0;
+    for (const RowShift& row : rows) {
+      const double weight = weightOf<N>(row, fit.value, scale);
+      if (weight == 0) continue;
+      const auto by = row.by.head<N>();
+      information += weight * by.transpose() * by;
+      right += weight * by.transpose() * row.shift;
+      ++fit.count;
+    }
+    if (fit.count < kFewest) return few(fit.count);
+    fit.covariance = information.inverse();
+    fit.value = fit.covariance * right;
+  }
+  const double scale = residualScale<N>(rows, fit.value);
+  fit.weights.reserve(rows.size());
+  for (const RowShift& row : rows) fit.weights.push_back(weightOf<N>(row, fit.value, scale));
+  return fit;
+}
+
+}  // namespace uav_landing::row_fit

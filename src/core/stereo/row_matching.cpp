@@ -1,0 +1,390 @@
+#include "uav_landing/stereo/row_matching.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/interpolation.h"
+#include "base/lanes.h"
+#include "base/multiversion.h"
+#include "image/cubic_window.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr float kNoScore = -1.f;
+constexpr int kUsualSize = 11;  // of windows, by default
+
+// Rows of places of which each is in the column after that of the one before or, from one of them on, in the
+// one after that or still the same: row j at start + j by_row, and on by step.
+struct PlaceRows {
+  double start, by_row, step;
+  int count;
+
+  double at(int row) const { return start + by_row * row; }
+  // Where the columns are counted from.
+  double least(double place) const { return std::min(place, place + (step - 1) * (count - 1)); }
+  bool possible() const { return std::abs(step - 1) * (count - 1) < 0.99; }
+  bool inside(int row, int columns) const {
+    return least(at(row)) >= 0 && least(at(row)) + count + 2 <= columns;
+  }
+};
+
+// Values at the places in the image's rows from v on, less the mean, by linear interpolation.
+UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
+                                          float mean, float* out) {
+  const float drift = static_cast<float>(places.step - 1);
+  const int count = places.count;
+  for (int j = 0; j < rows; ++j, out += count) {
+    const double place = places.at(j);
+    const int first = static_cast<int>(places.least(place));
+    const float start = static_cast<float>(place - first);
+    const float* row = image.ptr<float>(v + j) + first;
+    Lanes behind;
+    progress(start, drift, behind);
+    for (int i = 0; i < count; i += kLanes, behind += kLanes * drift) {
+      Lanes a, b, c;
+      load(row + i, a);
+      load(row + i + 1, b);
+      load(row + i + 2, c);
+      const auto next = behind >= 1;
+      const Lanes before = next ? b : a, after = next ? c : b, t = next ? behind - 1 : behind;
+      store(before + t * (after - before) - mean, out + i);
+    }
+  }
+}
+
+// Sums and sums of squares of the columns of a strip of rows. stride: of whole lanes.
+UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* sums,
+                                         float* squares) {
+  for (int i = 0; i < stride; i += kLanes) {
+    const float* column = strip + i;
+    Lanes sum{}, square{};
+    for (int j = 0; j < rows; ++j, column += stride) {
+      Lanes values;
+      load(column, values);
+      sum += values;
+      square += values * values;
+    }
+    store(sum, sums + i);
+    store(square, squares + i);
+  }
+}
+
+// What the scores at kLanes neighbouring positions of a strip are made of.
+struct BlockSums {
+  alignas(32) std::array<float, kLanes> cross, sums, squares;
+};
+
+// Products of a square window with what is below it, and sums of the strip's columns and squares there.
+[[gnu::always_inline]] inline void addUpAny(const float* window, const float* strip, const float* column_sums,
+                                            const float* column_squares, int size, int stride,
+                                            BlockSums& block) {
+  Lanes cross{}, sums{}, squares{};
+  for (int j = 0; j < size; ++j, strip += stride) {
+    Lanes row{};  // sums of their own, so that rows need not wait for each other
+    for (int i = 0; i < size; ++i) {
+      Lanes values;
+      load(strip + i, values);
+      row += *window++ * values;
+    }
+    cross += row;
+  }
+  for (int i = 0; i < size; ++i) {
+    Lanes values;
+    load(column_sums + i, values);
+    sums += values;
+    load(column_squares + i, values);
+    squares += values;
+  }
+  store(cross, block.cross.data());
+  store(sums, block.sums.data());
+  store(squares, block.squares.data());
+}
+
+// The usual size is known to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, const float* column_sums,
+                                    const float* column_squares, int size, int stride, BlockSums& block) {
+  if (size == kUsualSize) {
+    addUpAny(window, strip, column_sums, column_squares, kUsualSize, stride, block);
+  } else {
+    addUpAny(window, strip, column_sums, column_squares, size, stride, block);
+  }
+}
+
+}  // namespace
+
+RowSearch::RowSearch(const cv::Mat& reference, const cv::Mat& other, int radius, MatchingCost cost)
+    : reference_(reference), other_(other), radius_(radius), cost_(cost) {}
+
+bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp) {
+  scores_.clear();
+  if (!template_.load(reference_, u, v, radius_)) return false;
+  const int size = 2 * radius_ + 1, width = size + 2 * steps;
+  steps_ = steps;
+  centre_ = centre;
+  scale_ = warp.scale;
+  padded_ = wholeLanes(2 * steps + 1);
+  stride_ = wholeLanes(padded_ + size - 1);
+  strip_.resize(static_cast<size_t>(stride_) * size);
+  resample(v, width, warp);
+  scoreAll();
+  return true;
+}
+
+void RowSearch::resample(int v, int width, const RowWarp& warp) {
+  const int size = 2 * radius_ + 1;
+  const float mean = static_cast<float>(template_.mean);
+  const PlaceRows places{centre_ - warp.shear * radius_ - scale_ * (radius_ + steps_), warp.shear, scale_,
+                         stride_};
+  if (places.possible() && places.inside(0, other_.cols) && places.inside(size - 1, other_.cols)) {
+    interpolate(other_, v - radius_, places, size, mean, strip_.data());
+    return;
+  }
+  for (int j = 0; j < size; ++j) {
+    const float* row = other_.ptr<float>(v - radius_ + j);
+    float* out = strip_.data() + static_cast<size_t>(j) * stride_;
+    for (int i = 0; i < width; ++i) {
+      const double x = places.at(j) + scale_ * i;
+      out[i] = x >= 0 && x < other_.cols - 1 ? linearAt(row, static_cast<float>(x)) - mean
+                                             : std::numeric_limits<float>::quiet_NaN();
+    }
+    std::fill(out + width, out + stride_, 0.f);
+  }
+}
+
+void RowSearch::scoreAll() {
+  const int size = 2 * radius_ + 1, count = 2 * steps_ + 1;
+  column_sums_.resize(stride_);
+  column_squares_.resize(stride_);
+  addColumns(strip_.data(), size, stride_, column_sums_.data(), column_squares_.data());
+  scores_.resize(count);
+  BlockSums block;
+  for (int first = 0; first < count; first += kLanes) {
+    addUp(template_.values.data(), strip_.data() + first, column_sums_.data() + first,
+          column_squares_.data() + first, size, stride_, block);
+    for (int k = 0; k < std::min(kLanes, count - first); ++k)
+      scores_[first + k] = static_cast<float>(similarity(block.cross[k], block.sums[k], block.squares[k]));
+  }
+}
+
+double RowSearch::similarity(double cross, double sum, double squares) const {
+  if (std::isnan(sum)) return kNoScore;
+  if (cost_ == MatchingCost::kSsd) {
+    // Sum of squared differences over twice the template's own energy: 1 when equal, 0 when unrelated.
+    return 1.0 - (template_.energy - 2.0 * cross + squares) / (2.0 * template_.energy);
+  }
+  const double energy = squares - sum * sum / static_cast<double>(template_.values.size());
+  if (energy < 1e-3 * template_.energy) return kNoScore;
+  return cross / std::sqrt(energy * template_.energy);
+}
+
+RowCandidate RowSearch::interpolated(int index) const {
+  double offset = 0;
+  const double s = scores_[index];
+  if (index > 0 && index + 1 < static_cast<int>(scores_.size())) {
+    const double before = scores_[index - 1], after = scores_[index + 1];
+    const double curvature = before - 2 * s + after;
+    if (before > kNoScore && after > kNoScore && curvature < 0) offset = 0.5 * (before - after) / curvature;
+  }
+  return {centre_ + scale_ * (index - steps_ + offset), s};
+}
+
+RowCandidate RowSearch::best(double* second_score) const {
+  const auto peak = std::max_element(scores_.begin(), scores_.end());
+  if (peak == scores_.end()) return {0, kNoScore};
+  const int index = static_cast<int>(peak - scores_.begin());
+  if (second_score) {
+    *second_score = kNoScore;
+    for (int k = 1; k + 1 < static_cast<int>(scores_.size()); ++k) {
+      if (std::abs(k - index) > 2 && scores_[k] >= scores_[k - 1] && scores_[k] >= scores_[k + 1]) {
+        *second_score = std::max<double>(*second_score, scores_[k]);
+      }
+    }
+  }
+  return interpolated(index);
+}
+
+std::vector<RowCandidate> RowSearch::peaks(double min_score, int count) const {
+  std::vector<RowCandidate> found;
+  for (int k = 0; k < static_cast<int>(scores_.size()); ++k) {
+    const bool rises = k == 0 || scores_[k] > scores_[k - 1];
+    const bool falls = k + 1 == static_cast<int>(scores_.size()) || scores_[k] >= scores_[k + 1];
+    if (scores_[k] >= min_score && rises && falls) found.push_back(interpolated(k));
+  }
+  std::sort(found.begin(), found.end(),
+            [](const RowCandidate& a, const RowCandidate& b) { return a.score > b.score; });
+  if (found.size() > static_cast<size_t>(count)) found.resize(count);
+  return found;
+}
+
+namespace {
+
+constexpr int kLargestRadius = 15, kLargestStride = 32;
+constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
+
+// A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
+// up to a multiple of four, and all of it to one of kLanes, with zeros.
+struct RowPlanes {
+  int size, stride, count;  // count: with all zeros
+  float middle;
+  alignas(32) std::array<float, kPlane> value, gradient;
+};
+
+UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius, RowPlanes& planes) {
+  const int size = planes.size = 2 * radius + 1, stride = planes.stride = (size + 3) / 4 * 4;
+  planes.count = wholeLanes(size * stride);
+  const float middle = planes.middle = image.at<float>(v, u);
+  const Lanes none{};
+  for (int j = 0; j < size; ++j) {
+    const float* row = image.ptr<float>(v - radius + j) + u - radius;
+    float *a = &planes.value[j * stride], *g = &planes.gradient[j * stride];
+    // The last lanes of a row end where it does, so that nothing outside the image is read.
+    for (int i = 0; size >= kLanes && i < size; i += kLanes) {
+      const int first = std::min(i, size - kLanes);
+      Lanes value, before, after;
+      load(row + first, value);
+      load(row + first - 1, before);
+      load(row + first + 1, after);
+      store(value - middle, a + first);
+      store(0.5f * (after - before), g + first);
+    }
+    for (int i = 0; size < kLanes && i < size; ++i) {
+      a[i] = row[i] - middle;
+      g[i] = 0.5f * (row[i + 1] - row[i - 1]);
+    }
+    // What fills the row up; where the next one begins, that comes after.
+    store(none, a + size);
+    store(none, g + size);
+  }
+}
+
+// Sums over a window of the values a, their gradient g and their products.
+struct RowWindowSums {
+  double a, g, aa, ag, gg;
+};
+
+UAV_LANDING_MULTIVERSION RowWindowSums addUp(const RowPlanes& planes) {
+  Lanes a1{}, g1{}, aa{}, ag{}, gg{};
+  for (int i = 0; i < planes.count; i += kLanes) {
+    Lanes a, g;
+    load(&planes.value[i], a);
+    load(&planes.gradient[i], g);
+    a1 += a;
+    g1 += g;
+    aa += a * a;
+    ag += a * g;
+    gg += g * g;
+  }
+  return {sum(a1), sum(g1), sum(aa), sum(ag), sum(gg)};
+}
+
+// Sums over a window b of the other image: itself, its square, and with the reference and its gradient.
+struct OtherSums {
+  double b, bb, ab, bg;
+};
+
+UAV_LANDING_MULTIVERSION OtherSums multiply(const RowPlanes& planes, const float* other) {
+  const float middle = planes.middle;
+  Lanes b1{}, bb{}, ab{}, bg{};
+  for (int i = 0; i < planes.count; i += kLanes) {
+    Lanes a, g, b;
+    load(&planes.value[i], a);
+    load(&planes.gradient[i], g);
+    load(other + i, b);
+    b -= middle;
+    b1 += b;
+    bb += b * b;
+    ab += b * a;
+    bg += b * g;
+  }
+  return {sum(b1), sum(bb), sum(ab), sum(bg)};
+}
+
+void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp, const RowPlanes& planes,
+                float* out) {
+  const int radius = planes.size / 2;
+  const double start = position - warp.shear * radius - warp.scale * radius;
+  sampleCubicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
+  // What does not count.
+  for (int j = 0; j < planes.size; ++j)
+    for (int i = planes.size; i < planes.stride; ++i) out[j * planes.stride + i] = planes.middle;
+  for (int i = planes.size * planes.stride; i < planes.count; ++i) out[i] = planes.middle;
+}
+
+// The reference's window with the sums that do not depend on the other image, about the means.
+struct RowWindow {
+  RowPlanes planes;
+  RowWindowSums sums;
+  double aa, ag, gg;
+
+  RowWindow(const cv::Mat& image, int u, int v, int radius) {
+    loadWindow(image, u, v, radius, planes);
+    sums = addUp(planes);
+    aa = sums.aa - sums.a * sums.a / count();
+    ag = sums.ag - sums.a * sums.g / count();
+    gg = sums.gg - sums.g * sums.g / count();
+  }
+  int count() const { return planes.size * planes.size; }
+};
+
+// Sums over a window of the other image, about the means: with itself, with the reference and its gradient.
+struct RowSums {
+  double bb, ab, bg;
+};
+
+RowSums compareAlongRow(const RowWindow& window, const cv::Mat& other, int v, double position,
+                        const RowWarp& warp) {
+  alignas(32) std::array<float, kPlane> values;
+  sampleRows(other, v, position, warp, window.planes, values.data());
+  const OtherSums sums = multiply(window.planes, values.data());
+  const double mean = sums.b / window.count();
+  return {sums.bb - mean * sums.b, sums.ab - mean * window.sums.a, sums.bg - mean * window.sums.g};
+}
+
+}  // namespace
+
+RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
+                             const RowWarp& warp, int radius) {
+  constexpr int kIterations = 8;
+  // A step leaves about a tenth of itself.
+  constexpr double kConverged = 0.02, kMaxDrift = 1.5;
+  // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
+  constexpr double kIndependent = 0.25;
+  RowRefinement result;
+  if (u < radius + 1 || v < radius || u + radius + 1 >= reference.cols || v + radius >= reference.rows)
+    return result;
+  const RowWindow window(reference, u, v, radius);
+  if (window.aa <= 0 || window.gg <= 0) return result;
+  const int padded = window.planes.stride - radius - 1;
+  const double reach = std::abs(warp.scale) * padded + std::abs(warp.shear) * radius;
+  double x0 = position;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    if (!(x0 - reach >= 2 && x0 + reach < other.cols - 3)) return result;
+    const RowSums sums = compareAlongRow(window, other, v, x0, warp);
+    // a = gain b + shift g + offset, by least squares for gain and shift (pixels of the reference).
+    const double determinant = sums.bb * window.gg - sums.bg * sums.bg;
+    if (!(determinant > 1e-9 * sums.bb * window.gg)) return result;
+    const double gain = (sums.ab * window.gg - window.ag * sums.bg) / determinant;
+    const double shift = (window.ag * sums.bb - sums.ab * sums.bg) / determinant;
+    if (!(gain > 0.1)) return result;
+    const double delta = shift * warp.scale;
+    x0 += std::clamp(delta, -1.0, 1.0);
+    if (std::abs(x0 - position) > kMaxDrift) return result;
+    if (std::abs(delta) < kConverged) {
+      const double residual = std::max(0.0, window.aa - gain * sums.ab - shift * window.ag);
+      const double noise = residual / (window.count() - 3) / kIndependent;
+      result.stddev = std::abs(warp.scale) * std::sqrt(noise * sums.bb / determinant);
+      result.score = sums.ab / std::sqrt(window.aa * sums.bb);
+      result.position = x0;
+      result.converged = true;
+      return result;
+    }
+  }
+  return result;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,264 @@
+#include "uav_landing/stereo/stereo_matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "base/image_memory.h"
+#include "stereo/shift_model.h"
+#include "uav_landing/geometry/half_plane.h"
+#include "uav_landing/image/corners.h"
+#include "uav_landing/image/image_check.h"
+#include "uav_landing/stereo/row_matching.h"
+
+namespace uav_landing {
+namespace {
+
+// Columns to both sides that are scored in the full-size pass, where the plane is known to about a pixel.
+constexpr int kFineSteps = 3;
+// Error of a match that is common to neighbouring windows or not seen in its residuals, pixels.
+constexpr double kStddevFloor = 0.03;
+// 1 sigma of a match that is only as good as a parabola through three scores, pixels.
+constexpr double kParabolaStddev = 0.15;
+
+bool inside(const cv::Mat& mask, double u, double v) {
+  const int x = cvRound(u), y = cvRound(v);
+  return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
+}
+
+// Matches one corner within steps of the predicted place.
+class CornerMatcher {
+ public:
+  CornerMatcher(const StereoLevel& level, const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
+                int steps)
+      : level_(level),
+        parameters_(parameters),
+        shift_(level.rig, g),
+        steps_(steps),
+        forward_(level.left, level.right, parameters.window_radius, parameters.matching_cost),
+        backward_(level.right, level.left, parameters.window_radius, parameters.matching_cost),
+        forward_warp_(parameters.warp_window ? shift_.forward() : RowWarp{}),
+        backward_warp_(parameters.warp_window ? shift_.backward() : RowWarp{}) {}
+
+  // Column in the right image and its stddev; false when there is no trustworthy match.
+  bool match(int u, int v, double* column, double* stddev) {
+    const double predicted = u - shift_.at(u, v);
+    if (!forward_.run(u, v, predicted, steps_, forward_warp_)) return false;
+    double second = 0;
+    const RowCandidate best = forward_.best(&second);
+    if (best.score < parameters_.min_zncc || second > parameters_.uniqueness * best.score) return false;
+    // A peak at the end of the range is not known to be a peak.
+    if (std::abs(best.position - predicted) > (steps_ - 0.5) * forward_warp_.scale) return false;
+    if (!inside(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return false;
+    return subpixel(u, v, best.position, column, stddev);
+  }
+
+ private:
+  bool agreesBackward(int u, int v, double found) {
+    const int column = cvRound(found);
+    const double expected = u + backward_warp_.scale * (column - found);
+    if (!backward_.run(column, v, expected, steps_, backward_warp_)) return false;
+    const RowCandidate back = backward_.best(nullptr);
+    return std::abs(back.position - expected) <= parameters_.left_right_tolerance;
+  }
+
+  bool subpixel(int u, int v, double found, double* column, double* stddev) {
+    if (!parameters_.warp_window) {
+      *column = found;
+      *stddev = kParabolaStddev;
+      return true;
+    }
+    const RowRefinement refined =
+        refineAlongRow(level_.left, level_.right, u, v, found, forward_warp_, parameters_.window_radius);
+    if (!refined.converged || refined.score < parameters_.min_zncc) return false;
+    *column = refined.position;
+    *stddev = std::hypot(refined.stddev, kStddevFloor);
+    return true;
+  }
+
+  const StereoLevel& level_;
+  const StereoDepthParameters& parameters_;
+  ShiftModel shift_;
+  int steps_;
+  RowSearch forward_, backward_;
+  RowWarp forward_warp_, backward_warp_;
+};
+
+std::vector<DisparitySample> matchAll(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                      const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
+                                      int steps) {
+  CornerMatcher matcher(level, g, parameters, steps);
+  std::vector<DisparitySample> samples;
+  samples.reserve(corners.size());
+  for (const cv::Point& corner : corners) {
+    double column, stddev;
+    if (!matcher.match(corner.x, corner.y, &column, &stddev)) continue;
+    samples.push_back(
+        {double(corner.x), double(corner.y), stddev, {corner.x - column - level.rig.principalOffset()}});
+  }
+  return samples;
+}
+
+// All places along the whole row that resemble each corner, with windows sheared for one height.
+std::vector<DisparitySample> candidates(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                        double slope, const StereoDepthParameters& parameters) {
+  constexpr double kMinScore = 0.6, kShareOfBest = 0.85;
+  constexpr int kMostPeaks = 5;
+  constexpr double kNearestToHorizon = -2.0;
+  const double largest = parameters.max_disparity * level.rig.size.width;
+  const double offset = level.rig.principalOffset();
+  const int steps = static_cast<int>((largest - kNearestToHorizon) / 2) + 1;
+  RowSearch search(level.left, level.right, parameters.window_radius, parameters.matching_cost);
+  std::vector<DisparitySample> samples;
+  for (const cv::Point& corner : corners) {
+    const double centre = corner.x - offset - (largest + kNearestToHorizon) / 2;
+    if (!search.run(corner.x, corner.y, centre, steps, RowWarp{1.0, -slope})) continue;
+    std::vector<double> disparities;
+    double strongest = -1;
+    for (const RowCandidate& peak : search.peaks(kMinScore, kMostPeaks)) {
+      strongest = std::max(strongest, peak.score);
+      if (peak.score < kShareOfBest * strongest) break;
+      if (!inside(level.right_mask, peak.position, corner.y)) continue;
+      disparities.push_back(corner.x - peak.position - offset);
+    }
+    if (disparities.empty()) continue;
+    samples.push_back({double(corner.x),
+                       double(corner.y),
+                       0.5,
+                       disparities.front(),
+                       {disparities.begin() + 1, disparities.end()}});
+  }
+  return samples;
+}
+
+// A plane with how well each corner correlates where it says, in a window warped as it says; below 0 where
+// that is outside the right image.
+struct Hypothesis {
+  Consensus plane;
+  std::vector<double> correlation;
+};
+
+Hypothesis makeHypothesis(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                          const Consensus& plane, const StereoDepthParameters& parameters) {
+  constexpr int kSteps = 1;
+  const ShiftModel shift(level.rig, plane.g);
+  const RowWarp warp = parameters.warp_window ? shift.forward() : RowWarp{};
+  RowSearch search(level.left, level.right, parameters.window_radius, parameters.matching_cost);
+  Hypothesis hypothesis{plane, std::vector<double>(corners.size(), -1)};
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const double column = corners[i].x - shift.at(corners[i].x, corners[i].y);
+    if (!inside(level.right_mask, column, corners[i].y)) continue;
+    if (!search.run(corners[i].x, corners[i].y, column, kSteps, warp)) continue;
+    hypothesis.correlation[i] = search.best(nullptr).score;
+  }
+  return hypothesis;
+}
+
+// Whether the corners that match on both planes match better on the second. Only repeated texture matches on
+// two: where much of it is outside the other view on the right plane, the one that is a bar off may have more
+// votes, but it does not look quite the same. Sign test, so that a few corners do not decide.
+bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least) {
+  constexpr double kMatches = 0.6, kSigmas = 3.0;
+  int both = 0, better = 0;
+  for (size_t i = 0; i < first.correlation.size(); ++i) {
+    if (first.correlation[i] < kMatches || second.correlation[i] < kMatches) continue;
+    ++both;
+    better += second.correlation[i] > first.correlation[i];
+  }
+  return both >= least && 2 * better - both > kSigmas * std::sqrt(both);
+}
+
+}  // namespace
+
+StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
+  StereoLevel level;
+  level.rig = model.rig;
+  level.rig.size = cv::Size(model.rig.size.width / factor, model.rig.size.height / factor);
+  level.rig.fx /= factor;
+  level.rig.fy /= factor;
+  level.rig.cx = (model.rig.cx + 0.5) / factor - 0.5;
+  level.rig.cy = (model.rig.cy + 0.5) / factor - 0.5;
+  level.rig.cx_right = (model.rig.cx_right + 0.5) / factor - 0.5;
+  const auto reduce = [&](const cv::Mat& mask) {
+    cv::Mat reduced;
+    cv::resize(mask, reduced, level.rig.size, 0, 0, cv::INTER_AREA);
+    cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
+    return erodeMask(reduced, margin);
+  };
+  level.left_mask = reduce(model.left_mask);
+  level.right_mask = reduce(model.right_mask);
+  return level;
+}
+
+StereoLevel swapped(const StereoLevel& level) {
+  StereoLevel other = level;
+  std::swap(other.left, other.right);
+  std::swap(other.left_mask, other.right_mask);
+  std::swap(other.rig.cx, other.rig.cx_right);
+  return other;
+}
+
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+                                         const StereoDepthParameters& parameters) {
+  // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+  constexpr double kLeastDisparity = 0.3;
+  const ShiftModel shift(level.rig, g);
+  static thread_local ImageMemory memory;
+  cv::Mat mask = memory.copyOf(level.left_mask);
+  keepHalfPlane(mask, shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity);
+  // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
+  keepHalfPlane(mask, 1 - shift.a, -shift.b, -shift.c);
+  keepHalfPlane(mask, shift.a - 1, shift.b, shift.c + mask.cols - 1);
+  return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
+                     parameters.harris_k);
+}
+
+std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                          const Eigen::Vector3d& g, const StereoDepthParameters& parameters) {
+  return matchAll(level, corners, g, parameters, kFineSteps);
+}
+
+Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
+                     const StereoDepthParameters& parameters, const PlaneLimits& limits) {
+  constexpr int kCorners = 250, kIterations = 150;
+  constexpr double kLeastShare = 0.2;
+  const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters);
+  const std::vector<DisparitySample> samples =
+      matchAll(level, corners, predicted, parameters, static_cast<int>(std::ceil(parameters.search_radius)));
+  Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr);
+  consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
+  return consensus;
+}
+
+Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
+                      const PlaneLimits& limits) {
+  constexpr int kCorners = 500, kIterations = 400;
+  // Votes of a rival plane as a share of those of the strongest: a bar off has about as many.
+  constexpr double kRivalShare = 0.8;
+  // Changes of disparity per row that windows are sheared for; each serves the range to its neighbours.
+  const std::vector<double> slopes = {0.0, 0.04, 0.09, 0.16, 0.25, 0.37, 0.52, 0.72, 1.0, 1.4};
+  const std::vector<cv::Point> corners =
+      findCorners(level.left, level.left_mask, kCorners, parameters.corner_quality,
+                  parameters.min_corner_distance, parameters.harris_k);
+  std::vector<Hypothesis> hypotheses;
+  for (size_t i = 0; i < slopes.size(); ++i) {
+    const Eigen::Vector2d range(i == 0 ? 0.0 : slopes[i - 1],
+                                i + 1 == slopes.size() ? 2.0 * slopes[i] : slopes[i + 1]);
+    const std::vector<DisparitySample> samples =
+        candidates(level, corners, parameters.warp_window ? slopes[i] : 0.0, parameters);
+    const Consensus found = findPlane(level.rig, samples, limits, kIterations, &range);
+    if (!found.found || found.support < limits.min_points) continue;
+    hypotheses.push_back(makeHypothesis(level, corners, found, parameters));
+  }
+  if (hypotheses.empty()) return {};
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.plane.score > b.plane.score; });
+  const Hypothesis* best = &hypotheses.front();
+  for (const Hypothesis& other : hypotheses) {
+    if (other.plane.score < kRivalShare * hypotheses.front().plane.score) break;
+    if (matchesBetter(*best, other, limits.min_points)) best = &other;
+  }
+  return best->plane;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,110 @@
+#include "uav_landing/stereo/surface_variance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+// Share of the largest disparity; farther away a pixel is too much height to say anything of the surface.
+constexpr double kNear = 0.4;
+constexpr int kColumns = 10;  // patches along a row of the image; square
+constexpr int kRounds = 10;
+constexpr size_t kFewest = 3;  // points of a patch
+
+struct Point {
+  double u, v;
+  double height;           // over the plane, m
+  double metre_per_pixel;  // of disparity
+};
+
+// Share of the error that two matches have in common: that of the pixels that both their windows are of.
+double inCommon(const Point& a, const Point& b, int window) {
+  const double across = 1 - std::abs(a.u - b.u) / window, down = 1 - std::abs(a.v - b.v) / window;
+  return across > 0 && down > 0 ? across * down : 0;
+}
+
+struct Patch {
+  double square;           // of the mean height, m^2
+  double scatter;          // sum of squares about the mean, m^2
+  double free;             // by how many variances of a point the scatter is expected to be
+  double of_mean;          // the same of the square of the mean, on level ground
+  double metre_per_pixel;  // of disparity
+};
+
+Patch patchOf(const std::vector<Point>& points, int window) {
+  const double count = static_cast<double>(points.size());
+  double sum = 0, squares = 0, scale = 0, shared = count;  // shared: of all pairs, each with itself, too
+  for (size_t i = 0; i < points.size(); ++i) {
+    sum += points[i].height;
+    squares += points[i].height * points[i].height;
+    scale += points[i].metre_per_pixel / count;
+    for (size_t j = 0; j < i; ++j) shared += 2 * inCommon(points[i], points[j], window);
+  }
+  const double mean = sum / count;
+  return {mean * mean, squares - count * mean * mean, count - shared / count, shared / (count * count),
+          scale};
+}
+
+/// Variance of a match's disparity: what the scatter within all patches says together. Heights scatter the
+/// more the farther away the patch is, disparities alike. px^2
+double disparityVariance(const std::vector<Patch>& patches) {
+  double scatter = 0, free = 0;
+  for (const Patch& patch : patches) {
+    scatter += patch.scatter / (patch.metre_per_pixel * patch.metre_per_pixel);
+    free += patch.free;
+  }
+  return free > 0 ? scatter / free : 0;
+}
+
+/// The variance that, added to what is expected of the means, makes their squares what they are; m^2.
+/// of_mean: m^2.
+double varianceBetween(const std::vector<Patch>& patches) {
+  double variance = 0;
+  for (int i = 0; i < kRounds; ++i) {
+    double excess = 0, slope = 0, weights = 0;
+    for (const Patch& patch : patches) {
+      const double weight = 1 / (patch.of_mean + variance);
+      excess += patch.square * weight - 1;
+      slope += patch.square * weight * weight;
+      weights += weight;
+    }
+    // Below zero, by chance, there is no solution near: what the excess is on average.
+    if (i == 0 && excess <= 0) return excess / weights;
+    variance += excess / slope;  // Newton's method, from the left of a convex function
+  }
+  return variance;
+}
+
+}  // namespace
+
+double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
+                       int window) {
+  const Eigen::Vector3d row = rig.fb() * fit.plane.g;
+  double largest = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (fit.agrees[i]) largest = std::max(largest, row.dot(rig.ray(samples[i].u, samples[i].v)));
+  }
+  const double side = static_cast<double>(rig.size.width) / kColumns, unit = 1 / fit.plane.g.norm();
+  const int rows = static_cast<int>(rig.size.height / side) + 1;
+  std::vector<std::vector<Point>> areas(static_cast<size_t>(kColumns * rows));
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const DisparitySample& sample = samples[i];
+    const double expected = row.dot(rig.ray(sample.u, sample.v));
+    if (!fit.agrees[i] || expected < kNear * largest) continue;
+    const int across = std::clamp(static_cast<int>(sample.u / side), 0, kColumns - 1);
+    const int down = std::clamp(static_cast<int>(sample.v / side), 0, rows - 1);
+    areas[static_cast<size_t>(across * rows + down)].push_back(
+        {sample.u, sample.v, unit * (sample.disparity - expected) / expected, unit / expected});
+  }
+  std::vector<Patch> patches;
+  for (const std::vector<Point>& points : areas)
+    if (points.size() >= kFewest) patches.push_back(patchOf(points, window));
+
+  const double variance = disparityVariance(patches);
+  if (!(variance > 0)) return 0;
+  for (Patch& patch : patches) patch.of_mean *= variance * patch.metre_per_pixel * patch.metre_per_pixel;
+  return varianceBetween(patches);
+}
+
+}  // namespace uav_landing

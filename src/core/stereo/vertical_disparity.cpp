@@ -1,0 +1,234 @@
+#include "uav_landing/stereo/vertical_disparity.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "base/interpolation.h"
+#include "base/multiversion.h"
+#include "stereo/row_fit.h"
+#include "uav_landing/image/patch_matching.h"
+#include "uav_landing/rig/rig_rotation.h"
+
+namespace uav_landing {
+namespace {
+
+using row_fit::RowFit;
+using row_fit::RowShift;
+
+// Corners measured: enough, as the filter behind averages over frames.
+constexpr size_t kMeasured = 240, kSearched = 80;
+// Error of a row that its residuals do not show, pixels.
+constexpr double kStddevFloor = 0.04;
+constexpr double kMinScore = 0.8;
+
+// How the ground's window appears in the right image.
+Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
+  Eigen::Matrix2d warp;
+  warp << 1 - rig.fb() * g.x() / rig.fx, -rig.fb() * g.y() / rig.fy, 0, 1;
+  return warp;
+}
+
+// disparity: of the corner, as known so far.
+void addRow(const StereoLevel& level, int u, int v, double disparity, const Eigen::Vector2d& start,
+            const Eigen::Matrix2d& warp, int radius, std::vector<RowShift>& rows) {
+  const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
+  if (!place.converged || place.score < kMinScore) return;
+  const double stddev = std::hypot(std::sqrt(place.covariance(1, 1)), kStddevFloor);
+  RowShift row;
+  row.by << verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
+      verticalDisparityByBaseline(level.rig, disparity, v);
+  row.shift = place.position.y() - v;
+  row.stddev = stddev;
+  row.below_centre = v - level.rig.cy;
+  row.cell = row_fit::imageCell(level.rig, u, v);
+  rows.push_back(row);
+}
+
+Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
+  const Expected<RowFit<3>> fit = row_fit::fitRows<3>(rows);
+  if (!fit) return tl::make_unexpected(fit.error());
+  return RigRotation{fit->value, fit->covariance + row_fit::sharedVariance<3>(rows, *fit), fit->count};
+}
+
+BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
+  // What a lens or texture leaves in a part of the image, the same for all corners there, pixels.
+  constexpr double kCommon = 0.1;
+  // 1 sigma of the right focal length over the left one after a calibration.
+  constexpr double kFocal = 0.0015;
+  const Expected<RowFit<5>> fit = row_fit::fitRows<5>(rows);
+  if (!fit) return {};
+  const Eigen::Matrix<double, 5, 5> covariance = fit->covariance + row_fit::sharedVariance<5>(rows, *fit) +
+                                                 row_fit::commonVariance<5>(rows, *fit, kCommon) +
+                                                 row_fit::focalVariance<5>(rows, *fit, kFocal);
+  return {fit->value.tail<2>(), covariance.bottomRightCorner<2, 2>()};
+}
+
+// A row of the image seen aslant: place down the image by column.
+struct SlantedRow {
+  double first, slope, lowest;  // at the first column, per column, largest place
+
+  double at(int column) const { return std::clamp(first + slope * column, 1.0, lowest); }
+};
+
+// Columns begin .. end - 1 of a slanted row between the same four rows of the image.
+UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stride, SlantedRow row, int whole,
+                                                 int begin, int end, float* __restrict out) {
+  const float *a = above, *b = a + stride, *c = b + stride, *d = c + stride;
+  for (int u = begin; u < end; ++u) {
+    const double place = row.first + row.slope * u;
+    const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
+    float weights[4];
+    cubicWeights(static_cast<float>(inside - whole), weights);
+    out[u] = weights[0] * a[u] + weights[1] * b[u] + weights[2] * c[u] + weights[3] * d[u];
+  }
+}
+
+void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int end, float* out) {
+  const int whole = static_cast<int>(row.at(begin));
+  interpolateColumns(image.ptr<float>(whole - 1), image.step1(), row, whole, begin, end, out);
+}
+
+}  // namespace
+
+VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<DisparitySample>& samples,
+                                               const Eigen::Vector3d& g, int window_radius) {
+  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const size_t count = std::min(kMeasured, samples.size());
+  std::vector<RowShift> rows;
+  rows.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const DisparitySample& sample = samples[i * samples.size() / count];
+    const double column = sample.u - sample.disparity - level.rig.principalOffset();
+    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
+           {column, sample.v}, warp, window_radius, rows);
+  }
+  VerticalDisparities measured;
+  if (count > 0) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(count);
+  measured.rotation = fitRotation(rows);
+  measured.baseline = fitBaseline(rows);
+  return measured;
+}
+
+Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
+                                                const std::vector<cv::Point>& corners,
+                                                const Eigen::Vector3d& g, int window_radius) {
+  constexpr int kSteps = 4;  // a peak on the border does not count
+  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const size_t count = std::min(kSearched, corners.size());
+  PatchSearch search(level.left, level.right, window_radius);
+  std::vector<RowShift> rows;
+  rows.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const cv::Point corner = corners[i * corners.size() / count];
+    const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+    const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
+    const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
+    if (best.found) addRow(level, corner.x, corner.y, disparity, best.position, warp, window_radius, rows);
+  }
+  return fitRotation(rows);
+}
+
+double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) {
+  double largest = 0;
+  for (const double column : {0.0, rig.cx_right, rig.size.width - 1.0})
+    for (const double v : {0.0, rig.cy, rig.size.height - 1.0})
+      largest = std::max(largest, std::abs(verticalDisparityByRotation(rig, column, v).dot(w)));
+  return largest;
+}
+
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
+  constexpr int kSpan = 32;  // columns that mostly come from the same rows
+  out.create(right.size(), CV_32F);
+  for (int v = 0; v < out.rows; ++v) {
+    // Linear in the column.
+    const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
+    const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
+    const SlantedRow row{first, (last - first) / (out.cols - 1), right.rows - 2.001};
+    for (int begin = 0; begin < out.cols; begin += kSpan) {
+      const int end = std::min(begin + kSpan, out.cols);
+      const bool same = static_cast<int>(row.at(begin)) == static_cast<int>(row.at(end - 1));
+      const int step = same ? end - begin : 1;
+      for (int u = begin; u < end; u += step) interpolateRow(right, row, u, u + step, out.ptr<float>(v));
+    }
+  }
+}
+
+cv::Mat RowAlignment::level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
+  if (taken_out_.isZero()) return right;
+  straightenRows(rig, taken_out_, right, buffer);
+  return buffer;
+}
+
+bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                          const Eigen::Vector3d& g) {
+  if (!enabled_) return false;
+  const Expected<RigRotation> found = searchVerticalDisparities(level, corners, g, window_radius_);
+  return found && adapt(level.rig, *found);
+}
+
+RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
+                                             const std::vector<DisparitySample>& samples,
+                                             const Eigen::Vector3d& g) {
+  if (!enabled_) return {};
+  const VerticalDisparities found = measureVerticalDisparities(level, samples, g, window_radius_);
+  Measured measured{{}, found.baseline, found.agreement};
+  if (!found.rotation) return measured;
+  measured.rotation = *found.rotation;
+  measured.rotation.w += taken_out_;
+  average(measured.rotation);
+  adapt(level.rig, *found.rotation);
+  return measured;
+}
+
+void RowAlignment::average(const RigRotation& measured) {
+  constexpr double kKept = 0.95;  // of a pair's weight when the next comes
+  const Eigen::Matrix3d weight = measured.covariance.inverse();
+  information_ = kKept * information_ + weight;
+  right_ = kKept * right_ + weight * measured.w;
+  levelled_by_ = taken_out_;
+  measured_ = true;
+}
+
+RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
+  // Error that all pairs have, pixels: of lenses, which is no rotation, and of texture.
+  constexpr double kCommon = 0.003;
+  // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
+  constexpr double kBelievable = 16;
+  constexpr double kExact = 1e-6;  // pixels
+  const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+  const Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
+  RigRotation residual;
+  residual.covariance = (information_ + prior).inverse();
+  residual.w = residual.covariance * right_;
+  if (measured_) {
+    const Eigen::Matrix3d alone = information_.inverse();
+    const Eigen::Vector3d w = alone * right_;
+    const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
+    if (w.dot(both.inverse() * w) > kBelievable) {
+      residual.covariance = alone;
+      residual.w = w;
+    }
+  }
+  residual.w -= levelled_by_;
+  residual.covariance(0, 0) += std::pow(kCommon / rig.fy, 2);
+  return residual;
+}
+
+bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
+  // Vertical disparities up to this, pixels, do not disturb the matching along rows, and straightening costs
+  // time.
+  constexpr double kStraightEnough = 0.5;
+  // Chi-square (3 degrees of freedom) from which a residual is not noise.
+  constexpr double kSignificant = 30;
+  // What looks like ry is rather the residual of a lens, and no help where it is extrapolated to.
+  const Eigen::Vector3d w(residual.w.x(), 0, residual.w.z());
+  if (largestVerticalDisparity(rig, w) < kStraightEnough) return false;
+  if (residual.w.dot(residual.covariance.inverse() * residual.w) < kSignificant) return false;
+  taken_out_ += w;
+  if (largestVerticalDisparity(rig, taken_out_) < kStraightEnough) taken_out_.setZero();
+  return true;
+}
+
+}  // namespace uav_landing
