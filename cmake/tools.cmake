@@ -27,7 +27,9 @@ add_executable(simulate_campaign src/tools/campaign_csv.cpp src/tools/simulate_c
 target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
 
 add_executable(inject_faults
-  src/tools/fault_effects.cpp src/tools/fault_score.cpp src/tools/faults.cpp src/tools/inject_faults.cpp)
+  src/tools/faults/fault_choice.cpp src/tools/faults/fault_effects.cpp src/tools/faults/fault_flight.cpp
+  src/tools/faults/fault_score.cpp src/tools/faults/faults.cpp src/tools/faults/flight.cpp
+  src/tools/faults/inject_faults.cpp)
 target_link_libraries(inject_faults PRIVATE uav_landing_tools)
 
 # rosrun looks everywhere in the source folder but in its folder build/, which is where a plain cmake build puts the

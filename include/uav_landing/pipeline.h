@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "uav_landing/parameters/parameters.h"
 #include "uav_landing/stages/approach_angle_stage.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 #include "uav_landing/stages/stereo_depth_stage.h"

@@ -14,9 +14,6 @@ namespace uav_landing {
 // Stage results and their messages, lossless both ways: messages carry float64, so that a stage computes the
 // same from a message as from the result itself. A result's stamp is header.stamp in seconds.
 
-/// Inverse of Failure::message().
-Failure parseFailure(const std::string& reason);
-
 StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& header, double compute_ms);
 StereoDepthResult toResult(const StereoDepth& message);
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "input_watch.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/rectify_parameters.h"
 
 namespace uav_landing {
 

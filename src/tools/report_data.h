@@ -7,7 +7,7 @@
 
 #include "pending_file.h"
 #include "processed_pair.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/overlay_parameters.h"
 
 namespace uav_landing {
 

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 namespace {

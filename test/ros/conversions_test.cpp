@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "message_parts.h"
+
 using namespace uav_landing;
 
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "uav_landing/height/height_filter.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/stereo/region_planes.h"
 
 namespace uav_landing {

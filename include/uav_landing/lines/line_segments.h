@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
 

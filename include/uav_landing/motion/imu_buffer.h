@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/attitude_prior.h"
 
 namespace uav_landing {

@@ -11,7 +11,7 @@
 #include "uav_landing/motion/ego_motion.h"
 #include "uav_landing/motion/path_angle_filter.h"
 #include "uav_landing/motion/temporal_matching.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
 

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/overlay_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

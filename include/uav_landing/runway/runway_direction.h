@@ -7,7 +7,7 @@
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/lines/line_segments.h"
 #include "uav_landing/lines/vanishing_point.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "uav_landing/image/rectification.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/runway/runway_direction.h"
 #include "uav_landing/runway/runway_edges.h"

@@ -5,7 +5,7 @@
 
 #include "uav_landing/base/timings.h"
 #include "uav_landing/image/rectification.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

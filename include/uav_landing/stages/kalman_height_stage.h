@@ -15,7 +15,7 @@
 #include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/integrity/speed_memory.h"
 #include "uav_landing/integrity/stamp_scatter.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/rig/rig_change.h"
 #include "uav_landing/rig/rig_rotation_filter.h"

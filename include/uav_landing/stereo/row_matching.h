@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "uav_landing/image/window_template.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/stereo_depth_parameters.h"
 
 namespace uav_landing {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "uav_landing/image/rectification.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/stereo_depth_parameters.h"
 #include "uav_landing/stereo/plane_consensus.h"
 
 namespace uav_landing {

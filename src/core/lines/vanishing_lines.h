@@ -5,7 +5,7 @@
 
 #include "lines/vanishing_candidate.h"
 #include "uav_landing/lines/line_segments.h"
-#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
 

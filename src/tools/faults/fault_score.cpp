@@ -1,4 +1,4 @@
-#include "fault_score.h"
+#include "faults/fault_score.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,30 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
-#include "uav_landing/geometry/calibration.h"
-#include "uav_landing/results/truth.h"
-#include "uav_landing/simulator/approach_simulator.h"
+#include "faults/flight.h"
 
 namespace uav_landing {
-
-/// A healthy sequence of raw pairs with truth, from the simulator or a dataset.
-struct Flight {
-  struct Frame {
-    double time = 0;  ///< s
-    cv::Mat left, right;
-    Truth truth;
-    CameraPose pose;  ///< of the rectified left camera; only when simulated
-  };
-  CameraCalibration left, right;
-  const CameraRig* rig = nullptr;  ///< null when not simulated: then nothing can be painted on the ground
-  std::vector<Frame> frames;
-  double settled = 1.0;  ///< s at the start that do not count
-};
 
 /// A pair as it reaches the chain. images are the fault's own to change; time: s, of both stamps.
 struct Delivery {

@@ -1,4 +1,4 @@
-#include "fault_effects.h"
+#include "faults/fault_effects.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "faults.h"
+#include "faults/faults.h"
 
 // What single faults do to a pair (see faults.cpp for their names).
 namespace uav_landing {

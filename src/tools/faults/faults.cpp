@@ -1,9 +1,9 @@
-#include "faults.h"
+#include "faults/faults.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fault_effects.h"
+#include "faults/fault_effects.h"
 
 namespace uav_landing {
 namespace {

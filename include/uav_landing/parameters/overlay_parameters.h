@@ -1,0 +1,15 @@
+#pragma once
+
+namespace uav_landing {
+
+/// The overlay picture (nodelet overlay).
+struct OverlayParameters {
+  int scale = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("scale", scale, 0, 4, "", "picture enlarged by this factor; 0: at least 640 pixels wide");
+  }
+};
+
+}  // namespace uav_landing

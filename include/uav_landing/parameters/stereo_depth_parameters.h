@@ -1,0 +1,74 @@
+#pragma once
+
+namespace uav_landing {
+
+enum class MatchingCost { kZncc, kSsd };
+
+/// Sparse stereo and the ground plane (nodelet stereo_depth; paper 3.1, eq 3).
+struct StereoDepthParameters {
+  int corner_count = 500;
+  double harris_k = 0.04;
+  double corner_quality = 1e-7;
+  double min_corner_distance = 4.0;
+  int window_radius = 5;
+  MatchingCost matching_cost = MatchingCost::kZncc;
+  bool warp_window = true;
+  double max_disparity = 0.75;
+  double search_radius = 6.0;
+  double min_zncc = 0.7;
+  double uniqueness = 0.9;
+  double left_right_tolerance = 0.7;
+  int min_points = 20;
+  double plane_tolerance = 0.6;
+  bool vertical_disparities = true;
+  bool direct_refinement = true;
+  bool surface_curvature = true;
+  double slope_change_deg = 0.3;
+  double disparity_bias_stddev = 0.02;
+  double max_roll_deg = 30.0;
+  double max_pitch_deg = 30.0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners kept in the left image");
+    v.number("harris_k", harris_k, 0.01, 0.2, "", "k of the Harris response");
+    v.number("corner_quality", corner_quality, 1e-9, 0.5, "",
+             "weakest corner kept, as a share of the strongest response");
+    v.number("min_corner_distance", min_corner_distance, 1.0, 50.0, "px", "between two corners");
+    v.number("window_radius", window_radius, 2, 15, "px", "matching window is (2 r + 1) squared");
+    v.choice("matching_cost", matching_cost, {"zncc", "ssd"},
+             "zncc: blind to gain and offset between the cameras; ssd: the paper's");
+    v.flag("warp_window", warp_window,
+           "shear the window as the ground plane does between the views and refine it to sub-pixel with gain "
+           "and offset free; without it: upright windows and a parabola, as in the paper");
+    v.number("max_disparity", max_disparity, 0.05, 1.0, "image widths", "largest disparity searched");
+    v.number("search_radius", search_radius, 1.0, 64.0, "px",
+             "searched to both sides of the disparity that the previous plane predicts");
+    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
+    v.number("uniqueness", uniqueness, 0.1, 1.0, "",
+             "a second peak at least this good, as a share of the best, makes a match ambiguous");
+    v.number("left_right_tolerance", left_right_tolerance, 0.1, 5.0, "px",
+             "largest difference between matching left to right and back");
+    v.number("min_points", min_points, 6, 1000, "points", "fewest points that make a ground plane");
+    v.number("plane_tolerance", plane_tolerance, 0.1, 10.0, "px",
+             "disparity by which a point may be off the plane in the consensus step");
+    v.flag("vertical_disparities", vertical_disparities,
+           "measure by how many rows matches are off, which shows a bent rig, and make the rows level");
+    v.flag("direct_refinement", direct_refinement,
+           "refine the plane by aligning the grey levels of the two images over the ground");
+    v.flag("surface_curvature", surface_curvature,
+           "let the slope of the surface ahead change with the distance where the refinement shows that it "
+           "does: "
+           "the height is then that above the surface straight below");
+    v.number("slope_change_deg", slope_change_deg, 0.001, 10.0, "deg",
+             "1 sigma by which the slope of such ground changes over 100 m: vertical curves of runways have "
+             "radii of 7.5 km and more, most 20 km");
+    v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
+             "1 sigma, in the middle of the image, by which the right camera may have turned since a good "
+             "calibration: an error common to all disparities of all pairs");
+    v.number("max_roll_deg", max_roll_deg, 1.0, 60.0, "deg", "largest roll that is believed");
+    v.number("max_pitch_deg", max_pitch_deg, 1.0, 60.0, "deg", "largest pitch, up or down, that is believed");
+  }
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <uav_landing/ConsistencyTest.h>
+#include <uav_landing/ImageLines.h>
+#include <uav_landing/ImuPrior.h>
+#include <uav_landing/Motion.h>
+#include <uav_landing/RunwayPosition.h>
+
+#include <string>
+
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+// What the results of stages and their messages (conversions.h) consist of, both ways.
+
+/// Inverse of Failure::message().
+Failure parseFailure(const std::string& reason);
+
+ImageLines toMessage(const ApproachAngleResult::View& view);
+ApproachAngleResult::View toResult(const ImageLines& message);
+ConsistencyTest toMessage(const TestResult& test);
+TestResult toResult(const ConsistencyTest& message);
+Motion toMessage(const ApproachAngleResult::Motion& motion);
+ApproachAngleResult::Motion toResult(const Motion& message);
+RunwayPosition toMessage(const ApproachAngleResult::Runway& runway);
+ApproachAngleResult::Runway toResult(const RunwayPosition& message);
+ImuPrior toMessage(const AttitudePrior& prior);
+AttitudePrior toResult(const ImuPrior& message);
+
+}  // namespace uav_landing

@@ -1,0 +1,58 @@
+#include "faults/fault_flight.h"
+
+#include <cmath>
+
+#include "uav_landing/integrity/stamp_order.h"
+#include "uav_landing/pipeline.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kStart = 100;  // stamp of the first pair, s
+
+/// in_flight: first frame with the faults that come in flight.
+Delivery deliver(FaultRun& run, const FaultCombination& faults, int in_flight, int frame) {
+  const Flight::Frame& source = run.flight.frames[static_cast<size_t>(frame)];
+  Delivery pair{source.time, source.left.clone(), source.right.clone(), true};
+  for (const Fault* fault : faults) {
+    run.onset = fault->from_first ? 0 : in_flight;
+    if (fault->spoil && frame >= run.onset) fault->spoil(run, frame, pair);
+  }
+  return pair;
+}
+
+}  // namespace
+
+FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, int in_flight, int onset,
+                         uint64_t seed, const Parameters& parameters, const FaultObserver& observe) {
+  CameraCalibration left = flight.left, right = flight.right;
+  for (const Fault* fault : faults)
+    if (fault->calibrate) fault->calibrate(left, right);
+  FaultScore score;
+  Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters);
+  if (!pipeline) {
+    score.alarm = "refused: " + pipeline.error().detail;
+    return score;
+  }
+  FaultRun run{flight, in_flight, cv::RNG(seed)};
+  double last = flight.frames.front().time;
+  StampOrder order(parameters.rectify.max_late);
+  for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
+    const Delivery pair = deliver(run, faults, in_flight, frame);
+    const double now = flight.frames[static_cast<size_t>(frame)].time;
+    // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
+    if (!pair.delivered) continue;
+    // As where images are paired.
+    const StampOrder::Arrival arrival = order.follow(std::llround(1e9 * (kStart + pair.time)));
+    if (arrival == StampOrder::Arrival::kRepeated || arrival == StampOrder::Arrival::kLate) continue;
+    const Pipeline::Output& output = pipeline->process(kStart + pair.time, pair.left, pair.right);
+    if (now - flight.frames.front().time < flight.settled) continue;
+    const double height = trueHeight(flight, pair.time);
+    score.take(output.landing, height, frame >= onset, now - last);
+    if (observe) observe(now, output.landing, height, frame >= onset);
+    last = now;
+  }
+  return score;
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "faults/fault_choice.h"
+#include "faults/fault_score.h"
+
+namespace uav_landing {
+
+/// After each pair that counts: what was said, the true height, whether the fault was there.
+using FaultObserver =
+    std::function<void(double time, const LandingResult&, double true_height, bool faulted)>;
+
+/// Takes a flight with faults through the chain. in_flight: first frame with the faults that come in flight.
+/// onset: frame from which on faults are scored.
+FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, int in_flight, int onset,
+                         uint64_t seed, const Parameters& parameters, const FaultObserver& observe);
+
+}  // namespace uav_landing

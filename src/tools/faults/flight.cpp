@@ -1,0 +1,102 @@
+#include "faults/flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "camera_info.h"
+#include "dataset.h"
+#include "random_approach.h"
+#include "uav_landing/simulator/attitude.h"
+#include "uav_landing/simulator/ground_profile.h"
+
+namespace uav_landing {
+namespace {
+
+/// Time from which on the ground below was in view before, by a whole matching window: what it is like before
+/// that changes no pixel that a run begins with.
+double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
+  constexpr int kMargin = 8;  // px
+  const Flight::Frame& first = flight.frames.front();
+  const SimulatedCamera& camera = flight.rig->left;
+  const int row = first.left.rows - 1 - kMargin;
+  const PixelRay& ray = camera.rays[static_cast<size_t>(row) * first.left.cols + first.left.cols / 2];
+  const Eigen::Vector3d direction = runwayFromOptical(first.pose.attitude) * Eigen::Vector3d(ray.x, ray.y, 1);
+  const Eigen::Vector3d& centre = first.pose.position;
+  const GroundProfile::Line ground = profile.seen(centre, direction);
+  const double way = (centre.z() - ground.at(centre.x())) / (ground.slope * direction.x() - direction.z());
+  const double nearest = centre.x() + way * direction.x();
+  const auto above = std::find_if(flight.frames.begin(), flight.frames.end(),
+                                  [&](const Flight::Frame& f) { return f.pose.position.x() >= nearest; });
+  return (above == flight.frames.end() ? flight.frames.back() : *above).time - first.time;
+}
+
+}  // namespace
+
+SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile)
+    : rig(simulator.rig()) {
+  flight.left = rig.left.calibration;
+  flight.right = rig.right.calibration;
+  flight.rig = &rig;
+  for (int i = 0; i < simulator.frames(); ++i) {
+    ApproachSimulator::Frame frame = simulator.frame(i);
+    flight.frames.push_back({frame.time, frame.left, frame.right, frame.truth, simulator.pose(frame.time)});
+  }
+  if (!profile.flat()) flight.settled = std::max(flight.settled, timeOfKnownGround(flight, profile));
+}
+
+SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters) {
+  cv::RNG random(seed * 0x9E3779B97F4A7C15ULL + 1);
+  // At the end of the run. From higher up most healthy frames would not be certain enough to be valid, so
+  // that a fault has nothing to mislead.
+  const double height = 3 * std::pow(4.0, random.uniform(0.0, 1.0));
+  SimulatorParameters p = drawSnippet(seed * 1000003, height, frames, parameters);
+  p.image.width = 320;
+  p.image.height = 240;
+  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
+    camera->fx = camera->fy = 277.13;
+    camera->cx = 159.5;
+    camera->cy = 119.5;
+  }
+  p.rig.x = 2;
+  return p;
+}
+
+std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn) {
+  const Expected<ApproachSimulator> simulator = ApproachSimulator::create(drawn);
+  if (!simulator) return nullptr;
+  return std::make_unique<SimulatedFlight>(*simulator, GroundProfile(drawn.profile));
+}
+
+Flight readFlight(const std::string& folder) {
+  const Expected<Dataset> dataset = readDataset(folder);
+  if (!dataset) throw std::runtime_error(dataset.error().detail);
+  Flight flight;
+  flight.left = toCalibration(dataset->left);
+  flight.right = toCalibration(dataset->right);
+  for (const DatasetFrame& frame : dataset->frames) {
+    const auto left = readImage(frame.left, flight.left.imageSize());
+    const auto right = readImage(frame.right, flight.right.imageSize());
+    if (!left || !right) throw std::runtime_error((left ? right : left).error().detail);
+    const double time = (frame.stamp - dataset->frames.front().stamp).toSec();
+    flight.frames.push_back({time, *left, *right, frame.truth, {}});
+  }
+  return flight;
+}
+
+Flight cutFlight(const Flight& whole, int first, int frames) {
+  Flight part{whole.left, whole.right, whole.rig, {}};
+  const auto begin = whole.frames.begin() + first;
+  part.frames.assign(begin, begin + frames);
+  return part;
+}
+
+double trueHeight(const Flight& flight, double time) {
+  const auto& frames = flight.frames;
+  size_t next = 1;
+  while (next + 1 < frames.size() && frames[next].time < time) ++next;
+  const Flight::Frame &a = frames[next - 1], &b = frames[next];
+  return a.truth.height + (time - a.time) / (b.time - a.time) * (b.truth.height - a.truth.height);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/parameters/parameters.h"
+#include "uav_landing/results/truth.h"
+#include "uav_landing/simulator/approach_simulator.h"
+
+namespace uav_landing {
+
+/// A healthy sequence of raw pairs with truth, from the simulator or a dataset.
+struct Flight {
+  struct Frame {
+    double time = 0;  ///< s
+    cv::Mat left, right;
+    Truth truth;
+    CameraPose pose;  ///< of the rectified left camera; only when simulated
+  };
+  CameraCalibration left, right;
+  const CameraRig* rig = nullptr;  ///< null when not simulated: then nothing can be painted on the ground
+  std::vector<Frame> frames;
+  double settled = 1.0;  ///< s at the start that do not count
+};
+
+struct SimulatedFlight {
+  explicit SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile);
+  CameraRig rig;
+  Flight flight;
+};
+
+/// A rig and heights that a small image can do: 320 x 240 with a baseline of 2 m, as good as 640 x 480 with 1
+/// m.
+SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters);
+/// Null where the scene is in the aircraft's way.
+std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn);
+/// Of a dataset folder; throws std::runtime_error with what cannot be read.
+Flight readFlight(const std::string& folder);
+/// So many frames of it, from this one on.
+Flight cutFlight(const Flight& whole, int first, int frames);
+/// The true height at any time between the frames: stamps and pictures may be those of others.
+double trueHeight(const Flight& flight, double time);
+
+}  // namespace uav_landing

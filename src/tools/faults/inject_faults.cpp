@@ -1,0 +1,194 @@
+// Flies simulated approaches or a dataset through the chain with one or two faults from a random moment on,
+// and counts what was available, what was misleading and how long until it was noticed.
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "command_line.h"
+#include "csv_row.h"
+#include "faults/fault_flight.h"
+#include "pending_file.h"
+#include "progress_bar.h"
+
+namespace {
+
+using namespace uav_landing;
+
+struct Options {
+  std::string config, csv, dataset, trace;
+  std::vector<std::string> faults;
+  uint64_t first = 1;
+  int count = 10, frames = 70, pairs = 0;
+};
+
+constexpr const char* kHeader =
+    "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
+    "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_uncertain,"
+    "healthy_tests";
+constexpr const char* kTraceHeader =
+    "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
+    "alert_limit_m,raw_height_m,status,reason,failed_tests";
+
+std::string withoutCommas(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ';');
+  return text;
+}
+
+class Campaign {
+ public:
+  Campaign(const Options& options, const Parameters& parameters)
+      : options_(options),
+        parameters_(parameters),
+        choice_(options.faults, options.pairs, options.dataset.empty()),
+        pending_(options.csv),
+        file_(pending_.temporary()) {
+    if (!file_) throw std::runtime_error(options.csv + ": cannot be written");
+    file_ << kHeader << '\n';
+    if (!options.trace.empty()) {
+      trace_.open(options.trace);
+      if (!trace_) throw std::runtime_error(options.trace + ": cannot be written");
+      trace_ << kTraceHeader << '\n';
+    }
+  }
+
+  void run() {
+    const Flight recorded = options_.dataset.empty() ? Flight() : readFlight(options_.dataset);
+    ProgressBar progress(static_cast<unsigned long>(options_.count));
+    for (uint64_t seed = options_.first; seed < options_.first + options_.count; ++seed) {
+      if (options_.dataset.empty())
+        flySimulated(seed);
+      else
+        flyRecorded(recorded, seed);
+      progress.step();
+    }
+    file_.close();
+    if (!file_) throw std::runtime_error(options_.csv + ": could not be written completely");
+    pending_.commit();
+  }
+
+ private:
+  void flySimulated(uint64_t seed) {
+    const SimulatorParameters drawn = drawFlight(seed, options_.frames, parameters_);
+    const auto plain = simulateFlight(drawn);
+    if (!plain) return;
+    std::map<std::string, std::unique_ptr<SimulatedFlight>> others;  // by the faults that change the scene
+    for (const FaultCombination& faults : choice_.combinations(seed)) {
+      SimulatorParameters changed = drawn;
+      FaultCombination builders;
+      for (const Fault* fault : faults) {
+        if (!fault->build) continue;
+        fault->build(changed);
+        builders.push_back(fault);
+      }
+      const std::string name = nameOf(builders);
+      if (!builders.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
+      const SimulatedFlight* flight = builders.empty() ? plain.get() : others[name].get();
+      if (flight != nullptr) flyOne(flight->flight, "simulator", faults, seed);
+    }
+  }
+
+  void flyRecorded(const Flight& recorded, uint64_t seed) {
+    const int frames = std::min(options_.frames, static_cast<int>(recorded.frames.size()));
+    cv::RNG random(seed * 1234567 + 3);
+    const int first = random.uniform(0, static_cast<int>(recorded.frames.size()) - frames + 1);
+    const Flight part = cutFlight(recorded, first, frames);
+    const FaultCombination healthy = {&allFaults().front()};
+    std::string name = options_.dataset;
+    while (!name.empty() && name.back() == '/') name.pop_back();
+    name = name.substr(name.find_last_of('/') + 1);
+    // Without a fault the whole of it: pieces would have frames in common.
+    for (const FaultCombination& faults : choice_.combinations(seed))
+      flyOne(faults == healthy ? recorded : part, name, faults, seed);
+  }
+
+  void flyOne(const Flight& flight, const std::string& source, const FaultCombination& faults,
+              uint64_t seed) {
+    const int frames = static_cast<int>(flight.frames.size());
+    uint64_t hash = seed;
+    for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);
+    cv::RNG random(hash);
+    const bool whole =
+        std::any_of(faults.begin(), faults.end(), [](const Fault* f) { return f->wholeRun(); });
+    const bool healthy = faults.size() == 1 && faults[0]->name == "none";
+    // Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
+    const int in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
+    const int onset = healthy ? frames : whole ? 0 : in_flight;
+    const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
+    const FaultObserver observe = [&](double time, const LandingResult& said, double height, bool faulted) {
+      trace(from, time, said, height, faulted);
+    };
+    const FaultScore score = flyWithFaults(flight, faults, in_flight, onset, hash, parameters_,
+                                           trace_.is_open() ? observe : FaultObserver());
+    CsvRow row(file_);
+    row.text(source).text(std::to_string(seed)).text(nameOf(faults));
+    row.number(onset < frames ? flight.frames[static_cast<size_t>(onset)].time - flight.frames[0].time
+                              : kUnknown);
+    row.number(score.healthy).number(score.healthy_valid).number(score.healthy_misleading);
+    row.number(score.faulted)
+        .number(score.faulted_valid)
+        .number(score.beyond_level)
+        .number(score.beyond_limit);
+    row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
+    row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
+    row.number(score.healthy_uncertain).text(score.testCounts());
+    file_ << std::endl;  // what is there already can be looked at
+  }
+
+  void trace(const std::string& from, double time, const LandingResult& said, double height, bool faulted) {
+    CsvRow row(trace_);
+    row.text(from).number(time).flag(faulted).number(height).number(said.height).flag(said.height_valid);
+    row.number(said.height_protection_level).text(said.protection_source).number(said.height_alert_limit);
+    row.number(said.raw_height).text(toString(said.status)).text(toString(said.failure.reason));
+    row.text(failedTests(said.tests));
+    trace_ << std::endl;
+  }
+
+  Options options_;
+  Parameters parameters_;
+  FaultChoice choice_;
+  PendingFile pending_;
+  std::ofstream file_, trace_;
+};
+
+Failure run(const Options& options) {
+  const Expected<Parameters> parameters = parametersOf(options.config);
+  if (!parameters) return parameters.error();
+  Campaign(options, *parameters).run();
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Flies approaches with faults through the chain and counts misleading heights.",
+               "inject_faults");
+  Options options;
+  app.add_option("--csv", options.csv, "rows to write, one per run");
+  app.add_option("--trace", options.trace, "rows of every frame to write, to see what a run was misled by");
+  app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
+  app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
+  app.add_option("--faults", options.faults, "only these, pairs as a+b; without it all")->delimiter(',');
+  app.add_option("--pairs", options.pairs, "pairs of faults besides, for each seed")->capture_default_str();
+  app.add_option("--first", options.first, "first seed")->capture_default_str();
+  app.add_option("--count", options.count, "how many seeds")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--frames", options.frames, "of a run")->capture_default_str()->check(CLI::Range(25, 1000));
+  app.add_flag_callback(
+      "--list",
+      [] {
+        for (const Fault& fault : allFaults()) std::cout << fault.name << '\t' << fault.meaning << '\n';
+        throw CLI::Success();
+      },
+      "print the faults and leave");
+  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  if (options.csv.empty()) {
+    std::cerr << "inject_faults: --csv is required\n";
+    return kWrongUsage;
+  }
+  cv::setNumThreads(1);  // one process per core: run several with different seeds at once
+  return exitStatusOf(app, "", [&] { return run(options); });
+}
