@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "camera_info.h"
-#include "dataset.h"
+#include "datasets/dataset.h"
 #include "uav_landing/simulator/approach_simulator.h"
 #include "uav_landing/simulator/parameter_file.h"
 

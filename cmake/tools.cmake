@@ -1,29 +1,30 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
-  src/tools/bag_bytes.cpp src/tools/bag_chunk.cpp src/tools/bag_records.cpp src/tools/bag_structure.cpp
-  src/tools/csv_table.cpp src/tools/dataset.cpp src/tools/dataset_writer.cpp src/tools/decimal_time.cpp
-  src/tools/old_bag_structure.cpp src/tools/random_approach.cpp src/tools/stereo_bag_reader.cpp src/tools/stereo_bag_writer.cpp)
+  src/tools/bags/bag_bytes.cpp src/tools/bags/bag_chunk.cpp src/tools/bags/bag_records.cpp
+  src/tools/bags/bag_structure.cpp src/tools/bags/old_bag_structure.cpp src/tools/bags/stereo_bag_reader.cpp
+  src/tools/bags/stereo_bag_writer.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
+  src/tools/datasets/dataset_writer.cpp src/tools/datasets/decimal_time.cpp src/tools/simulation/random_approach.cpp)
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
 target_include_directories(uav_landing_tools SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(uav_landing_tools PUBLIC uav_landing_ros ${catkin_LIBRARIES} CLI11::CLI11 PRIVATE BZip2::BZip2 yaml-cpp)
 add_dependencies(uav_landing_tools ${PROJECT_NAME}_generate_messages_cpp)
 
-add_executable(dataset_to_bag src/tools/dataset_to_bag.cpp)
+add_executable(dataset_to_bag src/tools/datasets/dataset_to_bag.cpp)
 target_link_libraries(dataset_to_bag PRIVATE uav_landing_tools)
 
-add_executable(simulate_approach src/tools/live_cameras.cpp src/tools/simulate_approach.cpp)
+add_executable(simulate_approach src/tools/simulation/live_cameras.cpp src/tools/simulation/simulate_approach.cpp)
 target_link_libraries(simulate_approach PRIVATE uav_landing_tools)
 
-add_executable(measure_noise_bound src/tools/measure_noise_bound.cpp)
+add_executable(measure_noise_bound src/tools/simulation/measure_noise_bound.cpp)
 target_link_libraries(measure_noise_bound PRIVATE uav_landing_tools)
 
 add_executable(process_bag
-  src/tools/process_bag.cpp src/tools/estimate_bag.cpp src/tools/estimate_csv.cpp src/tools/offline_chain.cpp
-  src/tools/report_data.cpp src/tools/timing_table.cpp)
+  src/tools/offline/process_bag.cpp src/tools/offline/estimate_bag.cpp src/tools/offline/estimate_csv.cpp
+  src/tools/offline/offline_chain.cpp src/tools/offline/report_data.cpp src/tools/offline/timing_table.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
 
-add_executable(simulate_campaign src/tools/campaign_csv.cpp src/tools/simulate_campaign.cpp)
+add_executable(simulate_campaign src/tools/simulation/campaign_csv.cpp src/tools/simulation/simulate_campaign.cpp)
 target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
 
 add_executable(inject_faults

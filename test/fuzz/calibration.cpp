@@ -1,7 +1,7 @@
 #include <camera_calibration_parsers/parse.h>
 
 #include "camera_info.h"
-#include "dataset.h"
+#include "datasets/dataset.h"
 #include "fuzz/harnesses.h"
 #include "fuzz/input.h"
 #include "fuzz/memory_file.h"

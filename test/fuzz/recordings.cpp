@@ -6,13 +6,13 @@
 #include <map>
 #include <string>
 
-#include "dataset.h"
+#include "bags/stereo_bag_reader.h"
+#include "datasets/dataset.h"
 #include "fuzz/harnesses.h"
 #include "fuzz/memory_file.h"
 #include "image_input.h"
 #include "imu_input.h"
 #include "rig_watch.h"
-#include "stereo_bag_reader.h"
 
 namespace uav_landing {
 namespace fuzz {

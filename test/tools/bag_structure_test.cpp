@@ -1,7 +1,7 @@
 // What is refused before rosbag reads it. The bags are rosbag's own, with single bytes changed; where these
 // are follows from the format, whose header fields are in alphabetical order, each behind a length of 4
 // bytes.
-#include "bag_structure.h"
+#include "bags/bag_structure.h"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "bag_message.h"
-#include "stereo_bag_reader.h"
+#include "bags/bag_message.h"
+#include "bags/stereo_bag_reader.h"
 
 namespace uav_landing {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "bag_message.h"
-#include "bag_structure.h"
+#include "bags/bag_message.h"
+#include "bags/bag_structure.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "random_approach.h"
+#include "simulation/random_approach.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "camera_info.h"
-#include "dataset.h"
-#include "random_approach.h"
+#include "datasets/dataset.h"
+#include "simulation/random_approach.h"
 #include "uav_landing/simulator/attitude.h"
 #include "uav_landing/simulator/ground_profile.h"
 

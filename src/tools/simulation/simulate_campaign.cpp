@@ -1,0 +1,138 @@
+// Flies many random simulated approaches through the chain, in this process, and writes truth beside
+// estimate.
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "command_line.h"
+#include "progress_bar.h"
+#include "simulation/campaign_csv.h"
+#include "simulation/random_approach.h"
+#include "uav_landing/motion/imu_buffer.h"
+#include "uav_landing/simulator/approach_simulator.h"
+
+namespace {
+
+using namespace uav_landing;
+
+struct Options {
+  std::string config, csv, kind = "snippets";
+  uint64_t first = 1;
+  int count = 20, frames = 13;
+  bool imu = false;
+  std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
+};
+
+template <class T>
+T orThrow(Expected<T>&& value, uint64_t seed) {
+  if (value) return std::move(*value);
+  throw std::runtime_error("seed " + std::to_string(seed) + ": " + value.error().message());
+}
+
+/// Runs one flight at several noise levels: what the cameras see is rendered once. visit(sample, frame's
+/// truth, output) is called for every frame and noise level.
+template <class Visitor>
+void fly(const SimulatorParameters& drawn, const Parameters& parameters, const std::vector<double>& noise,
+         CampaignCsv::Sample sample, Visitor&& visit) {
+  const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
+  ImuBuffer imu(parameters.approach_angle);
+  for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
+  std::vector<Pipeline> pipelines;
+  for (size_t i = 0; i < noise.size(); ++i)
+    pipelines.push_back(orThrow(
+        Pipeline::create(simulator.rig().left.calibration, simulator.rig().right.calibration, parameters),
+        sample.seed));
+  for (sample.frame = 0; sample.frame < simulator.frames(); ++sample.frame) {
+    const ApproachSimulator::Light light = simulator.light(sample.frame);
+    const double time = simulator.timeOf(sample.frame);
+    std::optional<double> before;
+    if (sample.frame > 0) before = simulator.timeOf(sample.frame - 1);
+    const AttitudePrior prior = imu.at(time, before, opticalFromImu());
+    for (size_t i = 0; i < noise.size(); ++i) {
+      const ApproachSimulator::Frame frame = simulator.expose(light, noise[i]);
+      sample.noise = noise[i];
+      sample.time = frame.time;
+      // Stamps of 0 mean that there is none.
+      visit(sample, frame.truth, pipelines[i].process(100 + frame.time, frame.left, frame.right, 0, prior));
+    }
+  }
+}
+
+/// Last frames of snippets that end at each of the heights.
+void flySnippets(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
+  ProgressBar progress(options.count * options.heights.size());
+  for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
+    for (const double height : options.heights) {
+      // Another flight at every height, so that the cells are independent of each other.
+      const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
+      const SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
+      CampaignCsv::Sample sample;
+      sample.seed = seed;
+      sample.cell_height = height;
+      fly(drawn, parameters, options.noise, sample, [&](const auto& at, const auto& truth, const auto& out) {
+        if (at.frame == options.frames - 1) csv.write(at, drawn, truth, out);
+      });
+      progress.step();
+    }
+  }
+}
+
+/// Every frame of whole approaches.
+void flyApproaches(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
+  ProgressBar progress(options.count);
+  for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
+    const SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
+    CampaignCsv::Sample sample;
+    sample.seed = seed;
+    fly(drawn, parameters, options.noise, sample,
+        [&](const auto& at, const auto& truth, const auto& out) { csv.write(at, drawn, truth, out); });
+    progress.step();
+  }
+}
+
+Failure run(const Options& options) {
+  const Expected<Parameters> parameters = parametersOf(options.config);
+  if (!parameters) return parameters.error();
+  CampaignCsv csv(options.csv);
+  if (options.kind == "snippets")
+    flySnippets(options, *parameters, csv);
+  else
+    flyApproaches(options, *parameters, csv);
+  csv.finish();
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Flies random simulated approaches through the chain and writes truth beside estimate.",
+               "simulate_campaign");
+  Options options;
+  app.add_option(
+         "kind", options.kind,
+         "snippets: the last frame of short pieces, one row each; approaches: every frame of whole ones")
+      ->check(CLI::IsMember({"snippets", "approaches"}))
+      ->required();
+  app.add_option("--csv", options.csv, "rows to write")->required();
+  app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
+  app.add_option("--first", options.first, "first seed")->capture_default_str();
+  app.add_option("--count", options.count, "how many seeds")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--noise", options.noise,
+                 "1 sigma of the sensors' noise, grey levels; each seed is flown at all")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 50.0));
+  app.add_option("--heights", options.heights, "at which snippets end, m; each seed is flown at all")
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 1000.0));
+  app.add_option("--frames", options.frames, "of a snippet, at 20 Hz")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 1000));
+  app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
+  if (const auto status = parseCommandLine(app, argc, argv)) return *status;
+  cv::setNumThreads(1);  // one process per core: run several with different seeds at once
+  return exitStatusOf(app, "", [&] { return run(options); });
+}
