@@ -89,6 +89,18 @@ TEST(RigChange, DoubtsALargeBendUntilItHasStayedForASecond) {
   EXPECT_NEAR(waited, 1, 0.06);
 }
 
+TEST(RigChange, DoubtsNothingThatIsOffByTheNoiseOfAllPairs) {
+  const auto noisy = [](double rz_deg) {
+    RigRotation measured = rotation(0, rz_deg);
+    measured.covariance = std::pow(0.2 * kDegree, 2) * Eigen::Matrix3d::Identity();
+    return measured;
+  };
+  RigChange change;
+  for (int i = 0; i < 40; ++i) change.learn(0.05, noisy(0), true);
+  EXPECT_FALSE(change.doubts(noisy(0.3)));
+  EXPECT_TRUE(change.doubts(noisy(2)));
+}
+
 TEST(RigChange, ASmallRotationThatChangesIsNotTheRigs) {
   RigChange change;
   for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);

@@ -15,6 +15,9 @@ class RigChange {
   struct Innovation {
     Eigen::Vector2d difference;  ///< of (rx, rz), rad
     Eigen::Matrix2d covariance;
+
+    /// But for one in a thousand.
+    bool agrees() const;
   };
   /// Against the mean of the pairs before; none for the first ones.
   std::optional<Innovation> compare(const RigRotation& measured) const;
@@ -22,8 +25,8 @@ class RigChange {
   /// comes then is learned anew. A small change is the rig's as soon as it has stayed the same for a second:
   /// what images that do not belong together do to the height goes with the rotation that they show.
   void learn(double T, const RigRotation& measured, bool agrees);
-  /// Whether it is so far from the pairs before that it must stay the same for a second to be believed at
-  /// all.
+  /// Whether it is so far from the pairs before, for certain, that it must stay the same for a second to be
+  /// believed at all.
   bool doubts(const RigRotation& measured) const;
   /// False while another rotation than before is not yet known for long enough to be the rig's: that of
   /// images that do not belong together changes.

@@ -28,6 +28,10 @@ Eigen::Matrix2d covarianceOf(const RigRotation& rotation) {
 
 }  // namespace
 
+bool RigChange::Innovation::agrees() const {
+  return difference.dot(covariance.inverse() * difference) <= kSame;
+}
+
 RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) const {
   // What neighbouring rows share is estimated from few parts of one image: where it is small by chance, the
   // pairs before know better, and where it is large, images of two scenes must not be excused by the disorder
@@ -53,15 +57,14 @@ std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measu
 
 bool RigChange::doubts(const RigRotation& measured) const {
   const std::optional<Innovation> off = compare(measured);
-  return off && off->difference.norm() > kSmall && other_.learned < kSettled;
+  return off && off->difference.norm() > kSmall && !off->agrees() && other_.learned < kSettled;
 }
 
 bool RigChange::settled() const { return !anew_ || mean_.learned >= kSettled; }
 
 void RigChange::learnOther(double T, const RigRotation& measured) {
   if (other_.learned > 0) {
-    const Innovation off = other_.compare(measured);
-    if (!(off.difference.dot(off.covariance.inverse() * off.difference) <= kSame)) other_ = {};
+    if (!other_.compare(measured).agrees()) other_ = {};
   }
   other_.add(T, measured);
 }
