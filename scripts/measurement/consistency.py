@@ -7,7 +7,7 @@ import numpy as np
 from . import kept
 from .campaign import fly, number
 from .markdown import DASH, table
-from .programs import ROOT, pending
+from .programs import ROOT, save_figure
 
 SIGMAS_95 = 1.959964
 NOISE, HEIGHTS = (1, 2, 5), (3, 10, 30)
@@ -102,11 +102,7 @@ def plot(cells):
     axes[1][0].set_ylabel("rms error / claimed σ")
     axes[1][0].set_yscale("log")  # a single wrong lateral offset is a hundred sigma
     axes[1][len(QUANTITIES) // 2].set_xlabel("height, noise in grey levels")
-    figure.tight_layout()
-    IMAGE.parent.mkdir(parents=True, exist_ok=True)
-    with pending(IMAGE) as temporary:
-        figure.savefig(temporary, dpi=80)
-    plt.close(figure)
+    save_figure(figure, IMAGE)
 
 
 def render(results):

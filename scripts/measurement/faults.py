@@ -7,7 +7,7 @@ import re
 from collections import defaultdict
 
 from .markdown import table
-from .programs import pending
+from .programs import save_figure
 
 TITLE = "## Campaign\n"
 # Nothing in the images or between the sources tells these: docs/integrity.md says why.
@@ -179,6 +179,4 @@ class Campaign:
         left.set_xlabel("worst error of a run over its protection level")
         left.invert_yaxis()
         right.set_xlabel("frames with a valid height, %")
-        figure.tight_layout()
-        with pending(file) as temporary:
-            figure.savefig(temporary, dpi=80)
+        save_figure(figure, file)

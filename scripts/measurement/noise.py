@@ -5,7 +5,7 @@ import csv
 from . import kept
 from .campaign import number
 from .markdown import table
-from .programs import DEVEL, ROOT, WORK, pending, run
+from .programs import DEVEL, ROOT, WORK, run, save_figure
 
 PROGRAM = "measure_noise_bound"
 IMAGE = ROOT / "docs/images/noise.png"
@@ -49,11 +49,7 @@ def plot(rows):
         axis.set_xlabel("noise, grey levels")
         axis.grid(True, which="both", linewidth=0.3)
     axes[0].legend(title="height; dashed: bound", loc="lower right", fontsize=8, framealpha=0.6)
-    figure.tight_layout()
-    IMAGE.parent.mkdir(parents=True, exist_ok=True)
-    with pending(IMAGE) as temporary:
-        figure.savefig(temporary, dpi=80)
-    plt.close(figure)
+    save_figure(figure, IMAGE)
 
 
 def render(results):

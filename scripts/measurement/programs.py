@@ -29,3 +29,13 @@ def fingerprint(*files):
     for file in (DEVEL / "lib/libuav_landing_core.so", *files):
         digest.update(Path(file).read_bytes())
     return digest.hexdigest()[:12]
+
+
+def save_figure(figure, path):
+    """Writes a picture and closes the figure."""
+    import matplotlib.pyplot as plt  # only here: it takes longer to load than everything else
+    figure.tight_layout()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with pending(path) as temporary:
+        figure.savefig(temporary, dpi=80)
+    plt.close(figure)
