@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/ground_matches.h"
+#include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
@@ -151,6 +152,34 @@ TEST(KalmanHeightIntegrity, APictureOnceMoreCountsOnceForTheAttitude) {
     const LandingResult repeated = twice.process(again, approach);
     for (const TestResult& test : repeated.tests)
       EXPECT_FALSE(test.name == toString(Consistency::kTilt) && test.possible()) << i;
+  }
+}
+
+// What a minute has taught of the rig must not speak against what it is since.
+TEST(KalmanHeightIntegrity, AHeightIsRightAlsoAfterABendLateInALongFlight) {
+  const StereoRig rig = test::usualRig();
+  for (const double roll : {0.05, 0.2, -0.2}) {
+    SCOPED_TRACE(roll);
+    constexpr double kHeight = 20, kBent = 60;
+    KalmanHeightStage stage(rig, {});
+    int valid_afterwards = 0;
+    for (double stamp = 0; stamp < kBent + 15; stamp += 0.05) {
+      StereoDepthResult stereo = stereoAt(stamp, kHeight);
+      stereo.disparity_bias_stddev = 0.1;
+      stereo.plane.covariance(2, 2) += std::pow(0.1 / rig.fb(), 2);
+      stereo.vertical_rotation.w.setZero();
+      stereo.vertical_rotation.covariance = std::pow(0.005 * kDegree, 2) * Eigen::Matrix3d::Identity();
+      if (stamp > kBent) {
+        stereo.vertical_rotation.w.z() = roll * kDegree;
+        stereo.plane.g += planeByRotation(rig, stereo.points, stereo.plane.g) * stereo.vertical_rotation.w;
+        stereo.points = test::matchesOn(rig, stereo.plane.g);
+      }
+      const LandingResult result = stage.process(stereo, levelFlight(stamp, kHeight));
+      if (!result.height_valid) continue;
+      ASSERT_LT(std::abs(result.height - kHeight), result.height_protection_level) << stamp;
+      valid_afterwards += stamp > kBent + 1;
+    }
+    EXPECT_GT(valid_afterwards, 40);
   }
 }
 

@@ -89,6 +89,49 @@ TEST(RigChange, DoubtsALargeBendUntilItHasStayedForASecond) {
   EXPECT_NEAR(waited, 1, 0.06);
 }
 
+TEST(RigChange, DoubtsAWildPairAlsoWhereAnotherOneHasStayedForASecond) {
+  RigChange change;
+  for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
+  for (int i = 0; i < 25; ++i) change.learn(0.05, rotation(0, 0.3), false);
+  EXPECT_FALSE(change.doubts(rotation(0, 0.3)));
+  EXPECT_TRUE(change.doubts(rotation(0, 5)));
+}
+
+TEST(RigChange, AFirstPairAfterALongGapHasNotStayed) {
+  RigChange change;
+  for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
+  change.learn(1.0, rotation(0, 5), false);
+  EXPECT_TRUE(change.doubts(rotation(0, 5)));
+  EXPECT_TRUE(change.doubts(rotation(0, -3)));
+}
+
+TEST(RigChange, BelievesNothingWhileItChangesAllTheTimeHoweverLong) {
+  RigChange change;
+  for (int i = 0; i < 40; ++i) change.learn(0.05, rotation(0, 0), true);
+  int believed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const RigRotation measured = rotation(0, 0.5 + 0.3 * std::sin(1.3 * i));
+    believed += !change.doubts(measured);
+    change.learn(0.05, measured, !change.differs(measured));
+  }
+  EXPECT_EQ(believed, 0);
+}
+
+TEST(RigChange, SaysOnceThatAnotherRotationIsTheRigs) {
+  RigChange change;
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(change.learn(0.05, rotation(0, 0), true));
+  int told = 0;
+  for (int i = 0; i < 200; ++i) {
+    const RigRotation measured = rotation(0.1, -0.3);
+    if (!change.learn(0.05, measured, !change.differs(measured))) continue;
+    ++told;
+    EXPECT_NEAR(change.mean().w.x(), 0.1 * kDegree, 1e-9);
+    EXPECT_NEAR(change.mean().w.z(), -0.3 * kDegree, 1e-9);
+    EXPECT_TRUE(change.settled());
+  }
+  EXPECT_EQ(told, 1);
+}
+
 TEST(RigChange, DoubtsNothingThatIsOffByTheNoiseOfAllPairs) {
   const auto noisy = [](double rz_deg) {
     RigRotation measured = rotation(0, rz_deg);

@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-
 namespace uav_landing {
 namespace {
 

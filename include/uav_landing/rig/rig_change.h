@@ -23,10 +23,15 @@ class RigChange {
   std::optional<Innovation> compare(const RigRotation& measured) const;
   /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds; what
   /// comes then is learned anew. A small change is the rig's as soon as it has stayed the same for a second:
-  /// what images that do not belong together do to the height goes with the rotation that they show.
-  void learn(double T, const RigRotation& measured, bool agrees);
-  /// Whether it is so far from the pairs before, for certain, that it must stay the same for a second to be
-  /// believed at all.
+  /// what images that do not belong together do to the height goes with the rotation that they show. True
+  /// when another rotation than before is the rig's from now on.
+  bool learn(double T, const RigRotation& measured, bool agrees);
+  /// What has been learned, as one measurement of the pitch and roll.
+  RigRotation mean() const;
+  /// Whether it is far from the pairs before, and for certain.
+  bool differs(const RigRotation& measured) const;
+  /// Whether it says nothing of the rig: it differs, and has not stayed the same for a second, or what came
+  /// after another rotation has not settled.
   bool doubts(const RigRotation& measured) const;
   /// False while another rotation than before is not yet known for long enough to be the rig's: that of
   /// images that do not belong together changes.

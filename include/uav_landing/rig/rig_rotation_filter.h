@@ -51,6 +51,9 @@ class RigRotationFilter {
 
   RigRotation rotation() const;
   void reset();
+  /// After something has turned the camera: what was known of w before is not known any more. vertical: as
+  /// for updateVertical(), of a second.
+  void startAnew(const RigRotation& vertical);
 
  private:
   static constexpr int kSize = 8;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kMemory = 2.0;                // s that the mean is of
 constexpr double kFirst = 0.4;                 // s before there is anything to compare with
+constexpr double kFirstTime = 0.1;             // s that the first pair of a mean counts for at most
 constexpr double kPatience = 3.0;              // s of something else, after which that may be the rig
 constexpr double kSettled = 1.0;               // s of it without a change, after which it is
 constexpr double kSmall = 0.1 * M_PI / 180;    // rad: of unsynchronised images, 0.1 % of the height at most
@@ -47,7 +48,8 @@ void RigChange::Mean::add(double T, const RigRotation& measured) {
   value += share * (valueOf(measured) - value);
   // Pairs in a row see the same texture: their mean is not better than the best of them.
   covariance += share * (covarianceOf(measured) - covariance);
-  learned += T > 0 ? T : 1e-3;
+  // For how long it had been so before the first pair nobody knows.
+  learned += std::clamp(T, 1e-3, learned > 0 ? kMemory : kFirstTime);
 }
 
 std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measured) const {
@@ -55,9 +57,15 @@ std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measu
   return mean_.compare(measured);
 }
 
-bool RigChange::doubts(const RigRotation& measured) const {
+bool RigChange::differs(const RigRotation& measured) const {
   const std::optional<Innovation> off = compare(measured);
-  return off && off->difference.norm() > kSmall && !off->agrees() && other_.learned < kSettled;
+  return off && off->difference.norm() > kSmall && !off->agrees();
+}
+
+bool RigChange::doubts(const RigRotation& measured) const {
+  if (!settled()) return true;
+  const bool stayed = other_.learned >= kSettled && other_.compare(measured).agrees();
+  return differs(measured) && !stayed;
 }
 
 bool RigChange::settled() const { return !anew_ || mean_.learned >= kSettled; }
@@ -69,8 +77,8 @@ void RigChange::learnOther(double T, const RigRotation& measured) {
   other_.add(T, measured);
 }
 
-void RigChange::learn(double T, const RigRotation& measured, bool agrees) {
-  if (!measured.known()) return;
+bool RigChange::learn(double T, const RigRotation& measured, bool agrees) {
+  if (!measured.known()) return false;
   if (!agrees) {
     disagreed_ += T;
     learnOther(T, measured);
@@ -78,15 +86,27 @@ void RigChange::learn(double T, const RigRotation& measured, bool agrees) {
       mean_ = other_;
       other_ = {};
       disagreed_ = 0;
-      return;
+      return true;
     }
-    if (settled() && disagreed_ < kPatience) return;
+    if (settled() && disagreed_ < kPatience) return false;
     reset();
     anew_ = true;
   }
   other_ = {};
   disagreed_ = 0;
+  const bool settling = !settled();
   mean_.add(T, measured);
+  return settling && settled();
+}
+
+RigRotation RigChange::mean() const {
+  RigRotation rotation;
+  rotation.w = {mean_.value.x(), 0, mean_.value.y()};
+  rotation.covariance.setIdentity();  // nothing of yaw
+  rotation.covariance(0, 0) = mean_.covariance(0, 0);
+  rotation.covariance(2, 2) = mean_.covariance(1, 1);
+  rotation.covariance(0, 2) = rotation.covariance(2, 0) = mean_.covariance(0, 1);
+  return rotation;
 }
 
 }  // namespace uav_landing

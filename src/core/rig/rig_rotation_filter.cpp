@@ -33,6 +33,14 @@ void RigRotationFilter::reset() {
   if (calibrated > 0) setPrior(std::sqrt(calibrated) * rig_.fx);
 }
 
+void RigRotationFilter::startAnew(const RigRotation& vertical) {
+  const std::optional<double> stamp = stamp_;
+  reset();
+  stamp_ = stamp;
+  share_ = 1;
+  updateVertical(vertical);
+}
+
 void RigRotationFilter::advance(double stamp) {
   constexpr double kFirstShare = 0.1;
   const double T = stamp_ ? std::max(0.0, stamp - *stamp_) : kFirstShare * kCorrelationTime;

@@ -27,11 +27,11 @@ bool KalmanHeightStage::agreesWithFlight(const ApproachAngleResult::Motion& step
   if (!filter_.initialised() || !normal) return true;
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   const double off = height * normal->dot(t) + T * filter_.state()[1];
+  const double flight_variance =
+      std::pow(kSlope, 2) * t.squaredNorm() + T * T * filter_.covariance()(1, 1) / (height * height);
   // A step that claims to know less than the flight so far is not one to carry the ground by.
-  const double slope_variance = std::pow(kSlope, 2) * t.squaredNorm();
-  const double own_variance = std::min(normal->dot(covariance * *normal), slope_variance);
-  const double variance =
-      height * height * (own_variance + slope_variance) + T * T * filter_.covariance()(1, 1);
+  const double own_variance = std::min(normal->dot(covariance * *normal), flight_variance);
+  const double variance = height * height * (own_variance + flight_variance);
   return off * off <= std::pow(parameters_.gate, 2) * variance;
 }
 

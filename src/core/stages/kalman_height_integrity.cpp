@@ -90,9 +90,10 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                     1 - kLeastRowAgreement);
   if (const auto change = rig_change_.compare(stereo.vertical_rotation))
     tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
-  const bool bent = tests_.failed(Consistency::kRigRotation);
-  if (bent || pairs_failed_ == 0 || !rig_change_.settled())
-    rig_change_.learn(T, stereo.vertical_rotation, !bent);
+  const bool bent = tests_.failed(Consistency::kRigRotation) || rig_change_.differs(stereo.vertical_rotation);
+  if ((bent || pairs_failed_ == 0 || !rig_change_.settled()) &&
+      rig_change_.learn(T, stereo.vertical_rotation, !bent))
+    rig_rotation_.startAnew(rig_change_.mean());
   testBaseline(stereo, approach.step);
   testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
