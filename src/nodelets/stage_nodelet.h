@@ -13,6 +13,7 @@
 #include "input_watch.h"
 #include "node_parameters.h"
 #include "stage_report.h"
+#include "uav_landing/parameters/rectify_parameters.h"
 
 namespace uav_landing {
 

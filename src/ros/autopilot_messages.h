@@ -9,7 +9,7 @@
 
 namespace uav_landing {
 
-/// What the autopilot is given (nodelet autopilot). visit() as in uav_landing/parameters.h.
+/// What the autopilot is given (nodelet autopilot). visit() as in uav_landing/parameters/parameters.h.
 struct AutopilotParameters {
   double max_range = 655.0;
   double max_rate = 50.0;

@@ -9,6 +9,7 @@
 
 #include "rig_frames.h"
 #include "uav_landing/motion/imu_buffer.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
 

@@ -1,7 +1,5 @@
 #include "message_parts.h"
 
-#include <cmath>
-
 #include "message_arrays.h"
 
 namespace uav_landing {

@@ -9,8 +9,8 @@
 namespace uav_landing {
 
 /// What concerns ROS alone and therefore is not in config/*.yaml. Every nodelet accepts all of them, so that
-/// one set serves all; each reads those that concern it. visit() as in uav_landing/parameters.h, with text()
-/// for strings.
+/// one set serves all; each reads those that concern it. visit() as in uav_landing/parameters/parameters.h,
+/// with text() for strings.
 struct NodeParameters {
   std::string camera = "/stereo";
   std::string image_transport = "raw";
@@ -65,8 +65,8 @@ struct NodeParameters {
 };
 
 /// Reads a nodelet's private parameters: the keys of NodeParameters, and the section's own (see
-/// uav_landing/parameters.h). Defaults stay where nothing is given. The failure names the parameter,
-/// or what is wrong with the config_file.
+/// uav_landing/parameters/parameters.h). Defaults stay where nothing is given. The failure names the
+/// parameter, or what is wrong with the config_file.
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);

@@ -11,7 +11,7 @@
 
 namespace uav_landing {
 
-/// Names, ranges and meanings of a parameter struct (visit() as in uav_landing/parameters.h) as
+/// Names, ranges and meanings of a parameter struct (visit() as in uav_landing/parameters/parameters.h) as
 /// dynamic_reconfigure tells them to its clients; the values are its defaults.
 class ReconfigureDescription {
  public:

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "uav_landing/parameters/parameter_file.h"
+#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 

@@ -5,6 +5,7 @@
 
 #include "uav_landing/base/failure.h"
 #include "uav_landing/lines/line_segments.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
 

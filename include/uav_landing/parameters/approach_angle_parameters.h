@@ -2,6 +2,8 @@
 
 namespace uav_landing {
 
+// visit(): see parameters.h.
+
 enum class HoughMethod { kScanLines, kProbabilistic, kStandard };
 enum class NormalSource { kFused, kVanishingLine };
 enum class FoeMethod { kMotion, kSlidingWindow };

@@ -2,6 +2,8 @@
 
 namespace uav_landing {
 
+// visit(): see parameters.h.
+
 enum class HeightSource { kPlane, kPoints };
 enum class ReconstructionAngle { kPitch, kApproach };
 

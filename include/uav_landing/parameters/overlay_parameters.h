@@ -2,6 +2,8 @@
 
 namespace uav_landing {
 
+// visit(): see parameters.h.
+
 /// The overlay picture (nodelet overlay).
 struct OverlayParameters {
   int scale = 0;

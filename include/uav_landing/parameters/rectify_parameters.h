@@ -2,6 +2,8 @@
 
 namespace uav_landing {
 
+// visit(): see parameters.h.
+
 /// Pairing and rectification (nodelet rectify).
 struct RectifyParameters {
   bool approximate_sync = false;

@@ -2,6 +2,8 @@
 
 namespace uav_landing {
 
+// visit(): see parameters.h.
+
 enum class MatchingCost { kZncc, kSsd };
 
 /// Sparse stereo and the ground plane (nodelet stereo_depth; paper 3.1, eq 3).

@@ -17,8 +17,8 @@ std::string nameOf(const FaultCombination& faults);
 class FaultChoice {
  public:
   /// names: of faults, and pairs as a+b; without any all faults. drawn_pairs: of faults besides, for each
-  /// seed. Faults that need a scene only where it is simulated. Throws std::runtime_error for an unknown
-  /// name.
+  /// seed. Faults that need a scene only where it is simulated. Throws std::runtime_error for what names no
+  /// fault or pair.
   FaultChoice(const std::vector<std::string>& names, int drawn_pairs, bool simulated);
   /// Each fault alone, the pairs asked for, and some pairs drawn by the seed.
   std::vector<FaultCombination> combinations(uint64_t seed) const;

@@ -4,6 +4,7 @@
 
 #include "faults/fault_choice.h"
 #include "faults/fault_score.h"
+#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 
@@ -12,7 +13,7 @@ using FaultObserver =
     std::function<void(double time, const LandingResult&, double true_height, bool faulted)>;
 
 /// Takes a flight with faults through the chain. in_flight: first frame with the faults that come in flight.
-/// onset: frame from which on faults are scored.
+/// onset: frame from which on faults are scored. seed: of what faults draw. observe: may be empty.
 FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, int in_flight, int onset,
                          uint64_t seed, const Parameters& parameters, const FaultObserver& observe);
 

@@ -9,6 +9,8 @@
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/approach_simulator.h"
+#include "uav_landing/simulator/ground_profile.h"
+#include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {
 
@@ -26,8 +28,11 @@ struct Flight {
   double settled = 1.0;  ///< s at the start that do not count
 };
 
+/// A flight, and the rig that it points to.
 struct SimulatedFlight {
-  explicit SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile);
+  SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile);
+  SimulatedFlight(const SimulatedFlight&) = delete;
+  SimulatedFlight& operator=(const SimulatedFlight&) = delete;
   CameraRig rig;
   Flight flight;
 };
@@ -41,7 +46,7 @@ std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn
 Flight readFlight(const std::string& folder);
 /// So many frames of it, from this one on.
 Flight cutFlight(const Flight& whole, int first, int frames);
-/// The true height at any time between the frames: stamps and pictures may be those of others.
+/// The true height at any time between the frames, two at least: stamps and pictures may be those of others.
 double trueHeight(const Flight& flight, double time);
 
 }  // namespace uav_landing

@@ -13,6 +13,7 @@
 
 #include "imu_input.h"
 #include "offline/processed_pair.h"
+#include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
 

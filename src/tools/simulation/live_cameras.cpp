@@ -17,7 +17,7 @@ namespace {
 const ros::Duration kTick(0.01);  // of the clock
 constexpr uint32_t kQueue = 10;
 constexpr double kPatience = 600;           // s, until somebody subscribes
-constexpr double kConnectionPatience = 10;  // s, until all that subscribe are connected
+constexpr double kConnectionPatience = 20;  // s, until all that subscribe are connected
 
 /// How many nodes the master knows to subscribe each topic; nothing when it does not answer.
 std::map<std::string, uint32_t> countSubscribers() {
@@ -25,6 +25,7 @@ std::map<std::string, uint32_t> countSubscribers() {
   XmlRpc::XmlRpcValue request, response, state;
   request[0] = ros::this_node::getName();
   if (!ros::master::execute("getSystemState", request, response, state, false)) return counts;
+  if (state.getType() != XmlRpc::XmlRpcValue::TypeArray || state.size() < 2) return counts;
   XmlRpc::XmlRpcValue& subscribers = state[1];  // after the publishers
   for (int i = 0; i < subscribers.size(); ++i)
     counts[subscribers[i][0]] = static_cast<uint32_t>(subscribers[i][1].size());
@@ -66,20 +67,21 @@ bool LiveCameras::allConnected() const {
 }
 
 bool LiveCameras::waitForSubscribers(const ros::Time& start) {
-  const auto waitFor = [&](double patience, auto&& condition) {
+  const auto waitFor = [&](double patience, int ticks, auto&& condition) {
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(patience);
-    while (ros::ok() && ros::WallTime::now() < deadline) {
-      if (condition()) return true;
+    for (int tick = 0; ros::ok() && ros::WallTime::now() < deadline; ++tick) {
+      if (tick % ticks == 0 && condition()) return true;
       setClock(start);
       ros::WallDuration(kTick.toSec()).sleep();
     }
     return false;
   };
-  if (!waitFor(kPatience, [&] { return seen(); })) {
+  if (!waitFor(kPatience, 1, [&] { return seen(); })) {
     if (!ros::ok()) return false;
     throw std::runtime_error("nobody has subscribed the cameras for 10 minutes");
   }
-  if (!waitFor(kConnectionPatience, [&] { return allConnected(); }))
+  // The master is asked ten times a second.
+  if (!waitFor(kConnectionPatience, 10, [&] { return allConnected(); }) && ros::ok())
     ROS_WARN("not all subscribers of the cameras, the truth and the clock are connected: starting without");
   return ros::ok();
 }

@@ -22,8 +22,9 @@ class LiveCameras {
               const sensor_msgs::CameraInfo& right, double speed);
 
   /// Until both cameras have a subscriber, and all that the master knows to subscribe one of the topics are
-  /// connected, so that nobody misses the first pairs; for those ten seconds at most, as one may have died.
-  /// The clock stands at start. False when ROS was shut down; throws when nobody subscribes for ten minutes.
+  /// connected, so that nobody misses the first pairs; for those twenty seconds at most, as one may have
+  /// died. The clock stands at start. False when ROS was shut down; throws when nobody subscribes for ten
+  /// minutes.
   bool waitForSubscribers(const ros::Time& start);
   /// Puts the clock forward.
   void setClock(const ros::Time& now);
