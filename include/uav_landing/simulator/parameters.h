@@ -3,9 +3,9 @@
 namespace uav_landing {
 
 // Every parameter of the simulator: name, default, range, unit and meaning, by the same visitor as
-// uav_landing/parameters/parameters.h. config/simulator/full_scale.yaml explains how they play together. The defaults
-// are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before gain and
-// offset.
+// uav_landing/parameters/parameters.h. config/simulator/full_scale.yaml explains how they play together. The
+// defaults are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before
+// gain and offset.
 
 /// What both cameras have in common (section image).
 struct SimulatedImageParameters {
