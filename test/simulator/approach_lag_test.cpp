@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "support/small_pictures.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -14,7 +13,8 @@ constexpr double kRate = 20;  // Hz
 
 /// Low over the runway, with small pictures and noise.
 SimulatorParameters lowPass() {
-  SimulatorParameters p = test::smallPictures(320, 240, 277);
+  SimulatorParameters p;
+  p.setPictures(320, 240, 277);
   p.path.rate = kRate;
   p.path.speed = 20;
   p.path.start_x = -40;

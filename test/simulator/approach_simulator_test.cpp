@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "support/small_pictures.h"
 #include "uav_landing/simulator/sensor.h"
 
 namespace uav_landing {
@@ -12,7 +11,8 @@ namespace {
 
 /// Two seconds with small pictures.
 SimulatorParameters smallApproach() {
-  SimulatorParameters p = test::smallPictures(160, 120, 138);
+  SimulatorParameters p;
+  p.setPictures(160, 120, 138);
   p.path.duration = 2;
   p.path.rate = 10;
   return p;

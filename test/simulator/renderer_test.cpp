@@ -281,14 +281,9 @@ TEST(Renderer, ACrestHidesTheGroundBehindIt) {
 
 /// The pose's picture by ideal lenses, the picture enlarged this many times and averaged back.
 cv::Mat averagedPicture(SimulatorParameters p, int finer) {
-  SimulatedCameraParameters ideal;
-  ideal.fx = ideal.fy = 280.0 * finer;
-  ideal.cx = 160.0 * finer - 0.5;
-  ideal.cy = 120.0 * finer - 0.5;
-  p.left_camera = p.right_camera = ideal;
+  p.left_camera = p.right_camera = {};
   p.rig = {};
-  p.image.width = 320 * finer;
-  p.image.height = 240 * finer;
+  p.setPictures(320 * finer, 240 * finer, 280.0 * finer);
   cv::Mat picture;
   cv::resize(renderPair(p, kPose).left, picture, cv::Size(320, 240), 0, 0, cv::INTER_AREA);
   return picture;

@@ -2,7 +2,6 @@
 // not.
 #include <gtest/gtest.h>
 
-#include "support/small_pictures.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -13,7 +12,8 @@ constexpr double kTick = 0.005;          // s, between the simulated pictures
 constexpr int kTicks = 10, kPairs = 36;  // of a pair, and how many
 
 SimulatorParameters approach() {
-  SimulatorParameters p = test::smallPictures(320, 240, 277);
+  SimulatorParameters p;
+  p.setPictures(320, 240, 277);
   p.path.rate = 1 / kTick;
   p.path.speed = 20;
   p.path.start_x = -60;

@@ -24,6 +24,13 @@ struct RigRotation {
   int count = 0;                                                     ///< corners it was measured by
 
   bool known() const { return w.allFinite() && covariance.allFinite(); }
+  /// What vertical disparities tell: (rx, rz), rad, whatever ry is.
+  Eigen::Vector2d pitchAndRoll() const { return {w.x(), w.z()}; }
+  /// Of that, rad^2.
+  Eigen::Matrix2d pitchAndRollCovariance() const {
+    return (Eigen::Matrix2d() << covariance(0, 0), covariance(0, 2), covariance(2, 0), covariance(2, 2))
+        .finished();
+  }
 };
 
 /// Where the right camera is from the left one, against its calibration: at b (1, t.x, t.y), rectified axes

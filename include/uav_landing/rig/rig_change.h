@@ -18,6 +18,8 @@ class RigChange {
 
     /// But for one in a thousand.
     bool agrees() const;
+    /// Far off, and for certain.
+    bool isLarge() const;
   };
   /// Against the mean of the pairs before; none for the first ones.
   std::optional<Innovation> compare(const RigRotation& measured) const;
@@ -28,10 +30,8 @@ class RigChange {
   bool learn(double T, const RigRotation& measured, bool agrees);
   /// What has been learned, as one measurement of the pitch and roll.
   RigRotation mean() const;
-  /// Whether it is far from the pairs before, and for certain.
-  bool differs(const RigRotation& measured) const;
-  /// Whether it says nothing of the rig: it differs, and has not stayed the same for a second, or what came
-  /// after another rotation has not settled.
+  /// Whether it says nothing of the rig: far from the pairs before, and has not stayed the same for a second,
+  /// or what came after another rotation has not settled.
   bool doubts(const RigRotation& measured) const;
   /// False while another rotation than before is not yet known for long enough to be the rig's: that of
   /// images that do not belong together changes.

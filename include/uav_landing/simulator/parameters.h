@@ -1,5 +1,7 @@
 #pragma once
 
+#include <initializer_list>
+
 namespace uav_landing {
 
 // Every parameter of the simulator: name, default, range, unit and meaning, by the same visitor as
@@ -316,6 +318,18 @@ struct SimulatorParameters {
   SimulatedGustParameters gust;
   SimulatedImuParameters imu;
   SimulatedRandomParameters random;
+
+  /// Pictures of this size for both cameras, px, with this focal length and the principal points in their
+  /// middle.
+  void setPictures(int width, int height, double f) {
+    image.width = width;
+    image.height = height;
+    for (SimulatedCameraParameters* camera : {&left_camera, &right_camera}) {
+      camera->fx = camera->fy = f;
+      camera->cx = 0.5 * (width - 1);
+      camera->cy = 0.5 * (height - 1);
+    }
+  }
 
   /// Calls v(section name, parameter struct) for every section.
   template <class Visitor>

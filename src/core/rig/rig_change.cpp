@@ -18,13 +18,8 @@ constexpr double kSame = 13.8;                 // chi-square limit of 1e-3 with 
 constexpr double kMostDisorder = 2.0;          // stddev of a pair over that of the pairs before
 constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
 
-Eigen::Vector2d valueOf(const RigRotation& rotation) { return {rotation.w.x(), rotation.w.z()}; }
-
 Eigen::Matrix2d covarianceOf(const RigRotation& rotation) {
-  Eigen::Matrix2d result;
-  result << rotation.covariance(0, 0), rotation.covariance(0, 2), rotation.covariance(2, 0),
-      rotation.covariance(2, 2);
-  return result + kFloor * kFloor * Eigen::Matrix2d::Identity();
+  return rotation.pitchAndRollCovariance() + kFloor * kFloor * Eigen::Matrix2d::Identity();
 }
 
 }  // namespace
@@ -33,6 +28,8 @@ bool RigChange::Innovation::agrees() const {
   return difference.dot(covariance.inverse() * difference) <= kSame;
 }
 
+bool RigChange::Innovation::isLarge() const { return difference.norm() > kSmall && !agrees(); }
+
 RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) const {
   // What neighbouring rows share is estimated from few parts of one image: where it is small by chance, the
   // pairs before know better, and where it is large, images of two scenes must not be excused by the disorder
@@ -40,12 +37,12 @@ RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) cons
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> against(covarianceOf(measured), covariance);
   const Eigen::Vector2d ratios = against.eigenvalues().cwiseMax(1).cwiseMin(kMostDisorder * kMostDisorder);
   const Eigen::Matrix2d axes = covariance * against.eigenvectors();
-  return {valueOf(measured) - value, covariance + axes * ratios.asDiagonal() * axes.transpose()};
+  return {measured.pitchAndRoll() - value, covariance + axes * ratios.asDiagonal() * axes.transpose()};
 }
 
 void RigChange::Mean::add(double T, const RigRotation& measured) {
   const double share = learned > 0 ? std::clamp(T / std::min(learned + T, kMemory), 0.0, 1.0) : 1.0;
-  value += share * (valueOf(measured) - value);
+  value += share * (measured.pitchAndRoll() - value);
   // Pairs in a row see the same texture: their mean is not better than the best of them.
   covariance += share * (covarianceOf(measured) - covariance);
   // For how long it had been so before the first pair nobody knows.
@@ -57,15 +54,11 @@ std::optional<RigChange::Innovation> RigChange::compare(const RigRotation& measu
   return mean_.compare(measured);
 }
 
-bool RigChange::differs(const RigRotation& measured) const {
-  const std::optional<Innovation> off = compare(measured);
-  return off && off->difference.norm() > kSmall && !off->agrees();
-}
-
 bool RigChange::doubts(const RigRotation& measured) const {
   if (!settled()) return true;
+  const std::optional<Innovation> off = compare(measured);
   const bool stayed = other_.learned >= kSettled && other_.compare(measured).agrees();
-  return differs(measured) && !stayed;
+  return off && off->isLarge() && !stayed;
 }
 
 bool RigChange::settled() const { return !anew_ || mean_.learned >= kSettled; }

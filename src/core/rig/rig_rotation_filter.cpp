@@ -64,10 +64,7 @@ void RigRotationFilter::setPrior(double bias_stddev) {
 
 void RigRotationFilter::updateVertical(const RigRotation& measured) {
   if (!measured.known() || !(calibrated_variance_ > 0)) return;
-  // Marginal over ry.
-  Eigen::Matrix2d covariance;
-  covariance << measured.covariance(0, 0), measured.covariance(0, 2), measured.covariance(2, 0),
-      measured.covariance(2, 2);
+  const Eigen::Matrix2d covariance = measured.pitchAndRollCovariance();
   // Without a definite covariance, as in a message whose field was never filled in, it would leave no state.
   const Eigen::LLT<Eigen::Matrix2d> decomposed(covariance);
   if (!(covariance.trace() > 0) || decomposed.info() != Eigen::Success) return;
@@ -75,7 +72,7 @@ void RigRotationFilter::updateVertical(const RigRotation& measured) {
   Eigen::Matrix<double, 2, kSize> rows = Eigen::Matrix<double, 2, kSize>::Zero();
   rows(0, 0) = rows(0, 4) = rows(1, 2) = rows(1, 5) = 1;
   information_ += rows.transpose() * weight * rows;
-  right_ += rows.transpose() * weight * Eigen::Vector2d(measured.w.x(), measured.w.z());
+  right_ += rows.transpose() * weight * measured.pitchAndRoll();
   solve();
 }
 

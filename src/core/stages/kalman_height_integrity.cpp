@@ -88,9 +88,9 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   if (std::isfinite(stereo.row_agreement))
     tests_.addRatio(Consistency::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement,
                     1 - kLeastRowAgreement);
-  if (const auto change = rig_change_.compare(stereo.vertical_rotation))
-    tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
-  const bool bent = tests_.failed(Consistency::kRigRotation) || rig_change_.differs(stereo.vertical_rotation);
+  const auto change = rig_change_.compare(stereo.vertical_rotation);
+  if (change) tests_.add(Consistency::kRigRotation, change->difference, change->covariance);
+  const bool bent = tests_.failed(Consistency::kRigRotation) || (change && change->isLarge());
   if ((bent || pairs_failed_ == 0 || !rig_change_.settled()) &&
       rig_change_.learn(T, stereo.vertical_rotation, !bent))
     rig_rotation_.startAnew(rig_change_.mean());

@@ -51,13 +51,7 @@ SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& para
   // that a fault has nothing to mislead.
   const double height = 3 * std::pow(4.0, random.uniform(0.0, 1.0));
   SimulatorParameters p = drawSnippet(seed * 1000003, height, frames, parameters);
-  p.image.width = 320;
-  p.image.height = 240;
-  for (SimulatedCameraParameters* camera : {&p.left_camera, &p.right_camera}) {
-    camera->fx = camera->fy = 277.13;
-    camera->cx = 159.5;
-    camera->cy = 119.5;
-  }
+  p.setPictures(320, 240, 277.13);
   p.rig.x = 2;
   return p;
 }
