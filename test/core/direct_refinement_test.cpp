@@ -133,6 +133,21 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
   EXPECT_GT(sum / kPairs, 1.0);
 }
 
+/// Each block alone tells next to nothing here: an average of their shifts would hardly be better.
+TEST(DirectRefinement, UsesFaintTextureEverywhere) {
+  constexpr int kPairs = 20;
+  double squares = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    Scene scene;
+    scene.ground = GroundRenderer(200 + i);
+    scene.render({0.25, 80, 5}, {0.25, 80, 5});
+    const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
+    ASSERT_TRUE(fit) << fit.error().message();
+    squares += std::pow(scene.error(fit->plane.g), 2);
+  }
+  EXPECT_LT(std::sqrt(squares / kPairs), 0.135) << "px";
+}
+
 TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {
   Scene scene;
   scene.ground.line_offset = 1;

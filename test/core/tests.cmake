@@ -46,6 +46,7 @@ uav_landing_add_gtest(plane_fit_test test/core/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(region_planes_test test/core/region_planes_test.cpp)
 uav_landing_add_gtest(row_matching_test test/core/row_matching_test.cpp)
+uav_landing_add_gtest(shift_evidence_test test/core/shift_evidence_test.cpp)
 uav_landing_add_gtest(surface_profile_test test/core/surface_profile_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(vertical_disparity_test test/core/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)

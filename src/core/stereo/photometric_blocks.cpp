@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
 #include "base/lanes.h"
 #include "base/median.h"
@@ -19,51 +18,10 @@ constexpr int kPixels = PhotometricBlocks::kPixels;
 constexpr int kMargin = 2;
 // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
 constexpr double kLeastDisparity = 0.3;
-// Sobel's kernel is this many times a derivative; the sum of its squares over that squared.
+// Sobel's kernel is this many times a derivative.
 constexpr float kSobelScale = 8.f;
-constexpr double kSlopeNoise = 0.1875;
 // Squares of grey levels in a block below which it shows nothing.
 constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
-// Variance of the noise in the right image after interpolation over that before (0.64 of it is left half-way
-// between two pixels).
-constexpr double kInterpolated = 0.8;
-// The variance that a block of nothing but noise may show, over the lower quartile: three sigma of
-// chi-square.
-constexpr double kNoiseScatter = 1.45;
-// Squared correlation, noise taken off, below which a block does not show what the other image has there.
-constexpr double kLeastCorrelation = 0.75;
-// Shares of a block's grey levels and derivatives that must be more than noise.
-constexpr double kLeastShareOfGrey = 0.25, kLeastShareOfSlope = 0.1;
-// Least gain of the right image over the left one.
-constexpr double kLeastGain = 0.2;
-// Variance of rounding to whole grey levels in two images.
-constexpr double kLeastVariance = 1.0 / 6.0;
-
-// The lower quartile of the variances that blocks of noise show, over their mean (chi-square).
-constexpr double kQuartile = 0.915;
-// Sum of the products of Sobel's kernel, as a derivative, and the one of fourth order; variance per pixel of
-// the products of what they make of noise with a variance of 1, summed over a block.
-constexpr double kProductNoise = 1.0 / 3, kProductScatter = 0.505;
-// Of the usual signal over the noise: less cannot be told from none.
-constexpr double kLeastUsual = 0.05;
-
-// What of a signal measured with normal errors was there: the mean by Bayes' rule. A signal is positive, and
-// strong ones are rare but not unheard of (density 1 / (usual + signal)^2, its logarithm taken as linear near
-// what was measured). Among many blocks with next to nothing to see, noise makes some look as if they had;
-// believed, they would be weighted, and claim to know, as much as that.
-double signalBehind(double measured, double stddev, double usual) {
-  constexpr double kCertain = 6;
-  const double most_likely = measured - 2 * stddev * stddev / (usual + std::max(measured, 0.0));
-  const double z = most_likely / stddev;
-  if (z > kCertain) return most_likely;
-  if (z < -kCertain) return -stddev / z;
-  const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI);
-  return most_likely + stddev * density / (0.5 * std::erfc(-z / std::sqrt(2.0)));
-}
-
-double lowerQuartileOf(const std::vector<double>& values) {
-  return orderStatistic(values.data(), values.size(), values.size() / 4);
-}
 
 bool set(const cv::Mat& mask, double u, double v) {
   const int x = cvRound(u), y = cvRound(v);
@@ -262,95 +220,6 @@ void PhotometricBlocks::choose(const cv::Mat& left, const StereoRig& rig, const 
     blocks_.emplace_back();
     if (!makeBlock(left, candidate, blocks_.back())) blocks_.pop_back();
   }
-}
-
-void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) {
-  products_.clear();
-  const float step = static_cast<float>(1 - shift.a);
-  for (const Block& block : blocks_) {
-    const double begin = block.u - shift.at(block.u, block.v), end = begin + step * (kWidth - 1);
-    const double down = -shift.b * (kHeight - 1);
-    if (std::min({begin, end, begin + down, end + down}) < kMargin ||
-        std::max({begin, end, begin + down, end + down}) > right.cols - 1 - kMargin) {
-      continue;
-    }
-    const float reference = right.at<uchar>(block.v, static_cast<int>(begin));
-    const BlockSums sums = addUp(right.rowRange(block.v, block.v + kHeight), begin, -shift.b, step, reference,
-                                 block.grey.data(), block.slope.data());
-    const double total = sums.r, grey = sums.greys;
-    const double explained = total * total / kPixels + grey * grey / block.grey_energy;
-    products_.push_back({&block, grey, sums.slopes, (sums.squares - explained) / (kPixels - 2)});
-  }
-}
-
-double PhotometricBlocks::Products::varianceAt(double gain) const {
-  const double energy = block->grey_energy, beside_own = variance * (kPixels - 2);
-  return (beside_own + grey * grey / energy - 2 * gain * grey + gain * gain * energy) / (kPixels - 1);
-}
-
-std::optional<PhotometricBlocks::Photometry> PhotometricBlocks::photometry() const {
-  constexpr int kRounds = 3;
-  std::vector<double> variances(products_.size());
-  Photometry found{1, 0, 0};
-  for (int round = 0; round < kRounds; ++round) {
-    // Blocks have their own gains while the common one is not known. That of a block of nothing but noise is
-    // about none, so its residuals lack the left image's noise: alone they would make the noise half as large
-    // as it is.
-    std::transform(products_.begin(), products_.end(), variances.begin(), [&](const Products& products) {
-      return round == 0 ? products.variance : products.varianceAt(found.gain);
-    });
-    // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the
-    // noise.
-    found.residual = lowerQuartileOf(variances);
-    found.noise = found.residual / kQuartile / (found.gain * found.gain + kInterpolated);
-    // The noise of the left image makes its squares larger than what both images have in common.
-    double in_common = 0, squares = 0;
-    for (const Products& products : products_) {
-      in_common += products.grey;
-      squares += products.block->grey_energy - found.noise * kPixels;
-    }
-    found.gain = in_common / squares;
-    if (!(squares > 0 && found.gain > kLeastGain)) return std::nullopt;
-  }
-  return found;
-}
-
-int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches) {
-  matches.clear();
-  multiply(right, shift);
-  if (products_.empty()) return 0;
-  const std::optional<Photometry> common_to_all = photometry();
-  if (!common_to_all) return 0;
-  const auto [gain, noise, residual] = *common_to_all;
-  const double grey_noise = noise * kPixels, slope_noise = noise * kPixels * kSlopeNoise;
-  const double product_noise = noise * kPixels * kProductNoise;
-  const double product_stddev = noise * std::sqrt(kPixels * kProductScatter);
-  const double usual = std::max(usual_energy_ - slope_noise, kLeastUsual * slope_noise);
-  int informative = 0;
-  for (const Products& products : products_) {
-    const Block& block = *products.block;
-    const double common = block.grey_energy - grey_noise;
-    if (common < kLeastShareOfGrey * block.grey_energy) continue;
-    // The derivative less what of it looks like a gain: slope - mixed grey.
-    const double mixed = block.both / common;
-    const double energy = block.slope_energy - 2 * mixed * block.both + mixed * mixed * block.grey_energy;
-    // What a shift by a pixel does to the score.
-    const double signal =
-        signalBehind(block.along_slope - mixed * block.along_grey - product_noise, product_stddev, usual);
-    const double response = gain * signal;
-    if (signal < kLeastShareOfSlope * energy) continue;
-    const double score = products.slope - mixed * products.grey;
-    const double variance = std::max(products.variance - score * score / energy / kPixels, kLeastVariance);
-    ++informative;
-    // What the right image has beside noise: the part that is like the block, and the rest.
-    const double alike = products.grey * products.grey / block.grey_energy * (common / block.grey_energy);
-    const double other = kPixels * std::max(0.0, variance - kNoiseScatter * residual);
-    if (alike < kLeastCorrelation * (alike + other)) continue;
-    matches.push_back({block.centre_u, block.centre_v, score / response,
-                       std::sqrt(variance * energy) / response,
-                       (block.down_slope - mixed * block.down_grey) / signal});
-  }
-  return informative;
 }
 
 }  // namespace uav_landing

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stereo/block_sums.h"
+#include "stereo/shift_evidence.h"
 #include "stereo/shift_model.h"
 
 namespace uav_landing {
@@ -28,13 +29,14 @@ class PhotometricBlocks {
   void choose(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift, int count);
 
   struct Match {
-    double u, v;    ///< where in the left image the block's gradients are, pixels
+    double u, v;    ///< where in the left image the gradients of the block (or blocks) are, pixels
     double shift;   ///< left pixels by which the left image is to be shifted to fit the warped right one
     double stddev;  ///< of it if the residuals of the pixels are independent, pixels
     double lean;    ///< by how much the shift grows where the right image lies a pixel higher: slanted edges
   };
-  /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Returns
-  /// how many show more than noise; matches are those of them that look like their places.
+  /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Blocks
+  /// with hardly more than noise are taken together with others in their row and count as one. Returns how
+  /// many show more than noise; matches are those of them that look like their places.
   int compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches);
 
  private:
@@ -73,6 +75,10 @@ class PhotometricBlocks {
   bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const;
   void multiply(const cv::Mat& right, const ShiftModel& shift);
   std::optional<Photometry> photometry() const;
+  // None where the left image shows nothing but noise.
+  std::optional<ShiftEvidence> evidenceOf(const Products& products, const Photometry& photometry) const;
+  // variance: of the right image's grey levels beside gain, offset and shift.
+  static bool looksAlike(const Products& products, const Photometry& photometry, double variance);
 
   cv::Mat left_mask_, right_mask_;
   cv::Mat gradient_;  // CV_16S, Sobel along the row, where there may be ground
