@@ -262,6 +262,19 @@ ApproachAngleResult withoutTurning(double stamp) {
   return approach;
 }
 
+/// The pairs of a second see the same texture.
+TEST(KalmanHeightStage, DoesNotClaimThatTheErrorsOfThePitchAverageOutAltogether) {
+  KalmanHeightStage stage(makeRig(), {});
+  std::vector<double> variances;
+  for (int i = 0; i < 40; ++i) {
+    ApproachAngleResult exactly = withoutTurning(i * kStep);
+    exactly.step.covariance *= 1e-4;
+    variances.push_back(stage.process(stereoAt(i * kStep, 10), exactly).pitch_variance);
+  }
+  EXPECT_LT(variances.back(), 0.6 * variances.front());
+  EXPECT_GT(variances.back(), variances.front() / 3);
+}
+
 TEST(KalmanHeightStage, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBefore) {
   KalmanHeightStage stage(makeRig(), {});
   double stamp = 0;

@@ -190,8 +190,12 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
-  const AttitudeFilter::Estimate estimate = attitude_.update(stamp, plane.normal(), own, turn, common);
-  average = {estimate.normal, estimate.covariance + estimate.commonCovariance()};
+  // Pairs of a second see the same texture: a share of what makes them differ is alike in all of them, by
+  // the simulator's errors of one pair and of a dozen (a fifth to a half, over heights and noise).
+  constexpr double kLasting = 1.0 / 3;
+  const AttitudeFilter::Estimate estimate =
+      attitude_.update(stamp, plane.normal(), own, turn, common + kLasting * own);
+  average = {estimate.normal, (1 - kLasting) * estimate.covariance + estimate.commonCovariance()};
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
   if (std::isfinite(estimate.ratio))
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
