@@ -28,7 +28,7 @@ def measure(options):
         return
     path = WORK / "noise" / "bound.csv"
     path.parent.mkdir(parents=True, exist_ok=True)
-    run(PROGRAM, "--output", path)
+    run(PROGRAM, "--output", path, "--scenes", 24, "--pairs", 8)
     with path.open() as file:
         kept.keep("noise", [{name: number(row, name) for name in row} for row in csv.DictReader(file)])
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "uav_landing/simulator/ground_profile.h"
 #include "uav_landing/simulator/trajectory.h"
 
 namespace uav_landing {
@@ -58,6 +59,30 @@ TEST(RandomApproach, CalibrationErrorsAreAsLargeAsTheEstimatorIsTold) {
   }
   EXPECT_LT(std::abs(sum) / 1000, 0.1);
   EXPECT_LT(std::abs(products) / 1000, 0.1);
+}
+
+TEST(RandomApproach, GroundBendsByAsMuchAsTheEstimatorIsToldAndTheHeightOverItStays) {
+  Parameters parameters;
+  parameters.stereo_depth.slope_change_deg = 0.5;
+  std::vector<double> changes;
+  int bent = 0, beyond = 0;
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    SimulatorParameters p = drawSnippet(seed, 10, 13, parameters);
+    bendGround(seed, parameters, p);
+    changes.push_back(p.profile.slope_after_deg - p.profile.slope_before_deg);
+    const Trajectory path(p.path, p.wobble, p.gust, p.random.seed);
+    const Eigen::Vector3d end = path.pose(p.path.duration).position;
+    const GroundProfile ground(p.profile);
+    ASSERT_NEAR(end.z() - ground.height(end.x()), 10, 0.2);
+    if (ground.flat()) continue;
+    ++bent;
+    beyond += p.profile.change_start > end.x();
+    ASSERT_GT(p.profile.change_start + p.profile.change_length, end.x() - 0.5) << "where it could be seen";
+  }
+  EXPECT_NEAR(bent, 800, 90) << "four kinds with a chance of 0.1 each";
+  EXPECT_NEAR(beyond, 2.0 / 3 * bent, 60);
+  // A tenth each of 1/16, 1/4, 1 and 2 times 0.5 degrees.
+  EXPECT_NEAR(spread(changes), 0.5 * std::sqrt(0.1 * (1 / 256.0 + 1 / 16.0 + 1 + 4)), 0.05);
 }
 
 TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround) {

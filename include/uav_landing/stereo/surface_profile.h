@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,11 @@
 #include "uav_landing/stereo/plane_fit.h"
 
 namespace uav_landing {
+
+/// Shares of slope_change that a surface may bend by, and how likely each of them is taken to be for what the
+/// covariance must hold; the rest is for a plane.
+constexpr std::array<double, 4> kBendShares = {1.0 / 16, 1.0 / 4, 1, 2};
+constexpr double kBendChance = 0.1;
 
 /// The surface ahead where it is not a plane: its slope along the line of sight wanders, as a random walk
 /// over the distance from the camera.

@@ -18,11 +18,9 @@ constexpr int kKinks = 2 * (kStretches + 1);
 using Kinks = Eigen::Matrix<double, kKinks, 1>;
 using KinkMatrix = Eigen::Matrix<double, kKinks, kKinks>;
 
-// Shares of slope_change that a surface may have, and what each is worth beforehand; the rest is for none.
 // What stands on the ground far ahead looks like a sag, too, but not as clearly: to be believed, a bend must
 // show by some five sigma. One that may just as well be there is in the covariance.
-constexpr std::array<double, 4> kShares = {1.0 / 16, 1.0 / 4, 1, 2};
-constexpr double kBelieved = 1e-6, kPossible = 0.1;
+constexpr double kBelieved = 1e-6;
 // Fits of the most bent surface before that of the likely one.
 constexpr int kSteps = 2;
 // Errors of the calibration's lens model differ from row to row: as many waves over the rows besides those
@@ -149,18 +147,18 @@ class ProfileFit {
   }
 
   Bend mixture(double variance, double prior) const {
-    std::array<double, kShares.size()> logs;
+    std::array<double, kBendShares.size()> logs;
     double largest = 0;
-    for (size_t i = 0; i < kShares.size(); ++i) {
-      logs[i] = evidence(kShares[i] * kShares[i] * variance);
+    for (size_t i = 0; i < kBendShares.size(); ++i) {
+      logs[i] = evidence(kBendShares[i] * kBendShares[i] * variance);
       largest = std::max(largest, logs[i]);
     }
-    double sum = (1 - prior * kShares.size()) * std::exp(-largest);
+    double sum = (1 - prior * kBendShares.size()) * std::exp(-largest);
     for (double& value : logs) sum += value = prior * std::exp(value - largest);
     Bend result;
     KinkMatrix squares = KinkMatrix::Zero();
-    for (size_t i = 0; i < kShares.size(); ++i) {
-      const Bend one = bend(kShares[i] * kShares[i] * variance);
+    for (size_t i = 0; i < kBendShares.size(); ++i) {
+      const Bend one = bend(kBendShares[i] * kBendShares[i] * variance);
       result.mean += logs[i] / sum * one.mean;
       squares += logs[i] / sum * (one.covariance + one.mean * one.mean.transpose());
     }
@@ -310,7 +308,7 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   ProfileFit fit(rig, samples, flat, bias_stddev);
   if (!fit.possible()) return std::nullopt;
   const double per_metre = std::pow(slope_change / 100, 2);
-  const double most = std::pow(kShares.back(), 2) * per_metre;
+  const double most = std::pow(kBendShares.back(), 2) * per_metre;
   // First as bent as may be, for the distances and to see the noise; then as bent as it is.
   for (int step = 0; step < kSteps; ++step) {
     fit.accumulate(1);
@@ -319,7 +317,7 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   }
   fit.accumulate(fit.noise(bias_stddev));
   Bend bend = fit.mixture(per_metre, kBelieved);
-  const Bend possible = fit.mixture(per_metre, kPossible);
+  const Bend possible = fit.mixture(per_metre, kBendChance);
   const Kinks missed = possible.mean - bend.mean;
   bend.covariance = possible.covariance + missed * missed.transpose();
   if (!fit.flatten(bend, limits, bias_stddev)) return std::nullopt;

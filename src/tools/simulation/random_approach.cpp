@@ -4,6 +4,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "uav_landing/simulator/ground_profile.h"
+#include "uav_landing/stereo/surface_profile.h"
+
 namespace uav_landing {
 namespace {
 
@@ -155,6 +158,25 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
   place(height + sink * p.path.duration, draw.uniform(0, 400), y, p.path);
   if (imu) drawImu(draw, calibrationPrior(parameters, p.left_camera.fx), p.imu);
   return p;
+}
+
+void bendGround(uint64_t seed, const Parameters& parameters, SimulatorParameters& snippet) {
+  constexpr double kLength = 100;               // m, that slope_change_deg refers to
+  constexpr double kBefore = 100, kSeen = 200;  // m around the aircraft within which the change begins
+  Draw draw(~seed);
+  const double chance = draw.uniform(0, 1);
+  const SimulatedPathParameters& path = snippet.path;
+  const double glide = path.glide_angle_deg * kDegree;
+  const double end = path.start_x + path.speed * std::cos(glide) * path.duration;
+  const double begin = end + draw.uniform(-kBefore, kSeen), share = draw.uniform(0, 1);
+  const double change = draw.normal(parameters.stereo_depth.slope_change_deg);
+  const auto kind = static_cast<size_t>(chance / kBendChance);
+  if (kind >= kBendShares.size()) return;
+  snippet.profile.change_start = begin;
+  snippet.profile.change_length = kLength;
+  snippet.profile.slope_before_deg = -share * kBendShares[kind] * change;
+  snippet.profile.slope_after_deg = (1 - share) * kBendShares[kind] * change;
+  snippet.path.start_height += GroundProfile(snippet.profile).height(end);
 }
 
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters, bool imu) {

@@ -21,7 +21,7 @@ struct Options {
   std::string config, csv, kind = "snippets";
   uint64_t first = 1;
   int count = 20, frames = 13;
-  bool imu = false;
+  bool imu = false, bend = false;
   std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
 };
 
@@ -67,7 +67,8 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
     for (const double height : options.heights) {
       // Another flight at every height, so that the cells are independent of each other.
       const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
-      const SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
+      SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
+      if (options.bend) bendGround(flight, parameters, drawn);
       CampaignCsv::Sample sample;
       sample.seed = seed;
       sample.cell_height = height;
@@ -132,6 +133,8 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
   app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
+  app.add_flag("--bend", options.bend,
+               "the ground of snippets bends as often and by as much as the chain is told to expect");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once
   return exitStatusOf(app, "", [&] { return run(options); });
