@@ -1,96 +1,96 @@
 # Test programs of the core, by the folders of src/core.
 
 # base
-uav_landing_add_gtest(order_statistic_test test/core/order_statistic_test.cpp)
+uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
 
 # parameters
-uav_landing_add_gtest(parameter_file_test test/core/parameter_file_test.cpp)
+uav_landing_add_gtest(parameter_file_test test/core/parameters/parameter_file_test.cpp)
 
 # geometry
-uav_landing_add_gtest(bad_calibrations_test test/core/bad_calibrations_test.cpp LIBS yaml-cpp)
-uav_landing_add_gtest(calibration_test test/core/calibration_test.cpp)
-uav_landing_add_gtest(ground_plane_test test/core/ground_plane_test.cpp)
-uav_landing_add_gtest(half_plane_test test/core/half_plane_test.cpp)
+uav_landing_add_gtest(bad_calibrations_test test/core/geometry/bad_calibrations_test.cpp LIBS yaml-cpp)
+uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
+uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
+uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 
 # image
-uav_landing_add_gtest(corners_test test/core/corners_test.cpp)
-uav_landing_add_gtest(cubic_window_test test/core/cubic_window_test.cpp)
-uav_landing_add_gtest(image_check_test test/core/image_check_test.cpp
+uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
+uav_landing_add_gtest(cubic_window_test test/core/image/cubic_window_test.cpp)
+uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(mask_bounds_test test/core/mask_bounds_test.cpp)
-uav_landing_add_gtest(patch_matching_test test/core/patch_matching_test.cpp)
-uav_landing_add_gtest(rectification_test test/core/rectification_test.cpp)
-uav_landing_add_gtest(resampler_test test/core/resampler_test.cpp)
+uav_landing_add_gtest(mask_bounds_test test/core/image/mask_bounds_test.cpp)
+uav_landing_add_gtest(patch_matching_test test/core/image/patch_matching_test.cpp)
+uav_landing_add_gtest(rectification_test test/core/image/rectification_test.cpp)
+uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
 
 # lines
-uav_landing_add_gtest(line_segments_test test/core/line_segments_test.cpp)
-uav_landing_add_gtest(segment_scanner_test test/core/segment_scanner_test.cpp)
-uav_landing_add_gtest(stripe_line_test test/core/stripe_line_test.cpp)
-uav_landing_add_gtest(vanishing_point_test test/core/vanishing_point_test.cpp)
+uav_landing_add_gtest(line_segments_test test/core/lines/line_segments_test.cpp)
+uav_landing_add_gtest(segment_scanner_test test/core/lines/segment_scanner_test.cpp)
+uav_landing_add_gtest(stripe_line_test test/core/lines/stripe_line_test.cpp)
+uav_landing_add_gtest(vanishing_point_test test/core/lines/vanishing_point_test.cpp)
 
 # rig
-uav_landing_add_gtest(pair_skew_test test/core/pair_skew_test.cpp)
-uav_landing_add_gtest(rig_change_test test/core/rig_change_test.cpp)
-uav_landing_add_gtest(rig_rotation_filter_test test/core/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(pair_skew_test test/core/rig/pair_skew_test.cpp)
+uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
+uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # height
-uav_landing_add_gtest(attitude_filter_test test/core/attitude_filter_test.cpp)
-uav_landing_add_gtest(height_filter_test test/core/height_filter_test.cpp)
-uav_landing_add_gtest(reconstruction_test test/core/reconstruction_test.cpp)
-uav_landing_add_gtest(width_height_test test/core/width_height_test.cpp)
+uav_landing_add_gtest(attitude_filter_test test/core/height/attitude_filter_test.cpp)
+uav_landing_add_gtest(height_filter_test test/core/height/height_filter_test.cpp)
+uav_landing_add_gtest(reconstruction_test test/core/height/reconstruction_test.cpp)
+uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
-uav_landing_add_gtest(direct_refinement_test test/core/direct_refinement_test.cpp
+uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(plane_fit_test test/core/plane_fit_test.cpp
+uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(region_planes_test test/core/region_planes_test.cpp)
-uav_landing_add_gtest(row_matching_test test/core/row_matching_test.cpp)
-uav_landing_add_gtest(shift_evidence_test test/core/shift_evidence_test.cpp)
-uav_landing_add_gtest(surface_profile_test test/core/surface_profile_test.cpp
+uav_landing_add_gtest(region_planes_test test/core/stereo/region_planes_test.cpp)
+uav_landing_add_gtest(row_matching_test test/core/stereo/row_matching_test.cpp)
+uav_landing_add_gtest(shift_evidence_test test/core/stereo/shift_evidence_test.cpp)
+uav_landing_add_gtest(surface_profile_test test/core/stereo/surface_profile_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(vertical_disparity_test test/core/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(vertical_disparity_test test/core/stereo/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # motion
-uav_landing_add_gtest(approach_angle_test test/core/approach_angle_test.cpp)
-uav_landing_add_gtest(ego_motion_test test/core/ego_motion_test.cpp
+uav_landing_add_gtest(approach_angle_test test/core/motion/approach_angle_test.cpp)
+uav_landing_add_gtest(ego_motion_test test/core/motion/ego_motion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(focus_of_expansion_test test/core/focus_of_expansion_test.cpp
+uav_landing_add_gtest(focus_of_expansion_test test/core/motion/focus_of_expansion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(imu_buffer_test test/core/imu_buffer_test.cpp SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(motion_tracker_test test/core/motion_tracker_test.cpp
+uav_landing_add_gtest(imu_buffer_test test/core/motion/imu_buffer_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(motion_tracker_test test/core/motion/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(path_angle_filter_test test/core/path_angle_filter_test.cpp)
-uav_landing_add_gtest(temporal_matching_test test/core/temporal_matching_test.cpp
+uav_landing_add_gtest(path_angle_filter_test test/core/motion/path_angle_filter_test.cpp)
+uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 
 # runway
-uav_landing_add_gtest(ground_direction_test test/core/ground_direction_test.cpp
+uav_landing_add_gtest(ground_direction_test test/core/runway/ground_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(ground_edges_test test/core/ground_edges_test.cpp
+uav_landing_add_gtest(ground_edges_test test/core/runway/ground_edges_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(position_filter_test test/core/position_filter_test.cpp)
-uav_landing_add_gtest(runway_direction_test test/core/runway_direction_test.cpp
+uav_landing_add_gtest(position_filter_test test/core/runway/position_filter_test.cpp)
+uav_landing_add_gtest(runway_direction_test test/core/runway/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(runway_edges_test test/core/runway_edges_test.cpp)
-uav_landing_add_gtest(runway_tracker_test test/core/runway_tracker_test.cpp
+uav_landing_add_gtest(runway_edges_test test/core/runway/runway_edges_test.cpp)
+uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 
 # integrity
-uav_landing_add_gtest(consistency_tests_test test/core/consistency_tests_test.cpp)
-uav_landing_add_gtest(ground_memory_test test/core/ground_memory_test.cpp)
-uav_landing_add_gtest(height_memory_test test/core/height_memory_test.cpp)
-uav_landing_add_gtest(innovation_scatter_test test/core/innovation_scatter_test.cpp)
-uav_landing_add_gtest(recovery_test test/core/recovery_test.cpp)
-uav_landing_add_gtest(solution_separation_test test/core/solution_separation_test.cpp)
-uav_landing_add_gtest(speed_memory_test test/core/speed_memory_test.cpp)
-uav_landing_add_gtest(stamp_order_test test/core/stamp_order_test.cpp)
-uav_landing_add_gtest(stamp_scatter_test test/core/stamp_scatter_test.cpp)
+uav_landing_add_gtest(consistency_tests_test test/core/integrity/consistency_tests_test.cpp)
+uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
+uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
+uav_landing_add_gtest(innovation_scatter_test test/core/integrity/innovation_scatter_test.cpp)
+uav_landing_add_gtest(recovery_test test/core/integrity/recovery_test.cpp)
+uav_landing_add_gtest(solution_separation_test test/core/integrity/solution_separation_test.cpp)
+uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cpp)
+uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
+uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
 
 # stages
-uav_landing_add_gtest(approach_angle_stage_test test/core/approach_angle_stage_test.cpp
+uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(kalman_height_integrity_test test/core/kalman_height_integrity_test.cpp)
-uav_landing_add_gtest(kalman_height_stage_test test/core/kalman_height_stage_test.cpp)
-uav_landing_add_gtest(stereo_depth_stage_test test/core/stereo_depth_stage_test.cpp
+uav_landing_add_gtest(kalman_height_integrity_test test/core/stages/kalman_height_integrity_test.cpp)
+uav_landing_add_gtest(kalman_height_stage_test test/core/stages/kalman_height_stage_test.cpp)
+uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
