@@ -41,6 +41,10 @@ class PathAngleFilter {
     Measurement measurement;
   };
 
+  struct Equations;
+  void add(double stamp, const Measurement& step);
+  Equations equations(const Measurement& chord) const;
+
   double window_;
   std::deque<Step> steps_;  // oldest first
   std::array<double, kModels> log_weights_{};

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
@@ -57,6 +58,7 @@ class RigRotationFilter {
 
  private:
   static constexpr int kSize = 8;
+  static constexpr int kVanishing = 3, kForward = 6, kLeft = 7;  // slopes among the state
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   /// A direction in the ground plane but for the slope that is a state of its own.
@@ -70,6 +72,11 @@ class RigRotationFilter {
     Eigen::Matrix<double, 3, kSize> by_state;
     Eigen::Matrix3d kept;  // of the errors of the plane before
   };
+  struct Equations;
+  static std::vector<Sloping> directionsOf(const Eigen::Vector3d& vanishing,
+                                           const Eigen::Matrix3d& vanishing_covariance,
+                                           const AttitudePrior* level);
+  void learn(const Equations& all, const Eigen::Matrix3d& plane_covariance);
   double fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const;
   void solve();
   double learnSlopeVariance(int slope, double variance);

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace uav_landing {
@@ -58,65 +57,13 @@ Posterior condition(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& H, cons
   return posterior;
 }
 
-}  // namespace
-
-void PathAngleFilter::reset() {
-  steps_.clear();
-  log_weights_.fill(0);
-}
-
-PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measurement& step,
-                                                  const Measurement& chord) {
-  steps_.push_back({stamp, step});
-  while ((stamp - (steps_.front().stamp - steps_.front().measurement.duration) > window_ + kStampRounding ||
-          steps_.size() > kMostSteps) &&
-         steps_.size() > 1) {
-    steps_.pop_front();
-  }
-  const int n = static_cast<int>(steps_.size());
-  std::vector<double> middles;
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n + 1, n);
-  Eigen::VectorXd y(n + 1), noise(n + 1);
-  double covered = 0;
-  for (int i = 0; i < n; ++i) {
-    const Step& past = steps_[i];
-    middles.push_back(past.stamp - 0.5 * past.measurement.duration);
-    H(i, i) = 1;
-    y[i] = past.measurement.angle;
-    noise[i] = past.measurement.variance;
-    if (past.stamp > stamp - chord.duration + kStampRounding) covered += past.measurement.duration;
-  }
-  for (int i = 0; i < n; ++i) {
-    if (steps_[i].stamp > stamp - chord.duration + kStampRounding) {
-      H(n, i) = steps_[i].measurement.duration / covered;
-    }
-  }
-  y[n] = chord.angle;
-  noise[n] = chord.variance;
-  // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
-  const bool has_chord = chord.duration > step.duration + kStampRounding &&
-                         std::abs(covered - chord.duration) < 0.5 * step.duration;
-  const int rows = has_chord ? n + 1 : n;
-
-  // Angles relative to the newest, so that the wide prior of the start does not cost digits.
-  const double reference = has_chord ? chord.angle : step.angle;
-  y.array() -= reference;
-
-  const double forget = std::exp(-step.duration / kMemory);
-  std::array<Posterior, kModels> posteriors;
-  double largest = -1e300;
-  for (int m = 0; m < kModels; ++m) {
-    const Eigen::MatrixXd prior = pathCovariance(middles, kRates[m]);
-    posteriors[m] = condition(prior, H.topRows(rows), y.head(rows), noise.head(rows));
-    const double before = condition(prior, H.topRows(n - 1), y.head(n - 1), noise.head(n - 1)).log_evidence;
-    log_weights_[m] = forget * log_weights_[m] + posteriors[m].log_evidence - before;
-    largest = std::max(largest, log_weights_[m]);
-  }
-  Estimate estimate;
+// Mean and variance of the models' posteriors; rate_stddev of the one with the most weight.
+PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& posteriors,
+                                  const std::array<double, kRates.size()>& log_weights) {
+  PathAngleFilter::Estimate estimate;
   double total = 0, mean = 0, square = 0, heaviest = 0;
-  for (int m = 0; m < kModels; ++m) {
-    log_weights_[m] -= largest;
-    const double weight = std::exp(log_weights_[m]);
+  for (size_t m = 0; m < kRates.size(); ++m) {
+    const double weight = std::exp(log_weights[m]);
     total += weight;
     mean += weight * posteriors[m].mean;
     square += weight * (posteriors[m].variance + posteriors[m].mean * posteriors[m].mean);
@@ -126,8 +73,88 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
     }
   }
   mean /= total;
-  estimate.angle = reference + mean;
+  estimate.angle = mean;
   estimate.variance = square / total - mean * mean;
+  return estimate;
+}
+
+}  // namespace
+
+// What the steps and the chord say of the angles of all steps: y = H angles + noise. The chord is the last
+// row.
+struct PathAngleFilter::Equations {
+  std::vector<double> middles;  // of the steps, s
+  Eigen::MatrixXd H;
+  Eigen::VectorXd y, noise;
+  double reference = 0;    // that y is relative to, rad
+  bool has_chord = false;  // one that is a measurement of its own
+
+  /// By the first so many rows.
+  Posterior condition(const Eigen::MatrixXd& prior, Eigen::Index rows) const {
+    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.head(rows));
+  }
+};
+
+void PathAngleFilter::reset() {
+  steps_.clear();
+  log_weights_.fill(0);
+}
+
+void PathAngleFilter::add(double stamp, const Measurement& step) {
+  steps_.push_back({stamp, step});
+  const auto isOld = [&](const Step& past) {
+    return stamp - (past.stamp - past.measurement.duration) > window_ + kStampRounding;
+  };
+  while (steps_.size() > 1 && (isOld(steps_.front()) || steps_.size() > kMostSteps)) steps_.pop_front();
+}
+
+PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) const {
+  const int n = static_cast<int>(steps_.size());
+  const Measurement& step = steps_.back().measurement;
+  const double begin = steps_.back().stamp - chord.duration + kStampRounding;
+  Equations all;
+  all.H = Eigen::MatrixXd::Zero(n + 1, n);
+  all.y.resize(n + 1);
+  all.noise.resize(n + 1);
+  double covered = 0;
+  for (int i = 0; i < n; ++i) {
+    const Step& past = steps_[i];
+    all.middles.push_back(past.stamp - 0.5 * past.measurement.duration);
+    all.H(i, i) = 1;
+    all.y[i] = past.measurement.angle;
+    all.noise[i] = past.measurement.variance;
+    if (past.stamp > begin) covered += past.measurement.duration;
+  }
+  for (int i = 0; i < n; ++i)
+    if (steps_[i].stamp > begin) all.H(n, i) = steps_[i].measurement.duration / covered;
+  all.y[n] = chord.angle;
+  all.noise[n] = chord.variance;
+  // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
+  all.has_chord = chord.duration > step.duration + kStampRounding &&
+                  std::abs(covered - chord.duration) < 0.5 * step.duration;
+  // Angles relative to the newest, so that the wide prior of the start does not cost digits.
+  all.reference = all.has_chord ? chord.angle : step.angle;
+  all.y.array() -= all.reference;
+  return all;
+}
+
+PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measurement& step,
+                                                  const Measurement& chord) {
+  add(stamp, step);
+  const Equations all = equations(chord);
+  const auto steps = static_cast<Eigen::Index>(steps_.size()), rows = all.has_chord ? steps + 1 : steps;
+  const double forget = std::exp(-step.duration / kMemory);
+  std::array<Posterior, kModels> posteriors;
+  for (int m = 0; m < kModels; ++m) {
+    const Eigen::MatrixXd prior = pathCovariance(all.middles, kRates[m]);
+    posteriors[m] = all.condition(prior, rows);
+    const double before = all.condition(prior, steps - 1).log_evidence;
+    log_weights_[m] = forget * log_weights_[m] + posteriors[m].log_evidence - before;
+  }
+  const double largest = *std::max_element(log_weights_.begin(), log_weights_.end());
+  for (double& weight : log_weights_) weight -= largest;
+  Estimate estimate = mixture(posteriors, log_weights_);
+  estimate.angle += all.reference;
   return estimate;
 }
 

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace uav_landing {
 namespace {
@@ -122,62 +121,80 @@ double RigRotationFilter::fuse(const Sloping& sloping, double noise, double gate
   return ratio;
 }
 
-RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane, const Eigen::Matrix3d& A,
-                                                        const Eigen::Vector3d& direction,
-                                                        const Eigen::Matrix3d& direction_covariance,
-                                                        double gate, const AttitudePrior* level) {
-  constexpr int kVanishing = 3, kForward = 6, kLeft = 7;
+std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(
+    const Eigen::Vector3d& vanishing, const Eigen::Matrix3d& vanishing_covariance,
+    const AttitudePrior* level) {
   std::vector<Sloping> directions;
-  if (direction.allFinite() && direction_covariance.allFinite())
-    directions.push_back({{direction, direction_covariance}, kVanishing});
+  if (vanishing.allFinite() && vanishing_covariance.allFinite())
+    directions.push_back({{vanishing, vanishing_covariance}, kVanishing});
   if (level != nullptr && level->hasNormal()) {
     const auto [forward, left] = levelDirections(level->normal, level->normal_covariance);
     directions.push_back({forward, kForward});
     directions.push_back({left, kLeft});
   }
+  return directions;
+}
 
-  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity()};
-  joint.plane.g = plane.g - A * state_.head<3>();
-  joint.by_state.leftCols<3>() = -A;
-  // For the frames to come: all directions at once, as they share the noise of the plane.
-  const double h = joint.plane.height();
-  Eigen::MatrixXd rows(0, kSize), tips(0, 3);
-  Eigen::VectorXd values, noises, inflations;
-  for (const Sloping& sloping : directions) {
-    const Eigen::Vector3d n = joint.plane.normal();
-    const double total = n.dot(sloping.ground.covariance * n);
-    if (!(total > 0)) continue;
-    const double noise = total - learnSlopeVariance(sloping.slope, total);
-    const double ratio = fuse(sloping, noise, gate, joint);
-    if (!(ratio >= 0)) continue;
+// All directions at once, as they share the noise of the plane.
+struct RigRotationFilter::Equations {
+  Eigen::MatrixXd rows{0, kSize}, tips{0, 3};
+  Eigen::VectorXd values, noises, inflations;  // inflation: of the stddev, as the next frames have the same
+
+  void add(const Eigen::RowVector3d& tip, const GroundPlane& plane, const Eigen::Matrix3d& A, int slope,
+           double noise, double inflation) {
     const Eigen::Index i = rows.rows();
     rows.conservativeResize(i + 1, kSize);
     tips.conservativeResize(i + 1, 3);
     values.conservativeResize(i + 1);
     noises.conservativeResize(i + 1);
     inflations.conservativeResize(i + 1);
-    tips.row(i) = h * sloping.ground.direction.transpose();
+    tips.row(i) = tip;
     rows.row(i).setZero();
     rows.row(i).head<3>() = tips.row(i) * A;
-    rows(i, sloping.slope) = 1;
+    rows(i, slope) = 1;
     values[i] = tips.row(i) * plane.g;
     noises[i] = noise;
+    inflations[i] = inflation;
+  }
+};
+
+void RigRotationFilter::learn(const Equations& all, const Eigen::Matrix3d& plane_covariance) {
+  if (all.values.size() == 0) return;
+  Eigen::MatrixXd of_frame = all.tips * plane_covariance * all.tips.transpose();
+  of_frame.diagonal() += all.noises;
+  of_frame = (all.inflations.asDiagonal() * of_frame * all.inflations.asDiagonal()).eval();
+  const Eigen::MatrixXd weighted = share_ * of_frame.llt().solve(all.rows);
+  information_ += all.rows.transpose() * weighted;
+  right_ += weighted.transpose() * all.values;
+  solve();
+}
+
+RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane, const Eigen::Matrix3d& A,
+                                                        const Eigen::Vector3d& direction,
+                                                        const Eigen::Matrix3d& direction_covariance,
+                                                        double gate, const AttitudePrior* level) {
+  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity()};
+  joint.plane.g = plane.g - A * state_.head<3>();
+  joint.by_state.leftCols<3>() = -A;
+  const double h = joint.plane.height();
+  Equations for_later;
+  for (const Sloping& sloping : directionsOf(direction, direction_covariance, level)) {
+    const Eigen::Vector3d n = joint.plane.normal();
+    const double total = n.dot(sloping.ground.covariance * n);
+    if (!(total > 0)) continue;
+    const double noise = total - learnSlopeVariance(sloping.slope, total);
+    const double ratio = fuse(sloping, noise, gate, joint);
+    if (!(ratio >= 0)) continue;
     const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
-    inflations[i] = std::sqrt(std::max(1.0, ratio / gate) * lasting);
+    for_later.add(h * sloping.ground.direction.transpose(), plane, A, sloping.slope, noise,
+                  std::sqrt(std::max(1.0, ratio / gate) * lasting));
   }
   Corrected corrected;
   corrected.plane = joint.plane;
   corrected.kept = joint.kept;
   corrected.common = joint.by_state * covariance_ * joint.by_state.transpose();
   corrected.plane.covariance += corrected.common;
-  if (values.size() == 0) return corrected;
-  Eigen::MatrixXd of_frame = tips * plane.covariance * tips.transpose();
-  of_frame.diagonal() += noises;
-  of_frame = (inflations.asDiagonal() * of_frame * inflations.asDiagonal()).eval();
-  const Eigen::MatrixXd weighted = share_ * of_frame.llt().solve(rows);
-  information_ += rows.transpose() * weighted;
-  right_ += weighted.transpose() * values;
-  solve();
+  learn(for_later, plane.covariance);
   return corrected;
 }
 
