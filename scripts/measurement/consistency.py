@@ -32,9 +32,9 @@ rig's rotation.
 
 """
 BENT_TEXT = """
-Height where the ground bends as the estimator is told to expect: flat in 60 of 100 snippets, in 10 each with a change of
-slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma) within 100 m, somewhere from 100 m behind the aircraft to 300 m
-ahead.
+Height where the ground bends, by as much and as often as the estimator is told to expect: flat in 60 of 100 snippets, in 10
+each with one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma),
+somewhere from 100 m behind the aircraft to 300 m ahead.
 
 """
 
@@ -127,5 +127,8 @@ def render(results):
     rows = [[f"{cell['height']} m", cell["noise"], count(cell["quantities"]["height"]),
              *(entry(cell["quantities"][name]) for name, _, _ in QUANTITIES), count(cell["quantities"]["y"])]
             for cell in results["cells"]]
+    page = TEXT.format(**results) + table(header, rows)
+    if "bent" not in results:  # kept from before they were measured
+        return page
     bent = [[f"{cell['height']} m", cell["noise"], count(cell["scores"]), entry(cell["scores"])] for cell in results["bent"]]
-    return TEXT.format(**results) + table(header, rows) + BENT_TEXT + table(["height", "noise", "n", "height in 95 %"], bent)
+    return page + BENT_TEXT + table(["height", "noise", "n", "height in 95 %"], bent)

@@ -47,6 +47,7 @@ uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
 uav_landing_add_gtest(region_planes_test test/core/stereo/region_planes_test.cpp)
 uav_landing_add_gtest(row_matching_test test/core/stereo/row_matching_test.cpp)
 uav_landing_add_gtest(shift_evidence_test test/core/stereo/shift_evidence_test.cpp)
+uav_landing_add_gtest(shift_matching_test test/core/stereo/shift_matching_test.cpp)
 uav_landing_add_gtest(surface_profile_test test/core/stereo/surface_profile_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(vertical_disparity_test test/core/stereo/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)

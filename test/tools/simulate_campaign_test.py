@@ -54,6 +54,17 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertLess(float(with_imu["pitch_stddev_deg"]), 0.5 * float(without["pitch_stddev_deg"]))
         self.assertLess(abs(float(with_imu["pitch_deg"]) - float(with_imu["pitch_true_deg"])), 0.04)
 
+    def test_ground_bends_under_the_same_height(self):
+        options = ("--first", 1, "--count", 6, "--heights", 10, "--noise", 2)
+        flat, bent = self.fly(*options), self.fly(*options, "--bend")
+        heights = [(float(a["height_true_m"]), float(b["height_true_m"])) for a, b in zip(flat, bent)]
+        self.assertTrue(any(abs(a - b) > 1e-9 for a, b in heights), "none of six bends")
+        for a, b in heights:
+            self.assertAlmostEqual(a, b, delta=0.05)
+        refused = run([PROGRAM, "approaches", "--csv", self.folder / "rows.csv", "--bend"])
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--bend: for snippets only", refused.stderr)
+
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
         self.assertEqual(result.returncode, 1)

@@ -30,7 +30,7 @@ class DirectRefinement {
   /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
   /// last refinement; NaN when it had fewer than 20 such blocks.
   double agreement() const;
-  /// What the last refinement was fitted to: one disparity for each block.
+  /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture.
   const std::vector<DisparitySample>& samples() const;
 
  private:

@@ -64,19 +64,21 @@ struct DirectRefinement::Implementation {
   std::vector<PhotometricBlocks::Match> matches;
   std::vector<DisparitySample> samples;
   std::vector<Eigen::RowVector3d> leaks;  // of each sample: its disparity's derivative by the rows' rotation
+  std::vector<int> blocks_behind;         // each sample
   int informative = 0;                    // blocks that show anything
   int agreeing = 0;                       // of them, look alike and are on the plane
 
   Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
       : rig(r), blocks(left_mask, right_mask) {}
 
-  // One disparity for each block, found with the right image warped by g.
+  // One disparity for each block, or several together, found with the right image warped by g.
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const Eigen::Vector3d& rows) {
     const ShiftModel shift(rig, g);
     informative = blocks.compare(right, shift, matches);
     const double density = 1 - shift.a;  // of right pixels over left ones
     samples.clear();
     leaks.clear();
+    blocks_behind.clear();
     for (const PhotometricBlocks::Match& match : matches) {
       if (!(std::abs(match.shift) < kLargestShift)) continue;
       // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a
@@ -85,7 +87,15 @@ struct DirectRefinement::Implementation {
       const double column = match.u - shift.at(match.u, match.v);
       leaks.push_back(-density * match.lean * verticalDisparityByRotation(rig, column, match.v));
       samples.push_back({match.u, match.v, density * match.stddev, {disparity - leaks.back().dot(rows)}});
+      blocks_behind.push_back(match.blocks);
     }
+  }
+
+  int blocksOn(const PlaneFit& fit) const {
+    int blocks = 0;
+    for (size_t i = 0; i < samples.size(); ++i)
+      if (fit.agrees[i]) blocks += blocks_behind[i];
+    return blocks;
   }
 
   // What an error of the rows' rotation does to the plane. 1/m per rad.
@@ -133,10 +143,10 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
         sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
     }
     Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
-    own.agreeing = fit ? fit->count : 0;
-    if (fit && fit->count < kLeastShare * own.informative) {
+    own.agreeing = fit ? own.blocksOn(*fit) : 0;
+    if (fit && own.agreeing < kLeastShare * own.informative) {
       return tl::make_unexpected(
-          Failure{Reason::kNoPlane, std::to_string(fit->count) + " of " + std::to_string(own.informative) +
+          Failure{Reason::kNoPlane, std::to_string(own.agreeing) + " of " + std::to_string(own.informative) +
                                         " blocks are on the plane: too few to tell which are ground"});
     }
     if (!fit) return fit;

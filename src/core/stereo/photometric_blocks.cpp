@@ -13,9 +13,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
-constexpr int kPixels = PhotometricBlocks::kPixels;
-// Pixels to the left and right that interpolation and derivatives read.
-constexpr int kMargin = 2;
+constexpr int kPixels = PhotometricBlocks::kPixels, kMargin = PhotometricBlocks::kMargin;
 // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
 constexpr double kLeastDisparity = 0.3;
 // Sobel's kernel is this many times a derivative.

@@ -7,6 +7,7 @@
 
 #include "stereo/block_sums.h"
 #include "stereo/shift_evidence.h"
+#include "stereo/shift_matching.h"
 #include "stereo/shift_model.h"
 
 namespace uav_landing {
@@ -20,6 +21,7 @@ namespace uav_landing {
 class PhotometricBlocks {
  public:
   static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kWidth * kHeight;
+  static constexpr int kMargin = 2;  ///< pixels to the left and right that interpolation and derivatives read
 
   /// Masks of the rectified images (mono8), eroded by at least two pixels.
   PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask);
@@ -28,15 +30,10 @@ class PhotometricBlocks {
   /// horizon of the shift model and whose places in the right image have picture. left: mono8.
   void choose(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift, int count);
 
-  struct Match {
-    double u, v;    ///< where in the left image the gradients of the block (or blocks) are, pixels
-    double shift;   ///< left pixels by which the left image is to be shifted to fit the warped right one
-    double stddev;  ///< of it if the residuals of the pixels are independent, pixels
-    double lean;    ///< by how much the shift grows where the right image lies a pixel higher: slanted edges
-  };
+  using Match = ShiftMatch;
   /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Blocks
-  /// with hardly more than noise are taken together with others in their row and count as one. Returns how
-  /// many show more than noise; matches are those of them that look like their places.
+  /// with hardly more than noise are taken together with others in their row. Returns how many blocks show
+  /// more than noise; matches are those of them that look like their places.
   int compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches);
 
  private:

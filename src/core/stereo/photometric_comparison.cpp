@@ -1,10 +1,7 @@
 // The comparison of PhotometricBlocks with the right image; how they are chosen is in photometric_blocks.cpp.
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/median.h"
 #include "stereo/photometric_blocks.h"
@@ -13,9 +10,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
-constexpr int kPixels = PhotometricBlocks::kPixels;
-// Pixels to the left and right that interpolation reads.
-constexpr int kMargin = 2;
+constexpr int kPixels = PhotometricBlocks::kPixels, kMargin = PhotometricBlocks::kMargin;
 // Variance of a derivative by Sobel's kernel over that of the noise.
 constexpr double kSlopeNoise = 0.1875;
 // Variance of the noise in the right image after interpolation over that before (0.64 of it is left half-way
@@ -26,8 +21,8 @@ constexpr double kInterpolated = 0.8;
 constexpr double kNoiseScatter = 1.45;
 // Squared correlation, noise taken off, below which a block does not show what the other image has there.
 constexpr double kLeastCorrelation = 0.75;
-// Shares of a block's grey levels and derivatives that must be more than noise.
-constexpr double kLeastShareOfGrey = 0.25, kLeastShareOfSlope = 0.1;
+// Share of a block's grey levels that must be more than noise.
+constexpr double kLeastShareOfGrey = 0.25;
 // Blocks in a row that may speak together.
 constexpr int kTogether = 8;
 // Least gain of the right image over the left one.
@@ -46,60 +41,6 @@ constexpr double kLeastUsual = 0.05;
 double lowerQuartileOf(const std::vector<double>& values) {
   return orderStatistic(values.data(), values.size(), values.size() / 4);
 }
-
-using Match = PhotometricBlocks::Match;
-
-// Makes matches of what the blocks tell. Weak ones of a section of a row speak together, as many as it takes
-// to be certain: the shift of each alone would be the ratio of two numbers that are mostly noise.
-class Matching {
- public:
-  /// gain: of the right image over the left one.
-  Matching(double gain, std::vector<Match>& matches) : gain_(gain), matches_(matches) {}
-
-  /// Blocks come row by row. alike: whether the right image shows the block (u, v).
-  void add(const ShiftEvidence& evidence, bool alike, int u, int v) {
-    if (evidence.isCertain()) {
-      tell(evidence, alike);
-      return;
-    }
-    const Section here{v, u / (kTogether * kWidth)};
-    if (here != section_) finish();
-    section_ = here;
-    weak_[alike].add(evidence);
-    if (weak_[alike].isCertain()) tellWeak(alike);
-  }
-
-  /// How many blocks, or several together, show more than noise.
-  int finish() {
-    for (const bool alike : {false, true}) tellWeak(alike);
-    return informative_;
-  }
-
- private:
-  using Section = std::pair<int, int>;
-
-  void tellWeak(bool alike) {
-    if (weak_[alike].energy > 0) tell(weak_[alike], alike);
-    weak_[alike] = {};
-  }
-
-  void tell(const ShiftEvidence& evidence, bool alike) {
-    const double signal = evidence.likelySignal();
-    if (signal < kLeastShareOfSlope * evidence.energy) return;
-    ++informative_;
-    if (!alike) return;
-    const double response = gain_ * signal;
-    matches_.push_back({evidence.moment_u / evidence.energy, evidence.moment_v / evidence.energy,
-                        evidence.score / response, std::sqrt(evidence.score_variance) / response,
-                        evidence.down / signal});
-  }
-
-  double gain_;
-  std::vector<Match>& matches_;
-  int informative_ = 0;
-  Section section_{};
-  std::array<ShiftEvidence, 2> weak_;  // of those that do not look alike, and of those that do
-};
 
 }  // namespace
 
@@ -163,8 +104,10 @@ std::optional<ShiftEvidence> PhotometricBlocks::evidenceOf(const Products& produ
   // The derivative less what of it looks like a gain: slope - mixed grey.
   const double mixed = block.both / common;
   ShiftEvidence evidence;
+  evidence.blocks = 1;
   evidence.score = products.slope - mixed * products.grey;
   evidence.energy = block.slope_energy - 2 * mixed * block.both + mixed * mixed * block.grey_energy;
+  if (!(evidence.energy > 0)) return std::nullopt;
   const double explained = evidence.score * evidence.score / evidence.energy;
   evidence.score_variance =
       evidence.energy * std::max(products.variance - explained / kPixels, kLeastVariance);
@@ -191,7 +134,7 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
   if (products_.empty()) return 0;
   const std::optional<Photometry> common_to_all = photometry();
   if (!common_to_all) return 0;
-  Matching matching(common_to_all->gain, matches);
+  ShiftMatching matching(common_to_all->gain, kTogether * kWidth, matches);
   for (const Products& products : products_) {
     const std::optional<ShiftEvidence> evidence = evidenceOf(products, *common_to_all);
     if (!evidence) continue;

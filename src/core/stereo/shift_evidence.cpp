@@ -12,6 +12,7 @@ constexpr double kCertain = 6;
 }  // namespace
 
 void ShiftEvidence::add(const ShiftEvidence& other) {
+  blocks += other.blocks;
   score += other.score;
   score_variance += other.score_variance;
   energy += other.energy;

@@ -5,6 +5,7 @@ namespace uav_landing {
 /// What a block of the left image, or several together, tells of the shift to the right one: sums over
 /// pixels, squares of grey levels unless they say otherwise.
 struct ShiftEvidence {
+  int blocks = 0;
   double score = 0;                   ///< slope times right image: the shift times its response
   double score_variance = 0;          ///< of the score, if the residuals of the pixels are independent
   double energy = 0;                  ///< slope^2, noise included

@@ -219,7 +219,7 @@ class ProfileFit {
       if (plane_.agrees[i]) seen.push_back(reaches_[i] / expected_[i]);
     top_ = rig_.size.height;
     for (const DisparitySample& sample : given_) top_ = std::min(top_, sample.v);
-    if (seen.size() < static_cast<size_t>(4 * kKinks)) return;
+    if (seen.size() < static_cast<size_t>(2 * kKinks)) return;
     std::sort(seen.begin(), seen.end());
     const double nearest = seen[seen.size() / 50], farthest = seen[seen.size() - 1 - seen.size() / 50];
     if (nearest > 0 && farthest > 1.5 * nearest) kinks_.emplace(nearest, farthest);

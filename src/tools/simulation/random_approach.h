@@ -25,9 +25,9 @@ CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_len
 /// flies along; everything else is the same with it.
 SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters,
                                 bool imu = false);
-/// Lets the slope of a snippet's ground change as the estimator is told to expect (slope_change_deg over
-/// 100 m, in the shares and as often as surface_profile.h says; mostly it stays flat), somewhere from 100 m
-/// before the place where the snippet ends to 300 m beyond it. The height over the ground there stays.
+/// Lets the slope of a snippet's ground change once, as the estimator is told to expect (slope_change_deg
+/// over 100 m, in the shares and as often as surface_profile.h says; mostly it stays flat), somewhere from
+/// 100 m before the place where the snippet ends to 300 m beyond it. The height over the ground there stays.
 void bendGround(uint64_t seed, const Parameters& parameters, SimulatorParameters& snippet);
 /// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);

@@ -133,8 +133,12 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
   app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
-  app.add_flag("--bend", options.bend,
-               "the ground of snippets bends as often and by as much as the chain is told to expect");
+  app.add_flag(
+      "--bend", options.bend,
+      "the ground of snippets has a vertical curve, as often and by as much as the chain is told to expect");
+  app.callback([&options] {
+    if (options.bend && options.kind != "snippets") throw CLI::ValidationError("--bend", "for snippets only");
+  });
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once
   return exitStatusOf(app, "", [&] { return run(options); });

@@ -41,27 +41,45 @@ TEST(ShiftEvidence, LikelySignalIsPositiveHoweverUnlikelyTheMeasurement) {
   }
 }
 
-/// Twelve weak blocks: each alone is uncertain, together they are not, and their shift is the common one.
+TEST(ShiftEvidence, AddsUpEverything) {
+  ShiftEvidence sum{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  sum.add({10, 20, 30, 40, 50, 60, 70, 80, 90, 100});
+  EXPECT_EQ(sum.blocks, 11);
+  EXPECT_EQ(sum.score, 22);
+  EXPECT_EQ(sum.score_variance, 33);
+  EXPECT_EQ(sum.energy, 44);
+  EXPECT_EQ(sum.signal, 55);
+  EXPECT_EQ(sum.signal_variance, 66);
+  EXPECT_EQ(sum.usual, 77);
+  EXPECT_EQ(sum.moment_u, 88);
+  EXPECT_EQ(sum.moment_v, 99);
+  EXPECT_EQ(sum.down, 110);
+}
+
+/// Eight weak blocks: each alone is uncertain, together they are not, and their shift is the common one.
 TEST(ShiftEvidence, WeakBlocksAreCertainTogether) {
   constexpr double kSignal = 3, kShift = 0.2, kScoreStddev = 1;
+  constexpr int kTrials = 400, kBlocks = 8;
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   double squares = 0;
-  constexpr int kTrials = 400, kBlocks = 12;
+  int certain_alone = 0, certain_together = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     ShiftEvidence together;
     for (int i = 0; i < kBlocks; ++i) {
       ShiftEvidence one = measured(kSignal + normal(random), 1, kSignal);
       one.score = kSignal * kShift + kScoreStddev * normal(random);
       one.score_variance = kScoreStddev * kScoreStddev;
-      EXPECT_EQ(one.isCertain(), one.signal > 6);
+      certain_alone += one.isCertain();
       together.add(one);
     }
-    EXPECT_TRUE(together.isCertain());
+    certain_together += together.isCertain();
     const double shift = together.score / together.likelySignal();
     const double stddev = std::sqrt(together.score_variance) / together.likelySignal();
     squares += std::pow((shift - kShift) / stddev, 2);
   }
+  EXPECT_LT(certain_alone, 0.005 * kTrials * kBlocks);
+  EXPECT_GT(certain_together, 0.98 * kTrials);
   EXPECT_NEAR(squares / kTrials, 1, 0.2);
 }
 

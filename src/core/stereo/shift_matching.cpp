@@ -1,0 +1,48 @@
+#include "stereo/shift_matching.h"
+
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+// Share of the derivatives that must be more than noise.
+constexpr double kLeastShare = 0.1;
+
+}  // namespace
+
+void ShiftMatching::add(const ShiftEvidence& evidence, bool alike, int u, int v) {
+  if (evidence.isCertain()) return tell(evidence, alike);
+  const Section here{v, u / width_};
+  if (here != section_) endSection();
+  section_ = here;
+  weak_[alike].add(evidence);
+  if (weak_[alike].isCertain()) tellWeak(alike);
+}
+
+int ShiftMatching::finish() {
+  endSection();
+  return informative_;
+}
+
+void ShiftMatching::endSection() {
+  for (const bool alike : {false, true}) tellWeak(alike);
+}
+
+void ShiftMatching::tellWeak(bool alike) {
+  if (weak_[alike].blocks > 0) tell(weak_[alike], alike);
+  weak_[alike] = {};
+}
+
+void ShiftMatching::tell(const ShiftEvidence& evidence, bool alike) {
+  const double signal = evidence.likelySignal();
+  if (!(signal >= kLeastShare * evidence.energy)) return;
+  // Blocks and not sums: a share of them must not depend on how many were added up.
+  informative_ += evidence.blocks;
+  if (!alike) return;
+  const double response = gain_ * signal;
+  matches_.push_back({evidence.moment_u / evidence.energy, evidence.moment_v / evidence.energy,
+                      evidence.score / response, std::sqrt(evidence.score_variance) / response,
+                      evidence.down / signal, evidence.blocks});
+}
+
+}  // namespace uav_landing
