@@ -37,6 +37,7 @@ def plot(rows):
     import matplotlib  # only here: it takes longer to load than everything else
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter, StrMethodFormatter
     figure, axes = plt.subplots(1, len(QUANTITIES), figsize=(14, 4.5))
     heights = sorted({row["height_m"] for row in rows})
     for axis, (name, title, factor) in zip(axes, QUANTITIES):
@@ -47,8 +48,11 @@ def plot(rows):
             axis.loglog(noise, [factor * row[f"bound_{name}"] for row in cells], "--", color=f"C{i}")
         axis.set_title(title)
         axis.set_xlabel("noise, grey levels")
+        axis.set_xticks(noise)
+        axis.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.xaxis.set_minor_formatter(NullFormatter())
         axis.grid(True, which="both", linewidth=0.3)
-    axes[0].legend(title="height; dashed: bound", loc="lower right", fontsize=8, framealpha=0.6)
+    axes[-1].legend(title="height; dashed: bound", loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=8)
     save_figure(figure, IMAGE)
 
 
