@@ -29,6 +29,15 @@ struct Pose {
   double height() const { return position.z(); }
 };
 
+/// Over the origin, angles in degrees.
+inline Pose makePose(double height, double pitch_deg, double roll_deg) {
+  Pose pose;
+  pose.position = {0, 0, height};
+  pose.pitch = pitch_deg * kDegree;
+  pose.roll = roll_deg * kDegree;
+  return pose;
+}
+
 /// Movement from a pose to a later one, worked out from the poses: x_now = R x_then - t.
 struct Movement {
   Eigen::Matrix3d R;

@@ -15,17 +15,10 @@ namespace {
 using test::Exposure;
 using test::GroundRenderer;
 using test::kDegree;
+using test::makePose;
 using test::Pose;
 
 constexpr double kBaseline = 0.65;
-
-Pose makePose(double height, double pitch_deg, double roll_deg) {
-  Pose pose;
-  pose.position = {0, 0, height};
-  pose.pitch = pitch_deg * kDegree;
-  pose.roll = roll_deg * kDegree;
-  return pose;
-}
 
 struct Pair {
   cv::Mat left, right;
