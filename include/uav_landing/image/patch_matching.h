@@ -36,14 +36,4 @@ class PatchSearch {
   std::vector<float> area_, scores_;
 };
 
-/// Sub-pixel place by Gauss-Newton over (shift, gain, offset), with the reference's own gradient.
-struct PatchRefinement {
-  bool converged = false;
-  Eigen::Vector2d position;
-  Eigen::Matrix2d covariance;  ///< of the position, from residuals and gradient, pixels^2
-  double score = 0;
-};
-PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius);
-
 }  // namespace uav_landing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -24,8 +25,11 @@ struct CameraMotion {
 struct TemporalMatch {
   Eigen::Vector2d now, then;
   Eigen::Matrix2d covariance;  ///< of then given now, pixels^2
-  bool on_plane = true;        ///< depth from the ground plane, else from its own disparity
-  double inverse_depth = 0;    ///< of a point off the plane, times height
+  /// How then follows from the warp it was looked for with, and that warp (PatchRefinement::by_warp).
+  std::array<Eigen::Matrix2d, 2> by_warp = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
+  bool on_plane = true;      ///< depth from the ground plane, else from its own disparity
+  double inverse_depth = 0;  ///< of a point off the plane, times height
   double inverse_depth_stddev = 0;
 };
 

@@ -10,6 +10,7 @@
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/motion/ego_motion.h"
 #include "uav_landing/motion/path_angle_filter.h"
+#include "uav_landing/motion/step_search.h"
 #include "uav_landing/motion/temporal_matching.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -52,20 +53,10 @@ class MotionTracker {
   };
 
   using Corners = std::vector<TrackedCorner>;
-  int wideSteps() const;  // of the coarse level, to both sides
-  TemporalMatchOptions matchOptions(int coarse_steps) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                     const Corners& corners, const RotationPrior* rotation, Result& result);
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
-  Expected<MotionEstimate> followFrom(const Frame& now, const CameraMotion& predicted,
-                                      const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                                      const Corners& corners, const RotationPrior* rotation);
-  Expected<MotionEstimate> estimate(const std::vector<TemporalMatch>& matches, const Eigen::Vector3d& normal,
-                                    const Eigen::Matrix3d& covariance, const CameraMotion& start,
-                                    const RotationPrior* rotation) const;
-  CameraMotion searchFirst(const Frame& now, const Eigen::Vector3d& normal, const Corners& corners,
-                           const Eigen::Matrix3d& R) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);
   void takeMemory(const Frame& now);
@@ -77,12 +68,14 @@ class MotionTracker {
   StereoRig rig_;
   cv::Mat mask_;  // left, eroded by the window
   ApproachAngleParameters parameters_;
+  StepSearch search_;
   std::deque<Frame> past_;         // oldest first
   std::vector<MatchImage> spare_;  // their memory is used again
   cv::Mat spare_coarse_;
   std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
   std::optional<CameraMotion> last_step_;
-  double last_duration_ = 0;
+  double last_duration_ = 0;  // s, of it
+  double last_sink_ = 0;      // in it, in heights at its end
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
 };

@@ -29,4 +29,10 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const TemporalMatchOptions& options,
                                          std::vector<TemporalMatch> memory = {});
 
+/// How much the surroundings of the corners now look like those of where the motion puts them then: the sum
+/// of their correlations, without a search; what is not in view, or the other way round, adds nothing.
+double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
+                        const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
+                        const Eigen::Vector3d& normal, const CameraMotion& motion, int window_radius);
+
 }  // namespace uav_landing

@@ -9,78 +9,47 @@
 #include "base/median.h"
 #include "base/multiversion.h"
 #include "geometry/rotation.h"
+#include "motion/motion_lanes.h"
 
 namespace uav_landing {
 namespace {
 
+using motion_lanes::combine;
+using motion_lanes::look;
+using motion_lanes::Mask;
+using motion_lanes::MatchRows;
+using motion_lanes::Seen;
+using motion_lanes::Terms;
+
 constexpr double kTukey = 4.5;
-// Nearer than this, in units of what is seen, nothing is in front of the camera.
-constexpr double kLeastDepth = 1e-6;
 // Squared error of what lies behind it, pixels^2.
 constexpr double kBehind = 1e9;
 constexpr size_t kTile = 32;  // matches whose columns stay in the cache
 
-using Mask = decltype(DoubleLanes{} > DoubleLanes{});
-
-// A state and a camera, by numbers.
-struct Terms {
-  double Q[3][3], t[3], n[3], Qt[3];
-  double fx, fy, cx, cy;
-
-  Terms(const MotionState& state, double fx_, double fy_, double cx_, double cy_)
-      : fx(fx_), fy(fy_), cx(cx_), cy(cy_) {
-    const Eigen::Vector3d turned = state.Q * state.t;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) Q[i][j] = state.Q(i, j);
-      t[i] = state.t[i];
-      n[i] = state.n[i];
-      Qt[i] = turned[i];
-    }
-  }
-};
-
-// Where four matches are seen then: the ray now, its inverse depth, the point in the frame then, the pixel's
-// error. seen: in front of the camera.
-struct Seen {
-  DoubleLanes rx, ry, w, x, y, z, error_u, error_v;
-  Mask on_plane, seen;
-};
-
-// in: the columns x, y, u, v, ... of the input.
-[[gnu::always_inline]] inline void look(const Terms& s, const double* x, const double* y, const double* u,
-                                        const double* v, const double* on_plane, const double* depth,
-                                        Seen& out) {
-  DoubleLanes then_u, then_v, plane, own;
-  load(x, out.rx);
-  load(y, out.ry);
-  load(u, then_u);
-  load(v, then_v);
-  load(on_plane, plane);
-  load(depth, own);
-  out.on_plane = plane > 0;
-  out.w = out.on_plane ? s.n[0] * out.rx + s.n[1] * out.ry + s.n[2] : own;
-  const DoubleLanes px = out.rx + out.w * s.t[0], py = out.ry + out.w * s.t[1], pz = 1 + out.w * s.t[2];
-  const DoubleLanes z = s.Q[2][0] * px + s.Q[2][1] * py + s.Q[2][2] * pz, one = DoubleLanes{} + 1;
-  out.seen = z > kLeastDepth;
-  out.x = s.Q[0][0] * px + s.Q[0][1] * py + s.Q[0][2] * pz;
-  out.y = s.Q[1][0] * px + s.Q[1][1] * py + s.Q[1][2] * pz;
-  out.z = out.seen ? z : one;
-  out.error_u = then_u - (s.fx * out.x / out.z + s.cx);
-  out.error_v = then_v - (s.fy * out.y / out.z + s.cy);
-}
-
-// Votes and good fits of four matches.
+// Votes and good fits of four matches. Where a match does not know, as along a line, it does not vote.
 UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, size_t padded, size_t count,
                                    MotionSupport& support) {
   constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance
-  constexpr double kUnit = 1 / (MotionRows::kTolerance * MotionRows::kTolerance);
+  constexpr double kSquare = MotionRows::kTolerance * MotionRows::kTolerance;
   const DoubleLanes none{}, one = none + 1, last = none + static_cast<double>(count);
   DoubleLanes votes{}, close{}, index{0, 1, 2, 3};
   for (size_t i = 0; i < padded; i += kDoubleLanes, index += kDoubleLanes) {
     Seen at;
     const double* in = inputs + i;
-    look(terms, in, in + padded, in + 2 * padded, in + 3 * padded, in + 7 * padded, in + 8 * padded, at);
-    const DoubleLanes ratio = kUnit * (at.error_u * at.error_u + at.error_v * at.error_v);
+    DoubleLanes rx, ry, then_u, then_v, xx, xy, yy;
+    load(in, rx);
+    load(in + padded, ry);
+    look(terms, rx, ry, in + 7 * padded, in + 8 * padded, at);
+    load(in + 2 * padded, then_u);
+    load(in + 3 * padded, then_v);
+    const DoubleLanes error_u = then_u - at.u, error_v = then_v - at.v;
+    load(in + 4 * padded, xx);
+    load(in + 5 * padded, xy);
+    load(in + 6 * padded, yy);
+    xx += kSquare;
+    yy += kSquare;
+    const DoubleLanes ratio =
+        (yy * error_u * error_u - 2 * xy * error_u * error_v + xx * error_v * error_v) / (xx * yy - xy * xy);
     const Mask counts = at.seen & (index < last) & (ratio < 1);
     votes += counts ? 1 - ratio : none;
     close += (counts & (ratio < kClose)) ? one : none;
@@ -89,68 +58,43 @@ UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, siz
   support.close = static_cast<int>(sum(close));
 }
 
-// A row of the Jacobian by (rotation, t, n), where the projection's derivatives by the point are a by its
-// component `axis` (0 or 1) and c by the third.
-template <int axis>
-[[gnu::always_inline]] inline void derive(const Terms& s, const Seen& at, const DoubleLanes& a,
-                                          const DoubleLanes& c, const DoubleLanes& by_depth,
-                                          DoubleLanes (&row)[9]) {
-  const DoubleLanes none{};
-  // The point turns by -[y]x.
-  if (axis == 0) {
-    row[0] = c * at.y;
-    row[1] = a * at.z - c * at.x;
-    row[2] = -a * at.y;
-  } else {
-    row[0] = c * at.y - a * at.z;
-    row[1] = -c * at.x;
-    row[2] = a * at.x;
-  }
-  for (int j = 0; j < 3; ++j) row[3 + j] = at.w * (a * s.Q[axis][j] + c * s.Q[2][j]);
-  row[6] = at.on_plane ? by_depth * at.rx : none;
-  row[7] = at.on_plane ? by_depth * at.ry : none;
-  row[8] = at.on_plane ? by_depth : none;
-}
-
 // outputs: columns of both rows, squares, ratio.
 UAV_LANDING_MULTIVERSION void lineariseAll(const Terms& s, const double* inputs, size_t padded,
                                            double* outputs) {
   constexpr double kLeastVariance = 1e-12;
   const DoubleLanes none{}, behind = none + kBehind;
   for (size_t i = 0; i < padded; i += kDoubleLanes) {
-    Seen at;
     const double* in = inputs + i;
     double* out = outputs + i;
-    look(s, in, in + padded, in + 2 * padded, in + 3 * padded, in + 7 * padded, in + 8 * padded, at);
-    const DoubleLanes au = s.fx / at.z, av = s.fy / at.z, cu = -au * at.x / at.z, cv = -av * at.y / at.z;
-    const DoubleLanes depth_u = au * s.Qt[0] + cu * s.Qt[2], depth_v = av * s.Qt[1] + cv * s.Qt[2];
-    DoubleLanes first[9], second[9];
-    derive<0>(s, at, au, cu, depth_u, first);
-    derive<1>(s, at, av, cv, depth_v, second);
-    DoubleLanes xx, xy, yy, depth_stddev;
+    MatchRows rows;
+    Mask seen;
+    combine(s, in, padded, rows, seen);
+    DoubleLanes u, v, xx, xy, yy, depth_stddev;
+    load(in + 10 * padded, u);
+    load(in + 11 * padded, v);
     load(in + 4 * padded, xx);
     load(in + 5 * padded, xy);
     load(in + 6 * padded, yy);
     load(in + 9 * padded, depth_stddev);  // none on the plane
-    const DoubleLanes du = depth_u * depth_stddev, dv = depth_v * depth_stddev;
+    const DoubleLanes du = rows.depth_u * depth_stddev, dv = rows.depth_v * depth_stddev;
     xx += du * du;
     xy += du * dv;
     yy += dv * dv;
     const DoubleLanes mixed = xy / xx, left = yy - mixed * xy;
     const DoubleLanes precision_u = 1 / xx,
                       precision_v = 1 / (left > kLeastVariance ? left : none + kLeastVariance);
-    const DoubleLanes error_v = at.error_v - mixed * at.error_u;
+    const DoubleLanes error_u = u - rows.u, error_v = v - rows.v, own_v = error_v - mixed * error_u;
     for (int j = 0; j < 9; ++j) {
-      store(first[j], out + j * padded);
-      store(second[j] - mixed * first[j], out + (11 + j) * padded);
+      store(rows.first[j], out + j * padded);
+      store(rows.second[j] - mixed * rows.first[j], out + (11 + j) * padded);
     }
-    store(at.error_u, out + 9 * padded);
+    store(error_u, out + 9 * padded);
     store(precision_u, out + 10 * padded);
-    store(error_v, out + 20 * padded);
+    store(own_v, out + 20 * padded);
     store(precision_v, out + 21 * padded);
-    const DoubleLanes squares = at.error_u * at.error_u + at.error_v * at.error_v;
-    store(at.seen ? squares : behind, out + 22 * padded);
-    store(at.error_u * at.error_u * precision_u + error_v * error_v * precision_v, out + 23 * padded);
+    const DoubleLanes squares = error_u * error_u + error_v * error_v;
+    store(seen ? squares : behind, out + 22 * padded);
+    store(error_u * error_u * precision_u + own_v * own_v * precision_v, out + 23 * padded);
   }
 }
 
@@ -281,6 +225,14 @@ void MotionRows::assign(const StereoRig& rig, const std::vector<TemporalMatch>& 
     set(kOnPlane, match.on_plane ? 1 : 0);
     set(kDepth, match.inverse_depth);
     set(kDepthStddev, match.on_plane ? 0 : match.inverse_depth_stddev);
+    const Eigen::Vector2d seen =
+        match.then + match.by_warp[0] * match.warp.col(0) + match.by_warp[1] * match.warp.col(1);
+    set(kSeenU, seen.x());
+    set(kSeenV, seen.y());
+    for (int k = 0; k < 4; ++k) {
+      inputs_[(kRight + k) * padded_ + i] = match.by_warp[0](k / 2, k % 2);
+      inputs_[(kBelow + k) * padded_ + i] = match.by_warp[1](k / 2, k % 2);
+    }
   }
 }
 

@@ -59,7 +59,24 @@ class MotionRows {
   Eigen::Matrix<double, 6, 1> solveExactly() const;
 
  private:
-  enum Input { kX, kY, kU, kV, kXX, kXY, kYY, kOnPlane, kDepth, kDepthStddev, kInputs };
+  // kSeen: where a mixture of the corner and its neighbours was seen; kRight, kBelow: their shares, by rows.
+  enum Input {
+    kX,
+    kY,
+    kU,
+    kV,
+    kXX,
+    kXY,
+    kYY,
+    kOnPlane,
+    kDepth,
+    kDepthStddev,
+    kSeenU,
+    kSeenV,
+    kRight,
+    kBelow = kRight + 4,
+    kInputs = kBelow + 4
+  };
   static constexpr int kUnknowns = 9, kResidual = 9, kPrecision = 10, kRowColumns = 11;
   // Of both rows, and then for both: squared error in pixels, the same over the covariance, weight.
   static constexpr int kSquares = 2 * kRowColumns, kRatio = kSquares + 1, kWeight = kSquares + 2;

@@ -5,18 +5,12 @@
 #include <algorithm>
 
 #include "geometry/rotation.h"
+#include "motion/thinned_corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/motion/approach_angle.h"
-#include "uav_landing/results/consistency_test.h"
 
 namespace uav_landing {
 namespace {
-
-// Share of the followed corners that must agree with a motion that grew from the last one.
-constexpr double kLeastShare = 0.35;
-
-// Fewest matches that make a motion good enough to search from.
-constexpr int kFewestScouts = 6;
 
 // Images kept however close their stamps are: 0.5 s of 100 Hz.
 constexpr size_t kMostFrames = 50;
@@ -24,16 +18,11 @@ constexpr size_t kMostFrames = 50;
 // Images whose memory is taken beforehand: 0.5 s of 30 Hz.
 constexpr size_t kMostAtOnce = 17;
 
+// Of the height, that a step is predicted to sink.
+constexpr double kMostSunk = 0.5;
+
 // Stamps may be off by this much for a frame still to be in the window, s.
 constexpr double kWindowSlack = 0.05;
-
-// At most count of the corners, spread as the corners are.
-std::vector<TrackedCorner> thinned(const std::vector<TrackedCorner>& corners, size_t count) {
-  if (corners.size() <= count) return corners;
-  std::vector<TrackedCorner> some;
-  for (size_t i = 0; i < count; ++i) some.push_back(corners[i * corners.size() / count]);
-  return some;
-}
 
 // The angle's variance from the joint covariance of t and n (both enter asin(n.t/|t|)).
 double jointAngleVariance(const MotionEstimate& estimate) {
@@ -64,13 +53,6 @@ std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duratio
   return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
 }
 
-// The rotation that the matches want is one that the prior allows.
-bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
-  static const double gate = chiSquareLimit(1e-3, 3);
-  const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
-  return off.dot(prior.covariance.inverse() * off) <= gate;
-}
-
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
@@ -81,6 +63,7 @@ MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameter
     : rig_(model.rig),
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
       parameters_(parameters),
+      search_(rig_, mask_, parameters),
       filter_(parameters.angle_window) {
   reset();
 }
@@ -99,12 +82,6 @@ void MotionTracker::reset() {
   filter_.reset();
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
-}
-
-int MotionTracker::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
-
-TemporalMatchOptions MotionTracker::matchOptions(int coarse_steps) const {
-  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -168,23 +145,14 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const Eigen::Matrix3d& covariance, const Corners& corners,
                                  const RotationPrior* rotation, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
-  Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
-  const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * step_matches_.size(); };
-  for (const CameraMotion& predicted : predictions(duration, rotation)) {
-    estimate = followFrom(now, predicted, normal, covariance, corners, rotation);
-    if (good()) break;
-  }
-  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
-  if (rotation != nullptr) rotations.insert(rotations.begin(), rotation->R);
-  for (const Eigen::Matrix3d& R : rotations) {
-    if (good()) break;
-    const CameraMotion first = searchFirst(now, normal, corners, R);
-    estimate = followFrom(now, first, normal, covariance, corners, rotation);
-  }
+  const StepImages step{now.image, past_.back().image, corners, normal, covariance, rotation};
+  const Expected<MotionEstimate> estimate =
+      search_.find(step, predictions(duration, rotation), step_matches_);
   result.step = describe(estimate, duration, step_matches_.size(), &result.step_match_variance);
   if (!estimate) return;
   result.step_estimate = *estimate;
   last_duration_ = duration;
+  last_sink_ = estimate->normal.dot(estimate->motion.t);
 }
 
 // As the camera moved last, with the known rotation first.
@@ -192,78 +160,16 @@ std::vector<CameraMotion> MotionTracker::predictions(double duration, const Rota
   std::vector<CameraMotion> predictions;
   if (!last_step_) return predictions;
   CameraMotion predicted = *last_step_;
-  predicted.t *= duration / last_duration_;
+  // The same way is more heights from a lower height. What a prediction leaves out again and again is a bias:
+  // lines along the runway, seen with the warp of the prediction, hold the motion near it.
+  const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
+  predicted.t *= duration / last_duration_ / (1 - sunk);
   predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
                                   Eigen::AngleAxisd(predicted.R).axis())
                     .toRotationMatrix();
   if (rotation != nullptr) predictions.push_back({rotation->R, predicted.t});
   predictions.push_back(predicted);
   return predictions;
-}
-
-Expected<MotionEstimate> MotionTracker::followFrom(const Frame& now, const CameraMotion& predicted,
-                                                   const Eigen::Vector3d& normal,
-                                                   const Eigen::Matrix3d& covariance, const Corners& corners,
-                                                   const RotationPrior* rotation) {
-  // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
-  // moves on as it did, so a small one comes first.
-  constexpr size_t kScouts = 60;
-  constexpr int kSmallSteps = 3;
-  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // share of the scouts, and of those matched
-  const MatchImage& then = past_.back().image;
-  const Corners scouts = thinned(corners, kScouts);
-  CameraMotion start = predicted;
-  const int wide = wideSteps();
-  for (const int steps : {std::min(kSmallSteps, wide), wide}) {
-    const std::vector<TemporalMatch> matches =
-        matchOverTime(rig_, now.image, then, mask_, scouts, normal, predicted, matchOptions(steps));
-    const Expected<MotionEstimate> scouted =
-        estimateMotion(rig_, matches, normal, covariance, predicted, kFewestScouts);
-    if (scouted) start = scouted->motion;
-    if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * matches.size()))
-      break;
-  }
-  step_matches_ = matchOverTime(rig_, now.image, then, mask_, corners, normal, start, matchOptions(0),
-                                std::move(step_matches_));
-  return estimate(step_matches_, normal, covariance, start, rotation);
-}
-
-Expected<MotionEstimate> MotionTracker::estimate(const std::vector<TemporalMatch>& matches,
-                                                 const Eigen::Vector3d& normal,
-                                                 const Eigen::Matrix3d& covariance, const CameraMotion& start,
-                                                 const RotationPrior* rotation) const {
-  if (rotation != nullptr) {
-    // Three of the six unknowns are known already.
-    const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
-    const Expected<MotionEstimate> aided =
-        estimateMotion(rig_, matches, normal, covariance, start, needed, rotation);
-    if (aided && agrees(*aided, *rotation)) return aided;
-  }
-  return estimateMotion(rig_, matches, normal, covariance, start, parameters_.min_matches);
-}
-
-CameraMotion MotionTracker::searchFirst(const Frame& now, const Eigen::Vector3d& normal,
-                                        const Corners& corners, const Eigen::Matrix3d& R) const {
-  constexpr size_t kCorners = 90;
-  const Corners some = thinned(corners, kCorners);
-  // Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
-  // is left to the search radius.
-  const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
-  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
-  CameraMotion best{R, Eigen::Vector3d::Zero()};
-  double most = 0;
-  for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1}) {
-    const CameraMotion guess{R, share * ahead};
-    const std::vector<TemporalMatch> matches = matchOverTime(rig_, now.image, past_.back().image, mask_, some,
-                                                             normal, guess, matchOptions(wideSteps()));
-    const Expected<MotionEstimate> estimate =
-        estimateMotion(rig_, matches, normal, loose, guess, kFewestScouts);
-    if (estimate && estimate->inlier_count > most) {
-      most = estimate->inlier_count;
-      best = estimate->motion;
-    }
-  }
-  return best;
 }
 
 void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
@@ -287,8 +193,9 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     // Lengths change from units of the previous height to those of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
-                                    matchOptions(0), std::move(window_matches_));
+    window_matches_ =
+        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
+                      {parameters_.window_radius, parameters_.min_zncc, 0}, std::move(window_matches_));
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;

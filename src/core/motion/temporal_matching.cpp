@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "base/touch_ahead.h"
 #include "uav_landing/image/patch_matching.h"
+#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 namespace {
@@ -131,12 +133,28 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     match.now = x;
     match.then = refined.position;
     match.covariance = refined.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
+    match.by_warp = refined.by_warp;
+    match.warp = local.warp;
     match.on_plane = corner.on_plane;
     match.inverse_depth = corner.inverse_depth;
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
     matches.push_back(match);
   }
   return matches;
+}
+
+double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
+                        const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
+                        const Eigen::Vector3d& normal, const CameraMotion& motion, int window_radius) {
+  const Predictions predictions(rig, now, then, mask, motion, normal, window_radius);
+  PatchSearch there(now.fine, then.fine, window_radius);
+  double likeness = 0;
+  LocalWarp local;
+  for (const TrackedCorner& corner : corners) {
+    if (!predictions.at(corner, &local) || !visible(mask, local.centre)) continue;
+    likeness += std::max(0.0, there.run(corner.u, corner.v, local.centre, local.warp, 0).score);
+  }
+  return likeness;
 }
 
 }  // namespace uav_landing

@@ -8,6 +8,7 @@
 #include "base/multiversion.h"
 #include "stereo/row_fit.h"
 #include "uav_landing/image/patch_matching.h"
+#include "uav_landing/image/patch_refinement.h"
 #include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {

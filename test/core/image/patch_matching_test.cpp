@@ -1,4 +1,5 @@
 #include "uav_landing/image/patch_matching.h"
+#include "uav_landing/image/patch_refinement.h"
 
 #include <gtest/gtest.h>
 
@@ -146,6 +147,63 @@ TEST(RefinePatch, KnowsThatAnEdgeSaysNothingAlongIt) {
   EXPECT_NEAR(refined.position.x(), 100, 0.1);
   EXPECT_GT(refined.covariance(1, 1), 10 * refined.covariance(0, 0));
   EXPECT_GT(refined.covariance.determinant(), 0);
+}
+
+TEST(RefinePatch, DoesNotTakeNoiseAlongAnEdgeForTexture) {
+  constexpr double kNoise = 5;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0, kNoise);
+  const auto edge = [&] {
+    cv::Mat image(kSize, kSize, CV_8UC1);
+    for (int v = 0; v < kSize; ++v)
+      for (int u = 0; u < kSize; ++u)
+        image.at<uchar>(v, u) =
+            cv::saturate_cast<uchar>(100 + 60 * std::tanh((u - 100) / 2.0) + normal(random));
+    MatchImage match;
+    match.assign(image);
+    return match;
+  };
+  const MatchImage reference = edge(), other = edge();
+  // Wherever it is looked for, it is found near there: the claim must be no less than how far that may be
+  // off.
+  double squares = 0, claimed = 0;
+  int found = 0;
+  for (int v = 20; v < kSize - 20; v += 4) {
+    const double off = v % 8 == 0 ? 1.0 : -1.0;
+    const PatchRefinement refined = refinePatch(reference.fine, other.fine, 100, v, {100.0, v + off},
+                                                Eigen::Matrix2d::Identity(), kRadius);
+    if (!refined.converged) continue;
+    ++found;
+    squares += std::pow(refined.position.y() - v, 2);
+    claimed += refined.covariance(1, 1);
+    EXPECT_LT(std::sqrt(refined.covariance(0, 0)), 0.3);
+  }
+  ASSERT_GT(found, 10);
+  EXPECT_GT(squares / found, 0.3);
+  EXPECT_GT(claimed, squares);
+}
+
+TEST(RefinePatch, TellsHowThePlaceFollowsFromTheWarp) {
+  Pair::Look look;
+  look.A = turned(0.05, 0.9, 1.1);
+  look.shift = {0.4, -0.7};
+  look.noise = 0.5;
+  const Pair pair(look);
+  Eigen::Matrix2d E;
+  E << 0.05, 0.02, -0.03, -0.06;
+  double squares = 0, left = 0;
+  for (int v = 40; v <= kSize - 40; v += 6)
+    for (int u = 40; u <= kSize - 40; u += 6) {
+      const Eigen::Vector2d wanted = pair.place(u, v);
+      const PatchRefinement refined =
+          refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, look.A + E, kRadius);
+      ASSERT_TRUE(refined.converged);
+      const Eigen::Vector2d error = refined.position - wanted;
+      const Eigen::Vector2d told = -(refined.by_warp[0] * E.col(0) + refined.by_warp[1] * E.col(1));
+      squares += error.squaredNorm();
+      left += (error - told).squaredNorm();
+    }
+  EXPECT_LT(left, 0.1 * squares);
 }
 
 TEST(PatchSearch, DoesNotTakeAPeakOnTheBorderOfTheRange) {

@@ -76,11 +76,33 @@ class Matcher {
       if (uniform_(random_) < share) match.then += 4 * draw() + 30 * Eigen::Vector2d(uniform_(random_), 0);
   }
 
+  /// Finds each elsewhere, as with a warp that is wrong and gradients beside the corner.
+  void findByWrongWarps(std::vector<TemporalMatch>& matches, double wrong) {
+    for (TemporalMatch& match : matches) {
+      Eigen::Matrix2d warp, error;
+      warp.col(0) = groundSeenThen(match.now + Eigen::Vector2d::UnitX()) - groundSeenThen(match.now);
+      warp.col(1) = groundSeenThen(match.now + Eigen::Vector2d::UnitY()) - groundSeenThen(match.now);
+      for (int axis = 0; axis < 2; ++axis) {
+        error.col(axis) = wrong * draw();
+        match.by_warp[axis] << draw(), draw();
+        match.then -= match.by_warp[axis] * error.col(axis);
+      }
+      match.warp = warp + error;
+    }
+  }
+
   Eigen::Vector2d draw() { return {normal_(random_), normal_(random_)}; }
 
  private:
   Eigen::Vector2d anyPixel() {
     return {uniform_(random_) * (rig().size.width - 1), uniform_(random_) * (rig().size.height - 1)};
+  }
+
+  Eigen::Vector2d groundSeenThen(const Eigen::Vector2d& pixel) const {
+    const Eigen::Vector3d ray = rig().ray(pixel.x(), pixel.y());
+    const Eigen::Vector3d X = step_.now.height() / step_.n.dot(ray) * ray;
+    return rig().project(
+        step_.then.seen(step_.now.worldFromOptical() * X + step_.now.position - step_.then.position));
   }
 
   void add(const Eigen::Vector2d& pixel, double depth, double noise, bool on_plane, double depth_noise,
@@ -140,6 +162,21 @@ TEST(EstimateMotion, IsExactOnExactMatches) {
     EXPECT_LT((found->normal - step.n).norm(), 1e-7);
     EXPECT_EQ(found->inlier_count, 100);
   }
+}
+
+TEST(EstimateMotion, DoesNotFollowTheWarpsThatMatchesWereLookedForWith) {
+  const Step step = Step::make();
+  Matcher matcher(step, 4);
+  std::vector<TemporalMatch> matches = matcher.ground(100, 0);
+  matcher.findByWrongWarps(matches, 0.1);
+  const Expected<MotionEstimate> found = estimate(matches, step.n, 1e-3);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_LT((found->motion.t - step.t).norm(), 1e-7);
+  // What the warp alone would tell of a motion is not known to a match that follows it.
+  for (TemporalMatch& match : matches) match.by_warp = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  const Expected<MotionEstimate> followed = estimate(matches, step.n, 1e-3);
+  ASSERT_TRUE(followed);
+  EXPECT_GT((followed->motion.t - step.t).norm(), 1e-4);
 }
 
 TEST(EstimateMotion, FindsNoMovementAndPureRotation) {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/image/match_image.h"
+#include "uav_landing/motion/ego_motion.h"
+#include "uav_landing/motion/temporal_matching.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
+
+namespace uav_landing {
+
+/// Two images of the left camera, and what is known of the later one.
+struct StepImages {
+  const MatchImage &now, &then;
+  const std::vector<TrackedCorner>& corners;  ///< of the image now
+  Eigen::Vector3d normal;                     ///< of the ground, unit, now
+  Eigen::Matrix3d normal_covariance;          ///< rank 2
+  const RotationPrior* rotation = nullptr;    ///< of an inertial sensor; may be none
+};
+
+/// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
+class StepSearch {
+ public:
+  /// mask: of the left image, eroded by the window.
+  StepSearch(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters);
+
+  /// predictions: motions to try first. matches: the corners followed, those that contradict the motion
+  /// included; its memory is used again.
+  Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
+                                std::vector<TemporalMatch>& matches) const;
+
+ private:
+  TemporalMatchOptions options(int coarse_steps) const;
+  int wideSteps() const;  // of the coarse level, to both sides
+  std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
+                                   const CameraMotion& predicted, int coarse_steps,
+                                   std::vector<TemporalMatch> memory = {}) const;
+  Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
+                                      std::vector<TemporalMatch>& matches) const;
+  Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
+                                    const std::vector<TemporalMatch>& matches) const;
+  CameraMotion searchFirst(const StepImages& step, const Eigen::Matrix3d& R) const;
+  CameraMotion mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const;
+
+  StereoRig rig_;
+  cv::Mat mask_;
+  ApproachAngleParameters parameters_;
+};
+
+}  // namespace uav_landing

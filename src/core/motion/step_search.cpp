@@ -1,0 +1,156 @@
+#include "uav_landing/motion/step_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "geometry/rotation.h"
+#include "motion/thinned_corners.h"
+#include "uav_landing/results/consistency_test.h"
+
+namespace uav_landing {
+namespace {
+
+// Share of the followed corners that must agree with a motion that grew from the last one.
+constexpr double kLeastShare = 0.35;
+
+// Fewest matches that make a motion good enough to search from.
+constexpr int kFewestScouts = 6;
+
+// The rotation that the matches want is one that the prior allows.
+bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
+  static const double gate = chiSquareLimit(1e-3, 3);
+  const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
+  return off.dot(prior.covariance.inverse() * off) <= gate;
+}
+
+// Straight ahead over the ground by these shares of the height; what is between them, rotation and sinking
+// is left to the search for each corner.
+std::vector<CameraMotion> guesses(const Eigen::Vector3d& normal, const Eigen::Matrix3d& R) {
+  const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
+  std::vector<CameraMotion> guesses;
+  for (const double share : {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1})
+    guesses.push_back({R, share * ahead});
+  return guesses;
+}
+
+}  // namespace
+
+StepSearch::StepSearch(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters)
+    : rig_(rig), mask_(std::move(mask)), parameters_(parameters) {}
+
+int StepSearch::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
+
+TemporalMatchOptions StepSearch::options(int coarse_steps) const {
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps};
+}
+
+std::vector<TemporalMatch> StepSearch::match(const StepImages& step,
+                                             const std::vector<TrackedCorner>& corners,
+                                             const CameraMotion& predicted, int coarse_steps,
+                                             std::vector<TemporalMatch> memory) const {
+  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
+                       options(coarse_steps), std::move(memory));
+}
+
+Expected<MotionEstimate> StepSearch::find(const StepImages& step,
+                                          const std::vector<CameraMotion>& predictions,
+                                          std::vector<TemporalMatch>& matches) const {
+  Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+  const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * matches.size(); };
+  for (const CameraMotion& predicted : predictions) {
+    estimate = followFrom(step, predicted, matches);
+    if (good()) return estimate;
+  }
+  std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
+  if (step.rotation != nullptr) rotations.insert(rotations.begin(), step.rotation->R);
+  for (const Eigen::Matrix3d& R : rotations) {
+    estimate = followFrom(step, searchFirst(step, R), matches);
+    if (good()) break;
+  }
+  return estimate;
+}
+
+Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const CameraMotion& predicted,
+                                                std::vector<TemporalMatch>& matches) const {
+  // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
+  // moves on as it did, so a small one comes first.
+  constexpr size_t kScouts = 60;
+  constexpr int kSmallSteps = 3;
+  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // share of the scouts, and of those matched
+  const std::vector<TrackedCorner> scouts = thinned(step.corners, kScouts);
+  CameraMotion start = predicted;
+  const int wide = wideSteps();
+  for (const int steps : {std::min(kSmallSteps, wide), wide}) {
+    const std::vector<TemporalMatch> found = match(step, scouts, predicted, steps);
+    const Expected<MotionEstimate> scouted =
+        estimateMotion(rig_, found, step.normal, step.normal_covariance, predicted, kFewestScouts);
+    if (scouted) start = scouted->motion;
+    if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * found.size()))
+      break;
+  }
+  matches = match(step, step.corners, start, 0, std::move(matches));
+  return estimate(step, start, matches);
+}
+
+Expected<MotionEstimate> StepSearch::estimate(const StepImages& step, const CameraMotion& start,
+                                              const std::vector<TemporalMatch>& matches) const {
+  if (step.rotation != nullptr) {
+    // Three of the six unknowns are known already.
+    const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
+    const Expected<MotionEstimate> aided =
+        estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.rotation);
+    if (aided && agrees(*aided, *step.rotation)) return aided;
+  }
+  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, parameters_.min_matches);
+}
+
+CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix3d& R) const {
+  constexpr size_t kCorners = 90;
+  constexpr double kEnough = 0.2;  // of them, that agree
+  const std::vector<TrackedCorner> some = thinned(step.corners, kCorners);
+  const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
+  std::vector<CameraMotion> candidates = guesses(step.normal, R);
+  CameraMotion best = candidates.front();
+  double most = 0;
+  for (const CameraMotion& guess : candidates) {
+    const std::vector<TemporalMatch> matches = match(step, some, guess, wideSteps());
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, matches, step.normal, loose, guess, kFewestScouts);
+    if (estimate && estimate->inlier_count > most) {
+      most = estimate->inlier_count;
+      best = estimate->motion;
+    }
+  }
+  if (most >= kEnough * static_cast<double>(some.size())) return best;
+  if (most > 0) candidates.push_back(best);
+  return mostAlike(step, candidates);
+}
+
+// Lines along the runway look alike wherever along them they are looked for, so that they agree with any
+// speed, the more of them the slower it is; how much all corners look alike tells which one is right.
+CameraMotion StepSearch::mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const {
+  constexpr int kFollowed = 3;  // times from where the last one led: it falls short of what is right by half
+  CameraMotion best = guesses.front();
+  double most = 0;
+  std::vector<TemporalMatch> matches;
+  for (const CameraMotion& guess : guesses) {
+    CameraMotion motion = guess;
+    for (int time = 0; time < kFollowed; ++time) {
+      matches = match(step, step.corners, motion, 0, std::move(matches));
+      const Expected<MotionEstimate> followed = estimate(step, motion, matches);
+      if (!followed) break;
+      motion = followed->motion;
+    }
+    const double alike = likenessOverTime(rig_, step.now, step.then, mask_, step.corners, step.normal, motion,
+                                          parameters_.window_radius);
+    if (alike > most) {
+      most = alike;
+      best = motion;
+    }
+  }
+  return best;
+}
+
+}  // namespace uav_landing
