@@ -11,7 +11,8 @@ namespace uav_landing {
 /// counts in the gate and in the gain, which makes the filter cautious where it changes after all, and is
 /// left out of a second covariance, that of what is independent from pair to pair, which is carried along
 /// with the same gains (a consider covariance, Schmidt: Application of state-space methods to navigation
-/// problems, Advances in Control Systems 3, 1966).
+/// problems, Advances in Control Systems 3, 1966). So is what is common: the state has of each measurement
+/// what its gain gave it, and errors of one cause add up with their sign.
 class HeightFilter {
  public:
   /// acceleration_stddev: m/s^2, of eta in eq (7). gate: largest normalised innovation, sigmas.
@@ -39,6 +40,8 @@ class HeightFilter {
   const Eigen::Matrix2d& covariance() const { return covariance_; }
   /// Of what is independent from pair to pair: to be added to what is common to all.
   const Eigen::Matrix2d& ownCovariance() const { return own_; }
+  /// Of the height, by what is common to the measurements that it is made of; m^2.
+  double commonVariance() const { return common_[0] * common_[0]; }
 
  private:
   Update fuse(const Eigen::RowVector2d& observation, double measured, double variance, double common);
@@ -47,6 +50,7 @@ class HeightFilter {
   bool initialised_ = false;
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero(), own_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d common_ = Eigen::Vector2d::Zero();  // 1 sigma of the state by what is common, with signs
 };
 
 }  // namespace uav_landing

@@ -61,14 +61,10 @@ class SolutionSeparation {
   Level larger(const Level& level, double height, double solution, double variance, const char* source) const;
 
  private:
-  struct Solution {
-    HeightFilter filter;
-    double common = 0;  // m^2, of the last measurement
-  };
   double factor_, fault_factor_;  // k without and with a fault
   double unwatched_scale_;        // of height
   double acceleration_stddev_, initial_speed_stddev_;
-  std::array<std::optional<Solution>, kFaultySources> solutions_;
+  std::array<std::optional<HeightFilter>, kFaultySources> solutions_;
 };
 
 }  // namespace uav_landing

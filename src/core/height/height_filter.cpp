@@ -13,6 +13,7 @@ void HeightFilter::initialise(double height, double variance, double common) {
   covariance_ << variance, 0, 0, initial_speed_stddev_ * initial_speed_stddev_;
   own_ = covariance_;
   own_(0, 0) = std::max(0.0, variance - common);
+  common_ << std::sqrt(common), 0;
   initialised_ = true;
 }
 
@@ -25,6 +26,7 @@ void HeightFilter::predict(double T) {
       acceleration_stddev_ * acceleration_stddev_ * noise_gain * noise_gain.transpose();
   covariance_ = transition * covariance_ * transition.transpose() + noise;
   own_ = transition * own_ * transition.transpose() + noise;
+  common_ = transition * common_;
 }
 
 HeightFilter::Update HeightFilter::update(double height, double variance, double common) {
@@ -51,6 +53,7 @@ HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, d
   covariance_ = remaining * covariance_ * remaining.transpose() + variance * gain * gain.transpose();
   own_ =
       remaining * own_ * remaining.transpose() + std::max(0.0, variance - common) * gain * gain.transpose();
+  common_ = remaining * common_ + std::sqrt(common) * gain;
   return update;
 }
 

@@ -49,27 +49,26 @@ void SolutionSeparation::start(const Measurements& without, double height) {
     // What is not known is somewhere.
     filter.initialise(first.known() ? first.height : height, first.known() ? first.variance : height * height,
                       first.known() ? first.common : 0);
-    solutions_[i].emplace(Solution{filter, first.known() ? first.common : 0});
+    solutions_[i] = filter;
   }
 }
 
 void SolutionSeparation::predict(double T) {
-  for (std::optional<Solution>& solution : solutions_)
-    if (solution) solution->filter.predict(T);
+  for (std::optional<HeightFilter>& solution : solutions_)
+    if (solution) solution->predict(T);
 }
 
 void SolutionSeparation::update(const Measurements& without) {
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i] || !without[i].known()) continue;
-    solutions_[i]->filter.update(without[i].height, without[i].variance, without[i].common);
-    solutions_[i]->common = without[i].common;
+    solutions_[i]->update(without[i].height, without[i].variance, without[i].common);
   }
 }
 
 void SolutionSeparation::updateSpeed(double speed, double variance) {
   for (int i = 0; i < kFaultySources; ++i)
     if (solutions_[i] && i != static_cast<int>(FaultySource::kMotion))
-      solutions_[i]->filter.updateSpeed(speed, variance);
+      solutions_[i]->updateSpeed(speed, variance);
 }
 
 SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance,
@@ -80,9 +79,9 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
   if (!(scaled <= level.bound)) level = {scaled, "scale"};
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i]) continue;
-    const HeightFilter& filter = solutions_[i]->filter;
+    const HeightFilter& filter = *solutions_[i];
     level = larger(level, height, filter.state()[0],
-                   factor * filter.ownCovariance()(0, 0) + solutions_[i]->common,
+                   factor * filter.ownCovariance()(0, 0) + filter.commonVariance(),
                    toString(static_cast<FaultySource>(i)));
   }
   return level;

@@ -65,7 +65,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
   if (filter_.initialised() && confirmations_ >= kConfirmations &&
       !width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
-                     filter_.ownCovariance()(0, 0) + commonVariance(filter_.state()[0])))
+                     filter_.ownCovariance()(0, 0) + filter_.commonVariance()))
     seen.reset();
   if (seen) {
     result.width_height = seen->height + reconstruction.bend;

@@ -47,6 +47,24 @@ TEST(SolutionSeparation, IsWiderByTheFactorThatClaimsAreWrongBy) {
   EXPECT_NEAR(separation.protectionLevel(10, 1e-12, 4).bound, 2.576 * 0.2, 1e-3);
 }
 
+TEST(SolutionSeparation, HardlyGrowsByASinglePairThatIsUncertain) {
+  KalmanHeightParameters parameters;
+  parameters.unwatched_scale_error = 0;
+  SolutionSeparation separation(parameters);
+  SolutionSeparation::Measurements without = same(10, 0.0002);
+  for (auto& one : without) one.common = 0.0001;
+  separation.start(without, 10);
+  for (int i = 0; i < 20; ++i) {
+    separation.predict(0.05);
+    separation.update(without);
+    separation.updateSpeed(0, 1e-4);
+  }
+  const double before = separation.protectionLevel(10, 1e-12).bound;
+  for (auto& one : without) one = {10, 0.0101, 0.01};
+  separation.update(without);
+  EXPECT_LT(separation.protectionLevel(10, 1e-12).bound, 1.2 * before);
+}
+
 TEST(SolutionSeparation, GrowsWhereNothingIsLeftWithoutTheSource) {
   SolutionSeparation separation({});
   separation.start(same(10, 0.0001), 10);

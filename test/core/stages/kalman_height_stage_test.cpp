@@ -109,6 +109,23 @@ TEST(KalmanHeightStage, DoesNotAverageAwayTheUnevennessOfTheSurface) {
   EXPECT_LT(result.height_variance, 1.5 * 0.03 * 0.03);
 }
 
+TEST(KalmanHeightStage, IsHardlyLessCertainByASinglePairThatLeavesTheBendOpen) {
+  KalmanHeightStage stage(makeRig(), {});
+  LandingResult before, result;
+  for (int i = 0; i <= 60; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, 10);
+    stereo.below = stereo.plane;
+    // The height is 1 / g_y here, which is 0.1: 1 cm, and in the last pair 8 cm.
+    stereo.below.covariance(1, 1) += std::pow(1e-4 * (i < 60 ? 1 : 8), 2);
+    before = result;
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  EXPECT_GT(result.raw_height_variance, 0.07 * 0.07);
+  EXPECT_GT(before.height_variance, 0.01 * 0.01);
+  EXPECT_LT(result.height_variance, 0.25 * result.raw_height_variance);
+  EXPECT_TRUE(result.height_valid);
+}
+
 TEST(KalmanHeightStage, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDirection) {
   const double pitch = -8 * kDegree, roll = 12 * kDegree, yaw = 3 * kDegree;
   // R(runway <- body FLU) = Rz(yaw) Ry(-pitch) Rx(roll); optical axes are (-left, -up, forward) of the body.
