@@ -28,6 +28,7 @@ constexpr double kDirectionError = 0.15 * M_PI / 180;
 
 struct GroundPoint {
   double ahead, height, stddev;  // m
+  double ahead_on_plane;         // m, where its ray meets the plane
 };
 
 /// Variance of the median of the heights: by their scatter, or by what they claim.
@@ -155,12 +156,14 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
     if (!(expected > 0 && inverse > 0 && point.disparity > 0)) continue;
     const double ratio = expected / point.disparity;  // of its depth to the plane's
     if (std::abs(ratio - 1) > kMostOff) continue;
-    const Eigen::Vector3d at = ratio / inverse * ray;
-    if (std::abs(side.dot(at)) > kHalfWidth * h) continue;
-    strip.push_back({ahead.dot(at), n.dot(at), h * point.disparity_stddev / point.disparity});
-    nearest = std::min(nearest, strip.back().ahead);
+    // By the rays alone: where disparities decide what is in the strip, those of too near points are.
+    const Eigen::Vector3d on_plane = ray / inverse, at = ratio * on_plane;
+    if (std::abs(side.dot(on_plane)) > kHalfWidth * h) continue;
+    strip.push_back(
+        {ahead.dot(at), n.dot(at), h * point.disparity_stddev / point.disparity, ahead.dot(on_plane)});
+    nearest = std::min(nearest, strip.back().ahead_on_plane);
   }
-  const auto far = [&](const GroundPoint& point) { return point.ahead > nearest + kLength * h; };
+  const auto far = [&](const GroundPoint& point) { return point.ahead_on_plane > nearest + kLength * h; };
   strip.erase(std::remove_if(strip.begin(), strip.end(), far), strip.end());
   if (strip.size() < kFewest) return;
   std::vector<double> distances, heights;

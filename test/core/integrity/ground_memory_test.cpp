@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 #include "support/rigs.h"
@@ -98,6 +99,46 @@ TEST(GroundMemory, IsThePlaneWhereTheGroundIs) {
         }
       });
 }
+
+struct Errors {
+  double mean = 0;                 // m
+  double square = 0, claimed = 0;  // m^2
+};
+
+/// Means over 120 m of level flight over level ground, with noise on the matches. step: between pairs,
+/// m.
+Errors flyLevel(double step) {
+  const StereoRig rig = makeRig();
+  const Eigen::Vector3d down = normalFromPitchRoll(kPitch, 0);
+  const Eigen::Vector3d forward(0, -std::sin(-kPitch), std::cos(kPitch));
+  const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
+  constexpr double kNoise = 1.0;  // px
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const std::vector<StereoDepthResult::Point> exact = look(rig, 0, 12, [](double) { return 0; });
+  Errors errors;
+  int known = 0;
+  GroundMemory memory;
+  for (double x = 0; x < 120; x += step) {
+    std::vector<StereoDepthResult::Point> points = exact;
+    for (StereoDepthResult::Point& point : points) {
+      point.disparity += kNoise * normal(random);
+      point.disparity_stddev = kNoise;
+    }
+    memory.move(Eigen::Matrix3d::Identity(), step * forward, kPeriod);
+    memory.look(rig, points, plane, plane.g);
+    const std::optional<GroundMemory::Below> below = memory.below(down);
+    if (x < 30 || !below) continue;
+    errors.mean += below->height - 12;
+    errors.square += std::pow(below->height - 12, 2);
+    errors.claimed += below->variance;
+    ++known;
+  }
+  EXPECT_GT(known, 50 / step);
+  return {errors.mean / known, errors.square / known, errors.claimed / known};
+}
+
+TEST(GroundMemory, DoesNotTakeGroundForNearerBecauseOfNoise) { EXPECT_NEAR(flyLevel(0.2).mean, 0, 0.03); }
 
 TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
   const StereoRig rig = makeRig();
