@@ -45,10 +45,14 @@ class GroundMemory {
 
  private:
   struct Patch {
-    Eigen::Vector3d at;   // m, camera frame now
-    double variance = 0;  // of its height, m^2, when seen
-    double reach = 0;     // of the strip to this side of it, m
-    double flown = 0;     // since, m
+    Eigen::Vector3d at;      // m, camera frame now
+    double information = 0;  // of all looks at its height, were their errors independent, 1/m^2
+    double reach = 0;        // of the strip to this side of it, m
+    int looks = 1;           // pairs that have seen it
+    double drift = 0;        // variance by steps that are not known, m^2
+    double flown = 0;        // since the first look, m
+    void add(const Patch& look);
+    double variance() const;  // of its height, m^2
   };
   /// Steps in a row of which the motion is not known.
   struct Gap {
@@ -71,6 +75,7 @@ class GroundMemory {
     Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  // since the gap
     Eigen::Vector3d t = Eigen::Vector3d::Zero();
   };
+  void remember(const Patch& look, const Eigen::Vector3d& ahead, double spacing);
   double climbVariance(double T) const;
   void replaceBefore(std::deque<Patch> patches, size_t seen);
   void settleLater(const Eigen::Vector3d& normal, double turn_stddev);

@@ -20,7 +20,10 @@ constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no dir
 constexpr double kPathKept = 0.8;      // share of the path that counts on the next pair: of five pairs
 constexpr double kLongestStep = 5;     // over the mean step of the path: a longer one is wrong
 constexpr size_t kFewest = 5;          // points that make a patch
-constexpr int kMostCoasts = 3;         // pairs without a motion in a row
+// Share of the variance of a look that those of the next pairs have as well, as they see the same texture: by
+// the simulator's errors a twentieth to a third.
+constexpr double kLasting = 1.0 / 3;
+constexpr int kMostCoasts = 3;  // pairs without a motion in a row
 constexpr double kClimbChange =
     0.05;  // 1 sigma of the climb on a usual step that is not known, of its length
 // 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
@@ -44,12 +47,23 @@ double medianVariance(const std::vector<GroundPoint>& points, double middle) {
 
 }  // namespace
 
+void GroundMemory::Patch::add(const Patch& look) {
+  information += look.information;
+  at += look.information / information * (look.at - at);
+  ++looks;
+}
+
+double GroundMemory::Patch::variance() const {
+  const double of_looks = (1 - kLasting + kLasting * looks) / information;
+  return of_looks + drift + std::pow(kDirectionError * flown, 2);
+}
+
 void GroundMemory::carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,
                          double turn_variance, double climb_variance) {
   for (Patch& patch : patches) {
     patch.at = R * patch.at - step;
     patch.flown += step.norm();
-    patch.variance += turn_variance * patch.at.squaredNorm() + climb_variance;
+    patch.drift += turn_variance * patch.at.squaredNorm() + climb_variance;
   }
 }
 
@@ -172,24 +186,36 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
     heights.push_back(point.height);
   }
   const double place = medianOf(distances), height = medianOf(heights);
-  if (!patches_.empty() && place < distance(patches_.back()) + kSpacing * h) return;
-  patches_.push_back({place * ahead + height * n, medianVariance(strip, height), place - nearest, 0});
-  if (gap_) ++gap_->seen;
-  if (unsettled_) ++unsettled_->seen;
+  const double information = 1 / medianVariance(strip, height);
+  if (!std::isfinite(information)) return;  // nothing is without an error
+  remember({place * ahead + height * n, information, place - nearest}, ahead, kSpacing * h);
+}
+
+// A look at ground that has been seen is one more of the patch there: single ones are uncertain by much of
+// what may be below. Where that patch came over unknown steps, the two are not at one place.
+void GroundMemory::remember(const Patch& look, const Eigen::Vector3d& ahead, double spacing) {
+  const auto beyond = [&](const Patch& patch) { return ahead.dot(look.at - patch.at); };
+  if (patches_.empty() || beyond(patches_.back()) >= spacing) {
+    patches_.push_back(look);
+    if (gap_) ++gap_->seen;
+    if (unsettled_) ++unsettled_->seen;
+    return;
+  }
+  const auto nearest = std::min_element(
+      patches_.begin(), patches_.end(),
+      [&](const Patch& a, const Patch& b) { return std::abs(beyond(a)) < std::abs(beyond(b)); });
+  if (std::abs(beyond(*nearest)) < spacing && nearest->drift == 0) nearest->add(look);
 }
 
 std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& normal) const {
   const Eigen::Vector3d along = path_ - normal.dot(path_) * normal;
   if (!(along.norm() > 0)) return std::nullopt;
   const Eigen::Vector3d ahead = along.normalized();
-  const auto uncertain = [](const Patch& patch) {
-    return patch.variance + std::pow(kDirectionError * patch.flown, 2);
-  };
   if (!patches_.empty()) {
     const Patch& first = patches_.front();
     const double distance = ahead.dot(first.at);
     if (distance > 0 && distance <= first.reach + kSpacing * normal.dot(first.at))
-      return Below{normal.dot(first.at), uncertain(first)};
+      return Below{normal.dot(first.at), first.variance()};
   }
   for (size_t i = 1; i < patches_.size(); ++i) {
     const Patch &a = patches_[i - 1], &b = patches_[i];
@@ -198,7 +224,7 @@ std::optional<GroundMemory::Below> GroundMemory::below(const Eigen::Vector3d& no
     const double height_a = normal.dot(a.at), height_b = normal.dot(b.at);
     if (to - from > kLargestGap * std::max(height_a, height_b)) return std::nullopt;
     const double share = to > from ? -from / (to - from) : 0;
-    return Below{height_a + share * (height_b - height_a), std::max(uncertain(a), uncertain(b))};
+    return Below{height_a + share * (height_b - height_a), std::max(a.variance(), b.variance())};
   }
   return std::nullopt;
 }

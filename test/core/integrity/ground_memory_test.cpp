@@ -138,6 +138,17 @@ Errors flyLevel(double step) {
   return {errors.mean / known, errors.square / known, errors.claimed / known};
 }
 
+TEST(GroundMemory, KnowsGroundThatManyPairsHaveSeenBetterThanByOne) {
+  // The patches are 1.2 m apart.
+  const Errors one = flyLevel(1.3), many = flyLevel(0.2);
+  EXPECT_LT(one.square, one.claimed);
+  EXPECT_LT(many.square, many.claimed);
+  EXPECT_LT(many.square, 0.5 * one.square);
+  // The direction of the motion, by 0.15 deg of 20 m, is uncertain alike.
+  const double by_direction = std::pow(0.15 * kDegree * 20, 2);
+  EXPECT_LT(many.claimed - by_direction, 0.75 * (one.claimed - by_direction));
+}
+
 TEST(GroundMemory, DoesNotTakeGroundForNearerBecauseOfNoise) { EXPECT_NEAR(flyLevel(0.2).mean, 0, 0.03); }
 
 TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
