@@ -26,6 +26,10 @@ StereoLevel swapped(const StereoLevel& level);
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters);
 
+/// Those of the corners that are so on another plane.
+std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                       const Eigen::Vector3d& g);
+
 /// Stage 8: matches corners along their rows around the disparity that g predicts: gain and offset free
 /// correlation (or SSD), uniqueness, left-right check, sub-pixel. One disparity a sample.
 std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
@@ -34,6 +38,12 @@ std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::v
 /// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
                      const StereoDepthParameters& parameters, const PlaneLimits& limits);
+
+/// The same by a few of the corners found at full size, this factor larger than the level. Not found unless
+/// most of them agree.
+Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
+                             const PlaneLimits& limits);
 
 /// Plane with nothing known: full disparity range, windows sheared as for a range of heights, all peaks kept
 /// as candidates and resolved by consensus, so that repeated texture does not decide.

@@ -37,6 +37,7 @@ struct StereoDepthStage::Implementation {
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
+  std::vector<cv::Point> last_corners;  // on the ground of last_g, where they scouted
   bool has_last = false;
   double last_stamp = 0;
   bool started = false;
@@ -124,13 +125,29 @@ struct StereoDepthStage::Implementation {
     return firstGroundRows(model.rig, g, {above, above}, slack);
   }
 
-  // A plane good to about a pixel of disparity: followed from the previous pair ...
+  // A plane good to about a pixel of disparity: followed from the previous pair, by a few corners where they
+  // agree, ...
   std::optional<Eigen::Vector3d> trackedPlane() {
+    last_corners.clear();
     if (!has_last) return std::nullopt;
+    if (const std::optional<Eigen::Vector3d> scouted = scoutedPlane()) return scouted;
+    last_corners.clear();
     ScopedTimer timer(timings, "feature_matching_coarse");
     const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
     if (!tracked.found) return std::nullopt;
     return tracked.g;
+  }
+
+  std::optional<Eigen::Vector3d> scoutedPlane() {
+    {
+      ScopedTimer timer(timings, "harris_corners");
+      last_corners = findGroundCorners(fine, last_g, parameters.corner_count, parameters);
+    }
+    ScopedTimer timer(timings, "feature_matching_coarse");
+    const Consensus scouted =
+        trackPlaneByScouts(coarse, last_corners, left.factor, last_g, parameters, limits);
+    if (!scouted.found) return std::nullopt;
+    return scouted.g;
   }
 
   // ... or searched.
@@ -157,11 +174,19 @@ struct StereoDepthStage::Implementation {
     return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
   }
 
+  // Those that scouted, as long as the horizon has hardly moved since the last plane.
+  std::vector<cv::Point> cornersOn(const Eigen::Vector3d& g) const {
+    const int moved = groundRows(g, 0).fine - groundRows(last_g, 0).fine;
+    if (!last_corners.empty() && std::abs(moved) < kSlack * fine.rig.size.height)
+      return cornersOnGround(fine, last_corners, g);
+    return findGroundCorners(fine, g, parameters.corner_count, parameters);
+  }
+
   void refine(const Eigen::Vector3d& start, StereoDepthResult& result) {
     std::vector<cv::Point> corners;
     {
       ScopedTimer timer(timings, "harris_corners");
-      corners = findGroundCorners(fine, start, parameters.corner_count, parameters);
+      corners = cornersOn(start);
     }
     result.corners = static_cast<int>(corners.size());
     // A bent rig's rows must be level before anything is matched along them.

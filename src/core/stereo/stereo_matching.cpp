@@ -1,7 +1,9 @@
 #include "uav_landing/stereo/stereo_matching.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 
 #include "base/image_memory.h"
@@ -9,6 +11,7 @@
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
+#include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/row_matching.h"
 
 namespace uav_landing {
@@ -97,6 +100,46 @@ std::vector<DisparitySample> matchAll(const StereoLevel& level, const std::vecto
         {double(corner.x), double(corner.y), stddev, {corner.x - column - level.rig.principalOffset()}});
   }
   return samples;
+}
+
+// Columns to both sides of the predicted place that are scored where a plane is followed.
+int trackingSteps(const StereoDepthParameters& parameters) {
+  return static_cast<int>(std::ceil(parameters.search_radius));
+}
+
+// Where a plane is seen by both cameras: half planes a u + b v + c >= 0.
+struct GroundLimits {
+  std::array<Eigen::Vector3d, 3> sides;
+
+  GroundLimits(const StereoLevel& level, const Eigen::Vector3d& g) {
+    // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+    constexpr double kLeastDisparity = 0.3;
+    const ShiftModel shift(level.rig, g);
+    sides[0] = {shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity};
+    // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
+    sides[1] = {1 - shift.a, -shift.b, -shift.c};
+    sides[2] = {shift.a - 1, shift.b, shift.c + level.left_mask.cols - 1};
+  }
+  bool hold(const cv::Point& pixel) const {
+    const Eigen::Vector3d place(pixel.x, pixel.y, 1);
+    return std::all_of(sides.begin(), sides.end(),
+                       [&](const Eigen::Vector3d& side) { return side.dot(place) >= 0; });
+  }
+};
+
+// So many of the corners of the full size, from all of the image, where they are at a level reduced by this
+// factor.
+std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                              size_t most) {
+  const size_t count = std::min(most, corners.size());
+  std::vector<cv::Point> places;
+  places.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    const cv::Point corner = corners[i * corners.size() / count];
+    const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
+    if (inside(level.left_mask, place.x, place.y)) places.push_back(place);
+  }
+  return places;
 }
 
 // All places along the whole row that resemble each corner, with windows sheared for one height.
@@ -200,15 +243,10 @@ StereoLevel swapped(const StereoLevel& level) {
 
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters) {
-  // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
-  constexpr double kLeastDisparity = 0.3;
-  const ShiftModel shift(level.rig, g);
   static thread_local ImageMemory memory;
   cv::Mat mask = memory.copyOf(level.left_mask);
-  keepHalfPlane(mask, shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity);
-  // The place in the right image must be inside it: 0 <= u - shift <= cols - 1.
-  keepHalfPlane(mask, 1 - shift.a, -shift.b, -shift.c);
-  keepHalfPlane(mask, shift.a - 1, shift.b, shift.c + mask.cols - 1);
+  for (const Eigen::Vector3d& side : GroundLimits(level, g).sides)
+    keepHalfPlane(mask, side.x(), side.y(), side.z());
   return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
                      parameters.harris_k);
 }
@@ -218,15 +256,41 @@ std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::v
   return matchAll(level, corners, g, parameters, kFineSteps);
 }
 
+std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                       const Eigen::Vector3d& g) {
+  const GroundLimits limits(level, g);
+  std::vector<cv::Point> inside;
+  std::copy_if(corners.begin(), corners.end(), std::back_inserter(inside),
+               [&](const cv::Point& corner) { return limits.hold(corner); });
+  return inside;
+}
+
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
                      const StereoDepthParameters& parameters, const PlaneLimits& limits) {
   constexpr int kCorners = 250, kIterations = 150;
   constexpr double kLeastShare = 0.2;
   const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters);
   const std::vector<DisparitySample> samples =
-      matchAll(level, corners, predicted, parameters, static_cast<int>(std::ceil(parameters.search_radius)));
+      matchAll(level, corners, predicted, parameters, trackingSteps(parameters));
   Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr);
   consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
+  return consensus;
+}
+
+Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
+                             const PlaneLimits& limits) {
+  // Enough for a plane good to half a pixel at full size; the search there reaches farther.
+  constexpr size_t kScouts = 64;
+  constexpr int kIterations = 150;
+  // Votes of all scouts, those without a match included: with the majority on a plane no other has as many.
+  constexpr double kLeastShare = 0.5;
+  const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
+  const std::vector<DisparitySample> samples =
+      matchAll(level, scouts, predicted, parameters, trackingSteps(parameters));
+  Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr, true);
+  consensus.found &= consensus.support >=
+                     std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));
   return consensus;
 }
 

@@ -175,6 +175,20 @@ TEST(StereoDepthStage, FollowsAnApproachAndRollAtFullSize) {
   }
 }
 
+TEST(StereoDepthStage, FollowsThePlaneWhereMostOfThePictureIsSomethingElse) {
+  const Scene scene(18);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair first = scene.render(makePose(1.6, -8, 0));
+  stage.process(1, first.left, first.right);
+  const Pose pose = makePose(1.55, -8, 0);
+  const Pair pair = scene.render(pose);
+  cv::Mat part = pair.right.colRange(0, 190);
+  cv::randu(part, 0, 255);
+  const StereoDepthResult result = stage.process(1.1, pair.left, pair.right);
+  EXPECT_FALSE(result.from_search);
+  expectPose(result, pose, "with noise");
+}
+
 TEST(StereoDepthStage, NamesUniformBlackAndSaturatedImages) {
   const Scene scene(9);
   const Pair good = scene.render(makePose(1.6, -8, 0));
