@@ -16,9 +16,10 @@ namespace {
 
 // Blocks compared: about 100 thousand pixels, which hold nearly all that a noisy image says.
 constexpr int kBlocks = 800;
-// Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them.
+// Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them: a step leaves
+// about a tenth of itself.
 constexpr int kSteps = 5;
-constexpr double kConverged = 0.003;
+constexpr double kConverged = 0.01;
 // By how much disparities of the first plane may be off, pixels.
 constexpr double kStartStddev = 0.3;
 // The comparison is first order in the shift: farther than this (pixels) it means nothing.

@@ -350,8 +350,8 @@ RowSums compareAlongRow(const RowWindow& window, const cv::Mat& other, int v, do
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
                              const RowWarp& warp, int radius) {
   constexpr int kIterations = 8;
-  // A step leaves about a tenth of itself.
-  constexpr double kConverged = 0.02, kMaxDrift = 1.5;
+  // A step leaves about a tenth of itself: little beside what matches are known to.
+  constexpr double kConverged = 0.05, kMaxDrift = 1.5;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
   constexpr double kIndependent = 0.25;
   RowRefinement result;
