@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
+constexpr float kConverged = 0.01F;    // px, a third of the floor
 constexpr double kTukey = 4.685;       // scales: 95 % as good as least squares when the errors are normal
 
 /// Of values >= 0, the upper one of two in the middle.
@@ -35,6 +36,14 @@ Fit fitOnce(const Peaks& p) {
   f.spread = (weighted * x).sum();
   f.slope = (weighted * p.across).sum() / f.spread;
   return f;
+}
+
+/// Between two lines, at the first and the last peak.
+float largestDistance(const Fit& a, const Fit& b, const Peaks& p) {
+  const auto at = [&](float along) {
+    return std::abs(b.offset - a.offset + b.slope * (along - b.centre) - a.slope * (along - a.centre));
+  };
+  return std::max(at(p.along[0]), at(p.along[p.size() - 1]));
 }
 
 Values weightsByGradient(const Peaks& p) { return (p.gradient / median(p.gradient)).square().min(1.0F); }
@@ -75,7 +84,12 @@ Fit fitRobustly(Peaks& peaks, double& scale) {
   const Values base = weightsByGradient(peaks);
   peaks.weight = base;
   Fit fit = fitOnce(peaks);
-  for (int i = 0; i < 3; ++i) fit = reweighted(peaks, base, fit, scale);
+  constexpr int kRounds = 3;
+  for (int i = 0; i < kRounds; ++i) {
+    const Fit before = fit;
+    fit = reweighted(peaks, base, before, scale);
+    if (largestDistance(before, fit, peaks) < kConverged) break;
+  }
   return fit;
 }
 
