@@ -6,16 +6,37 @@
 
 namespace uav_landing {
 
-/// Sub-pixel place by Gauss-Newton over (shift, gain, offset), with the reference's own gradient.
+/// Sub-pixel place of a window of the reference image in another one.
 struct PatchRefinement {
   bool converged = false;
-  Eigen::Vector2d position;
-  Eigen::Matrix2d covariance;  ///< of the position, from residuals and gradient less the noise's, pixels^2
-  /// The place found depends on the warp it was looked for with, as the gradients lie beside the centre: with
-  /// a warp that is too large by E it is off by -(by_warp[0] E.col(0) + by_warp[1] E.col(1)). pixels
-  std::array<Eigen::Matrix2d, 2> by_warp;
+  Eigen::Vector2d position;  ///< in the other image
   double score = 0;
+  double residual_variance =
+      0;  ///< of a pixel, grey levels^2: the noise of both images, and what does not fit
+
+  /// What the window holds to tell a place from its neighbours, in pixels of the reference.
+  struct Evidence {
+    Eigen::Matrix2d gradient;                ///< sums of the products of its components, about their means
+    std::array<Eigen::Matrix2d, 2> moments;  ///< the same by distance from the centre, across and down
+    Eigen::Vector2d by_gain;                 ///< shift that a unit of gain looks like
+    double contrast = 0;                     ///< that no shift explains
+    int count = 0;                           ///< pixels
+  } evidence;
+  Eigen::Matrix2d warp;  ///< from the reference to the other image
+
+  /// Of the position, pixels^2, and how it follows from the warp it was looked for with, as the gradients lie
+  /// beside the centre: with a warp that is too large by E it is off by -(by_warp[0] E.col(0) +
+  /// by_warp[1] E.col(1)).
+  struct Claim {
+    Eigen::Matrix2d covariance;
+    std::array<Eigen::Matrix2d, 2> by_warp;
+  };
+  /// noise_variance: of a pixel of either image; at most half of the residuals'.
+  Claim claim(double noise_variance) const;
+  Claim claim() const { return claim(0.5 * residual_variance); }
 };
+
+/// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient.
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius);
 

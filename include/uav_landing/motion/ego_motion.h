@@ -24,8 +24,8 @@ struct CameraMotion {
 /// A corner now and where it was then. Pixels of the rectified left image.
 struct TemporalMatch {
   Eigen::Vector2d now, then;
-  Eigen::Matrix2d covariance;  ///< of then given now, pixels^2
-  /// How then follows from the warp it was looked for with, and that warp (PatchRefinement::by_warp).
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of then given now, pixels^2
+  /// How then follows from the warp it was looked for with, and that warp (PatchRefinement::Claim).
   std::array<Eigen::Matrix2d, 2> by_warp = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
   bool on_plane = true;      ///< depth from the ground plane, else from its own disparity

@@ -179,12 +179,6 @@ struct GainShift {
   double left_over = 0;       // contrast that no shift explains
 };
 
-// What a shift that was found is worth, in pixels of the reference.
-struct ShiftTrust {
-  Eigen::Matrix2d covariance;
-  std::array<Eigen::Matrix2d, 2> by_warp;  // see PatchRefinement
-};
-
 // A window of the reference with all sums of it that do not depend on the other image, about their means.
 class ReferenceWindow {
  public:
@@ -218,32 +212,13 @@ class ReferenceWindow {
     for (int i = size * stride; i < padded; ++i) values[i] = planes_.middle;
     return solve(multiply(planes_, values.data(), padded));
   }
-  // Half of the residuals is the reference's own noise, whose gradient says nothing: along a line, where
-  // there is no other, it would be believed to hold the match where it was looked for.
-  ShiftTrust trust(const GainShift& found) const {
-    // Variance of the gradient over that of the smoothed noise: (1 - its correlation two pixels on) / 2.
-    constexpr double kNoiseGradient = 0.45;
-    // The images are smoothed, so neighbouring residuals are not independent; share of independent ones. One
-    // in 5.5 where gradients are the same all over the window, one in 4 where they change within 3 px.
-    constexpr double kIndependent = 0.2;
-    // Least share of the gradients' energy that can be told from none, given its scatter.
-    constexpr double kLeastTexture = 0.1;
-    const double variance = found.residual / (count() - 4);
-    const double of_noise = count() * kNoiseGradient * 0.5 * variance;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-    axes.computeDirect(G_);
-    const Eigen::Array2d seen = axes.eigenvalues();
-    const Eigen::Array2d share = (1 - of_noise / seen).max(kLeastTexture);  // of it that is of the texture
-    const Eigen::Matrix2d& V = axes.eigenvectors();
-    const Eigen::Matrix2d inverse = V * (1 / (seen * share)).matrix().asDiagonal() * V.transpose();
-    const Eigen::Vector2d coupled = inverse * (G_ * found.projected);
-    ShiftTrust trust;
-    trust.covariance =
-        variance / kIndependent * (inverse * G_ * inverse + coupled * coupled.transpose() / found.left_over);
+  PatchRefinement::Evidence evidence(const GainShift& found) const {
     const DistancePlanes& distances = distancesOf(radius_);
-    trust.by_warp = {inverse * momentsBy(distances.across.data()),
-                     inverse * momentsBy(distances.down.data())};
-    return trust;
+    return {G_,
+            {momentsBy(distances.across.data()), momentsBy(distances.down.data())},
+            found.projected,
+            found.left_over,
+            count()};
   }
 
   // Places to the right of the centre that are looked at, those filled up included.
@@ -321,6 +296,33 @@ bool windowInside(const cv::Mat& image, int u, int v, int radius) {
 
 }  // namespace
 
+// Noise has a gradient, too, but it says nothing: along a line, where there is no other, it would be believed
+// to hold the match where it was looked for.
+PatchRefinement::Claim PatchRefinement::claim(double noise_variance) const {
+  // Variance of the gradient over that of the smoothed noise: (1 - its correlation two pixels on) / 2.
+  constexpr double kNoiseGradient = 0.45;
+  // The images are smoothed, so neighbouring residuals are not independent; share of independent ones. One in
+  // 5.5 where gradients are the same all over the window, one in 4 where they change within 3 px.
+  constexpr double kIndependent = 0.2;
+  // Least share of the gradients' energy that can be told from none, given its scatter.
+  constexpr double kLeastTexture = 0.1;
+  const double of_noise = evidence.count * kNoiseGradient * std::min(noise_variance, 0.5 * residual_variance);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(evidence.gradient);
+  const Eigen::Array2d seen = axes.eigenvalues();
+  const Eigen::Array2d share = (1 - of_noise / seen).max(kLeastTexture);  // of it that is of the texture
+  const Eigen::Matrix2d& V = axes.eigenvectors();
+  const Eigen::Matrix2d inverse = V * (1 / (seen * share)).matrix().asDiagonal() * V.transpose();
+  const Eigen::Vector2d coupled = inverse * (evidence.gradient * evidence.by_gain);
+  // Where the other window is smaller, its noise is that of fewer pixels.
+  const double independent = kIndependent * 2 / (1 + 1 / std::min(1.0, std::abs(warp.determinant())));
+  const Eigen::Matrix2d unit =
+      inverse * evidence.gradient * inverse + coupled * coupled.transpose() / evidence.contrast;
+  const Eigen::Matrix2d there = warp * inverse, back = warp.inverse();
+  return {residual_variance / independent * warp * unit * warp.transpose(),
+          {there * evidence.moments[0] * back, there * evidence.moments[1] * back}};
+}
+
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
   constexpr int kIterations = 12;
@@ -344,10 +346,9 @@ PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int 
     at -= warp * steps.next(found.shift);
     if ((at - position).norm() > max_drift) return result;
     if (steps.converged()) {
-      const ShiftTrust trust = window.trust(found);
-      result.covariance = warp * trust.covariance * warp.transpose();
-      const Eigen::Matrix2d back = warp.inverse();
-      for (int axis = 0; axis < 2; ++axis) result.by_warp[axis] = warp * trust.by_warp[axis] * back;
+      result.residual_variance = found.residual / (window.count() - 4);
+      result.evidence = window.evidence(found);
+      result.warp = warp;
       result.score = std::sqrt(std::max(0.0, 1 - found.residual / std::max(1e-9, window.energy())));
       result.position = at;
       result.converged = true;

@@ -9,6 +9,9 @@
 namespace uav_landing {
 namespace {
 
+// Of a chord's variance, that counts: the noise of the image now is in the last step as well, that of the
+// first one in the first step. The chord says less of its own than it would if it shared nothing with them.
+constexpr double kChordShared = 2;
 constexpr double kDegree = M_PI / 180;
 // Standard deviations of the rate of the angle, rad/s: from a steady glide to one that tells nothing.
 constexpr std::array<double, 6> kRates = {0.03 * kDegree, 0.3 * kDegree, 1 * kDegree,
@@ -128,7 +131,7 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   for (int i = 0; i < n; ++i)
     if (steps_[i].stamp > begin) all.H(n, i) = steps_[i].measurement.duration / covered;
   all.y[n] = chord.angle;
-  all.noise[n] = chord.variance;
+  all.noise[n] = kChordShared * chord.variance;
   // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
   all.has_chord = chord.duration > step.duration + kStampRounding &&
                   std::abs(covered - chord.duration) < 0.5 * step.duration;

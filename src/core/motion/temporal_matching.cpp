@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/order_statistic.h"
 #include "base/touch_ahead.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
@@ -87,6 +88,22 @@ class Predictions {
   int radius_;
 };
 
+// Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
+// those that fit best have.
+void claim(const std::vector<PatchRefinement>& refinements, std::vector<TemporalMatch>& matches) {
+  constexpr size_t kFit = 4;  // of so many, one
+  if (matches.empty()) return;
+  static thread_local std::vector<double> residuals;
+  residuals.clear();
+  for (const PatchRefinement& refinement : refinements) residuals.push_back(refinement.residual_variance);
+  const double noise = 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const PatchRefinement::Claim claim = refinements[i].claim(noise);
+    matches[i].covariance = claim.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
+    matches[i].by_warp = claim.by_warp;
+  }
+}
+
 }  // namespace
 
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
@@ -100,6 +117,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
   matches.reserve(corners.size());
+  static thread_local std::vector<PatchRefinement> refinements;  // kept for its memory
+  refinements.clear();
   LocalWarp local, next;
   bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -132,14 +151,14 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     TemporalMatch match;
     match.now = x;
     match.then = refined.position;
-    match.covariance = refined.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
-    match.by_warp = refined.by_warp;
     match.warp = local.warp;
     match.on_plane = corner.on_plane;
     match.inverse_depth = corner.inverse_depth;
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
     matches.push_back(match);
+    refinements.push_back(refined);
   }
+  claim(refinements, matches);
   return matches;
 }
 

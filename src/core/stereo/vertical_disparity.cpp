@@ -35,7 +35,7 @@ void addRow(const StereoLevel& level, int u, int v, double disparity, const Eige
             const Eigen::Matrix2d& warp, int radius, std::vector<RowShift>& rows) {
   const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
   if (!place.converged || place.score < kMinScore) return;
-  const double stddev = std::hypot(std::sqrt(place.covariance(1, 1)), kStddevFloor);
+  const double stddev = std::hypot(std::sqrt(place.claim().covariance(1, 1)), kStddevFloor);
   RowShift row;
   row.by << verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
       verticalDisparityByBaseline(level.rig, disparity, v);

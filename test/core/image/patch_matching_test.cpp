@@ -1,5 +1,4 @@
 #include "uav_landing/image/patch_matching.h"
-#include "uav_landing/image/patch_refinement.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 
 #include "support/random_texture.h"
 #include "uav_landing/image/match_image.h"
+#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 namespace {
@@ -73,7 +73,7 @@ Errors matchGrid(const Pair& pair, const Eigen::Matrix2d& warp) {
       const Eigen::Vector2d error = refined.position - wanted;
       ++errors.matched;
       squares += error.squaredNorm();
-      errors.nees += error.dot(refined.covariance.inverse() * error);
+      errors.nees += error.dot(refined.claim().covariance.inverse() * error);
     }
   errors.rms = std::sqrt(squares / (2 * errors.matched));
   errors.nees /= errors.matched;
@@ -145,8 +145,8 @@ TEST(RefinePatch, KnowsThatAnEdgeSaysNothingAlongIt) {
       refinePatch(match.fine, other.fine, 100, 100, {100.3, 100.2}, Eigen::Matrix2d::Identity(), kRadius);
   ASSERT_TRUE(refined.converged);
   EXPECT_NEAR(refined.position.x(), 100, 0.1);
-  EXPECT_GT(refined.covariance(1, 1), 10 * refined.covariance(0, 0));
-  EXPECT_GT(refined.covariance.determinant(), 0);
+  EXPECT_GT(refined.claim().covariance(1, 1), 10 * refined.claim().covariance(0, 0));
+  EXPECT_GT(refined.claim().covariance.determinant(), 0);
 }
 
 TEST(RefinePatch, DoesNotTakeNoiseAlongAnEdgeForTexture) {
@@ -175,8 +175,8 @@ TEST(RefinePatch, DoesNotTakeNoiseAlongAnEdgeForTexture) {
     if (!refined.converged) continue;
     ++found;
     squares += std::pow(refined.position.y() - v, 2);
-    claimed += refined.covariance(1, 1);
-    EXPECT_LT(std::sqrt(refined.covariance(0, 0)), 0.3);
+    claimed += refined.claim().covariance(1, 1);
+    EXPECT_LT(std::sqrt(refined.claim().covariance(0, 0)), 0.3);
   }
   ASSERT_GT(found, 10);
   EXPECT_GT(squares / found, 0.3);
@@ -199,7 +199,8 @@ TEST(RefinePatch, TellsHowThePlaceFollowsFromTheWarp) {
           refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, look.A + E, kRadius);
       ASSERT_TRUE(refined.converged);
       const Eigen::Vector2d error = refined.position - wanted;
-      const Eigen::Vector2d told = -(refined.by_warp[0] * E.col(0) + refined.by_warp[1] * E.col(1));
+      const auto by_warp = refined.claim().by_warp;
+      const Eigen::Vector2d told = -(by_warp[0] * E.col(0) + by_warp[1] * E.col(1));
       squares += error.squaredNorm();
       left += (error - told).squaredNorm();
     }
