@@ -88,6 +88,62 @@ class Predictions {
   int radius_;
 };
 
+// Looks for corners where they are predicted.
+class Follower {
+ public:
+  Follower(const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
+           const TemporalMatchOptions& options)
+      : now_(now),
+        then_(then),
+        mask_(mask),
+        options_(options),
+        coarse_(now.coarse, then.coarse, options.window_radius),
+        fine_(now.fine, then.fine, options.window_radius) {}
+
+  // Not converged when it is not found.
+  PatchRefinement find(const TrackedCorner& corner, const LocalWarp& predicted) {
+    LocalWarp local = predicted;
+    if (options_.coarse_steps > 0 && !searchCoarsely(corner, local)) return {};
+    PatchRefinement refined = refine(corner, local.centre, local.warp);
+    if (!isLike(refined)) {
+      // The prediction was not good enough for that after all.
+      const PatchSearch::Best best = fine_.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
+      if (!best.found || best.score < options_.min_zncc) return {};
+      refined = refine(corner, best.position, local.warp);
+    }
+    if (!isLike(refined) || !visible(mask_, refined.position)) refined.converged = false;
+    return refined;
+  }
+
+ private:
+  // The window at the coarse level is centred on a whole pixel near the corner; its displacement is what is
+  // carried over.
+  bool searchCoarsely(const TrackedCorner& corner, LocalWarp& local) {
+    const int factor = now_.factor;
+    const Eigen::Vector2d centre(toCoarse(corner.u, factor), toCoarse(corner.v, factor));
+    const int u = cvRound(centre.x()), v = cvRound(centre.y());
+    const Eigen::Vector2d there(toCoarse(local.centre.x(), factor), toCoarse(local.centre.y(), factor));
+    const Eigen::Vector2d start = there + local.warp * (Eigen::Vector2d(u, v) - centre);
+    const PatchSearch::Best best = coarse_.run(u, v, start, local.warp, options_.coarse_steps);
+    if (!best.found || best.score < options_.min_zncc || best.second > kUniqueness * best.score) return false;
+    local.centre += factor * (best.position - start);
+    return true;
+  }
+
+  PatchRefinement refine(const TrackedCorner& corner, const Eigen::Vector2d& at,
+                         const Eigen::Matrix2d& warp) const {
+    return refinePatch(now_.fine, then_.fine, corner.u, corner.v, at, warp, options_.window_radius);
+  }
+  bool isLike(const PatchRefinement& refined) const {
+    return refined.converged && refined.score >= options_.min_zncc;
+  }
+
+  const MatchImage &now_, &then_;
+  const cv::Mat& mask_;
+  const TemporalMatchOptions& options_;
+  PatchSearch coarse_, fine_;
+};
+
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
 void claim(const std::vector<PatchRefinement>& refinements, std::vector<TemporalMatch>& matches) {
@@ -111,9 +167,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
                                          const TemporalMatchOptions& options,
                                          std::vector<TemporalMatch> memory) {
-  const int factor = now.factor, radius = options.window_radius;
-  const Predictions predictions(rig, now, then, mask, predicted, normal, radius);
-  PatchSearch coarse(now.coarse, then.coarse, radius), fine(now.fine, then.fine, radius);
+  const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius);
+  Follower follower(now, then, mask, options);
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
   matches.reserve(corners.size());
@@ -123,33 +178,14 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
   bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
   for (size_t i = 0; i < corners.size(); ++i) {
     const TrackedCorner& corner = corners[i];
-    const Eigen::Vector2d x(corner.u, corner.v);
     const bool seen = next_seen;
     local = next;
     if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
     if (!seen || !visible(mask, local.centre)) continue;
-    if (options.coarse_steps > 0) {
-      // The window at the coarse level is centred on a whole pixel near the corner; its displacement is what
-      // is carried over.
-      const int cu = cvRound(toCoarse(x.x(), factor)), cv = cvRound(toCoarse(x.y(), factor));
-      const Eigen::Vector2d centre(toCoarse(x.x(), factor), toCoarse(x.y(), factor));
-      const Eigen::Vector2d there(toCoarse(local.centre.x(), factor), toCoarse(local.centre.y(), factor));
-      const Eigen::Vector2d start = there + local.warp * (Eigen::Vector2d(cu, cv) - centre);
-      const PatchSearch::Best best = coarse.run(cu, cv, start, local.warp, options.coarse_steps);
-      if (!best.found || best.score < options.min_zncc || best.second > kUniqueness * best.score) continue;
-      local.centre += factor * (best.position - start);
-    }
-    PatchRefinement refined =
-        refinePatch(now.fine, then.fine, corner.u, corner.v, local.centre, local.warp, radius);
-    if (!refined.converged || refined.score < options.min_zncc) {
-      // The prediction was not good enough for that after all.
-      const PatchSearch::Best best = fine.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
-      if (!best.found || best.score < options.min_zncc) continue;
-      refined = refinePatch(now.fine, then.fine, corner.u, corner.v, best.position, local.warp, radius);
-    }
-    if (!refined.converged || refined.score < options.min_zncc || !visible(mask, refined.position)) continue;
+    const PatchRefinement refined = follower.find(corner, local);
+    if (!refined.converged) continue;
     TemporalMatch match;
-    match.now = x;
+    match.now = {corner.u, corner.v};
     match.then = refined.position;
     match.warp = local.warp;
     match.on_plane = corner.on_plane;
