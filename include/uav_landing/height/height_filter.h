@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "uav_landing/height/common_variance.h"
+
 namespace uav_landing {
 
 /// The paper's Kalman filter for the height, eqs (6)-(8): state (height, vertical speed positive up), white
@@ -26,12 +28,12 @@ class HeightFilter {
 
   bool initialised() const { return initialised_; }
   /// Starts at a reconstructed height (m, m^2) with speed 0. common: part of the variance.
-  void initialise(double height, double variance, double common = 0);
+  void initialise(double height, double variance, const CommonVariance& common = {});
   /// Eq (7) over T seconds, T >= 0.
   void predict(double T);
   /// Eq (8) with a measured height (m, m^2). A measurement beyond the gate changes nothing. common: part of
   /// the variance.
-  Update update(double height, double variance, double common = 0);
+  Update update(double height, double variance, const CommonVariance& common = {});
   /// The same with a measured vertical speed (positive up, m/s, m^2/s^2). Not in the paper.
   Update updateSpeed(double speed, double variance);
   void reset() { initialised_ = false; }
@@ -40,17 +42,19 @@ class HeightFilter {
   const Eigen::Matrix2d& covariance() const { return covariance_; }
   /// Of what is independent from pair to pair: to be added to what is common to all.
   const Eigen::Matrix2d& ownCovariance() const { return own_; }
-  /// Of the height, by what is common to the measurements that it is made of; m^2.
-  double commonVariance() const { return common_[0] * common_[0]; }
+  /// Of the height, by what is common to the measurements that it is made of.
+  CommonVariance commonVariance() const;
 
  private:
-  Update fuse(const Eigen::RowVector2d& observation, double measured, double variance, double common);
+  Update fuse(const Eigen::RowVector2d& observation, double measured, double variance,
+              const CommonVariance& common);
 
   double acceleration_stddev_, initial_speed_stddev_, gate_;
   bool initialised_ = false;
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero(), own_ = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d common_ = Eigen::Vector2d::Zero();  // 1 sigma of the state by what is common, with signs
+  // 1 sigma of the state by each cause of what is common, with signs.
+  Eigen::Matrix<double, 2, 3> common_ = Eigen::Matrix<double, 2, 3>::Zero();
 };
 
 }  // namespace uav_landing

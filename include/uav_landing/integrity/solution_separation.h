@@ -37,7 +37,7 @@ class SolutionSeparation {
 
   struct Measurement {
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, of one pair
-    double common = 0;  ///< part of the variance that is the same on all pairs and must not average out, m^2
+    CommonVariance common;                          ///< part of the variance
     bool known() const { return height > 0 && variance > 0; }
   };
   /// Of one pair: what it measures with each source left out; not known() where nothing is left.

@@ -28,7 +28,7 @@ class StepSearch {
   /// predictions: motions to try first. matches: the corners followed, those that contradict the motion
   /// included; its memory is used again.
   Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
-                                std::vector<TemporalMatch>& matches) const;
+                                std::vector<TemporalMatch>& matches);
 
  private:
   TemporalMatchOptions options(int coarse_steps) const;
@@ -40,12 +40,13 @@ class StepSearch {
                                       std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
                                     const std::vector<TemporalMatch>& matches) const;
-  CameraMotion searchFirst(const StepImages& step, const Eigen::Matrix3d& R) const;
+  CameraMotion searchFirst(const StepImages& step, const Eigen::Matrix3d& R);
   CameraMotion mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const;
 
   StereoRig rig_;
   cv::Mat mask_;
   ApproachAngleParameters parameters_;
+  int unsure_ = 0;  // searches in a row that few corners agreed with
 };
 
 }  // namespace uav_landing

@@ -129,8 +129,8 @@ class KalmanHeightStage {
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// the unevenness that shows ahead, and what its bend leaves open.
   double modelVariance(double height) const;
-  /// Of the last pair's variance what the next pairs have as well: surface, width and rig, m^2.
-  double commonVariance(double height) const;
+  /// Of the last pair's variance what the next pairs have as well.
+  CommonVariance commonVariance(double height) const;
   /// By which the filter's own variance is larger than what the pairs claim makes of it.
   double varianceFactor() const { return parameters_.integrity_monitor ? scatter_.factor() : 1; }
   /// From the plane of the surface ahead to its tangent straight below.

@@ -4,16 +4,23 @@
 #include <cmath>
 
 namespace uav_landing {
+namespace {
+
+Eigen::RowVector3d stddevs(const CommonVariance& common) {
+  return Eigen::RowVector3d(common.lasting, common.bend, common.width).cwiseMax(0).cwiseSqrt();
+}
+
+}  // namespace
 
 HeightFilter::HeightFilter(double acceleration_stddev, double initial_speed_stddev, double gate)
     : acceleration_stddev_(acceleration_stddev), initial_speed_stddev_(initial_speed_stddev), gate_(gate) {}
 
-void HeightFilter::initialise(double height, double variance, double common) {
+void HeightFilter::initialise(double height, double variance, const CommonVariance& common) {
   state_ << height, 0;
   covariance_ << variance, 0, 0, initial_speed_stddev_ * initial_speed_stddev_;
   own_ = covariance_;
-  own_(0, 0) = std::max(0.0, variance - common);
-  common_ << std::sqrt(common), 0;
+  own_(0, 0) = std::max(0.0, variance - common.total());
+  common_ << stddevs(common), Eigen::RowVector3d::Zero();
   initialised_ = true;
 }
 
@@ -29,21 +36,27 @@ void HeightFilter::predict(double T) {
   common_ = transition * common_;
 }
 
-HeightFilter::Update HeightFilter::update(double height, double variance, double common) {
+HeightFilter::Update HeightFilter::update(double height, double variance, const CommonVariance& common) {
   return fuse(Eigen::RowVector2d(1, 0), height, variance, common);
 }
 
 HeightFilter::Update HeightFilter::updateSpeed(double speed, double variance) {
-  return fuse(Eigen::RowVector2d(0, 1), speed, variance, 0);
+  return fuse(Eigen::RowVector2d(0, 1), speed, variance, {});
+}
+
+CommonVariance HeightFilter::commonVariance() const {
+  const Eigen::RowVector3d squares = common_.row(0).cwiseAbs2();
+  return {squares[0], squares[1], squares[2]};
 }
 
 HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, double measured,
-                                        double variance, double common) {
+                                        double variance, const CommonVariance& common) {
   Update update;
   update.innovation = measured - observation * state_;
   update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
   // Written so that a NaN is refused too; what is infinite or has a negative variance would leave no state.
-  update.accepted = variance >= 0 && std::isfinite(update.innovation_variance) &&
+  update.accepted = variance >= 0 && std::isfinite(common.total()) &&
+                    std::isfinite(update.innovation_variance) &&
                     update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
   if (!update.accepted) return update;
 
@@ -51,9 +64,9 @@ HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, d
   state_ += gain * update.innovation;
   const Eigen::Matrix2d remaining = Eigen::Matrix2d::Identity() - gain * observation;
   covariance_ = remaining * covariance_ * remaining.transpose() + variance * gain * gain.transpose();
-  own_ =
-      remaining * own_ * remaining.transpose() + std::max(0.0, variance - common) * gain * gain.transpose();
-  common_ = remaining * common_ + std::sqrt(common) * gain;
+  own_ = remaining * own_ * remaining.transpose() +
+         std::max(0.0, variance - common.total()) * gain * gain.transpose();
+  common_ = remaining * common_ + gain * stddevs(common);
   return update;
 }
 

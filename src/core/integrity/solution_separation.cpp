@@ -48,7 +48,7 @@ void SolutionSeparation::start(const Measurements& without, double height) {
     const Measurement& first = without[i];
     // What is not known is somewhere.
     filter.initialise(first.known() ? first.height : height, first.known() ? first.variance : height * height,
-                      first.known() ? first.common : 0);
+                      first.known() ? first.common : CommonVariance());
     solutions_[i] = filter;
   }
 }
@@ -81,7 +81,7 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
     if (!solutions_[i]) continue;
     const HeightFilter& filter = *solutions_[i];
     level = larger(level, height, filter.state()[0],
-                   factor * filter.ownCovariance()(0, 0) + filter.commonVariance(),
+                   factor * filter.ownCovariance()(0, 0) + filter.commonVariance().total(),
                    toString(static_cast<FaultySource>(i)));
   }
   return level;

@@ -26,7 +26,7 @@ constexpr double kTukey = 4.5;
 constexpr double kBehind = 1e9;
 constexpr size_t kTile = 32;  // matches whose columns stay in the cache
 
-// Votes and good fits of four matches. Where a match does not know, as along a line, it does not vote.
+// Votes and good fits of four matches. Where a match does not know, as along a line, any motion has its vote.
 UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, size_t padded, size_t count,
                                    MotionSupport& support) {
   constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance

@@ -160,8 +160,8 @@ std::vector<CameraMotion> MotionTracker::predictions(double duration, const Rota
   std::vector<CameraMotion> predictions;
   if (!last_step_) return predictions;
   CameraMotion predicted = *last_step_;
-  // The same way is more heights from a lower height. What a prediction leaves out again and again is a bias:
-  // lines along the runway, seen with the warp of the prediction, hold the motion near it.
+  // The same way is more heights from a lower height. What a prediction leaves out again and again would be a
+  // bias where little but lines is seen, which are found near where they are looked for.
   const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
   predicted.t *= duration / last_duration_ / (1 - sunk);
   predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,

@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-// Of a chord's variance, that counts: the noise of the image now is in the last step as well, that of the
+// Factor on a chord's variance: the noise of the image now is in the last step as well, that of the
 // first one in the first step. The chord says less of its own than it would if it shared nothing with them.
 constexpr double kChordShared = 2;
 constexpr double kDegree = M_PI / 180;

@@ -1,7 +1,7 @@
 #include "uav_landing/motion/step_search.h"
 
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +14,9 @@ namespace {
 
 // Share of the followed corners that must agree with a motion that grew from the last one.
 constexpr double kLeastShare = 0.35;
+
+// In how many searches in a row that few corners agree with all of them are compared.
+constexpr int kUnsureInterval = 10;
 
 // Fewest matches that make a motion good enough to search from.
 constexpr int kFewestScouts = 6;
@@ -56,7 +59,7 @@ std::vector<TemporalMatch> StepSearch::match(const StepImages& step,
 
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           const std::vector<CameraMotion>& predictions,
-                                          std::vector<TemporalMatch>& matches) const {
+                                          std::vector<TemporalMatch>& matches) {
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * matches.size(); };
   for (const CameraMotion& predicted : predictions) {
@@ -106,7 +109,7 @@ Expected<MotionEstimate> StepSearch::estimate(const StepImages& step, const Came
   return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, parameters_.min_matches);
 }
 
-CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix3d& R) const {
+CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix3d& R) {
   constexpr size_t kCorners = 90;
   constexpr double kEnough = 0.2;  // of them, that agree
   const std::vector<TrackedCorner> some = thinned(step.corners, kCorners);
@@ -123,7 +126,12 @@ CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix
       best = estimate->motion;
     }
   }
-  if (most >= kEnough * static_cast<double>(some.size())) return best;
+  if (most >= kEnough * static_cast<double>(some.size())) {
+    unsure_ = 0;
+    return best;
+  }
+  // That takes as long as many pairs do: where nothing can be seen, not with each of them.
+  if (unsure_++ % kUnsureInterval != 0) return best;
   if (most > 0) candidates.push_back(best);
   return mostAlike(step, candidates);
 }

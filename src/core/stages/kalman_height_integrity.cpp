@@ -32,7 +32,7 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   const bool by_width = reconstruction.by_width;
   SolutionSeparation::Measurement everything{height, reconstruction.variance, commonVariance(height)};
   // A height by the width has nothing in it of the stereo images but depends on what the edges are.
-  if (by_width) everything.common += std::pow(kWidthTolerance * height / 3, 2);
+  if (by_width) everything.common.width += std::pow(kWidthTolerance * height / 3, 2);
   reconstruction.without.fill(everything);
   if (by_width || !plane.valid()) return;
 
@@ -41,8 +41,9 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   const GroundPlane& alone = reconstruction.alone;
   stereo_alone.height = height + alone.height() - plane.height();
   stereo_alone.variance = alone.heightVariance() + modelVariance(height);
-  stereo_alone.common =
-      GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() + modelVariance(height);
+  stereo_alone.common = commonVariance(height);
+  stereo_alone.common.lasting +=
+      GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() - rig_variance_;
   leaveOutRegions(stereo, approach, reconstruction);
 }
 

@@ -53,8 +53,8 @@ double KalmanHeightStage::modelVariance(double height) const {
   return std::pow(parameters_.height_model_error * height, 2) + surface_variance_ + bend_variance_;
 }
 
-double KalmanHeightStage::commonVariance(double height) const {
-  return modelVariance(height) + width_variance_ + rig_variance_;
+CommonVariance KalmanHeightStage::commonVariance(double height) const {
+  return {modelVariance(height) - bend_variance_ + rig_variance_, bend_variance_, width_variance_};
 }
 
 void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
@@ -63,9 +63,11 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   width_variance_ = 0;
   if (runway.failure) return;
   std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
+  // What the width itself is wrong by does not tell whether it is that of the same edges.
+  const CommonVariance common = filter_.commonVariance();
   if (filter_.initialised() && confirmations_ >= kConfirmations &&
       !width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
-                     filter_.ownCovariance()(0, 0) + filter_.commonVariance()))
+                     filter_.ownCovariance()(0, 0) + common.lasting + common.bend))
     seen.reset();
   if (seen) {
     result.width_height = seen->height + reconstruction.bend;

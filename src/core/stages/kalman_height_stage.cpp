@@ -322,7 +322,8 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   if (!filter_.initialised()) return;
   const double h = filter_.state()[0];
   result.height = h;
-  result.height_variance = varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance();
+  result.height_variance =
+      varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance().total();
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 

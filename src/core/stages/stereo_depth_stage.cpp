@@ -23,6 +23,8 @@ constexpr int kKeepPlaneFor = 5;
 constexpr int kSwapCheckInterval = 10;
 // Share of the image's rows by which the horizon mostly moves less from pair to pair.
 constexpr double kSlack = 0.02;
+// Share of the corners on the last pair's ground that must be on that of this one to be used for it.
+constexpr double kKept = 0.8;
 
 }  // namespace
 
@@ -177,8 +179,10 @@ struct StereoDepthStage::Implementation {
   // Those that scouted, as long as the horizon has hardly moved since the last plane.
   std::vector<cv::Point> cornersOn(const Eigen::Vector3d& g) const {
     const int moved = groundRows(g, 0).fine - groundRows(last_g, 0).fine;
-    if (!last_corners.empty() && std::abs(moved) < kSlack * fine.rig.size.height)
-      return cornersOnGround(fine, last_corners, g);
+    if (!last_corners.empty() && std::abs(moved) < kSlack * fine.rig.size.height) {
+      std::vector<cv::Point> corners = cornersOnGround(fine, last_corners, g);
+      if (corners.size() >= kKept * last_corners.size()) return corners;
+    }
     return findGroundCorners(fine, g, parameters.corner_count, parameters);
   }
 

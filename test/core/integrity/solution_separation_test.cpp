@@ -52,7 +52,7 @@ TEST(SolutionSeparation, HardlyGrowsByASinglePairThatIsUncertain) {
   parameters.unwatched_scale_error = 0;
   SolutionSeparation separation(parameters);
   SolutionSeparation::Measurements without = same(10, 0.0002);
-  for (auto& one : without) one.common = 0.0001;
+  for (auto& one : without) one.common.bend = 0.0001;
   separation.start(without, 10);
   for (int i = 0; i < 20; ++i) {
     separation.predict(0.05);

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace uav_landing {
+
+/// Variance of a height that is common to many pairs and does not average out, by cause: errors of one cause
+/// add up with their sign, those of different causes do not. m^2
+struct CommonVariance {
+  double lasting = 0;  ///< the surface's general shape, and the rig
+  double bend = 0;     ///< what a pair leaves open of the surface's bend: some much, some hardly anything
+  double width = 0;    ///< the runway's width, of heights by it
+
+  double total() const { return lasting + bend + width; }
+};
+
+}  // namespace uav_landing
