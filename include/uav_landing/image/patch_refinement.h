@@ -11,8 +11,8 @@ struct PatchRefinement {
   bool converged = false;
   Eigen::Vector2d position;  ///< in the other image
   double score = 0;
-  double residual_variance =
-      0;  ///< of a pixel, grey levels^2: the noise of both images, and what does not fit
+  /// Of a pixel, grey levels^2: the noise of both images, and what does not fit.
+  double residual_variance = 0;
 
   /// What the window holds to tell a place from its neighbours, in pixels of the reference.
   struct Evidence {

@@ -29,6 +29,8 @@ class StepSearch {
   /// included; its memory is used again.
   Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
                                 std::vector<TemporalMatch>& matches);
+  /// Other images come next: what earlier searches found does not matter.
+  void reset() { unsure_ = 0; }
 
  private:
   TemporalMatchOptions options(int coarse_steps) const;

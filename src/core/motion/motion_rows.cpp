@@ -38,14 +38,14 @@ UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, siz
     const double* in = inputs + i;
     DoubleLanes rx, ry, then_u, then_v, xx, xy, yy;
     load(in, rx);
-    load(in + padded, ry);
-    look(terms, rx, ry, in + 7 * padded, in + 8 * padded, at);
-    load(in + 2 * padded, then_u);
-    load(in + 3 * padded, then_v);
+    load(in + MotionRows::kY * padded, ry);
+    look(terms, rx, ry, in + MotionRows::kOnPlane * padded, in + MotionRows::kDepth * padded, at);
+    load(in + MotionRows::kU * padded, then_u);
+    load(in + MotionRows::kV * padded, then_v);
     const DoubleLanes error_u = then_u - at.u, error_v = then_v - at.v;
-    load(in + 4 * padded, xx);
-    load(in + 5 * padded, xy);
-    load(in + 6 * padded, yy);
+    load(in + MotionRows::kXX * padded, xx);
+    load(in + MotionRows::kXY * padded, xy);
+    load(in + MotionRows::kYY * padded, yy);
     xx += kSquare;
     yy += kSquare;
     const DoubleLanes ratio =
@@ -70,12 +70,12 @@ UAV_LANDING_MULTIVERSION void lineariseAll(const Terms& s, const double* inputs,
     Mask seen;
     combine(s, in, padded, rows, seen);
     DoubleLanes u, v, xx, xy, yy, depth_stddev;
-    load(in + 10 * padded, u);
-    load(in + 11 * padded, v);
-    load(in + 4 * padded, xx);
-    load(in + 5 * padded, xy);
-    load(in + 6 * padded, yy);
-    load(in + 9 * padded, depth_stddev);  // none on the plane
+    load(in + MotionRows::kSeenU * padded, u);
+    load(in + MotionRows::kSeenV * padded, v);
+    load(in + MotionRows::kXX * padded, xx);
+    load(in + MotionRows::kXY * padded, xy);
+    load(in + MotionRows::kYY * padded, yy);
+    load(in + MotionRows::kDepthStddev * padded, depth_stddev);  // none on the plane
     const DoubleLanes du = rows.depth_u * depth_stddev, dv = rows.depth_v * depth_stddev;
     xx += du * du;
     xy += du * dv;

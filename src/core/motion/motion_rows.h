@@ -39,6 +39,26 @@ class MotionRows {
   /// Distance, in pixels, by which a match may miss a motion in the consensus step.
   static constexpr double kTolerance = 2.0;
 
+  /// Columns that are put in. kSeen: where a mixture of the corner and its neighbours was seen; kRight,
+  /// kBelow: their shares, by rows.
+  enum Input {
+    kX,
+    kY,
+    kU,
+    kV,
+    kXX,
+    kXY,
+    kYY,
+    kOnPlane,
+    kDepth,
+    kDepthStddev,
+    kSeenU,
+    kSeenV,
+    kRight,
+    kBelow = kRight + 4,
+    kInputs = kBelow + 4
+  };
+
   void assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches);
   size_t size() const { return count_; }
   /// The problem of these three alone.
@@ -59,24 +79,6 @@ class MotionRows {
   Eigen::Matrix<double, 6, 1> solveExactly() const;
 
  private:
-  // kSeen: where a mixture of the corner and its neighbours was seen; kRight, kBelow: their shares, by rows.
-  enum Input {
-    kX,
-    kY,
-    kU,
-    kV,
-    kXX,
-    kXY,
-    kYY,
-    kOnPlane,
-    kDepth,
-    kDepthStddev,
-    kSeenU,
-    kSeenV,
-    kRight,
-    kBelow = kRight + 4,
-    kInputs = kBelow + 4
-  };
   static constexpr int kUnknowns = 9, kResidual = 9, kPrecision = 10, kRowColumns = 11;
   // Of both rows, and then for both: squared error in pixels, the same over the covariance, weight.
   static constexpr int kSquares = 2 * kRowColumns, kRatio = kSquares + 1, kWeight = kSquares + 2;

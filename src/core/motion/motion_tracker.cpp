@@ -3,9 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
+#include "base/thinned.h"
 #include "geometry/rotation.h"
-#include "motion/thinned_corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/motion/approach_angle.h"
 
@@ -79,6 +80,7 @@ void MotionTracker::reset() {
   for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
   past_.clear();
   last_step_.reset();
+  search_.reset();
   filter_.reset();
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};

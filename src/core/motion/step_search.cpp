@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/thinned.h"
 #include "geometry/rotation.h"
-#include "motion/thinned_corners.h"
 #include "uav_landing/results/consistency_test.h"
 
 namespace uav_landing {

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/image_memory.h"
+#include "base/thinned.h"
 #include "stereo/shift_model.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/image/corners.h"
@@ -131,11 +132,8 @@ struct GroundLimits {
 // factor.
 std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
                               size_t most) {
-  const size_t count = std::min(most, corners.size());
   std::vector<cv::Point> places;
-  places.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    const cv::Point corner = corners[i * corners.size() / count];
+  for (const cv::Point& corner : thinned(corners, most)) {
     const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
     if (inside(level.left_mask, place.x, place.y)) places.push_back(place);
   }
