@@ -14,7 +14,7 @@ uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 
 # image
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
-uav_landing_add_gtest(cubic_window_test test/core/image/cubic_window_test.cpp)
+uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(mask_bounds_test test/core/image/mask_bounds_test.cpp)

@@ -6,7 +6,7 @@
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
-#include "image/cubic_window.h"
+#include "image/parabolic_window.h"
 
 namespace uav_landing {
 namespace {
@@ -70,7 +70,7 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
     return false;
   }
   area_.resize(wholeLanes(stride_ * rows) + kLanes);
-  sampleCubicWindow(other_, centre, warp, reach, stride_, area_.data());
+  sampleParabolicWindow(other_, centre, warp, reach, stride_, area_.data());
   // Less about the mean, so that floats are exact enough for the differences of sums.
   subtract(static_cast<float>(template_.mean), area_);
   return true;

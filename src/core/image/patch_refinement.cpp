@@ -8,7 +8,7 @@
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
-#include "image/cubic_window.h"
+#include "image/parabolic_window.h"
 
 namespace uav_landing {
 namespace {
@@ -205,7 +205,7 @@ class ReferenceWindow {
   // paddedReach().
   GainShift compare(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
     alignas(32) std::array<float, kPlane> values;
-    sampleCubicWindow(other, at, warp, radius_, strideOf(radius_), values.data());
+    sampleParabolicWindow(other, at, warp, radius_, strideOf(radius_), values.data());
     const int size = 2 * radius_ + 1, stride = strideOf(radius_), padded = paddedCount(radius_);
     for (int j = 0; j < size; ++j)
       for (int i = size; i < stride; ++i) values[j * stride + i] = planes_.middle;

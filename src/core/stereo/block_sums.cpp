@@ -49,9 +49,9 @@ class RowPixels {
     Lanes t;
     progress(begin_[k][y], drift_, t);
     if (none_further_[y]) {
-      cubicBetween({p, p + 1, p + 2, p + 3}, t, values);
+      parabolicBetween({p, p + 1, p + 2, p + 3}, t, values);
     } else {
-      cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+      parabolicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
     }
   }
 
@@ -70,7 +70,7 @@ inline void sampleRow(const uchar* row, float x, float step, BlockRow& value) {
     const float place = x + step * static_cast<float>(i);
     const int column = static_cast<int>(place);
     const uchar* p = row + column;
-    value[i] = cubicBetween(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
+    value[i] = parabolicBetween(p[-1], p[0], p[1], p[2], place - static_cast<float>(column));
   }
 }
 

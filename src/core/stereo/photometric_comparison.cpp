@@ -15,7 +15,7 @@ constexpr int kPixels = PhotometricBlocks::kPixels, kMargin = PhotometricBlocks:
 constexpr double kSlopeNoise = 0.1875;
 // Variance of the noise in the right image after interpolation over that before (0.64 of it is left half-way
 // between two pixels).
-constexpr double kInterpolated = 0.8;
+constexpr double kInterpolated = 0.76;
 // The variance that a block of nothing but noise may show, over the lower quartile: three sigma of
 // chi-square.
 constexpr double kNoiseScatter = 1.45;

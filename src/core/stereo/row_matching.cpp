@@ -10,7 +10,7 @@
 #include "base/interpolation.h"
 #include "base/lanes.h"
 #include "base/multiversion.h"
-#include "image/cubic_window.h"
+#include "image/parabolic_window.h"
 
 namespace uav_landing {
 namespace {
@@ -308,7 +308,7 @@ void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& war
                 float* out) {
   const int radius = planes.size / 2;
   const double start = position - warp.shear * radius - warp.scale * radius;
-  sampleCubicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
+  sampleParabolicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
   // What does not count.
   for (int j = 0; j < planes.size; ++j)
     for (int i = planes.size; i < planes.stride; ++i) out[j * planes.stride + i] = planes.middle;

@@ -80,7 +80,7 @@ UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stri
     const double place = row.first + row.slope * u;
     const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
     float weights[4];
-    cubicWeights(static_cast<float>(inside - whole), weights);
+    parabolicWeights(static_cast<float>(inside - whole), weights);
     out[u] = weights[0] * a[u] + weights[1] * b[u] + weights[2] * c[u] + weights[3] * d[u];
   }
 }

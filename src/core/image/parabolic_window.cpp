@@ -1,4 +1,4 @@
-#include "image/cubic_window.h"
+#include "image/parabolic_window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,12 +73,12 @@ struct NearRows {
   progress(down, slope, t);
   if (between_two_rows) {
     for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
-      cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride}, t, values);
+      parabolicBetween({p, p + stride, p + 2 * stride, p + 3 * stride}, t, values);
       store(values, out + i);
     }
   } else {
     for (int i = 0; i < columns; i += kLanes, p += kLanes, t += kLanes * slope) {
-      cubicBetween({p, p + stride, p + 2 * stride, p + 3 * stride, p + 4 * stride}, t, values);
+      parabolicBetween({p, p + stride, p + 2 * stride, p + 3 * stride, p + 4 * stride}, t, values);
       store(values, out + i);
     }
   }
@@ -117,7 +117,7 @@ class AlongRows {
       const float* p = row + begin.first[j] - 1;
       Lanes t, values;
       progress(begin.behind[j], drift_, t);
-      cubicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
+      parabolicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
       store(values, out + i);
     }
   }
@@ -215,9 +215,9 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
     interpolateDown(image, lines, slope, size, near.columns, values);
   }
   if (!inNeighbouringColumns(near.step)) {
-    const std::int32_t fixed_step = CubicTable::fixed(near.step);
+    const std::int32_t fixed_step = ParabolicTable::fixed(near.step);
     for (int j = 0; j < size; ++j, out += stride)
-      sampleCubicRow(values.row(j), CubicTable::fixed(lines.start[j]), fixed_step, stride, out);
+      sampleParabolicRow(values.row(j), ParabolicTable::fixed(lines.start[j]), fixed_step, stride, out);
     return true;
   }
   AlongRows along;
@@ -234,24 +234,24 @@ UAV_LANDING_MULTIVERSION bool sampleNearRows(const cv::Mat& image, const Eigen::
 
 }  // namespace
 
-void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
-                       int radius, int stride, float* out) {
+void sampleParabolicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
+                           int radius, int stride, float* out) {
   if (sampleNearRows(image, at, warp, radius, stride, out)) return;
-  const std::int32_t step_x = CubicTable::fixed(warp(0, 0)), step_y = CubicTable::fixed(warp(1, 0));
+  const std::int32_t step_x = ParabolicTable::fixed(warp(0, 0)), step_y = ParabolicTable::fixed(warp(1, 0));
   for (int dy = -radius; dy <= radius; ++dy, out += stride) {
     const Eigen::Vector2d start = at + warp * Eigen::Vector2d(-radius, dy);
-    sampleCubicLine(image, CubicTable::fixed(start.x()), CubicTable::fixed(start.y()), step_x, step_y, stride,
-                    out);
+    sampleParabolicLine(image, ParabolicTable::fixed(start.x()), ParabolicTable::fixed(start.y()), step_x,
+                        step_y, stride, out);
   }
 }
 
-void sampleCubicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
-                     int stride, float* out) {
+void sampleParabolicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
+                         int stride, float* out) {
   if (sampleNeighbours(image, v, start, by_row, step, rows, stride, out)) return;
-  const std::int32_t fixed_step = CubicTable::fixed(step);
+  const std::int32_t fixed_step = ParabolicTable::fixed(step);
   for (int j = 0; j < rows; ++j)
-    sampleCubicRow(image.ptr<float>(v + j), CubicTable::fixed(start + by_row * j), fixed_step, stride,
-                   out + j * stride);
+    sampleParabolicRow(image.ptr<float>(v + j), ParabolicTable::fixed(start + by_row * j), fixed_step, stride,
+                       out + j * stride);
 }
 
 }  // namespace uav_landing

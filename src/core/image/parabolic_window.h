@@ -10,13 +10,13 @@
 
 namespace uav_landing {
 
-/// Catmull-Rom weights of the four samples around a place, tabulated by 1/256 of a pixel: what that rounds
-/// away, 0.002 px, is far below the noise of any match.
-class CubicTable {
+/// Weights of the four samples around a place for piecewise parabolic interpolation, tabulated by 1/256 of a
+/// pixel: what that rounds away, 0.002 px, is far below the noise of any match.
+class ParabolicTable {
  public:
   static constexpr int kBits = 8;
-  static const CubicTable& get() {
-    static const CubicTable table;
+  static const ParabolicTable& get() {
+    static const ParabolicTable table;
     return table;
   }
   /// Weights at a fraction given in 1/65536 of a pixel.
@@ -31,29 +31,29 @@ class CubicTable {
   static constexpr std::int32_t kFractionMask = (1 << kFixedBits) - 1;
 
  private:
-  CubicTable() {
+  ParabolicTable() {
     for (int i = 0; i <= (1 << kBits); ++i)
-      cubicWeights(static_cast<float>(i) / (1 << kBits), weights_[i].data());
+      parabolicWeights(static_cast<float>(i) / (1 << kBits), weights_[i].data());
   }
   alignas(16) std::array<std::array<float, 4>, (1 << kBits) + 1> weights_;
 };
 
 /// Values along one line of a float image, from (x, y) by (step_x, step_y) a value, in fixed-point pixels:
 /// four at a time, count rounded up to that. Needs one pixel around all places and two behind them.
-inline void sampleCubicLine(const cv::Mat& image, std::int32_t x, std::int32_t y, std::int32_t step_x,
-                            std::int32_t step_y, int count, float* out) {
+inline void sampleParabolicLine(const cv::Mat& image, std::int32_t x, std::int32_t y, std::int32_t step_x,
+                                std::int32_t step_y, int count, float* out) {
   using cv::v_float32x4;
-  const CubicTable& table = CubicTable::get();
+  const ParabolicTable& table = ParabolicTable::get();
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
   const float* origin = image.ptr<float>() - stride - 1;
   const auto products = [&] {
-    const float* p = origin + (y >> CubicTable::kFixedBits) * stride + (x >> CubicTable::kFixedBits);
-    const float* wy = table.at(y & CubicTable::kFractionMask);
+    const float* p = origin + (y >> ParabolicTable::kFixedBits) * stride + (x >> ParabolicTable::kFixedBits);
+    const float* wy = table.at(y & ParabolicTable::kFractionMask);
     const v_float32x4 column = cv::v_load(p) * cv::v_setall_f32(wy[0]) +
                                cv::v_load(p + stride) * cv::v_setall_f32(wy[1]) +
                                cv::v_load(p + 2 * stride) * cv::v_setall_f32(wy[2]) +
                                cv::v_load(p + 3 * stride) * cv::v_setall_f32(wy[3]);
-    const v_float32x4 result = column * cv::v_load_aligned(table.at(x & CubicTable::kFractionMask));
+    const v_float32x4 result = column * cv::v_load_aligned(table.at(x & ParabolicTable::kFractionMask));
     x += step_x;
     y += step_y;
     return result;
@@ -65,12 +65,12 @@ inline void sampleCubicLine(const cv::Mat& image, std::int32_t x, std::int32_t y
 }
 
 /// The same along a row of the image, where only the column has a fraction.
-inline void sampleCubicRow(const float* row, std::int32_t x, std::int32_t step_x, int count, float* out) {
+inline void sampleParabolicRow(const float* row, std::int32_t x, std::int32_t step_x, int count, float* out) {
   using cv::v_float32x4;
-  const CubicTable& table = CubicTable::get();
+  const ParabolicTable& table = ParabolicTable::get();
   const auto products = [&] {
-    const v_float32x4 result = cv::v_load(row - 1 + (x >> CubicTable::kFixedBits)) *
-                               cv::v_load_aligned(table.at(x & CubicTable::kFractionMask));
+    const v_float32x4 result = cv::v_load(row - 1 + (x >> ParabolicTable::kFixedBits)) *
+                               cv::v_load_aligned(table.at(x & ParabolicTable::kFractionMask));
     x += step_x;
     return result;
   };
@@ -83,13 +83,13 @@ inline void sampleCubicRow(const float* row, std::int32_t x, std::int32_t step_x
 /// Values of a float image at at + warp (dx, dy): rows dy = -radius to radius, stride (a multiple of four)
 /// values from dx = -radius on in each, and up to eight of no meaning behind the last. Needs two pixels
 /// around all places and three behind them.
-void sampleCubicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
-                       int radius, int stride, float* out);
+void sampleParabolicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
+                           int radius, int stride, float* out);
 
 /// Values along the rows from v on of a float image: of row j from start + j by_row, by step, stride (a
 /// multiple of four) in each, and up to eight of no meaning behind the last. Needs a column before all places
 /// and two behind.
-void sampleCubicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
-                     int stride, float* out);
+void sampleParabolicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
+                         int stride, float* out);
 
 }  // namespace uav_landing

@@ -1,14 +1,16 @@
-#include "image/cubic_window.h"
+#include "image/parabolic_window.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <vector>
 
 namespace uav_landing {
 namespace {
 
-/// Catmull-Rom interpolation is exact for polynomials of the second degree.
+/// Piecewise parabolic interpolation is exact for polynomials of the second degree.
 double polynomial(double x, double y) {
   return 3 + 0.5 * x - 0.8 * y + 0.04 * x * x - 0.03 * x * y + 0.05 * y * y;
 }
@@ -23,62 +25,80 @@ cv::Mat polynomialImage() {
 // The table rounds places to 1/256 pixel, so by up to 0.002; slopes are below 5 a pixel in either direction.
 constexpr double kTolerance = 2 * 5 * 0.5 / 256;
 
-TEST(CubicTable, HasTheWeightsOfKeysKernel) {
+// By hand: at 1/4 the parabola through the first three samples has the weights -3/32, 30/32, 5/32, the one
+// through the last three 21/32, 14/32, -3/32.
+TEST(ParabolicTable, HasTheMeanOfBothParabolas) {
   const auto expect = [](double fraction, const std::array<double, 4>& wanted) {
-    const float* weights = CubicTable::get().at(CubicTable::fixed(fraction));
+    const float* weights = ParabolicTable::get().at(ParabolicTable::fixed(fraction));
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(weights[k], wanted[k], 1e-6) << fraction << ' ' << k;
   };
   expect(0, {0, 1, 0, 0});
   expect(0.5, {-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16});
-  expect(0.25, {-9.0 / 128, 111.0 / 128, 29.0 / 128, -3.0 / 128});
+  expect(0.25, {-3.0 / 64, 51.0 / 64, 19.0 / 64, -3.0 / 64});
   // The nearest of the table's places, not the one before.
-  expect(0.25 - 0.4 / 256, {-9.0 / 128, 111.0 / 128, 29.0 / 128, -3.0 / 128});
+  expect(0.25 - 0.4 / 256, {-3.0 / 64, 51.0 / 64, 19.0 / 64, -3.0 / 64});
 }
 
-TEST(SampleCubicLine, IsExactForParabolasInAnyDirection) {
+// Where a wave seems to be is its phase over its frequency.
+TEST(ParabolicTable, ShowsTextureWhereItIs) {
+  for (const double period : {4.0, 5.0, 6.0, 8.0, 12.0, 30.0}) {
+    const double frequency = 2 * M_PI / period;
+    for (int i = 0; i <= 64; ++i) {
+      const double fraction = i / 64.0;
+      const float* weights = ParabolicTable::get().at(ParabolicTable::fixed(fraction));
+      std::complex<double> seen = 0;
+      for (int k = 0; k < 4; ++k)
+        seen += static_cast<double>(weights[k]) * std::polar(1.0, frequency * (k - 1 - fraction));
+      EXPECT_NEAR(std::arg(seen) / frequency, 0, 0.0045) << period << ' ' << fraction;
+    }
+  }
+}
+
+TEST(SampleParabolicLine, IsExactForParabolasInAnyDirection) {
   const cv::Mat image = polynomialImage();
   for (const double step_x : {-0.7, 0.6, 1.0, 1.37})
     for (const double step_y : {-0.45, 0.0, 0.3}) {
       const double x = step_x > 0 ? 10.31 : 30.31, y = 19.77;
       std::vector<float> out(12, -1e9F);
-      sampleCubicLine(image, CubicTable::fixed(x), CubicTable::fixed(y), CubicTable::fixed(step_x),
-                      CubicTable::fixed(step_y), 12, out.data());
+      sampleParabolicLine(image, ParabolicTable::fixed(x), ParabolicTable::fixed(y),
+                          ParabolicTable::fixed(step_x), ParabolicTable::fixed(step_y), 12, out.data());
       for (int i = 0; i < 12; ++i)
         EXPECT_NEAR(out[i], polynomial(x + i * step_x, y + i * step_y), kTolerance) << step_x << ' ' << i;
     }
 }
 
-TEST(SampleCubicRow, IsExactForParabolas) {
+TEST(SampleParabolicRow, IsExactForParabolas) {
   const cv::Mat image = polynomialImage();
   for (const double step : {-0.7, 0.6, 1.0, 1.37}) {
     const double x = step > 0 ? 10.31 : 30.31;
     std::vector<float> out(12, -1e9F);
-    sampleCubicRow(image.ptr<float>(23), CubicTable::fixed(x), CubicTable::fixed(step), 12, out.data());
+    sampleParabolicRow(image.ptr<float>(23), ParabolicTable::fixed(x), ParabolicTable::fixed(step), 12,
+                       out.data());
     for (int i = 0; i < 12; ++i)
       EXPECT_NEAR(out[i], polynomial(x + i * step, 23), kTolerance) << step << ' ' << i;
   }
 }
 
-TEST(SampleCubic, WritesWholeBlocksOfFour) {
+TEST(SampleParabolic, WritesWholeBlocksOfFour) {
   const cv::Mat image = polynomialImage();
   std::vector<float> line(12, -1e9F), row(12, -1e9F);
-  const auto fixed = [](double x) { return CubicTable::fixed(x); };
-  sampleCubicLine(image, fixed(10), fixed(9), fixed(1), 0, 5, line.data());
-  sampleCubicRow(image.ptr<float>(9), fixed(10), fixed(1), 5, row.data());
+  const auto fixed = [](double x) { return ParabolicTable::fixed(x); };
+  sampleParabolicLine(image, fixed(10), fixed(9), fixed(1), 0, 5, line.data());
+  sampleParabolicRow(image.ptr<float>(9), fixed(10), fixed(1), 5, row.data());
   for (int i = 0; i < 12; ++i) {
     EXPECT_FLOAT_EQ(line[i], i < 8 ? image.at<float>(9, 10 + i) : -1e9F);
     EXPECT_FLOAT_EQ(row[i], i < 8 ? image.at<float>(9, 10 + i) : -1e9F);
   }
 }
 
-TEST(SampleCubicRows, IsExactForParabolasNearAndFarFromTheBorder) {
+TEST(SampleParabolicRows, IsExactForParabolasNearAndFarFromTheBorder) {
   const cv::Mat image = polynomialImage();
   for (const double step : {0.7, 0.95, 1.0, 1.06, 1.4})
     for (const double start : {1.5, 12.3, 30.0})
       for (const double by_row : {-0.1, 0.3}) {
         if (start + 4 * by_row + 11 * step + 2 >= image.cols) continue;
         std::vector<float> out(5 * 12 + 8, -1e9F);
-        sampleCubicRows(image, 20, start, by_row, step, 5, 12, out.data());
+        sampleParabolicRows(image, 20, start, by_row, step, 5, 12, out.data());
         for (int j = 0; j < 5; ++j)
           for (int i = 0; i < 12; ++i)
             EXPECT_NEAR(out[j * 12 + i], polynomial(start + j * by_row + i * step, 20 + j), kTolerance)
@@ -93,7 +113,7 @@ __attribute__((noinline)) float spoilStack() {
   return left_over[7];
 }
 
-TEST(SampleCubicWindow, ReadsNothingThatIsNotTheImage) {
+TEST(SampleParabolicWindow, ReadsNothingThatIsNotTheImage) {
   const cv::Mat image = polynomialImage();
   const int radius = 5, stride = 12;
   for (const double step : {0.95, 0.993, 1.0, 1.007, 1.05})
@@ -101,7 +121,7 @@ TEST(SampleCubicWindow, ReadsNothingThatIsNotTheImage) {
       const Eigen::Matrix2d warp = Eigen::Vector2d(step, 1).asDiagonal();
       std::vector<float> out(stride * (2 * radius + 1) + 8);
       EXPECT_TRUE(std::isnan(spoilStack()));
-      sampleCubicWindow(image, {x, 20.3}, warp, radius, stride, out.data());
+      sampleParabolicWindow(image, {x, 20.3}, warp, radius, stride, out.data());
       for (int j = 0; j <= 2 * radius; ++j)
         for (int i = 0; i <= 2 * radius; ++i)
           EXPECT_NEAR(out[j * stride + i], polynomial(x + (i - radius) * step, 20.3 + j - radius), kTolerance)
