@@ -1,6 +1,7 @@
 """Section `ablation`: each improvement over the paper switched off in turn."""
 
 import os
+from concurrent.futures import ThreadPoolExecutor
 
 import yaml
 
@@ -88,10 +89,15 @@ def measure(options):
     results = {}
     for name, source in find_sets(options.data, SETS):
         bag, truth = make_bag(name, source)
-        results[name] = []
-        for title, config, evaluate_options in runs:
-            results[name].append([title, score(name, bag, truth, config, evaluate_options)])
-            print(name, "|", " | ".join(map(str, row(*results[name][-1]))), flush=True)
+
+        def one(variant):
+            title, config, evaluate_options = variant
+            scores = score(name, bag, truth, config, evaluate_options)
+            print(name, "|", " | ".join(map(str, row(title, scores))), flush=True)
+            return [title, scores]
+
+        with ThreadPoolExecutor(options.jobs) as pool:
+            results[name] = list(pool.map(one, runs))
         os.remove(str(bag))
     kept.keep("ablation", results)
 

@@ -31,10 +31,13 @@ constexpr double kLargestShift = 1.5;
 constexpr double kLeastShare = 0.5;
 // By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
 constexpr double kLargestFactor = 2.0;
+// The quietest samples are one of so many, and at least this many where that is less than half.
+constexpr size_t kQuietestShare = 10, kQuietest = 20;
 
 // Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
 // independent, and an error that all samples have besides, from the surface and the calibration. The factor
-// shows in the noisier half of the samples, the error in the other.
+// shows in the noisier half of the samples, the error in the quietest, which it concerns most: seen through
+// more noise it is too uncertain.
 void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
   std::vector<double> residuals, stddevs, ratios, missing;
   for (const DisparitySample& sample : samples) {
@@ -45,9 +48,11 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
   for (size_t i = 0; i < samples.size(); ++i)
     if (stddevs[i] >= middle) ratios.push_back(std::abs(residuals[i] - offset) / stddevs[i]);
   const double factor = std::min(robustStddev(ratios), kLargestFactor);
-  // The variance without which half of the quieter samples were off by more than normal errors are.
+  const size_t count = std::min(std::max(samples.size() / kQuietestShare, kQuietest), samples.size() / 2);
+  const double quiet = orderStatistic(stddevs.data(), stddevs.size(), count);
+  // The variance without which half of the quietest samples were off by more than normal errors are.
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (stddevs[i] >= middle) continue;
+    if (stddevs[i] >= quiet) continue;
     const double off = kPerMedian * (residuals[i] - offset), noise = factor * stddevs[i];
     missing.push_back(off * off - noise * noise);
   }
