@@ -111,7 +111,29 @@ struct StereoDepthStage::Implementation {
     }
     extend(groundRows(*start, 0));
     refine(*start, result);
-    if (direct && !result.failure) refineDirectly(left_image, right_image, result);
+    if (!direct || result.failure) return;
+    const bool aligned = refineDirectly(left_image, right_image, result);
+    if (result.from_search && !aligned) waitForNextPair(result);
+  }
+
+  // A search finds some plane in nothing but noise, too. One that the images' alignment does not bear out
+  // counts when the next pair's is there as well.
+  void waitForNextPair(StereoDepthResult& result) {
+    last_g = result.plane.g;
+    has_last = true;
+    failures = 0;
+    StereoDepthResult waiting;
+    waiting.stamp = result.stamp;
+    waiting.failure = {Reason::kNotYet,
+                       "a plane that was searched for, to be found in the next pair as well"};
+    waiting.corners = result.corners;
+    waiting.points = std::move(result.points);
+    for (StereoDepthResult::Point& point : waiting.points) point.on_plane = false;
+    waiting.from_search = true;
+    waiting.photometric_agreement = result.photometric_agreement;
+    waiting.left_repeated = result.left_repeated;
+    waiting.right_repeated = result.right_repeated;
+    result = std::move(waiting);
   }
 
   void levelRows() {
@@ -268,17 +290,18 @@ struct StereoDepthStage::Implementation {
     return level_image;
   }
 
-  // The plane of the corners stays when the images' alignment leads elsewhere.
-  void refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
+  // The plane of the corners stays when the images' alignment leads elsewhere; false then.
+  bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
     const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
                                                   limits, parameters.disparity_bias_stddev,
                                                   rows.residual(fine.rig, parameters.disparity_bias_stddev));
     result.photometric_agreement = direct->agreement();
-    if (!fit || !samePlane(fit->plane, result.plane)) return;
+    if (!fit || !samePlane(fit->plane, result.plane)) return false;
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
     if (parameters.surface_curvature) bend(*fit, result);
+    return true;
   }
 
   void bend(const PlaneFit& flat, StereoDepthResult& result) {

@@ -130,7 +130,11 @@ TEST(StereoDepthStage, IsNotPulledByBoxesOnTheGround) {
   scene.ground.boxes = {
       {{3, -2.5, 0}, {5, -0.8, 1.0}}, {{4, 0.7, 0}, {6, 2.5, 1.2}}, {{9, -4, 0}, {12, 0, 2}}};
   const Pose pose = makePose(1.6, -6, -2);
-  const StereoDepthResult result = scene.first(scene.render(pose));
+  // Most blocks stand on the ground, so that the plane of the first pair waits for the second.
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair pair = scene.render(pose);
+  stage.process(1, pair.left, pair.right);
+  const StereoDepthResult result = stage.process(1.1, pair.left, pair.right);
   expectPose(result, pose, "boxes");
   // Where the picture is another without the boxes, for the width of a window: no ground is to be seen.
   GroundRenderer bare = scene.ground;
@@ -187,6 +191,41 @@ TEST(StereoDepthStage, FollowsThePlaneWhereMostOfThePictureIsSomethingElse) {
   const StereoDepthResult result = stage.process(1.1, pair.left, pair.right);
   EXPECT_FALSE(result.from_search);
   expectPose(result, pose, "with noise");
+}
+
+/// Most of the right picture is noise: corners find the plane, but most blocks are not on it.
+Pair mostlyNoise(const Scene& scene, double height) {
+  const Pair pair = scene.render(makePose(height, -8, 0));
+  cv::Mat part = pair.right.colRange(0, 190);
+  cv::randu(part, 0, 255);
+  return pair;
+}
+
+TEST(StereoDepthStage, BelievesAPlaneThatOnlyCornersFoundWhenTheNextPairHasItToo) {
+  const Scene scene(18);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair first = mostlyNoise(scene, 1.6), second = mostlyNoise(scene, 1.55);
+  const auto expectWaitingThenPose = [&](double stamp, const std::string& where) {
+    const StereoDepthResult waiting = stage.process(stamp, first.left, first.right);
+    EXPECT_EQ(waiting.failure.reason, Reason::kNotYet) << where << ": " << waiting.failure.message();
+    EXPECT_TRUE(waiting.from_search) << where;
+    EXPECT_FALSE(waiting.plane.valid()) << where;
+    EXPECT_FALSE(waiting.vertical_rotation.known()) << where;
+    EXPECT_GT(waiting.points.size(), 20U) << where;
+    const StereoDepthResult found = stage.process(stamp + 0.1, second.left, second.right);
+    EXPECT_FALSE(found.from_search) << where;
+    expectPose(found, makePose(1.55, -8, 0), where);
+  };
+  expectWaitingThenPose(1, "at the start");
+  const cv::Mat black = cv::Mat::zeros(scene.rig.size, CV_8UC1);
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(stage.process(2 + 0.1 * i, black, black).failure);
+  expectWaitingThenPose(3.5, "after long darkness");
+}
+
+TEST(StereoDepthStage, BelievesCornersAloneAtOnceWithoutDirectRefinement) {
+  Scene scene(18);
+  scene.parameters.direct_refinement = false;
+  expectPose(scene.first(mostlyNoise(scene, 1.6)), makePose(1.6, -8, 0), "corners alone");
 }
 
 TEST(StereoDepthStage, NamesUniformBlackAndSaturatedImages) {

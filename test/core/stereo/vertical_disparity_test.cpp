@@ -167,8 +167,11 @@ TEST(VerticalDisparity, TellsWhereTheRightCameraWasWhenItsImageWasTaken) {
     earlier.position += Eigen::Vector3d(-behind, 0, 0.05 * behind);
     earlier.roll += 0.05 * kDegree;
     StereoDepthStage stage(scene.model, scene.parameters);
-    const StereoDepthResult result =
-        stage.process(1, scene.ground.left(scene.rig, scene.pose), scene.ground.right(scene.rig, earlier));
+    const cv::Mat left = scene.ground.left(scene.rig, scene.pose);
+    const cv::Mat right = scene.ground.right(scene.rig, earlier);
+    // The images cannot be aligned, so that the first pair's plane waits for the next.
+    stage.process(1, left, right);
+    const StereoDepthResult result = stage.process(1.1, left, right);
     const BaselineDirection& baseline = result.baseline_direction;
     ASSERT_TRUE(baseline.known()) << behind << ": " << result.failure.message();
     const Eigen::Vector3d place =
