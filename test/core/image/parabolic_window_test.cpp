@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 #include <vector>
 
 namespace uav_landing {
@@ -104,6 +105,32 @@ TEST(SampleParabolicRows, IsExactForParabolasNearAndFarFromTheBorder) {
             EXPECT_NEAR(out[j * 12 + i], polynomial(start + j * by_row + i * step, 20 + j), kTolerance)
                 << step << ' ' << start << ' ' << by_row << ' ' << j << ' ' << i;
       }
+}
+
+/// Mean of the parabolas through the values at -1, 0, 1 and at 0, 1, 2, by Newton's divided differences.
+double meanOfParabolas(double a, double b, double c, double d, double t) {
+  const double first = a + (t + 1) * (b - a) + (t + 1) * t * (c - 2 * b + a) / 2;
+  const double second = b + t * (c - b) + t * (t - 1) * (d - 2 * c + b) / 2;
+  return (first + second) / 2;
+}
+
+// Where texture is finer than parabolas, with steps for which vectors of neighbours are read and others.
+TEST(SampleParabolicRows, IsTheMeanOfBothParabolas) {
+  cv::Mat image(40, 60, CV_32F);
+  cv::RNG(5).fill(image, cv::RNG::UNIFORM, 0, 255);
+  // By the rounding of the table's places, at up to 255 grey levels a pixel; of floats where there is none.
+  for (const auto& [step, tolerance] : {std::pair(1.0, 0.01), std::pair(1.03, 0.01), std::pair(1.4, 2.0)}) {
+    std::vector<float> out(5 * 12 + 8);
+    sampleParabolicRows(image, 20, 10.37, 0.21, step, 5, 12, out.data());
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < 12; ++i) {
+        const double x = 10.37 + 0.21 * j + i * step;
+        const int whole = static_cast<int>(x);
+        const float* p = image.ptr<float>(20 + j) + whole;
+        EXPECT_NEAR(out[j * 12 + i], meanOfParabolas(p[-1], p[0], p[1], p[2], x - whole), tolerance)
+            << step << ' ' << i << ' ' << j;
+      }
+  }
 }
 
 /// Leaves numbers behind that would be seen in everything that reads memory it never wrote.
