@@ -76,14 +76,21 @@ struct StereoDepthStage::Implementation {
       result.right_repeated = right_repeated.check(right_image);
     }
     if (!result.failure) estimate(left_image, right_image, result);
-    failures = result.failure ? failures + 1 : 0;
-    if (!result.failure) {
-      last_g = result.plane.g;
+    if (result.failure) {
+      // One bad pair does not make the last plane a bad guess; many do.
+      has_last = has_last && ++failures < kKeepPlaneFor;
+    } else {
+      remember(result.plane.g);
       failed_searches = 0;
     }
-    // One bad pair does not make the last plane a bad guess; many do.
-    has_last = !result.failure || (has_last && failures < kKeepPlaneFor);
     return result;
+  }
+
+  // For the next pair to follow.
+  void remember(const Eigen::Vector3d& g) {
+    last_g = g;
+    has_last = true;
+    failures = 0;
   }
 
   void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
@@ -119,9 +126,7 @@ struct StereoDepthStage::Implementation {
   // A search finds some plane in nothing but noise, too. One that the images' alignment does not bear out
   // counts when the next pair's is there as well.
   void waitForNextPair(StereoDepthResult& result) {
-    last_g = result.plane.g;
-    has_last = true;
-    failures = 0;
+    remember(result.plane.g);
     StereoDepthResult waiting;
     waiting.stamp = result.stamp;
     waiting.failure = {Reason::kNotYet,

@@ -6,6 +6,7 @@
 
 #include "base/interpolation.h"
 #include "base/multiversion.h"
+#include "base/thinned.h"
 #include "stereo/row_fit.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
@@ -79,9 +80,7 @@ UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stri
   for (int u = begin; u < end; ++u) {
     const double place = row.first + row.slope * u;
     const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
-    float weights[4];
-    parabolicWeights(static_cast<float>(inside - whole), weights);
-    out[u] = weights[0] * a[u] + weights[1] * b[u] + weights[2] * c[u] + weights[3] * d[u];
+    out[u] = parabolicBetween(a[u], b[u], c[u], d[u], static_cast<float>(inside - whole));
   }
 }
 
@@ -96,17 +95,16 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
                                                const Eigen::Vector3d& g, int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
-  const size_t count = std::min(kMeasured, samples.size());
+  const std::vector<DisparitySample> some = thinned(samples, kMeasured);
   std::vector<RowShift> rows;
-  rows.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    const DisparitySample& sample = samples[i * samples.size() / count];
+  rows.reserve(some.size());
+  for (const DisparitySample& sample : some) {
     const double column = sample.u - sample.disparity - level.rig.principalOffset();
     addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
            {column, sample.v}, warp, window_radius, rows);
   }
   VerticalDisparities measured;
-  if (count > 0) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(count);
+  if (!some.empty()) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(some.size());
   measured.rotation = fitRotation(rows);
   measured.baseline = fitBaseline(rows);
   return measured;
@@ -117,12 +115,11 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
                                                 const Eigen::Vector3d& g, int window_radius) {
   constexpr int kSteps = 4;  // a peak on the border does not count
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
-  const size_t count = std::min(kSearched, corners.size());
+  const std::vector<cv::Point> some = thinned(corners, kSearched);
   PatchSearch search(level.left, level.right, window_radius);
   std::vector<RowShift> rows;
-  rows.reserve(count);
-  for (size_t i = 0; i < count; ++i) {
-    const cv::Point corner = corners[i * corners.size() / count];
+  rows.reserve(some.size());
+  for (const cv::Point& corner : some) {
     const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
     const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
     const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
