@@ -58,21 +58,28 @@ struct Innovation {
   }
 };
 
+/// Of a normal that turns as the step says, by the errors of its rotation.
+Eigen::Matrix3d turnCovariance(const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& step) {
+  const Eigen::Matrix3d by_rotation = crossMatrix(normal);
+  return by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+}
+
+/// Of a normal when nobody knows how the camera turned in a time of T.
+Eigen::Matrix3d unknownTurn(double T, const Eigen::Vector3d& normal) {
+  return std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+}
+
 /// Memory fades with each of these.
 void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step,
             AttitudeFilter::Estimate& estimate) {
   estimate.normal = R * estimate.normal;
   estimate.common_root = (R * estimate.common_root * R.transpose()).eval();
-  const Eigen::Matrix3d by_rotation = crossMatrix(estimate.normal);
   estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() +
-                        by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+                        turnCovariance(estimate.normal, step);
 }
 
-/// Nobody knows how the camera turned.
 void addTurn(double T, AttitudeFilter::Estimate& estimate) {
-  const Eigen::Vector3d& n = estimate.normal;
-  estimate.covariance = std::exp(T / kMemory) * estimate.covariance +
-                        std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance + unknownTurn(T, estimate.normal);
 }
 
 }  // namespace
@@ -86,7 +93,8 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   // A step that spans another time is not the way from the last normal to this one.
   const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
                      std::abs(T - step.duration) <= kStampRounding;
-  if (known) {
+  // With one that claims to know less than a guess, any normal would agree.
+  if (known && turnCovariance(estimate_->normal, step).trace() <= unknownTurn(T, estimate_->normal).trace()) {
     turn(T, rotationMatrix(step.rotation), step);
     return Prediction::kTurned;
   }

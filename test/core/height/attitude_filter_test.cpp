@@ -169,6 +169,14 @@ TEST_F(TiltedSurface, IsToldAlsoWhereTheRotationSinceThePairBeforeIsNot) {
   EXPECT_EQ(estimate.normal, seen_) << "nothing to average with";
 }
 
+TEST_F(TiltedSurface, IsToldAlsoWhereTheRotationSinceClaimsToKnowNothing) {
+  ApproachAngleResult::Motion step = flight_.step(k_);
+  step.covariance *= 1e8;  // 1 sigma of 10 deg
+  EXPECT_FALSE(update(3 * kDegree, step).agrees);
+  ++k_;
+  EXPECT_TRUE(update(0).agrees);
+}
+
 TEST_F(TiltedSurface, IsToldAfterPairsWithoutANormal) {
   for (; k_ < 24; ++k_) filter_.carry(k_ * kStep, flight_.step(k_));
   EXPECT_FALSE(update(3 * kDegree).agrees);
