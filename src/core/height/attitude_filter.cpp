@@ -150,14 +150,14 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     const Innovation without(*other_, normal, covariance);
     const bool agrees = innovation.ratio <= kGate, other_agrees = without.ratio <= kGate;
     if (!agrees && other_agrees) {
-      denied = other_is_turn_;
+      denied = other_is_turn_ || turn_doubted_;
       innovation = without;
       predicted = Prediction::kGuessed;
       std::swap(*estimate_, *other_);
       doubts_left_ = kDoubtPairs;
     }
     if (agrees) turn_doubted_ = false;
-    if (other_is_turn_ && agrees != other_agrees) other_.reset();
+    if (denied || (other_is_turn_ && agrees != other_agrees)) other_.reset();
   }
   estimate_->ratio = innovation.ratio;
   estimate_->agrees = estimate_->ratio <= kGate;
@@ -170,7 +170,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   agreed_ = stamp;
   agreements_ = std::min(agreements_ + 1, kConfirmed);
   const bool guessed = predicted == Prediction::kGuessed;
-  const bool doubtful = !denied && (guessed || innovation.ratio > kDoubtful);
+  const bool doubtful = (guessed && !denied) || innovation.ratio > kDoubtful;
   if (doubtful && !other_ && agreements_ >= kConfirmed) doubt(*estimate_, false);
   if (guessed) {
     // A guess is good enough to contradict, but nothing to average with.

@@ -244,6 +244,17 @@ TEST_F(TiltedSurface, ThatIsTakenWhereNoStepContradictsIsLeftWhenTheNextNormalsD
   }
 }
 
+TEST_F(SuddenTurn, ThatTheNormalContradictsAfterAGuessLeavesTheNormalBeforeIt) {
+  update(0, ApproachAngleResult::Motion());
+  ++k_;
+  EXPECT_TRUE(update(2 * kDegree, turning()).agrees) << "with what was before the turn";
+  for (++k_; k_ < 30; ++k_) {
+    const AttitudeFilter::Estimate estimate = update(0);
+    EXPECT_TRUE(estimate.agrees) << k_;
+    EXPECT_LT(errorOf(estimate), 0.2 * kDegree) << k_;
+  }
+}
+
 TEST_F(SuddenTurn, ExcusesNoOtherTilt) {
   EXPECT_FALSE(update(4 * kDegree, turning()).agrees);
   ++k_;
