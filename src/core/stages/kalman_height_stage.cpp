@@ -314,8 +314,8 @@ void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
   const VerticalSpeed measured = withStamps(verticalSpeed(
       step, reconstruction.below, reconstruction.height - reconstruction.bend, reconstruction.variance,
       parameters_.height_model_error, parameters_.acceleration_stddev));
-  filter_.updateSpeed(measured.speed, measured.variance);
-  separation_.updateSpeed(measured.speed, measured.variance);
+  if (filter_.updateSpeed(measured.speed, measured.variance).accepted)
+    separation_.updateSpeed(measured.speed, measured.variance);
 }
 
 void KalmanHeightStage::reportHeight(LandingResult& result) const {

@@ -342,6 +342,20 @@ TEST(KalmanHeightStage, ABadPairDoesNotEraseWhatIsKnownOfTheGround) {
   }
 }
 
+TEST(KalmanHeightStage, AVerticalSpeedThatIsRefusedDoesNotWidenTheProtectionLevel) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 0, before = 0;
+  for (; stamp < 1; stamp += kStep)
+    before = stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).height_protection_level;
+  for (const double climb : {0.12, 0.12, 0.0, 0.0, 0.0, 0.0}) {  // of 10 m in 0.05 s: 24 m/s
+    ApproachAngleResult approach = withoutTurning(stamp);
+    approach.step.translation_over_height.y() = -climb;
+    const LandingResult result = stage.process(stereoAt(stamp, 10), approach);
+    EXPECT_NEAR(result.height_protection_level, before, 0.1) << result.protection_source;
+    stamp += kStep;
+  }
+}
+
 TEST(KalmanHeightStage, RecoversWithinTheTimeoutFromAWrongHeightItLockedOn) {
   KalmanHeightParameters parameters;
   parameters.integrity_monitor = false;  // else the height remembered keeps it from being valid for longer
