@@ -91,16 +91,21 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   if (other_ && --doubts_left_ < 0) other_.reset();
   turn_doubted_ = false;
   // A step that spans another time is not the way from the last normal to this one.
-  const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
-                     std::abs(T - step.duration) <= kStampRounding;
+  const bool same = !step.failure && std::abs(T - step.duration) <= kStampRounding;
   // With one that claims to know less than a guess, any normal would agree.
-  if (known && turnCovariance(estimate_->normal, step).trace() <= unknownTurn(T, estimate_->normal).trace()) {
+  if (same && knowsTurn(step, estimate_->normal, T)) {
     turn(T, rotationMatrix(step.rotation), step);
     return Prediction::kTurned;
   }
   if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
   guess(T);
   return Prediction::kGuessed;
+}
+
+bool AttitudeFilter::knowsTurn(const ApproachAngleResult::Motion& step, const Eigen::Vector3d& normal,
+                               double T) {
+  return step.rotation.allFinite() && step.covariance.allFinite() &&
+         turnCovariance(normal, step).trace() <= unknownTurn(T, normal).trace();
 }
 
 void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step) {
