@@ -39,6 +39,8 @@ struct MotionEstimate {
   Eigen::Vector3d normal;
   /// Of (rotation vector of R, in the frame now; t; normal). The normal's scale is fixed.
   Eigen::Matrix<double, 9, 9> covariance;
+  /// Share of it that comes from the error of the normal that was given.
+  Eigen::Matrix<double, 9, 9> of_normal;
   std::vector<char> inliers;
   int inlier_count = 0;
 };

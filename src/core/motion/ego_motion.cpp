@@ -124,6 +124,8 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
+  const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
+  result.of_normal = by_normal * prior * by_normal.transpose();
   return result;
 }
 

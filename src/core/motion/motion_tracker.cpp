@@ -25,26 +25,15 @@ constexpr double kMostSunk = 0.5;
 // Stamps may be off by this much for a frame still to be in the window, s.
 constexpr double kWindowSlack = 0.05;
 
-// The angle's variance from the joint covariance of t and n (both enter asin(n.t/|t|)).
-double jointAngleVariance(const MotionEstimate& estimate) {
+// The angle's variance by a covariance of t and n, which both enter asin(n.t/|t|).
+double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
   const Eigen::Vector3d& t = estimate.motion.t;
   const Eigen::Vector3d n = estimate.normal.normalized();
   const Eigen::Vector3d m = t.normalized();
   const double sine = n.dot(m);
   Eigen::Matrix<double, 6, 1> gradient;
   gradient << (n - sine * m) / t.norm(), m - sine * n;
-  return gradient.dot(estimate.covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
-}
-
-// The part of it that the matches answer for: t's own variance with the normal taken as exact.
-double matchAngleVariance(const MotionEstimate& estimate) {
-  const Eigen::Matrix3d cross = estimate.covariance.block<3, 3>(3, 6);
-  const Eigen::Matrix3d normal = estimate.covariance.bottomRightCorner<3, 3>();
-  const Eigen::Matrix3d of_t =
-      estimate.covariance.block<3, 3>(3, 3) -
-      cross * normal.completeOrthogonalDecomposition().pseudoInverse() * cross.transpose();
-  return approachAngleVariance(estimate.normal.normalized(), Eigen::Matrix3d::Zero(), estimate.motion.t,
-                               of_t);
+  return gradient.dot(covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
 }
 
 // The inertial sensor's rotation, when it is that of this step.
@@ -226,8 +215,8 @@ ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimat
     return motion;
   }
   motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
-  motion.angle_variance = jointAngleVariance(*estimate);
-  *match_variance = matchAngleVariance(*estimate);
+  motion.angle_variance = angleVariance(*estimate, estimate->covariance);
+  *match_variance = motion.angle_variance - angleVariance(*estimate, estimate->of_normal);
   return motion;
 }
 
@@ -238,17 +227,18 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
     filter_.reset();
     return;
   }
-  const PathAngleFilter::Measurement step{result.step.angle, result.step_match_variance,
-                                          result.step.duration};
+  const auto measurement = [](const ApproachAngleResult::Motion& motion, double match_variance) {
+    return PathAngleFilter::Measurement{motion.angle, match_variance, motion.duration,
+                                        std::sqrt(std::max(0.0, motion.angle_variance - match_variance))};
+  };
+  const PathAngleFilter::Measurement step = measurement(result.step, result.step_match_variance);
   PathAngleFilter::Measurement chord = step;
-  if (!result.window.failure && std::isfinite(result.window_match_variance)) {
-    chord = {result.window.angle, result.window_match_variance, result.window.duration};
-  }
-  const double of_normal = std::max(0.0, result.step.angle_variance - result.step_match_variance);
+  if (!result.window.failure && std::isfinite(result.window_match_variance))
+    chord = measurement(result.window, result.window_match_variance);
   const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, chord);
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
-  result.window.angle_variance = estimate.variance + of_normal;
+  result.window.angle_variance = estimate.variance;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {

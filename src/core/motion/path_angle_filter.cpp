@@ -44,13 +44,13 @@ struct Posterior {
 
 // Gaussian posterior of the last angle given measurements y = H angles + noise.
 Posterior condition(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& H, const Eigen::VectorXd& y,
-                    const Eigen::VectorXd& noise) {
+                    const Eigen::MatrixXd& noise) {
   Posterior posterior;
   const int last = static_cast<int>(prior.rows()) - 1;
   posterior.variance = prior(last, last);
   if (y.size() == 0) return posterior;
   Eigen::MatrixXd S = H * prior * H.transpose();
-  S.diagonal() += noise;
+  S += noise;
   const Eigen::LLT<Eigen::MatrixXd> llt(S);
   const Eigen::VectorXd gain = llt.solve(H * prior.col(last));
   posterior.mean = gain.dot(y);
@@ -88,13 +88,14 @@ PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& po
 struct PathAngleFilter::Equations {
   std::vector<double> middles;  // of the steps, s
   Eigen::MatrixXd H;
-  Eigen::VectorXd y, noise;
+  Eigen::VectorXd y;
+  Eigen::MatrixXd noise;
   double reference = 0;    // that y is relative to, rad
   bool has_chord = false;  // one that is a measurement of its own
 
   /// By the first so many rows.
   Posterior condition(const Eigen::MatrixXd& prior, Eigen::Index rows) const {
-    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.head(rows));
+    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.topLeftCorner(rows, rows));
   }
 };
 
@@ -118,20 +119,24 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   Equations all;
   all.H = Eigen::MatrixXd::Zero(n + 1, n);
   all.y.resize(n + 1);
-  all.noise.resize(n + 1);
+  Eigen::VectorXd variance(n + 1), by_normal(n + 1);
   double covered = 0;
   for (int i = 0; i < n; ++i) {
     const Step& past = steps_[i];
     all.middles.push_back(past.stamp - 0.5 * past.measurement.duration);
     all.H(i, i) = 1;
     all.y[i] = past.measurement.angle;
-    all.noise[i] = past.measurement.variance;
+    variance[i] = past.measurement.variance;
+    by_normal[i] = past.measurement.by_normal;
     if (past.stamp > begin) covered += past.measurement.duration;
   }
   for (int i = 0; i < n; ++i)
     if (steps_[i].stamp > begin) all.H(n, i) = steps_[i].measurement.duration / covered;
   all.y[n] = chord.angle;
-  all.noise[n] = kChordShared * chord.variance;
+  variance[n] = kChordShared * chord.variance;
+  by_normal[n] = chord.by_normal;
+  all.noise = by_normal * by_normal.transpose();
+  all.noise.diagonal() += variance;
   // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
   all.has_chord = chord.duration > step.duration + kStampRounding &&
                   std::abs(covered - chord.duration) < 0.5 * step.duration;

@@ -315,6 +315,32 @@ TEST(EstimateMotion, WeighsThePriorOfTheNormalAgainstTheMatches) {
   EXPECT_GT((data - expected).norm(), 0.25 * (data - believed).norm());
 }
 
+TEST(EstimateMotion, TellsWhatOfItsErrorsComesFromTheNormalGiven) {
+  const Step step = Step::make();
+  std::vector<TemporalMatch> matches = Matcher(step, 14).ground(200, 0.01);
+  // So that all count as much as they claim, and not less the more they are off.
+  for (TemporalMatch& match : matches) match.covariance = 0.01 * Eigen::Matrix2d::Identity();
+  constexpr double kStddev = 0.003, kShare = 0.1;
+  const Expected<MotionEstimate> found = estimate(matches, step.n, kStddev);
+  ASSERT_TRUE(found);
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  Matrix6d expected = Matrix6d::Zero();
+  const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized(), e2 = step.n.cross(e1);
+  for (const Eigen::Vector3d& axis : {e1, e2}) {
+    const Expected<MotionEstimate> other = estimate(matches, step.n + kShare * kStddev * axis, kStddev);
+    ASSERT_TRUE(other);
+    Vector6d change;
+    change << other->motion.t - found->motion.t, other->normal - found->normal;
+    change /= kShare;
+    expected += change * change.transpose();
+  }
+  const Matrix6d of_normal = found->of_normal.bottomRightCorner<6, 6>();
+  EXPECT_LT((of_normal - expected).norm(), 0.05 * expected.norm());
+  // Some of it is known better by the matches, and the rest of the errors is theirs.
+  EXPECT_LT((of_normal.bottomRightCorner<3, 3>().trace()), 0.9 * 2 * kStddev * kStddev);
+  EXPECT_GT((found->covariance - found->of_normal).diagonal().minCoeff(), -1e-12);
+}
+
 TEST(EstimateMotion, ExpectsPointsOfUncertainDepthToMissAsMuch) {
   const Step step = Step::make();
   Matcher matcher(step, 13);

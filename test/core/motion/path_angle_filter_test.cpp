@@ -83,6 +83,45 @@ TEST(PathAngleFilter, ClaimsATrueVarianceInGusts) {
   EXPECT_LT(outcome.rms(), kStepNoise);
 }
 
+/// Error of a steady glide's angle and its claim after 0.7 s, with a normal that is wrong by so many sigmas
+/// in all pairs: the steps follow it, the chord hardly does.
+struct Tilted {
+  double error, variance;
+};
+Tilted followTilted(unsigned seed, bool told) {
+  constexpr double kStepTilt = 0.05 * kDegree, kChordTilt = 0.005 * kDegree, kGlide = 4 * kDegree;
+  PathAngleFilter filter(0.5);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const double tilt = normal(random);
+  PathAngleFilter::Estimate estimate;
+  for (int k = 1; k <= 14; ++k) {
+    const PathAngleFilter::Measurement step{kGlide + kStepNoise * normal(random) + kStepTilt * tilt,
+                                            kStepNoise * kStepNoise, 1 / kRate, told ? kStepTilt : 0};
+    PathAngleFilter::Measurement chord = step;
+    if (k >= 10)
+      chord = {kGlide + kChordNoise * normal(random) + kChordTilt * tilt, kChordNoise * kChordNoise, 0.5,
+               told ? kChordTilt : 0};
+    estimate = filter.update(k / kRate, step, chord);
+  }
+  return {estimate.angle - kGlide, estimate.variance};
+}
+
+TEST(PathAngleFilter, KnowsThatTheErrorOfTheNormalIsInAllStepsAndHardlyInTheChord) {
+  constexpr int kRuns = 400;
+  double told = 0, untold = 0, ratio = 0;
+  for (unsigned seed = 0; seed < kRuns; ++seed) {
+    const Tilted with = followTilted(seed, true), without = followTilted(seed, false);
+    told += with.error * with.error / kRuns;
+    untold += without.error * without.error / kRuns;
+    ratio += with.error * with.error / with.variance / kRuns;
+  }
+  EXPECT_LT(std::sqrt(told), 0.9 * std::sqrt(untold));
+  // Of a glide that may have been a gust for all the filter knows.
+  EXPECT_LT(ratio, 1);
+  EXPECT_GT(ratio, 0.25);
+}
+
 TEST(PathAngleFilter, GivesTheFirstStepAsItIs) {
   PathAngleFilter filter(0.5);
   const PathAngleFilter::Measurement step{0.07, 1e-6, 0.05};
