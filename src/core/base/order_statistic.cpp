@@ -143,8 +143,8 @@ double orderStatistic(const double* values, size_t count, size_t rank) {
   std::vector<double> left;
   for (size_t i = 0; i < count; ++i)
     if (!(values[i] < range.low || values[i] >= range.high)) left.push_back(values[i]);
+  if (rank - range.below_low >= left.size()) return std::numeric_limits<double>::quiet_NaN();
   const auto wanted = left.begin() + static_cast<std::ptrdiff_t>(rank - range.below_low);
-  if (wanted >= left.end()) return std::numeric_limits<double>::quiet_NaN();
   std::nth_element(left.begin(), wanted, left.end());
   return *wanted;
 }

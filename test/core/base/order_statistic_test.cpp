@@ -94,6 +94,8 @@ TEST(OrderStatisticOfDoubles, FindsValuesThatSamplesMiss) {
 TEST(OrderStatisticOfDoubles, EndsWhereNothingCanBePutInOrder) {
   const std::vector<double> values(100, std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(std::isnan(orderStatistic(values.data(), values.size(), 50)));
+  const std::vector<double> endless(17, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(orderStatistic(endless.data(), endless.size(), 8)));
 }
 
 }  // namespace
