@@ -13,9 +13,11 @@ QUANTITIES = (("height_m", "height, cm", 100), ("pitch_deg", "pitch, °", 1), ("
 TEXT = """`measure_noise_bound` renders pairs without noise, adds it, and compares the errors of the plane of a single pair (root mean
 square over scenes and pairs) with the least that any unbiased estimator could have: the Cramér–Rao bound, from the
 gradients of the same pictures, with gain and offset between the cameras unknown. *Claimed* is the standard deviation that
-the estimate comes with. Asked is a ratio of at most 2 at noise of 2 grey levels and more. The bound knows the gradients
-without noise, the estimator has them with it: where texture is fainter than the noise, as on scenes without paint in view
-at 2 m and a noise of 8, it stays far from the bound, and the claim has to say so.
+the estimate comes with. Asked is a ratio of at most 2 at noise of 2 grey levels and more. This bound knows the gradients
+without noise. In brackets is the ratio to one that has to tell the texture from the noise as well, by the spectrum of each
+part of the picture (the delay between two receivers, Knapp and Carter 1976): who does not know the texture can hardly come
+nearer to the first bound than that. What is left beyond it is the estimator's, most of it at 2 m on scenes without paint in
+view, where nearly all gradients are noise.
 
 ![Errors of the plane over noise, with the bound](images/noise.png)
 
@@ -65,7 +67,8 @@ def render(results):
     for row in sorted(results, key=lambda row: (row["height_m"], row["noise"])):
         cells = [f"{row['height_m']:g} m", f"{row['noise']:g}", f"{row['pairs']:g}"]
         for name, _, factor in QUANTITIES:
-            error, bound, claimed = (factor * row[f"{kind}_{name}"] for kind in ("rms", "bound", "claimed"))
-            cells += [f"{error:.3g}", f"{bound:.3g}", f"{error / bound:.2f}", f"{claimed:.3g}"]
+            error, bound, unknown, claimed = (
+                factor * row[f"{kind}_{name}"] for kind in ("rms", "bound", "unknown_texture_bound", "claimed"))
+            cells += [f"{error:.3g}", f"{bound:.3g}", f"{error / bound:.2f} ({error / unknown:.2f})", f"{claimed:.3g}"]
         rows.append(cells)
     return TEXT + table(header, rows)

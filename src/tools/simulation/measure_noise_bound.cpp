@@ -84,36 +84,102 @@ Expected<Scenery> render(const SimulatorParameters& parameters) {
   return scenery;
 }
 
-/// Covariance of g at noise of 1 grey level, by the Fisher information of the left image's gradients over the
-/// ground that both see, with gain and offset between the images unknown. Left and right are two noisy views
-/// of one unknown texture: their difference has twice the variance of each (more exactly, the right one
-/// samples it 1 - a times as densely, with the disparity changing by a for each column).
-Eigen::Matrix3d boundAtUnitNoise(const Scenery& scenery) {
-  using Matrix5d = Eigen::Matrix<double, 5, 5>;
-  using Vector5d = Eigen::Matrix<double, 5, 1>;
-  const StereoRig& rig = scenery.rig;
-  const double density = 1 - rig.fb() * scenery.truth.g.x() / rig.fx;
-  const double variance = 1 + 1 / density;
-  Matrix5d information = Matrix5d::Zero();
-  for (int v = 0; v < scenery.left.rows; ++v) {
-    const float* row = scenery.left.ptr<float>(v);
-    for (int u = 2; u + 2 < scenery.left.cols; ++u) {
-      const double disparity = scenery.truth.disparity(rig, u, v);
-      const double column = u - disparity - rig.principalOffset();
-      if (!(disparity > 0 && column >= 0 && column <= scenery.left.cols - 1)) continue;
-      const double gradient = (8 * (row[u + 1] - row[u - 1]) - (row[u + 2] - row[u - 2])) / 12;
-      Vector5d derivative;
-      derivative << gradient / density * rig.fb() * rig.ray(u, v), row[u] / 100.0, 1.0;
-      information += derivative * derivative.transpose() / variance;
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+
+/// What a patch of the left image says of the plane, gain and offset.
+struct Patch {
+  Matrix5d information =
+      Matrix5d::Zero();  // Fisher's, at noise of 1 grey level, the texture's gradients known
+  std::vector<double> power,
+      slope;  // of its frequencies: power spectral density, the same times theirs along u
+};
+
+constexpr int kPatch = 16;  // pixels
+
+/// Periodogram of a patch (Hann window, without its mean): white noise has its variance at all frequencies.
+void addSpectrum(const cv::Mat& image, int u, int v, Patch& patch) {
+  cv::Mat window, part = image(cv::Rect(u, v, kPatch, kPatch)).clone(), spectrum;
+  cv::createHanningWindow(window, cv::Size(kPatch, kPatch), CV_32F);
+  part -= cv::mean(part);
+  cv::dft(part.mul(window), spectrum, cv::DFT_COMPLEX_OUTPUT);
+  const double energy = window.dot(window);
+  for (int y = 0; y < kPatch; ++y) {
+    for (int x = 1; x < kPatch; ++x) {
+      const cv::Vec2f& value = spectrum.at<cv::Vec2f>(y, x);
+      const double frequency = 2 * M_PI * std::min(x, kPatch - x) / kPatch;
+      patch.power.push_back(value.dot(value) / energy);
+      patch.slope.push_back(frequency * frequency * patch.power.back());
     }
   }
-  return information.ldlt().solve(Matrix5d::Identity()).topLeftCorner<3, 3>();
+}
+
+/// The left image's ground that both images see, by patches. Left and right are two noisy views of one
+/// unknown texture: their difference has twice the variance of each (more exactly, the right one samples it 1
+/// - a times as densely, with the disparity changing by a for each column).
+std::vector<Patch> groundPatches(const Scenery& scenery) {
+  const StereoRig& rig = scenery.rig;
+  const cv::Mat& image = scenery.left;
+  const double density = 1 - rig.fb() * scenery.truth.g.x() / rig.fx;
+  const double variance = 1 + 1 / density;
+  std::vector<Patch> patches;
+  for (int top = 0; top + kPatch <= image.rows; top += kPatch) {
+    for (int left = 0; left + kPatch <= image.cols; left += kPatch) {
+      Patch patch;
+      for (int v = top; v < top + kPatch; ++v) {
+        const float* row = image.ptr<float>(v);
+        for (int u = std::max(2, left); u < std::min(left + kPatch, image.cols - 2); ++u) {
+          const double disparity = scenery.truth.disparity(rig, u, v);
+          const double column = u - disparity - rig.principalOffset();
+          if (!(disparity > 0 && column >= 0 && column <= image.cols - 1)) continue;
+          const double gradient = (8 * (row[u + 1] - row[u - 1]) - (row[u + 2] - row[u - 2])) / 12;
+          Eigen::Matrix<double, 5, 1> derivative;
+          derivative << gradient / density * rig.fb() * rig.ray(u, v), row[u] / 100.0, 1.0;
+          patch.information += derivative * derivative.transpose() / variance;
+        }
+      }
+      if (patch.information.isZero()) continue;
+      addSpectrum(image, left, top, patch);
+      patches.push_back(std::move(patch));
+    }
+  }
+  return patches;
+}
+
+/// Share of the information that is left when the texture has to be told from the noise as well: two noisy
+/// views of a texture of power S agree at a frequency as if there were S / (S + N) of it in each, and what is
+/// left of S / 2N is S^2 / (N (2 S + N)) (the delay between two receivers: Knapp, Carter, 1976).
+double shareOfUnknownTexture(const Patch& patch, double noise) {
+  double known = 0, unknown = 0;
+  for (size_t i = 0; i < patch.power.size(); ++i) {
+    known += patch.slope[i];
+    unknown += patch.slope[i] * 2 * patch.power[i] / (2 * patch.power[i] + noise * noise);
+  }
+  return known > 0 ? unknown / known : 0;
+}
+
+/// The least covariances of g that an unbiased estimator could have: who knows the texture's gradients, and
+/// who has the two images only. Gain and offset between the images are unknown.
+struct Bounds {
+  Eigen::Matrix3d known, unknown;
+};
+
+Bounds boundsAt(const std::vector<Patch>& patches, double noise) {
+  Matrix5d known = Matrix5d::Zero(), unknown = Matrix5d::Zero();
+  for (const Patch& patch : patches) {
+    known += patch.information / (noise * noise);
+    unknown += shareOfUnknownTexture(patch, noise) * patch.information / (noise * noise);
+  }
+  const auto ofPlane = [](const Matrix5d& information) -> Eigen::Matrix3d {
+    return information.ldlt().solve(Matrix5d::Identity()).topLeftCorner<3, 3>();
+  };
+  return {ofPlane(known), ofPlane(unknown)};
 }
 
 /// Sums over the pairs of one noise and height.
 struct Sums {
   int pairs = 0, failed = 0;
-  Triple bound = Triple::Zero(), claimed = Triple::Zero(), direct = Triple::Zero(), corners = Triple::Zero();
+  Triple bound = Triple::Zero(), unknown = Triple::Zero(), claimed = Triple::Zero();
+  Triple direct = Triple::Zero(), corners = Triple::Zero();
 };
 
 cv::Mat exposed(const cv::Mat& light, double noise, uint64_t seed) {
@@ -125,14 +191,12 @@ cv::Mat exposed(const cv::Mat& light, double noise, uint64_t seed) {
   return mono8;
 }
 
-void measure(const Scenery& scenery, const Eigen::Matrix3d& unit_bound, double noise, uint64_t seed,
-             int pairs, Sums& sums) {
+void measure(const Scenery& scenery, const Bounds& bounds, double noise, uint64_t seed, int pairs,
+             Sums& sums) {
   StereoDepthParameters with, without;
   without.direct_refinement = false;
   with.disparity_bias_stddev = 0;
   StereoDepthStage direct(scenery.model, with), corners(scenery.model, without);
-  GroundPlane bound = scenery.truth;
-  bound.covariance = noise * noise * unit_bound;
   for (int i = 0; i < pairs; ++i) {
     const cv::Mat left = exposed(scenery.left, noise, seed + 2 * i);
     const cv::Mat right = exposed(scenery.right, noise, seed + 2 * i + 1);
@@ -143,7 +207,8 @@ void measure(const Scenery& scenery, const Eigen::Matrix3d& unit_bound, double n
       continue;
     }
     ++sums.pairs;
-    sums.bound += variances(bound);
+    sums.bound += variances({scenery.truth.g, bounds.known});
+    sums.unknown += variances({scenery.truth.g, bounds.unknown});
     sums.claimed += variances(refined.plane);
     sums.direct += (heightPitchRoll(refined.plane) - heightPitchRoll(scenery.truth)).square();
     sums.corners += (heightPitchRoll(plain.plane) - heightPitchRoll(scenery.truth)).square();
@@ -153,7 +218,7 @@ void measure(const Scenery& scenery, const Eigen::Matrix3d& unit_bound, double n
 void writeRow(std::ostream& out, double noise, double height, const Sums& sums) {
   out << noise << ',' << height << ',' << sums.pairs << ',' << sums.failed;
   const Triple unit(1, 1 / kDegree, 1 / kDegree);
-  for (const Triple& squares : {sums.bound, sums.claimed, sums.direct, sums.corners}) {
+  for (const Triple& squares : {sums.bound, sums.unknown, sums.claimed, sums.direct, sums.corners}) {
     const Triple root = (squares / sums.pairs).sqrt() * unit;
     out << ',' << root[0] << ',' << root[1] << ',' << root[2];
   }
@@ -165,7 +230,7 @@ Failure run(const Options& options) {
   std::ofstream out(pending.temporary());
   if (!out) return {Reason::kInputInvalid, options.output + ": cannot be written"};
   out << "noise,height_m,pairs,failed";
-  for (const char* kind : {"bound", "claimed", "rms", "corners_rms"}) {
+  for (const char* kind : {"bound", "unknown_texture_bound", "claimed", "rms", "corners_rms"}) {
     out << ',' << kind << "_height_m," << kind << "_pitch_deg," << kind << "_roll_deg";
   }
   out << '\n';
@@ -175,11 +240,12 @@ Failure run(const Options& options) {
     for (int scene = 1; scene <= options.scenes; ++scene, progress.step()) {
       const Expected<Scenery> scenery = render(parametersOf(height, scene));
       if (!scenery) return scenery.error();
-      const Eigen::Matrix3d unit_bound = boundAtUnitNoise(*scenery);
+      const std::vector<Patch> patches = groundPatches(*scenery);
       for (size_t i = 0; i < options.noises.size(); ++i) {
         const uint64_t seed =
             2 * static_cast<uint64_t>(options.pairs) * (scene * options.noises.size() + i) + 1;
-        measure(*scenery, unit_bound, options.noises[i], seed, options.pairs, sums[i]);
+        const Bounds bounds = boundsAt(patches, options.noises[i]);
+        measure(*scenery, bounds, options.noises[i], seed, options.pairs, sums[i]);
       }
     }
     for (size_t i = 0; i < options.noises.size(); ++i) writeRow(out, options.noises[i], height, sums[i]);
