@@ -40,8 +40,6 @@ class AttitudeFilter {
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
   /// A pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
-  /// Whether a step tells how a normal turned over T (s) better than what a camera usually turns.
-  static bool knowsTurn(const ApproachAngleResult::Motion& step, const Eigen::Vector3d& normal, double T);
   /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
   bool doubtsTurn() const { return turn_doubted_; }
   /// Nothing is in doubt.

@@ -25,7 +25,7 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
-    /// Variances of the two angles that come from the matches alone, the normal taken as exact. rad^2
+    /// Variances of the two angles without what the error of the normal given has in them. rad^2
     double step_match_variance = kUnknown, window_match_variance = kUnknown;
   };
 

@@ -13,8 +13,9 @@ namespace uav_landing {
 /// one second, in one model for each of several standard deviations of the rate; each model's weight is its
 /// evidence, the likelihood of the recent measurements with old ones forgotten (multiple-model adaptive
 /// estimation, Magill 1965). The result is the mixture's mean and variance. Only measurements of the last
-/// window seconds enter the estimate itself. The error of the ground's normal is the same in all of them, but
-/// a long chord sees the ground from so different places that it hardly depends on the normal given.
+/// window seconds enter the estimate itself. The error of the ground's normal is about the same in all of
+/// them, but a long chord sees the ground from so different places that it hardly depends on the normal
+/// given.
 class PathAngleFilter {
  public:
   /// window: s, of measurements used.
@@ -24,7 +25,7 @@ class PathAngleFilter {
     double angle = 0;      ///< rad
     double variance = 0;   ///< rad^2, of the matches alone
     double duration = 0;   ///< s, back from now
-    double by_normal = 0;  ///< 1 sigma by the error of the ground's normal, which is common to all, rad
+    double by_normal = 0;  ///< 1 sigma by the error of the ground's normal, about the same in all, rad
   };
   struct Estimate {
     double angle = 0;        ///< of the last step, rad

@@ -58,15 +58,22 @@ struct Innovation {
   }
 };
 
-/// Of a normal that turns as the step says, by the errors of its rotation.
-Eigen::Matrix3d turnCovariance(const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& step) {
-  const Eigen::Matrix3d by_rotation = crossMatrix(normal);
-  return by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
-}
+/// 1 sigma of a normal's direction when nobody knows how the camera turned in a time of T (s), rad.
+double unknownTurn(double T) { return kTurnRate * T; }
 
-/// Of a normal when nobody knows how the camera turned in a time of T.
-Eigen::Matrix3d unknownTurn(double T, const Eigen::Vector3d& normal) {
-  return std::pow(kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+/// Of a normal that turns as the step says, by the errors of its rotation. With one that claims to know less
+/// than a guess, any normal would agree.
+Eigen::Matrix3d turnCovariance(double T, const Eigen::Vector3d& normal,
+                               const ApproachAngleResult::Motion& step) {
+  const Eigen::Matrix3d by_rotation = crossMatrix(normal);
+  const Eigen::Matrix3d claimed =
+      by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
+  const double most = std::pow(unknownTurn(T), 2);
+  if (claimed.trace() <= most) return claimed;
+  if (!claimed.allFinite()) return most * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(claimed);
+  const Eigen::Vector3d variances = solved.eigenvalues().cwiseMin(most);
+  return solved.eigenvectors() * variances.asDiagonal() * solved.eigenvectors().transpose();
 }
 
 /// Memory fades with each of these.
@@ -75,11 +82,14 @@ void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motio
   estimate.normal = R * estimate.normal;
   estimate.common_root = (R * estimate.common_root * R.transpose()).eval();
   estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() +
-                        turnCovariance(estimate.normal, step);
+                        turnCovariance(T, estimate.normal, step);
 }
 
+/// Nobody knows how the camera turned.
 void addTurn(double T, AttitudeFilter::Estimate& estimate) {
-  estimate.covariance = std::exp(T / kMemory) * estimate.covariance + unknownTurn(T, estimate.normal);
+  const Eigen::Vector3d& n = estimate.normal;
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance +
+                        std::pow(unknownTurn(T), 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
 }
 
 }  // namespace
@@ -91,21 +101,15 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
   if (other_ && --doubts_left_ < 0) other_.reset();
   turn_doubted_ = false;
   // A step that spans another time is not the way from the last normal to this one.
-  const bool same = !step.failure && std::abs(T - step.duration) <= kStampRounding;
-  // With one that claims to know less than a guess, any normal would agree.
-  if (same && knowsTurn(step, estimate_->normal, T)) {
+  const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
+                     std::abs(T - step.duration) <= kStampRounding;
+  if (known) {
     turn(T, rotationMatrix(step.rotation), step);
     return Prediction::kTurned;
   }
   if (agreements_ < kConfirmed || T > kPatience) return Prediction::kNone;
   guess(T);
   return Prediction::kGuessed;
-}
-
-bool AttitudeFilter::knowsTurn(const ApproachAngleResult::Motion& step, const Eigen::Vector3d& normal,
-                               double T) {
-  return step.rotation.allFinite() && step.covariance.allFinite() &&
-         turnCovariance(normal, step).trace() <= unknownTurn(T, normal).trace();
 }
 
 void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step) {

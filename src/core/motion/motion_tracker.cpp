@@ -216,14 +216,14 @@ ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimat
   }
   motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
   motion.angle_variance = angleVariance(*estimate, estimate->covariance);
-  *match_variance = motion.angle_variance - angleVariance(*estimate, estimate->of_normal);
+  *match_variance = std::max(motion.angle_variance - angleVariance(*estimate, estimate->of_normal), 0.0);
   return motion;
 }
 
 // The chord's angle is that of half its duration ago; the published one is that of now.
 void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
-  if (result.step.failure) {
+  if (result.step.failure || !std::isfinite(result.step.angle_variance)) {
     filter_.reset();
     return;
   }

@@ -119,6 +119,7 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   Equations all;
   all.H = Eigen::MatrixXd::Zero(n + 1, n);
   all.y.resize(n + 1);
+  all.noise.resize(n + 1, n + 1);
   Eigen::VectorXd variance(n + 1), by_normal(n + 1);
   double covered = 0;
   for (int i = 0; i < n; ++i) {
@@ -135,7 +136,10 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   all.y[n] = chord.angle;
   variance[n] = kChordShared * chord.variance;
   by_normal[n] = chord.by_normal;
-  all.noise = by_normal * by_normal.transpose();
+  // How far the errors by the normals of single pairs are the same nobody knows, but none has less of it than
+  // what it has in common with another: differences of two never tell the normal.
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) all.noise(i, j) = std::pow(std::min(by_normal[i], by_normal[j]), 2);
   all.noise.diagonal() += variance;
   // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
   all.has_chord = chord.duration > step.duration + kStampRounding &&

@@ -15,12 +15,11 @@ constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 18
 // 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
 constexpr double kSlope = 0.05;
 
-/// A camera that hardly moves turns all the same; but what the attitude was not carried by is not to lift
-/// the ground. normal: of the ground before.
-bool knowsTurn(const ApproachAngleResult::Motion& step, const std::optional<Eigen::Vector3d>& normal,
-               double T) {
+/// What a motion that failed says of the turn is not to lift the ground; but a camera that hardly moves turns
+/// all the same.
+bool knowsTurn(const ApproachAngleResult::Motion& step, double T) {
   constexpr double kSigmas = 5;
-  if (!step.rotation.allFinite() || (normal && !AttitudeFilter::knowsTurn(step, *normal, T))) return false;
+  if (!step.rotation.allFinite()) return false;
   return !step.failure ||
          (step.failure.reason == Reason::kNoMotion && step.rotation.norm() <= kSigmas * kTurnUnknown * T);
 }
@@ -56,7 +55,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   const double height = heightSoFar(reconstruction) - reconstruction.bend;
   const bool believed = !rejected && reconstruction.plane.valid() && attitude_.settled();
   const std::optional<Eigen::Vector3d> before = last_normal_;
-  const bool turn_known = knowsTurn(step, before, T);
+  const bool turn_known = knowsTurn(step, T);
   const Eigen::Matrix3d R = turn_known ? rotationMatrix(step.rotation) : Eigen::Matrix3d::Identity();
   if (believed)
     last_normal_ = reconstruction.normal.mean;
