@@ -356,6 +356,46 @@ TEST(KalmanHeightStage, AVerticalSpeedThatIsRefusedDoesNotWidenTheProtectionLeve
   }
 }
 
+/// A pair over level ground, with the points that it is seen by.
+StereoDepthResult overGround(double stamp) {
+  const StereoRig rig = makeRig();
+  StereoDepthResult stereo = stereoAt(stamp, 10);
+  for (int v = 200; v < 480; v += 10) {
+    for (int u = 10; u < 640; u += 20) {
+      const double disparity = stereo.plane.disparity(rig, u, v);
+      if (disparity > 2) stereo.points.push_back({double(u), double(v), disparity, 0.1, true});
+    }
+  }
+  return stereo;
+}
+
+/// The motion along it, at 20 m/s.
+ApproachAngleResult alongGround(double stamp) {
+  ApproachAngleResult approach = withoutTurning(stamp);
+  const Eigen::Vector3d n = stereoAt(stamp, 10).plane.normal();
+  approach.step.translation_over_height = 0.2 * (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
+  return approach;
+}
+
+TEST(KalmanHeightStage, ATurnOfAMotionThatFailedDoesNotLiftTheGroundBelow) {
+  KalmanHeightStage stage(makeRig(), {});
+  double stamp = 0;
+  LandingResult before;
+  for (; stamp < 3; stamp += kStep) before = stage.process(overGround(stamp), alongGround(stamp));
+  ASSERT_TRUE(before.height_valid) << before.failure.message();
+  ApproachAngleResult failed = alongGround(stamp);
+  failed.step.failure = {Reason::kMotionInconsistent, "3 of 300 matches agree"};
+  failed.step.rotation.x() = -0.1;
+  stage.process(overGround(stamp), failed);
+  stamp += kStep;
+  for (const double end = stamp + 1; stamp < end; stamp += kStep) {
+    const LandingResult result = stage.process(overGround(stamp), alongGround(stamp));
+    // The turn of that pair is not known, but by the normals before and after it; 0.1 rad would be metres.
+    EXPECT_LT(result.height_protection_level, before.height_protection_level + 0.4)
+        << result.protection_source;
+  }
+}
+
 TEST(KalmanHeightStage, RecoversWithinTheTimeoutFromAWrongHeightItLockedOn) {
   KalmanHeightParameters parameters;
   parameters.integrity_monitor = false;  // else the height remembered keeps it from being valid for longer
