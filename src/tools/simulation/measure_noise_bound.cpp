@@ -88,10 +88,10 @@ using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
 /// What a patch of the left image says of the plane, gain and offset.
 struct Patch {
-  Matrix5d information =
-      Matrix5d::Zero();  // Fisher's, at noise of 1 grey level, the texture's gradients known
-  std::vector<double> power,
-      slope;  // of its frequencies: power spectral density, the same times theirs along u
+  // Fisher's, at noise of 1 grey level, the texture's gradients known.
+  Matrix5d information = Matrix5d::Zero();
+  // Of its frequencies: power spectral density, and that times the squared frequency along u.
+  std::vector<double> power, slope;
 };
 
 constexpr int kPatch = 16;  // pixels
@@ -114,8 +114,8 @@ void addSpectrum(const cv::Mat& image, int u, int v, Patch& patch) {
 }
 
 /// The left image's ground that both images see, by patches. Left and right are two noisy views of one
-/// unknown texture: their difference has twice the variance of each (more exactly, the right one samples it 1
-/// - a times as densely, with the disparity changing by a for each column).
+/// unknown texture: their difference has twice the variance of each (more exactly, the right one samples it
+/// 1 - a times as densely, with the disparity changing by a for each column).
 std::vector<Patch> groundPatches(const Scenery& scenery) {
   const StereoRig& rig = scenery.rig;
   const cv::Mat& image = scenery.left;
