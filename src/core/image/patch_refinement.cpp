@@ -9,12 +9,13 @@
 #include "base/lanes.h"
 #include "base/multiversion.h"
 #include "image/parabolic_window.h"
+#include "uav_landing/parameters/window_radius.h"
 
 namespace uav_landing {
 namespace {
 
-constexpr int kLargestRadius = 15, kLargestStride = 32;
-constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
+constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
+constexpr int kPlane = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
 
 int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
 int paddedCount(int radius) { return wholeLanes((2 * radius + 1) * strideOf(radius)); }
@@ -126,7 +127,7 @@ struct DistancePlanes {
 const DistancePlanes& distancesOf(int radius) {
   static const std::vector<DistancePlanes> all = [] {
     std::vector<DistancePlanes> planes;
-    for (int r = 0; r <= kLargestRadius; ++r) planes.emplace_back(r);
+    for (int r = 0; r <= kLargestWindowRadius; ++r) planes.emplace_back(r);
     return planes;
   }();
   return all[radius];

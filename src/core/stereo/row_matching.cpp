@@ -11,6 +11,7 @@
 #include "base/lanes.h"
 #include "base/multiversion.h"
 #include "image/parabolic_window.h"
+#include "uav_landing/parameters/window_radius.h"
 
 namespace uav_landing {
 namespace {
@@ -223,8 +224,8 @@ std::vector<RowCandidate> RowSearch::peaks(double min_score, int count) const {
 
 namespace {
 
-constexpr int kLargestRadius = 15, kLargestStride = 32;
-constexpr int kPlane = kLargestStride * (2 * kLargestRadius + 1) + kLanes;
+constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
+constexpr int kPlane = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
 
 // A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
 // up to a multiple of four, and all of it to one of kLanes, with zeros.
