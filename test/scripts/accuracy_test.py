@@ -122,11 +122,12 @@ class NoiseTest(unittest.TestCase):
     def test_ratio_is_error_over_bound(self):
         row = {"height_m": 10.0, "noise": 2.0, "pairs": 48.0}
         for name, _, _ in noise.QUANTITIES:
-            row.update({f"rms_{name}": 0.03, f"bound_{name}": 0.02, f"claimed_{name}": 0.025})
+            row.update({f"rms_{name}": 0.03, f"bound_{name}": 0.02, f"unknown_texture_bound_{name}": 0.024,
+                        f"claimed_{name}": 0.025})
         with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
                 mock.patch.object(noise, "IMAGE", Path(folder) / "noise.png"):
             text = noise.render([row])
-        self.assertEqual(cells(text.splitlines()[-1])[:7], ["10 m", "2", "48", "3", "2", "1.50", "2.5"])
+        self.assertEqual(cells(text.splitlines()[-1])[:7], ["10 m", "2", "48", "3", "2", "1.50 (1.25)", "2.5"])
 
 
 class KeptTest(unittest.TestCase):

@@ -90,7 +90,8 @@ struct ApproachAngleParameters {
            "take the rotation between the frames out of the image velocities first (sliding_window only)");
     v.choice("angle_formula", angle_formula, {"general", "eq1"}, "asin(n.t) or the paper's eq (1)");
     v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners followed between frames");
-    v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px", "matching window is (2 r + 1) squared");
+    v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px",
+             "matching window is (2 r + 1) squared");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched around the place the previous motion predicts");
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");

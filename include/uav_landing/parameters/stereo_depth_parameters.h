@@ -39,7 +39,8 @@ struct StereoDepthParameters {
     v.number("corner_quality", corner_quality, 1e-9, 0.5, "",
              "weakest corner kept, as a share of the strongest response");
     v.number("min_corner_distance", min_corner_distance, 1.0, 50.0, "px", "between two corners");
-    v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px", "matching window is (2 r + 1) squared");
+    v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px",
+             "matching window is (2 r + 1) squared");
     v.choice("matching_cost", matching_cost, {"zncc", "ssd"},
              "zncc: blind to gain and offset between the cameras; ssd: the paper's");
     v.flag("warp_window", warp_window,

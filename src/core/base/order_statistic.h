@@ -30,7 +30,8 @@ float orderStatistic(const PaddedValues<kMost>& padded, int rank, float guess) {
   return orderStatistic(padded.values.data(), wholeLanes(padded.count), rank, guess);
 }
 
-/// The same of any numbers, in any order, not filled up. NaN when some of them are not finite and none is found.
+/// The same of any numbers, in any order, not filled up. NaN when some of them are not finite and none is
+/// found.
 double orderStatistic(const double* values, size_t count, size_t rank);
 
 }  // namespace uav_landing
