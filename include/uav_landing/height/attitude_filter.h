@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 
 #include "uav_landing/results/stage_results.h"
@@ -17,6 +18,9 @@ class AttitudeFilter {
  public:
   static constexpr double kGate = 25.0;           ///< squared sigmas of the two angles together
   static constexpr double kStampRounding = 1e-3;  ///< s, by which stamps of the same pairs may differ
+  /// 1 sigma of the camera's angular velocity where no step tells the rotation, and what may as well be a
+  /// wrong turn, rad/s.
+  static constexpr double kTurnRate = 5 * M_PI / 180, kUnusualTurn = 5 * kTurnRate;
 
   struct Estimate {
     Eigen::Vector3d normal;

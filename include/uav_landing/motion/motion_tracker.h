@@ -25,8 +25,7 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
-    /// Variances of the two angles without what the error of the normal given has in them. rad^2
-    double step_match_variance = kUnknown, window_match_variance = kUnknown;
+    std::optional<PathAngleFilter::Measurement> step_angle, window_angle;  ///< as far as they have one
   };
 
   /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
@@ -63,7 +62,8 @@ class MotionTracker {
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
-                                       size_t matches, double* match_variance) const;
+                                       size_t matches,
+                                       std::optional<PathAngleFilter::Measurement>& angle) const;
 
   StereoRig rig_;
   cv::Mat mask_;  // left, eroded by the window

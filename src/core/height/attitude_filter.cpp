@@ -16,10 +16,6 @@ constexpr double kMemory = 1.0;    // s
 constexpr double kPatience = 3.0;  // s, with normals that contradict
 // Pairs in a row that agree make a normal that others are measured by.
 constexpr int kConfirmed = 3;
-// 1 sigma of the camera's angular velocity where no step tells the rotation, rad/s.
-constexpr double kTurnRate = 5 * M_PI / 180;
-// A turn by this, rad/s, may as well be a wrong one.
-constexpr double kUnusualTurn = 5 * kTurnRate;
 // Squared sigmas from which a normal that agrees is in doubt, and for how many pairs.
 constexpr double kDoubtful = 9;
 constexpr int kDoubtPairs = 4;
@@ -58,8 +54,11 @@ struct Innovation {
   }
 };
 
-/// 1 sigma of a normal's direction when nobody knows how the camera turned in a time of T (s), rad.
-double unknownTurn(double T) { return kTurnRate * T; }
+/// Of a normal when nobody knows how the camera turned in a time of T (s).
+Eigen::Matrix3d unknownTurn(double T, const Eigen::Vector3d& normal) {
+  return std::pow(AttitudeFilter::kTurnRate * T, 2) *
+         (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+}
 
 /// Of a normal that turns as the step says, by the errors of its rotation. With one that claims to know less
 /// than a guess, any normal would agree.
@@ -68,9 +67,9 @@ Eigen::Matrix3d turnCovariance(double T, const Eigen::Vector3d& normal,
   const Eigen::Matrix3d by_rotation = crossMatrix(normal);
   const Eigen::Matrix3d claimed =
       by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
-  const double most = std::pow(unknownTurn(T), 2);
+  const double most = std::pow(AttitudeFilter::kTurnRate * T, 2);
   if (claimed.trace() <= most) return claimed;
-  if (!claimed.allFinite()) return most * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  if (!claimed.allFinite()) return unknownTurn(T, normal);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(claimed);
   const Eigen::Vector3d variances = solved.eigenvalues().cwiseMin(most);
   return solved.eigenvectors() * variances.asDiagonal() * solved.eigenvectors().transpose();
@@ -85,11 +84,8 @@ void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motio
                         turnCovariance(T, estimate.normal, step);
 }
 
-/// Nobody knows how the camera turned.
 void addTurn(double T, AttitudeFilter::Estimate& estimate) {
-  const Eigen::Vector3d& n = estimate.normal;
-  estimate.covariance = std::exp(T / kMemory) * estimate.covariance +
-                        std::pow(unknownTurn(T), 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance + unknownTurn(T, estimate.normal);
 }
 
 }  // namespace

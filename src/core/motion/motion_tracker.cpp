@@ -139,7 +139,7 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
   const StepImages step{now.image, past_.back().image, corners, normal, covariance, rotation};
   const Expected<MotionEstimate> estimate =
       search_.find(step, predictions(duration, rotation), step_matches_);
-  result.step = describe(estimate, duration, step_matches_.size(), &result.step_match_variance);
+  result.step = describe(estimate, duration, step_matches_.size(), result.step_angle);
   if (!estimate) return;
   result.step_estimate = *estimate;
   last_duration_ = duration;
@@ -190,14 +190,15 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;
-    result.window = describe(estimate, duration, window_matches_.size(), &result.window_match_variance);
+    result.window = describe(estimate, duration, window_matches_.size(), result.window_angle);
     return;
   }
   result.window = result.step;
 }
 
-ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimate>& estimate, double duration,
-                                                    size_t matches, double* match_variance) const {
+ApproachAngleResult::Motion MotionTracker::describe(
+    const Expected<MotionEstimate>& estimate, double duration, size_t matches,
+    std::optional<PathAngleFilter::Measurement>& angle) const {
   ApproachAngleResult::Motion motion;
   motion.duration = duration;
   motion.matches = static_cast<int>(matches);
@@ -216,26 +217,20 @@ ApproachAngleResult::Motion MotionTracker::describe(const Expected<MotionEstimat
   }
   motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
   motion.angle_variance = angleVariance(*estimate, estimate->covariance);
-  *match_variance = std::max(motion.angle_variance - angleVariance(*estimate, estimate->of_normal), 0.0);
+  const double of_normal = angleVariance(*estimate, estimate->of_normal);
+  angle = {motion.angle, std::max(motion.angle_variance - of_normal, 0.0), duration, std::sqrt(of_normal)};
   return motion;
 }
 
 // The chord's angle is that of half its duration ago; the published one is that of now.
 void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
-  if (result.step.failure || !std::isfinite(result.step.angle_variance)) {
+  if (!result.step_angle || !std::isfinite(result.step.angle_variance)) {
     filter_.reset();
     return;
   }
-  const auto measurement = [](const ApproachAngleResult::Motion& motion, double match_variance) {
-    return PathAngleFilter::Measurement{motion.angle, match_variance, motion.duration,
-                                        std::sqrt(std::max(0.0, motion.angle_variance - match_variance))};
-  };
-  const PathAngleFilter::Measurement step = measurement(result.step, result.step_match_variance);
-  PathAngleFilter::Measurement chord = step;
-  if (!result.window.failure && std::isfinite(result.window_match_variance))
-    chord = measurement(result.window, result.window_match_variance);
-  const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, chord);
+  const PathAngleFilter::Measurement& step = *result.step_angle;
+  const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, result.window_angle.value_or(step));
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;

@@ -72,11 +72,13 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
   covariance.setConstant(kUnknown);
 }
 
+/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same.
 void keepMotion(ApproachAngleResult::Motion& motion) {
-  const bool possible = motion.rotation.norm() <= std::min(M_PI, kFastestTurn * motion.duration) &&
-                        motion.translation_over_height.norm() <= kLargestRatio &&
-                        motion.duration >= kShortestStep && motion.duration <= kLongestStep &&
-                        isCovariance<6>(motion.covariance);
+  const bool measured = !motion.failure || motion.failure.reason == Reason::kNoMotion;
+  const bool possible =
+      measured && motion.rotation.norm() <= std::min(M_PI, kFastestTurn * motion.duration) &&
+      motion.translation_over_height.norm() <= kLargestRatio && motion.duration >= kShortestStep &&
+      motion.duration <= kLongestStep && isCovariance<6>(motion.covariance);
   if (!possible) {
     motion.duration = kUnknown;
     motion.rotation.setConstant(kUnknown);

@@ -9,19 +9,15 @@
 namespace uav_landing {
 namespace {
 
-// 1 sigma of pitch and roll since the pair before where no motion tells them: by the ground's normals, rad,
-// and where these are not known either, rad/s.
-constexpr double kTurnByNormals = 0.1 * M_PI / 180, kTurnUnknown = 5 * M_PI / 180;
+// 1 sigma of pitch and roll since the pair before where no motion tells them but the ground's normals, rad.
+constexpr double kTurnByNormals = 0.1 * M_PI / 180;
 // 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
 constexpr double kSlope = 0.05;
 
-/// What a motion that failed says of the turn is not to lift the ground; but a camera that hardly moves turns
-/// all the same.
+/// A camera that hardly moves turns all the same, but an unusual turn is confirmed by nothing then.
 bool knowsTurn(const ApproachAngleResult::Motion& step, double T) {
-  constexpr double kSigmas = 5;
-  if (!step.rotation.allFinite()) return false;
-  return !step.failure ||
-         (step.failure.reason == Reason::kNoMotion && step.rotation.norm() <= kSigmas * kTurnUnknown * T);
+  return step.rotation.allFinite() &&
+         (!step.failure || step.rotation.norm() <= AttitudeFilter::kUnusualTurn * T);
 }
 
 }  // namespace
@@ -67,7 +63,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
     ground_.move(R, height * step.translation_over_height, T);
   } else {
     const bool doubted = turn_known && attitude_.doubtsTurn();
-    const double turn_stddev = doubted ? step.rotation.norm() : kTurnUnknown * T;
+    const double turn_stddev = doubted ? step.rotation.norm() : AttitudeFilter::kTurnRate * T;
     ground_.coast(doubted ? R : Eigen::Matrix3d::Identity(), turn_stddev, T, before, doubted);
     if (believed) ground_.settleTurn(*last_normal_, kTurnByNormals);
   }

@@ -113,32 +113,38 @@ void addSpectrum(const cv::Mat& image, int u, int v, Patch& patch) {
   }
 }
 
-/// The left image's ground that both images see, by patches. Left and right are two noisy views of one
-/// unknown texture: their difference has twice the variance of each (more exactly, the right one samples it
-/// 1 - a times as densely, with the disparity changing by a for each column).
-std::vector<Patch> groundPatches(const Scenery& scenery) {
+/// What the pixels of a patch say that are ground and that both images see. Left and right are two noisy
+/// views of one unknown texture: their difference has twice the variance of each (more exactly, the right one
+/// samples it 1 - a times as densely, with the disparity changing by a for each column).
+Matrix5d informationOf(const Scenery& scenery, int left, int top) {
   const StereoRig& rig = scenery.rig;
   const cv::Mat& image = scenery.left;
   const double density = 1 - rig.fb() * scenery.truth.g.x() / rig.fx;
   const double variance = 1 + 1 / density;
+  Matrix5d information = Matrix5d::Zero();
+  for (int v = top; v < top + kPatch; ++v) {
+    const float* row = image.ptr<float>(v);
+    for (int u = std::max(2, left); u < std::min(left + kPatch, image.cols - 2); ++u) {
+      const double disparity = scenery.truth.disparity(rig, u, v);
+      const double column = u - disparity - rig.principalOffset();
+      if (!(disparity > 0 && column >= 0 && column <= image.cols - 1)) continue;
+      const double gradient = (8 * (row[u + 1] - row[u - 1]) - (row[u + 2] - row[u - 2])) / 12;
+      Eigen::Matrix<double, 5, 1> derivative;
+      derivative << gradient / density * rig.fb() * rig.ray(u, v), row[u] / 100.0, 1.0;
+      information += derivative * derivative.transpose() / variance;
+    }
+  }
+  return information;
+}
+
+std::vector<Patch> groundPatches(const Scenery& scenery) {
   std::vector<Patch> patches;
-  for (int top = 0; top + kPatch <= image.rows; top += kPatch) {
-    for (int left = 0; left + kPatch <= image.cols; left += kPatch) {
+  for (int top = 0; top + kPatch <= scenery.left.rows; top += kPatch) {
+    for (int left = 0; left + kPatch <= scenery.left.cols; left += kPatch) {
       Patch patch;
-      for (int v = top; v < top + kPatch; ++v) {
-        const float* row = image.ptr<float>(v);
-        for (int u = std::max(2, left); u < std::min(left + kPatch, image.cols - 2); ++u) {
-          const double disparity = scenery.truth.disparity(rig, u, v);
-          const double column = u - disparity - rig.principalOffset();
-          if (!(disparity > 0 && column >= 0 && column <= image.cols - 1)) continue;
-          const double gradient = (8 * (row[u + 1] - row[u - 1]) - (row[u + 2] - row[u - 2])) / 12;
-          Eigen::Matrix<double, 5, 1> derivative;
-          derivative << gradient / density * rig.fb() * rig.ray(u, v), row[u] / 100.0, 1.0;
-          patch.information += derivative * derivative.transpose() / variance;
-        }
-      }
+      patch.information = informationOf(scenery, left, top);
       if (patch.information.isZero()) continue;
-      addSpectrum(image, left, top, patch);
+      addSpectrum(scenery.left, left, top, patch);
       patches.push_back(std::move(patch));
     }
   }
