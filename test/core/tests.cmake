@@ -93,7 +93,11 @@ uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.
 # stages
 uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(kalman_height_attitude_test test/core/stages/kalman_height_attitude_test.cpp)
+uav_landing_add_gtest(kalman_height_ground_test test/core/stages/kalman_height_ground_test.cpp)
 uav_landing_add_gtest(kalman_height_integrity_test test/core/stages/kalman_height_integrity_test.cpp)
+uav_landing_add_gtest(kalman_height_reconstruction_test
+  test/core/stages/kalman_height_reconstruction_test.cpp)
 uav_landing_add_gtest(kalman_height_stage_test test/core/stages/kalman_height_stage_test.cpp)
 uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)

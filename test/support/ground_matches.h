@@ -3,14 +3,11 @@
 #include <cmath>
 #include <vector>
 
-#include "support/rigs.h"
+#include "uav_landing/geometry/calibration.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 namespace test {
-
-/// 640 x 480, f = 500 px, baseline 1 m.
-inline StereoRig usualRig() { return rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// Matches on a grid over the ground of the plane g.
 inline std::vector<StereoDepthResult::Point> matchesOn(const StereoRig& rig, const Eigen::Vector3d& g) {

@@ -4,14 +4,13 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "support/degree.h"
 #include "support/random_texture.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 namespace test {
-
-constexpr double kDegree = M_PI / 180;
 
 /// Left camera in the world: x along the runway, y left, z up, ground z = 0. Metres, radians; pitch up, yaw
 /// left and roll right side down are positive.

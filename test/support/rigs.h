@@ -18,5 +18,8 @@ inline StereoRig rigOf(cv::Size size, double focal_length, cv::Point2d centre, d
   return rig;
 }
 
+/// 640 x 480, f = 500 px, baseline 1 m.
+inline StereoRig usualRig() { return rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
+
 }  // namespace test
 }  // namespace uav_landing

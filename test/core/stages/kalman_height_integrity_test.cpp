@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/ground_matches.h"
+#include "support/rigs.h"
 #include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/ground_matches.h"
+#include "support/rigs.h"
 
 namespace uav_landing {
 namespace {

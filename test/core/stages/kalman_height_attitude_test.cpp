@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/degree.h"
+#include "support/kalman_height_inputs.h"
+#include "support/rigs.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+
+namespace uav_landing {
+namespace {
+
+using test::angleAt;
+using test::kDegree;
+using test::kStep;
+using test::stereoAt;
+using test::usualRig;
+using test::withoutTurning;
+
+TEST(KalmanHeightAttitude, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDirection) {
+  const double pitch = -8 * kDegree, roll = 12 * kDegree, yaw = 3 * kDegree;
+  // R(runway <- body FLU) = Rz(yaw) Ry(-pitch) Rx(roll); optical axes are (-left, -up, forward) of the body.
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()))
+                                .toRotationMatrix();
+  Eigen::Matrix3d optical_from_body;
+  optical_from_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  const Eigen::Matrix3d optical_from_runway = optical_from_body * R.transpose();
+
+  StereoDepthResult stereo = stereoAt(0, 10);
+  stereo.plane.g = optical_from_runway * Eigen::Vector3d(0, 0, -1) / 10;
+  ApproachAngleResult approach = angleAt(0);
+  approach.vanishing_direction = optical_from_runway * Eigen::Vector3d(1, 0, 0);
+  approach.vanishing_covariance = std::pow(0.2 * kDegree, 2) * Eigen::Matrix3d::Identity();
+
+  KalmanHeightStage stage(usualRig(), {});
+  const LandingResult result = stage.process(stereo, approach);
+  EXPECT_NEAR(result.pitch, pitch, 1e-9);
+  EXPECT_NEAR(result.roll, roll, 1e-9);
+  EXPECT_NEAR(result.yaw, yaw, 1e-9);
+  EXPECT_NEAR(std::sqrt(result.yaw_variance), 0.2 * kDegree, 0.05 * kDegree);
+}
+
+TEST(KalmanHeightAttitude, CorrectsThePitchWithTheVanishingPointButNotWithTheFusedNormal) {
+  // Stereo that knows the pitch badly; the vanishing point says level, exactly.
+  StereoDepthResult stereo = stereoAt(0, 10, -0.02, 0);
+  stereo.plane.covariance = std::pow(0.002, 2) * Eigen::Matrix3d::Identity();
+  ApproachAngleResult approach = angleAt(0);
+  approach.n = Eigen::Vector3d(0.3, 0.9, 0.1).normalized();
+  approach.n_covariance = 1e-12 * Eigen::Matrix3d::Identity();
+
+  KalmanHeightStage without(usualRig(), {});
+  EXPECT_NEAR(without.process(stereo, approach).pitch, -0.02, 1e-9);
+
+  approach.vanishing_direction = Eigen::Vector3d::UnitZ();
+  approach.vanishing_covariance = 1e-12 * Eigen::Matrix3d::Identity();
+  KalmanHeightStage fused(usualRig(), {});
+  EXPECT_NEAR(fused.process(stereo, approach).pitch, 0, 1e-6);
+
+  KalmanHeightParameters parameters;
+  parameters.fuse_vanishing_point = false;
+  KalmanHeightStage off(usualRig(), parameters);
+  EXPECT_NEAR(off.process(stereo, approach).pitch, -0.02, 1e-9);
+}
+
+TEST(KalmanHeightAttitude, LeavesOutAVanishingPointThatContradictsThePlane) {
+  const StereoDepthResult stereo = stereoAt(0, 10, -0.1, 0, 0.001);
+  ApproachAngleResult approach = angleAt(0);
+  approach.vanishing_direction = Eigen::Vector3d::UnitZ();  // 0.1 rad off
+  approach.vanishing_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  KalmanHeightStage stage(usualRig(), {});
+  EXPECT_NEAR(stage.process(stereo, approach).pitch, -0.1, 1e-9);
+}
+
+/// The pairs of a second see the same texture.
+TEST(KalmanHeightAttitude, DoesNotClaimThatTheErrorsOfThePitchAverageOutAltogether) {
+  KalmanHeightStage stage(usualRig(), {});
+  std::vector<double> variances;
+  for (int i = 0; i < 40; ++i) {
+    ApproachAngleResult exactly = withoutTurning(i * kStep);
+    exactly.step.covariance *= 1e-4;
+    variances.push_back(stage.process(stereoAt(i * kStep, 10), exactly).pitch_variance);
+  }
+  EXPECT_LT(variances.back(), 0.6 * variances.front());
+  EXPECT_GT(variances.back(), variances.front() / 3);
+}
+
+TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBefore) {
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  LandingResult result;
+  for (; stamp < 1; stamp += kStep) result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
+  ASSERT_EQ(result.status, Status::kTracking);
+  const double roll = result.roll;
+  // The height alone would pass the gate; the roll of 4 degrees within one pair does not.
+  result = stage.process(stereoAt(stamp, 10.02, -0.1, 0.05 + 4 * kDegree), withoutTurning(stamp));
+  EXPECT_EQ(result.status, Status::kCoasting);
+  EXPECT_TRUE(result.rejected);
+  EXPECT_EQ(result.failure.reason, Reason::kRejected);
+  // 4 degrees about an axis that is pitched by 0.1 rad: 4 cos(0.1).
+  EXPECT_NE(result.failure.detail.find("tilted by 3.98"), std::string::npos) << result.failure.detail;
+  EXPECT_NEAR(result.raw_height, 10.02, 1e-9);
+  EXPECT_NEAR(result.roll, roll, 0.1 * kDegree);
+  stamp += kStep;
+  EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
+}
+
+}  // namespace
+}  // namespace uav_landing

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/degree.h"
+#include "support/kalman_height_inputs.h"
+#include "support/rigs.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+
+namespace uav_landing {
+namespace {
+
+using test::angleAt;
+using test::kDegree;
+using test::kStep;
+using test::noStereo;
+using test::settle;
+using test::stereoAt;
+using test::usualRig;
+
+TEST(KalmanHeightReconstruction, ReportsTheMeasurementAndKeepsTheModelErrorInTheVariance) {
+  KalmanHeightParameters parameters;
+  parameters.height_model_error = 0.002;
+  parameters.acceleration_stddev = 0.01;
+  KalmanHeightStage stage(usualRig(), parameters);
+  double stamp = settle(stage, 10, 300);
+  const LandingResult result = stage.process(stereoAt(stamp, 10, -0.1, 0.05, 0.01), angleAt(stamp));
+  EXPECT_NEAR(result.raw_height, 10, 1e-9);
+  EXPECT_NEAR(result.raw_height_variance, 0.01 * 0.01 + 0.02 * 0.02, 1e-7);
+  // However many pairs are averaged, the surface below differs from the plane ahead by 2 cm.
+  EXPECT_GT(result.height_variance, 0.02 * 0.02);
+  EXPECT_LT(result.height_variance, 1.5 * 0.02 * 0.02);
+}
+
+TEST(KalmanHeightReconstruction, DoesNotAverageAwayTheUnevennessOfTheSurface) {
+  KalmanHeightParameters parameters;
+  parameters.height_model_error = 0;
+  parameters.acceleration_stddev = 0.01;
+  KalmanHeightStage stage(usualRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 300; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, 10);
+    stereo.surface_variance = 0.03 * 0.03;
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  EXPECT_GT(result.height_variance, 0.03 * 0.03);
+  EXPECT_LT(result.height_variance, 1.5 * 0.03 * 0.03);
+}
+
+TEST(KalmanHeightReconstruction, IsHardlyLessCertainByASinglePairThatLeavesTheBendOpen) {
+  KalmanHeightStage stage(usualRig(), {});
+  LandingResult before, result;
+  for (int i = 0; i <= 60; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, 10);
+    stereo.below = stereo.plane;
+    // The height is 1 / g_y here, which is 0.1: 1 cm, and in the last pair 8 cm.
+    stereo.below.covariance(1, 1) += std::pow(1e-4 * (i < 60 ? 1 : 8), 2);
+    before = result;
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  EXPECT_GT(result.raw_height_variance, 0.07 * 0.07);
+  EXPECT_GT(before.height_variance, 0.01 * 0.01);
+  EXPECT_LT(result.height_variance, 0.25 * result.raw_height_variance);
+  EXPECT_TRUE(result.height_valid);
+}
+
+TEST(KalmanHeightReconstruction, AveragesThePointsOnRequest) {
+  const double h = 10, alpha = 0.1;
+  StereoDepthResult stereo = stereoAt(0, h, -alpha, 0);
+  for (double forward : {40.0, 60.0, 90.0}) {
+    const double depth = forward * std::cos(alpha) + h * std::sin(alpha);
+    const double below = h * std::cos(alpha) - forward * std::sin(alpha);
+    StereoDepthResult::Point point;
+    point.u = 320;
+    point.v = 240 + 500 * below / depth;
+    point.disparity = 500 * 1.0 / depth;
+    point.disparity_stddev = 0.1;
+    point.on_plane = true;
+    stereo.points.push_back(point);
+  }
+  KalmanHeightParameters parameters;
+  parameters.height_source = HeightSource::kPoints;
+  KalmanHeightStage by_pitch(usualRig(), parameters);
+  LandingResult result = by_pitch.process(stereo, angleAt(0));
+  EXPECT_NEAR(result.raw_height, h, 1e-9);
+  EXPECT_NEAR(result.points_height, h, 1e-9);
+
+  // To the letter: 5 degrees of approach angle in place of 0.1 rad of pitch.
+  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
+  KalmanHeightStage by_approach(usualRig(), parameters);
+  const double mean_forward = (40.0 + 60.0 + 90.0) / 3;
+  const double turn = 5 * kDegree - alpha;
+  result = by_approach.process(stereo, angleAt(0));
+  EXPECT_NEAR(result.raw_height, h * std::cos(turn) + mean_forward * std::sin(turn), 1e-9);
+
+  ApproachAngleResult unknown = angleAt(0);
+  unknown.failure = {Reason::kNoMotion, "standing still"};
+  unknown.window = unknown.step = {};
+  KalmanHeightStage without_angle(usualRig(), parameters);
+  result = without_angle.process(stereo, unknown);
+  EXPECT_EQ(result.status, Status::kSearching);
+  EXPECT_EQ(result.failure.message(), "no_motion: standing still");
+}
+
+/// Of a runway 45 m wide from this height.
+ApproachAngleResult runwayFrom(double stamp, double height) {
+  ApproachAngleResult approach = angleAt(stamp);
+  approach.runway.y = 0;
+  approach.runway.y_variance = 1e-6;
+  approach.runway.width = 45 / height;
+  approach.runway.width_variance = std::pow(0.001 * approach.runway.width, 2);
+  return approach;
+}
+
+TEST(KalmanHeightReconstruction, CarriesOnByTheRunwaysWidthWithoutStereo) {
+  for (const bool fuse : {true, false}) {
+    KalmanHeightParameters parameters;
+    parameters.fuse_width_height = fuse;
+    KalmanHeightStage stage(usualRig(), parameters);
+    double stamp = 0;
+    for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+    LandingResult result;
+    for (int i = 1; i <= 20; ++i, stamp += kStep)
+      result = stage.process(noStereo(stamp), runwayFrom(stamp, 20 - 0.1 * i));
+    EXPECT_NEAR(result.width_height, 18, 0.02);
+    EXPECT_EQ(result.height_valid, fuse);
+    if (!fuse) continue;
+    EXPECT_EQ(result.status, Status::kTracking);
+    EXPECT_NEAR(result.height, 18, 0.1);
+    // The learned width is no better than the heights that it was learned from.
+    EXPECT_GE(std::sqrt(result.height_variance), 0.9 * 0.01);
+  }
+}
+
+TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 30;
+  KalmanHeightStage stage(usualRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 20; ++i) result = stage.process(stereoAt(i * kStep, 20), runwayFrom(i * kStep, 20));
+  EXPECT_NEAR(result.width_height, 20 * 30.0 / 45, 1e-6);
+  EXPECT_NEAR(result.raw_height, 20, 1e-6);
+}
+
+TEST(KalmanHeightReconstruction, AKnownWidthThatAgreesImprovesTheHeight) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 45;
+  KalmanHeightStage stage(usualRig(), parameters);
+  const StereoDepthResult stereo = stereoAt(0, 20, -0.1, 0.05, 0.2);
+  const LandingResult alone = stage.process(stereo, angleAt(0));
+  const LandingResult both = stage.process(stereoAt(kStep, 20, -0.1, 0.05, 0.2), runwayFrom(kStep, 20.1));
+  EXPECT_GT(both.raw_height, alone.raw_height);
+  EXPECT_LT(both.raw_height_variance, 0.5 * alone.raw_height_variance);
+}
+
+}  // namespace
+}  // namespace uav_landing
