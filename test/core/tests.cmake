@@ -12,6 +12,9 @@ uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
 uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
 uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 
+# results
+uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
+
 # image
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
 uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
