@@ -211,34 +211,6 @@ bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least)
 
 }  // namespace
 
-StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
-  StereoLevel level;
-  level.rig = model.rig;
-  level.rig.size = cv::Size(model.rig.size.width / factor, model.rig.size.height / factor);
-  level.rig.fx /= factor;
-  level.rig.fy /= factor;
-  level.rig.cx = (model.rig.cx + 0.5) / factor - 0.5;
-  level.rig.cy = (model.rig.cy + 0.5) / factor - 0.5;
-  level.rig.cx_right = (model.rig.cx_right + 0.5) / factor - 0.5;
-  const auto reduce = [&](const cv::Mat& mask) {
-    cv::Mat reduced;
-    cv::resize(mask, reduced, level.rig.size, 0, 0, cv::INTER_AREA);
-    cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
-    return erodeMask(reduced, margin);
-  };
-  level.left_mask = reduce(model.left_mask);
-  level.right_mask = reduce(model.right_mask);
-  return level;
-}
-
-StereoLevel swapped(const StereoLevel& level) {
-  StereoLevel other = level;
-  std::swap(other.left, other.right);
-  std::swap(other.left_mask, other.right_mask);
-  std::swap(other.rig.cx, other.rig.cx_right);
-  return other;
-}
-
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters) {
   static thread_local ImageMemory memory;

@@ -1,0 +1,39 @@
+#include "uav_landing/stereo/stereo_level.h"
+
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "uav_landing/image/image_check.h"
+#include "uav_landing/image/match_image.h"
+
+namespace uav_landing {
+
+StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
+  StereoLevel level;
+  level.rig = model.rig;
+  level.rig.size = cv::Size(model.rig.size.width / factor, model.rig.size.height / factor);
+  level.rig.fx /= factor;
+  level.rig.fy /= factor;
+  level.rig.cx = toCoarse(model.rig.cx, factor);
+  level.rig.cy = toCoarse(model.rig.cy, factor);
+  level.rig.cx_right = toCoarse(model.rig.cx_right, factor);
+  const auto reduce = [&](const cv::Mat& mask) {
+    cv::Mat reduced;
+    cv::resize(mask, reduced, level.rig.size, 0, 0, cv::INTER_AREA);
+    cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
+    return erodeMask(reduced, margin);
+  };
+  level.left_mask = reduce(model.left_mask);
+  level.right_mask = reduce(model.right_mask);
+  return level;
+}
+
+StereoLevel swapped(const StereoLevel& level) {
+  StereoLevel other = level;
+  std::swap(other.left, other.right);
+  std::swap(other.left_mask, other.right_mask);
+  std::swap(other.rig.cx, other.rig.cx_right);
+  return other;
+}
+
+}  // namespace uav_landing
