@@ -43,6 +43,8 @@ uav_landing_add_gtest(reconstruction_test test/core/height/reconstruction_test.c
 uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
+uav_landing_add_gtest(block_disparities_test test/core/stereo/block_disparities_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp

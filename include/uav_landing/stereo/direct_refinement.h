@@ -3,6 +3,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "uav_landing/image/rectification.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/stereo/plane_fit.h"
 
@@ -12,11 +13,13 @@ namespace uav_landing {
 /// plane's homography (along the rows only, as the images are rectified), over the blocks of ground that have
 /// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
 /// projected out. A block's normal equations say by how much the plane's disparity is off there; the plane is
-/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight.
+/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight. Of
+/// images whose gradients are mostly noise the means of two by two pixels are aligned instead where they show
+/// more.
 class DirectRefinement {
  public:
-  /// Masks of the rectified images (mono8, 255 inside), eroded by at least two pixels.
-  DirectRefinement(const StereoRig& rig, const cv::Mat& left_mask, const cv::Mat& right_mask);
+  /// margin: pixels that stay away from the edges of the model's masks, at least 4.
+  DirectRefinement(const RigModel& model, int margin);
   ~DirectRefinement();
   DirectRefinement(DirectRefinement&&) noexcept;
 

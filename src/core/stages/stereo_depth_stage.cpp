@@ -59,7 +59,7 @@ struct StereoDepthStage::Implementation {
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
     coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
     if (p.direct_refinement) {
-      direct = std::make_unique<DirectRefinement>(rig.rig, fine.left_mask, fine.right_mask);
+      direct = std::make_unique<DirectRefinement>(rig, p.window_radius + 2);
     }
   }
 

@@ -7,24 +7,20 @@
 #include <string>
 
 #include "base/median.h"
-#include "stereo/photometric_blocks.h"
+#include "stereo/pair_disparities.h"
 #include "uav_landing/results/stage_results.h"
-#include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
 namespace {
 
-// Blocks compared: about 100 thousand pixels, which hold nearly all that a noisy image says.
-constexpr int kBlocks = 800;
 // Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them: a step leaves
 // about a tenth of itself.
-constexpr int kSteps = 5;
+constexpr int kSteps = 10;
 constexpr double kConverged = 0.01;
 // By how much disparities of the first plane may be off, pixels.
 constexpr double kStartStddev = 0.3;
-// The comparison is first order in the shift: farther than this (pixels) it means nothing.
-constexpr double kLargestShift = 1.5;
-
+// No error that blocks have in common is larger, pixels.
+constexpr double kLargestCommon = 1.5;
 // Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
 // where much of the picture stands on the ground, those that are on the plane by chance would have too much
 // to say.
@@ -57,7 +53,7 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
     missing.push_back(off * off - noise * noise);
   }
   const double common =
-      missing.empty() ? 0 : std::clamp(medianOf(missing), 0.0, kLargestShift * kLargestShift);
+      missing.empty() ? 0 : std::clamp(medianOf(missing), 0.0, kLargestCommon * kLargestCommon);
   for (DisparitySample& sample : samples)
     sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common);
 }
@@ -66,41 +62,23 @@ void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<Dispa
 
 struct DirectRefinement::Implementation {
   StereoRig rig;
-  PhotometricBlocks blocks;
-  std::vector<PhotometricBlocks::Match> matches;
-  std::vector<DisparitySample> samples;
-  std::vector<Eigen::RowVector3d> leaks;  // of each sample: its disparity's derivative by the rows' rotation
-  std::vector<int> blocks_behind;         // each sample
-  int informative = 0;                    // blocks that show anything
-  int agreeing = 0;                       // of them, look alike and are on the plane
+  PairDisparities disparities;
+  std::vector<DisparitySample> samples;  // of the disparities found, with true stddevs
+  int agreeing = 0;                      // blocks that look alike and are on the plane
 
-  Implementation(const StereoRig& r, const cv::Mat& left_mask, const cv::Mat& right_mask)
-      : rig(r), blocks(left_mask, right_mask) {}
+  Implementation(const RigModel& model, int margin) : rig(model.rig), disparities(model, margin) {}
 
-  // One disparity for each block, or several together, found with the right image warped by g.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const Eigen::Vector3d& rows) {
-    const ShiftModel shift(rig, g);
-    informative = blocks.compare(right, shift, matches);
-    const double density = 1 - shift.a;  // of right pixels over left ones
+  void takeSamples(const Eigen::Vector3d& g) {
     samples.clear();
-    leaks.clear();
-    blocks_behind.clear();
-    for (const PhotometricBlocks::Match& match : matches) {
-      if (!(std::abs(match.shift) < kLargestShift)) continue;
-      // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a
-      // place that has the error of the shift in it would pull the plane.
-      const double disparity = shift.at(match.u, match.v) + match.shift * density - rig.principalOffset();
-      const double column = match.u - shift.at(match.u, match.v);
-      leaks.push_back(-density * match.lean * verticalDisparityByRotation(rig, column, match.v));
-      samples.push_back({match.u, match.v, density * match.stddev, {disparity - leaks.back().dot(rows)}});
-      blocks_behind.push_back(match.blocks);
-    }
+    for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
+    calibrate(rig, g, samples);
   }
 
+  // Blocks and not samples: a share of them must not depend on how many speak together.
   int blocksOn(const PlaneFit& fit) const {
     int blocks = 0;
     for (size_t i = 0; i < samples.size(); ++i)
-      if (fit.agrees[i]) blocks += blocks_behind[i];
+      if (fit.agrees[i]) blocks += disparities.found()[i].blocks;
     return blocks;
   }
 
@@ -111,9 +89,18 @@ struct DirectRefinement::Implementation {
       if (!fit.agrees[i]) continue;
       const Eigen::Vector3d by_plane = rig.fb() * rig.ray(samples[i].u, samples[i].v) / samples[i].stddev;
       information += by_plane * by_plane.transpose();
-      right += by_plane * leaks[i] / samples[i].stddev;
+      right += by_plane * disparities.found()[i].leak / samples[i].stddev;
     }
     return information.inverse() * right;
+  }
+
+  Failure tooFew(int least) const {
+    return {Reason::kTooFewMatches, std::to_string(disparities.found().size()) + " blocks match, at least " +
+                                        std::to_string(least) + " needed"};
+  }
+  Failure tooFewOnThePlane() const {
+    return {Reason::kNoPlane, std::to_string(agreeing) + " of " + std::to_string(disparities.informative()) +
+                                  " blocks are on the plane: too few to tell which are ground"};
   }
 
   // Largest change of disparity at the bottom of the image, where disparities are largest.
@@ -124,8 +111,8 @@ struct DirectRefinement::Implementation {
   }
 };
 
-DirectRefinement::DirectRefinement(const StereoRig& rig, const cv::Mat& left_mask, const cv::Mat& right_mask)
-    : implementation_(std::make_unique<Implementation>(rig, left_mask, right_mask)) {}
+DirectRefinement::DirectRefinement(const RigModel& model, int margin)
+    : implementation_(std::make_unique<Implementation>(model, margin)) {}
 DirectRefinement::~DirectRefinement() = default;
 DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
 
@@ -133,29 +120,23 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
                                             const Eigen::Vector3d& start, const PlaneLimits& limits,
                                             double bias_stddev, const RigRotation& rows) {
   Implementation& own = *implementation_;
-  own.blocks.choose(left, own.rig, ShiftModel(own.rig, start), kBlocks);
-  Eigen::Vector3d g = start;
+  own.disparities.begin(left, right, start, rows);
   own.agreeing = 0;
+  Eigen::Vector3d g = start;
   for (int step = 0;; ++step) {
-    own.measure(right, g, rows.w);
-    if (static_cast<int>(own.samples.size()) < limits.min_points) {
-      return tl::make_unexpected(
-          Failure{Reason::kTooFewMatches, std::to_string(own.samples.size()) + " blocks match, at least " +
-                                              std::to_string(limits.min_points) + " needed"});
-    }
-    calibrate(own.rig, g, own.samples);
+    if (step > 0) own.disparities.measure(right, g, rows);
+    if (static_cast<int>(own.disparities.found().size()) < limits.min_points)
+      return tl::make_unexpected(own.tooFew(limits.min_points));
+    own.takeSamples(g);
     if (step == 0) {
       for (DisparitySample& sample : own.samples)
         sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
     }
     Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
     own.agreeing = fit ? own.blocksOn(*fit) : 0;
-    if (fit && own.agreeing < kLeastShare * own.informative) {
-      return tl::make_unexpected(
-          Failure{Reason::kNoPlane, std::to_string(own.agreeing) + " of " + std::to_string(own.informative) +
-                                        " blocks are on the plane: too few to tell which are ground"});
-    }
     if (!fit) return fit;
+    if (own.agreeing < kLeastShare * own.disparities.informative())
+      return tl::make_unexpected(own.tooFewOnThePlane());
     if (step + 1 == kSteps || (step > 0 && own.change(g, fit->plane.g) < kConverged)) {
       const Eigen::Matrix3d by_rows = own.planeByRows(*fit);
       fit->row_covariance = by_rows * rows.covariance * by_rows.transpose();
@@ -169,7 +150,8 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
 double DirectRefinement::agreement() const {
   constexpr int kFewest = 20;
   const Implementation& own = *implementation_;
-  return own.informative < kFewest ? kUnknown : static_cast<double>(own.agreeing) / own.informative;
+  const int informative = own.disparities.informative();
+  return informative < kFewest ? kUnknown : static_cast<double>(own.agreeing) / informative;
 }
 
 const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }

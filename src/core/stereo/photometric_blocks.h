@@ -32,9 +32,8 @@ class PhotometricBlocks {
 
   using Match = ShiftMatch;
   /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Blocks
-  /// with hardly more than noise are taken together with others in their row. Returns how many blocks show
-  /// more than noise; matches are those of them that look like their places.
-  int compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches);
+  /// with hardly more than noise are taken together with others in their row.
+  void compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches);
 
  private:
   struct Candidate {

@@ -128,12 +128,12 @@ bool PhotometricBlocks::looksAlike(const Products& products, const Photometry& p
   return alike >= kLeastCorrelation * (alike + other);
 }
 
-int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches) {
+void PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches) {
   matches.clear();
   multiply(right, shift);
-  if (products_.empty()) return 0;
+  if (products_.empty()) return;
   const std::optional<Photometry> common_to_all = photometry();
-  if (!common_to_all) return 0;
+  if (!common_to_all) return;
   ShiftMatching matching(common_to_all->gain, kTogether * kWidth, matches);
   for (const Products& products : products_) {
     const std::optional<ShiftEvidence> evidence = evidenceOf(products, *common_to_all);
@@ -141,7 +141,7 @@ int PhotometricBlocks::compare(const cv::Mat& right, const ShiftModel& shift, st
     const bool alike = looksAlike(products, *common_to_all, evidence->score_variance / evidence->energy);
     matching.add(*evidence, alike, products.block->u, products.block->v);
   }
-  return matching.finish();
+  matching.finish();
 }
 
 }  // namespace uav_landing

@@ -19,10 +19,7 @@ void ShiftMatching::add(const ShiftEvidence& evidence, bool alike, int u, int v)
   if (weak_[alike].isCertain()) tellWeak(alike);
 }
 
-int ShiftMatching::finish() {
-  endSection();
-  return informative_;
-}
+void ShiftMatching::finish() { endSection(); }
 
 void ShiftMatching::endSection() {
   for (const bool alike : {false, true}) tellWeak(alike);
@@ -36,13 +33,10 @@ void ShiftMatching::tellWeak(bool alike) {
 void ShiftMatching::tell(const ShiftEvidence& evidence, bool alike) {
   const double signal = evidence.likelySignal();
   if (!(signal >= kLeastShare * evidence.energy)) return;
-  // Blocks and not sums: a share of them must not depend on how many were added up.
-  informative_ += evidence.blocks;
-  if (!alike) return;
   const double response = gain_ * signal;
   matches_.push_back({evidence.moment_u / evidence.energy, evidence.moment_v / evidence.energy,
                       evidence.score / response, std::sqrt(evidence.score_variance) / response,
-                      evidence.down / signal, evidence.blocks});
+                      evidence.down / signal, evidence.blocks, evidence.isCertain(), alike});
 }
 
 }  // namespace uav_landing

@@ -8,13 +8,16 @@
 
 namespace uav_landing {
 
-/// What a block, or several together, say of the shift between left image and warped right one.
+/// What a block that shows more than noise, or several together, say of the shift between left image and
+/// warped right one.
 struct ShiftMatch {
   double u, v;    ///< where in the left image the gradients are, pixels
   double shift;   ///< left pixels by which the left image is to be shifted to fit the warped right one
   double stddev;  ///< of it if the residuals of the pixels are independent, pixels
   double lean;    ///< by how much the shift grows where the right image lies a pixel higher: slanted edges
   int blocks;     ///< that say so
+  bool certain;   ///< whether their signal is beyond doubt
+  bool alike;     ///< whether the right image shows them: of others the shift means nothing
 };
 
 /// Makes matches of what the blocks tell. Weak ones of a section of a row speak together, until they are
@@ -28,8 +31,8 @@ class ShiftMatching {
 
   /// Blocks come row by row. alike: whether the right image shows the block whose first pixel is (u, v).
   void add(const ShiftEvidence& evidence, bool alike, int u, int v);
-  /// After the last block: how many show more than noise.
-  int finish();
+  /// After the last block.
+  void finish();
 
  private:
   using Section = std::pair<int, int>;
@@ -40,7 +43,6 @@ class ShiftMatching {
   double gain_;
   int width_;
   std::vector<ShiftMatch>& matches_;
-  int informative_ = 0;
   Section section_{};
   std::array<ShiftEvidence, 2> weak_;  // of those that do not look alike, and of those that do
 };

@@ -50,8 +50,7 @@ struct Scene {
     return truth * (1 + share) + Eigen::Vector3d(0, 0, pixels / rig.fb());
   }
   Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
-    return DirectRefinement(rig, model.left_mask, model.right_mask)
-        .refine(left, right, start, makeLimits(), 0, rows);
+    return DirectRefinement(model, 4).refine(left, right, start, makeLimits(), 0, rows);
   }
   /// Largest error of the disparity over the ground's part of the image, pixels.
   double error(const Eigen::Vector3d& g) const {
@@ -139,6 +138,27 @@ TEST(DirectRefinement, UsesFaintTextureEverywhere) {
     squares += std::pow(scene.error(fit->plane.g), 2);
   }
   EXPECT_LT(std::sqrt(squares / kPairs), 0.135) << "px";
+}
+
+/// Coarse texture close below in much noise: gradients of the whole images are hardly more than that.
+TEST(DirectRefinement, SeesCoarseTextureThroughMuchNoise) {
+  constexpr int kPairs = 24;
+  double squares = 0, normalised = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    Scene scene;
+    scene.ground = GroundRenderer(400 + i);
+    scene.ground.grain = 0.04;
+    scene.pose = makePose(1.2, -8, 3);
+    scene.truth = scene.pose.down() / scene.pose.height();
+    scene.render({0.3, 80, 8}, {0.3, 80, 8});
+    const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
+    ASSERT_TRUE(fit) << fit.error().message();
+    const double error = fit->plane.height() - scene.pose.height();
+    squares += error * error;
+    normalised += error * error / fit->plane.heightVariance();
+  }
+  EXPECT_LT(std::sqrt(squares / kPairs), 0.005) << "m";
+  EXPECT_LT(normalised / kPairs, 1 + test::chiSquareMeanTolerance(kPairs, 1));
 }
 
 TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {

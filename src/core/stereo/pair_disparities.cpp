@@ -1,0 +1,83 @@
+#include "stereo/pair_disparities.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace uav_landing {
+namespace {
+
+// Along each side, the pixels whose mean is one of the halved images.
+constexpr int kHalved = 2;
+// Nothing is halved where this share of the blocks is beyond doubt.
+constexpr double kMostlyCertain = 0.5;
+// Rows that are looked at in one resolution: enough for their blocks to tell which.
+constexpr int kBand = 32;
+
+// Where noise was independent it stays so.
+void halveImage(const cv::Mat& image, cv::Mat& halved) {
+  const cv::Size size(image.cols / kHalved, image.rows / kHalved);
+  cv::resize(image(cv::Rect(cv::Point(), size * kHalved)), halved, size, 0, 0, cv::INTER_AREA);
+}
+
+int bandOf(const BlockDisparity& disparity) { return static_cast<int>(disparity.sample.v) / kBand; }
+
+}  // namespace
+
+PairDisparities::PairDisparities(const RigModel& model, int margin)
+    : whole_(reduceLevel(model, 1, margin), 1),
+      halved_(reduceLevel(model, kHalved, margin / kHalved), kHalved),
+      is_halved_(model.rig.size.height / kBand + 1) {}
+
+void PairDisparities::halve(const cv::Mat& left, const cv::Mat& right) {
+  halveImage(left, halved_left_);
+  halveImage(right, halved_right_);
+}
+
+void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
+                            const RigRotation& rows) {
+  whole_.choose(left, g);
+  whole_.measure(right, g, rows);
+  any_halved_ = whole_.certainShare() < kMostlyCertain;
+  if (any_halved_) {
+    halve(left, right);
+    halved_.choose(halved_left_, g);
+    halved_.measure(halved_right_, g, rows);
+    whole_.measureResponse(right, g, rows);
+    halved_.measureResponse(halved_right_, g, rows);
+    chooseResolutions();
+  }
+  collect();
+}
+
+void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
+  whole_.measure(right, g, rows);
+  if (any_halved_) halved_.measure(halved_right_, g, rows);
+  collect();
+}
+
+void PairDisparities::chooseResolutions() {
+  std::vector<double> gains(is_halved_.size(), 0);  // of information by halving, 1/pixels^2
+  const auto add = [&](const BlockDisparities& part, double sign) {
+    for (const BlockDisparity& disparity : part.disparities())
+      if (disparity.alike) gains[bandOf(disparity)] += sign / std::pow(disparity.sample.stddev, 2);
+  };
+  add(halved_, 1);
+  add(whole_, -1);
+  for (size_t i = 0; i < gains.size(); ++i) is_halved_[i] = gains[i] > 0;
+}
+
+void PairDisparities::collect() {
+  found_.clear();
+  informative_ = 0;
+  const auto add = [&](const BlockDisparities& part, bool are_halved) {
+    for (const BlockDisparity& disparity : part.disparities()) {
+      if (any_halved_ && is_halved_[bandOf(disparity)] != are_halved) continue;
+      informative_ += disparity.blocks;
+      if (disparity.alike) found_.push_back(disparity);
+    }
+  };
+  add(whole_, false);
+  if (any_halved_) add(halved_, true);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,109 @@
+#include "stereo/block_disparities.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::Exposure;
+using test::GroundRenderer;
+using test::makePose;
+using test::Pose;
+
+/// A rig over textured ground and the blocks of its images, reduced by a factor.
+class Blocks {
+ public:
+  Blocks(int factor, double height, const Exposure& exposure, unsigned seed = 5)
+      : pose_(makePose(height, -8, 3)),
+        disparities(reduceLevel(model_, factor, 4), factor),
+        truth(pose_.down() / pose_.height()),
+        left(reduced(GroundRenderer(seed).left(rig, pose_, exposure), factor)),
+        right(reduced(GroundRenderer(seed).right(rig, pose_, exposure), factor)) {
+    disparities.choose(left, truth);
+  }
+
+  /// The true plane with its disparities off by some pixels of the whole images.
+  Eigen::Vector3d off(double pixels) const { return truth + Eigen::Vector3d(0, 0, pixels / rig.fb()); }
+  /// Weighted mean of the disparities' errors, pixels, and its stddev as they claim it.
+  double meanError(double* stddev = nullptr) const {
+    double sum = 0, weights = 0;
+    for (const BlockDisparity& found : disparities.disparities()) {
+      if (!found.alike) continue;
+      const DisparitySample& sample = found.sample;
+      const double weight = 1 / (sample.stddev * sample.stddev);
+      sum += weight * (sample.disparity - rig.fb() * truth.dot(rig.ray(sample.u, sample.v)));
+      weights += weight;
+    }
+    if (stddev != nullptr) *stddev = 1 / std::sqrt(weights);
+    return sum / weights;
+  }
+
+  StereoRig rig = test::makeRig(320, 240, 0.65);
+  RigRotation rows = levelRows();
+
+ private:
+  static RigRotation levelRows() {
+    RigRotation rows;
+    rows.w.setZero();
+    rows.covariance.setZero();
+    return rows;
+  }
+  static cv::Mat reduced(const cv::Mat& image, int factor) {
+    cv::Mat small;
+    cv::resize(image, small, image.size() / factor, 0, 0, cv::INTER_AREA);
+    return small;
+  }
+  RigModel model_ = test::makeModel(rig);
+  Pose pose_;
+
+ public:
+  BlockDisparities disparities;
+  Eigen::Vector3d truth;
+  cv::Mat left, right;
+};
+
+TEST(BlockDisparities, AreInPixelsOfTheWholeImagesAtEveryFactor) {
+  for (const int factor : {1, 2, 4}) {
+    Blocks blocks(factor, 4, {1, 0, 1});
+    blocks.disparities.measure(blocks.right, blocks.off(0.3), blocks.rows);
+    EXPECT_NEAR(blocks.meanError(), 0, 0.03) << factor << ", of 0.3 px that the warp is off";
+    int lowest = 0;
+    for (const BlockDisparity& found : blocks.disparities.disparities())
+      lowest = std::max(lowest, static_cast<int>(found.sample.v));
+    EXPECT_GT(lowest, 190) << factor;
+  }
+}
+
+TEST(BlockDisparities, AreBeyondDoubtInClearImages) {
+  Blocks clear(1, 4, {1, 0, 1}), faint(1, 4, {0.15, 90, 6});
+  for (Blocks* blocks : {&clear, &faint})
+    blocks->disparities.measure(blocks->right, blocks->truth, blocks->rows);
+  EXPECT_GT(clear.disparities.certainShare(), 0.95);
+  EXPECT_LT(faint.disparities.certainShare(), 0.3);
+}
+
+/// Noise makes a block's gradients larger than what a shift shows of them.
+TEST(BlockDisparities, FollowAShiftMoreFullyOnceTheirResponseIsMeasured) {
+  constexpr int kPairs = 12;
+  constexpr double kOff = 0.4;  // pixels
+  double before = 0, after = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    for (const double side : {-1.0, 1.0}) {
+      Blocks blocks(1, 1.5, {0.25, 80, 8}, 300 + i);
+      blocks.disparities.measure(blocks.right, blocks.off(side * kOff), blocks.rows);
+      before += side * blocks.meanError() / (2 * kPairs);
+      blocks.disparities.measureResponse(blocks.right, blocks.off(side * kOff), blocks.rows);
+      after += side * blocks.meanError() / (2 * kPairs);
+    }
+  }
+  EXPECT_GT(before, 0.25 * kOff) << "these images have gradients that show the shift";
+  EXPECT_LT(std::abs(after), 0.5 * before);
+}
+
+}  // namespace
+}  // namespace uav_landing
