@@ -72,7 +72,8 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
   covariance.setConstant(kUnknown);
 }
 
-/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same.
+/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same, an angle is
+/// not.
 void keepMotion(ApproachAngleResult::Motion& motion) {
   const bool measured = !motion.failure || motion.failure.reason == Reason::kNoMotion;
   const bool possible =
@@ -85,7 +86,7 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
     motion.translation_over_height.setConstant(kUnknown);
     motion.covariance.setConstant(kUnknown);
   }
-  if (!within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
+  if (motion.failure || !within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
     motion.angle = motion.angle_variance = kUnknown;
 }
 

@@ -16,10 +16,12 @@ Motion possibleMotion() {
   motion.rotation = {0.01, -0.02, 0.03};
   motion.translation_over_height = {0, 0.02, 0.2};
   motion.covariance = 1e-6 * Matrix6d::Identity();
+  motion.angle = 0.1;
+  motion.angle_variance = 1e-4;
   return motion;
 }
 
-void expectKept(const Motion& kept) {
+void expectMovementKept(const Motion& kept) {
   const Motion given = possibleMotion();
   EXPECT_EQ(kept.duration, given.duration);
   EXPECT_EQ(kept.rotation, given.rotation);
@@ -27,11 +29,23 @@ void expectKept(const Motion& kept) {
   EXPECT_EQ(kept.covariance, given.covariance);
 }
 
+void expectNoAngle(const Motion& kept) {
+  EXPECT_TRUE(std::isnan(kept.angle));
+  EXPECT_TRUE(std::isnan(kept.angle_variance));
+}
+
+void expectKept(const Motion& kept) {
+  expectMovementKept(kept);
+  EXPECT_EQ(kept.angle, possibleMotion().angle);
+  EXPECT_EQ(kept.angle_variance, possibleMotion().angle_variance);
+}
+
 void expectUnknown(const Motion& kept) {
   EXPECT_TRUE(std::isnan(kept.duration));
   EXPECT_TRUE(kept.rotation.array().isNaN().all());
   EXPECT_TRUE(kept.translation_over_height.array().isNaN().all());
   EXPECT_TRUE(kept.covariance.array().isNaN().all());
+  expectNoAngle(kept);
 }
 
 /// Both motions with the same numbers.
@@ -66,11 +80,13 @@ TEST(ResultCheck, AMotionThatFailedLosesEachOfItsNumbersButNotItsReason) {
 }
 
 // The turn of a camera that hovers is measured all the same.
-TEST(ResultCheck, AMotionTooSmallForADirectionKeepsItsNumbers) {
+TEST(ResultCheck, AMotionTooSmallForADirectionKeepsItsNumbersButNoAngle) {
   const Failure failure{Reason::kNoMotion, "standing still"};
   const ApproachAngleResult kept = checkedWith(failure, failure);
-  expectKept(kept.step);
-  expectKept(kept.window);
+  for (const Motion& motion : {kept.step, kept.window}) {
+    expectMovementKept(motion);
+    expectNoAngle(motion);
+  }
 }
 
 }  // namespace

@@ -164,6 +164,7 @@ TEST(KalmanHeightStage, IsNotValidWhenTheHeightIsUncertain) {
 TEST(KalmanHeightStage, PublishesTheWindowsAngleAndTheStepsAsRaw) {
   KalmanHeightStage stage(usualRig(), {});
   ApproachAngleResult approach = angleAt(0);
+  approach.step.failure = {};
   LandingResult result = stage.process(stereoAt(0, 10), approach);
   EXPECT_NEAR(result.approach_angle, 5 * kDegree, 1e-12);
   EXPECT_NEAR(result.raw_approach_angle, 5.2 * kDegree, 1e-12);
