@@ -72,8 +72,8 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
   covariance.setConstant(kUnknown);
 }
 
-/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same, an angle is
-/// not.
+/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same, an angle
+/// is not.
 void keepMotion(ApproachAngleResult::Motion& motion) {
   const bool measured = !motion.failure || motion.failure.reason == Reason::kNoMotion;
   const bool possible =
