@@ -15,7 +15,8 @@ namespace uav_landing {
 StereoDepthResult checked(const StereoRig& rig, const StereoDepthResult& result);
 
 /// Directions, normals, motions, angles and positions without a value that can be, or without a covariance,
-/// become unknown; those of the runway get a failure.
+/// become unknown; those of the runway get a failure. So do all numbers of a motion that failed, but for the
+/// turn of a camera that hardly moves.
 ApproachAngleResult checked(const ApproachAngleResult& result);
 
 }  // namespace uav_landing

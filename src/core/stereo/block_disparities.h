@@ -30,9 +30,9 @@ class BlockDisparities {
   /// Compares them with the reduced right image (mono8) warped by the plane g. rows: rotation that the
   /// vertical disparities of the images have.
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
-  /// Measures how much of a shift those blocks show whose signal is not beyond doubt, for this measurement,
-  /// near the plane g, and those after it. Noise makes gradients that show nothing of it: these blocks would
-  /// have too much to say.
+  /// After that, with the same arguments: measures how much of a shift those blocks show whose signal is not
+  /// beyond doubt, for this and later measurements. Noise makes gradients that show nothing of it: these
+  /// blocks would have too much to say. Where they do not clearly show it they say nothing.
   void measureResponse(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
 
   /// Of the last measurement.
@@ -40,8 +40,9 @@ class BlockDisparities {
   /// Share of their blocks that do so beyond doubt, each alone or a few together.
   double certainShare() const;
 
- public:
-  double meanUncertainShift() const;
+ private:
+  void convert(const ShiftModel& shift, const RigRotation& rows);
+  double responseAround(const cv::Mat& right, const Eigen::Vector3d& g);
   /// At a place of the reduced images, pixels of which stddev and disparity are.
   DisparitySample inWholeImages(double u, double v, double stddev, double disparity) const;
 

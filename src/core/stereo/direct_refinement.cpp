@@ -137,10 +137,13 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     if (!fit) return fit;
     if (own.agreeing < kLeastShare * own.disparities.informative())
       return tl::make_unexpected(own.tooFewOnThePlane());
-    if (step + 1 == kSteps || (step > 0 && own.change(g, fit->plane.g) < kConverged)) {
+    const double change = own.change(g, fit->plane.g);
+    if (step + 1 == kSteps || (step > 0 && change < kConverged)) {
       const Eigen::Matrix3d by_rows = own.planeByRows(*fit);
       fit->row_covariance = by_rows * rows.covariance * by_rows.transpose();
       fit->plane.covariance += fit->row_covariance;
+      // What has not settled is known no better than it moves.
+      if (change > kConverged) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
     }
     g = fit->plane.g;

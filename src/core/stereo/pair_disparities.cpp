@@ -24,34 +24,35 @@ int bandOf(const BlockDisparity& disparity) { return static_cast<int>(disparity.
 }  // namespace
 
 PairDisparities::PairDisparities(const RigModel& model, int margin)
-    : whole_(reduceLevel(model, 1, margin), 1),
-      halved_(reduceLevel(model, kHalved, margin / kHalved), kHalved),
-      is_halved_(model.rig.size.height / kBand + 1) {}
-
-void PairDisparities::halve(const cv::Mat& left, const cv::Mat& right) {
-  halveImage(left, halved_left_);
-  halveImage(right, halved_right_);
+    : whole_(reduceLevel(model, 1, margin), 1), is_halved_(model.rig.size.height / kBand + 1) {
+  const cv::Size size = model.rig.size / kHalved;
+  if (size.width < PhotometricBlocks::kWidth || size.height < PhotometricBlocks::kHeight) return;
+  halved_.emplace(reduceLevel(model, kHalved, margin / kHalved), kHalved);
 }
 
 void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
                             const RigRotation& rows) {
   whole_.choose(left, g);
   whole_.measure(right, g, rows);
-  any_halved_ = whole_.certainShare() < kMostlyCertain;
-  if (any_halved_) {
-    halve(left, right);
-    halved_.choose(halved_left_, g);
-    halved_.measure(halved_right_, g, rows);
-    whole_.measureResponse(right, g, rows);
-    halved_.measureResponse(halved_right_, g, rows);
-    chooseResolutions();
-  }
+  any_halved_ = halved_ && whole_.certainShare() < kMostlyCertain;
+  if (any_halved_) lookAtHalved(left, right, g, rows);
   collect();
+}
+
+void PairDisparities::lookAtHalved(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
+                                   const RigRotation& rows) {
+  halveImage(left, halved_left_);
+  halveImage(right, halved_right_);
+  halved_->choose(halved_left_, g);
+  halved_->measure(halved_right_, g, rows);
+  whole_.measureResponse(right, g, rows);
+  halved_->measureResponse(halved_right_, g, rows);
+  chooseResolutions();
 }
 
 void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
   whole_.measure(right, g, rows);
-  if (any_halved_) halved_.measure(halved_right_, g, rows);
+  if (any_halved_) halved_->measure(halved_right_, g, rows);
   collect();
 }
 
@@ -61,7 +62,7 @@ void PairDisparities::chooseResolutions() {
     for (const BlockDisparity& disparity : part.disparities())
       if (disparity.alike) gains[bandOf(disparity)] += sign / std::pow(disparity.sample.stddev, 2);
   };
-  add(halved_, 1);
+  add(*halved_, 1);
   add(whole_, -1);
   for (size_t i = 0; i < gains.size(); ++i) is_halved_[i] = gains[i] > 0;
 }
@@ -77,7 +78,7 @@ void PairDisparities::collect() {
     }
   };
   add(whole_, false);
-  if (any_halved_) add(halved_, true);
+  if (any_halved_) add(*halved_, true);
 }
 
 }  // namespace uav_landing

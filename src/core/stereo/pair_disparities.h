@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "stereo/block_disparities.h"
@@ -26,11 +27,13 @@ class PairDisparities {
   int informative() const { return informative_; }
 
  private:
-  void halve(const cv::Mat& left, const cv::Mat& right);
+  void lookAtHalved(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
+                    const RigRotation& rows);
   void chooseResolutions();
   void collect();
 
-  BlockDisparities whole_, halved_;
+  BlockDisparities whole_;
+  std::optional<BlockDisparities> halved_;  // none where a halved image would not hold a block
   cv::Mat halved_left_, halved_right_;
   bool any_halved_ = false;
   std::vector<char> is_halved_;  // for each band of rows, 1 if its halved images are looked at

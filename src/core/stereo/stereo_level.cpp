@@ -19,7 +19,8 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   level.rig.cx_right = toCoarse(model.rig.cx_right, factor);
   const auto reduce = [&](const cv::Mat& mask) {
     cv::Mat reduced;
-    cv::resize(mask, reduced, level.rig.size, 0, 0, cv::INTER_AREA);
+    const cv::Rect seen(cv::Point(), level.rig.size * factor);  // what is left over is in no mean
+    cv::resize(mask(seen), reduced, level.rig.size, 0, 0, cv::INTER_AREA);
     cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
     return erodeMask(reduced, margin);
   };

@@ -4,14 +4,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <opencv2/imgproc.hpp>
 
 #include "base/image_memory.h"
 #include "base/thinned.h"
 #include "stereo/shift_model.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/image/corners.h"
-#include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/row_matching.h"
 

@@ -161,6 +161,43 @@ TEST(DirectRefinement, SeesCoarseTextureThroughMuchNoise) {
   EXPECT_LT(normalised / kPairs, 1 + test::chiSquareMeanTolerance(kPairs, 1));
 }
 
+TEST(DirectRefinement, FindsTheSameInAPairWhateverCameBefore) {
+  Scene clear, faint;
+  clear.render();
+  faint.render({0.25, 80, 5}, {0.25, 80, 5});
+  DirectRefinement refinement(clear.model, 4);
+  for (const Scene* scene : {&faint, &clear, &faint, &clear}) {
+    const Eigen::Vector3d start = scene->off(0.2, 0);
+    const Expected<PlaneFit> fit =
+        refinement.refine(scene->left, scene->right, start, makeLimits(), 0, scene->rows);
+    const Expected<PlaneFit> alone = scene->refine(start);
+    ASSERT_TRUE(fit && alone);
+    EXPECT_EQ(fit->plane.g, alone->plane.g);
+    EXPECT_EQ(fit->plane.covariance, alone->plane.covariance);
+    EXPECT_GT(refinement.agreement(), 0.8);
+  }
+}
+
+TEST(DirectRefinement, TakesFaintImagesOfOddSize) {
+  Scene scene;
+  scene.rig.size = cv::Size(319, 239);
+  scene.model = test::makeModel(scene.rig);
+  scene.render({0.25, 80, 5}, {0.25, 80, 5});
+  const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
+  ASSERT_TRUE(fit) << fit.error().message();
+  EXPECT_LT(scene.error(fit->plane.g), 0.4);
+}
+
+TEST(DirectRefinement, RefusesImagesTooSmallForABlock) {
+  Scene scene;
+  scene.rig.size = cv::Size(20, 1);
+  scene.model = test::makeModel(scene.rig);
+  scene.render();
+  const Expected<PlaneFit> fit = scene.refine(scene.truth);
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().reason, Reason::kTooFewMatches);
+}
+
 TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {
   Scene scene;
   scene.ground.line_offset = 1;
