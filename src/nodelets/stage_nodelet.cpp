@@ -7,12 +7,19 @@ namespace {
 
 constexpr double kRepeatAfter = 60;  // s: the same complaint again
 
+// Held by the nodelet that advertises or subscribes. While one thread subscribes a topic, and waits for the
+// master's answer, another one may advertise it: roscpp then links the two in both calls, as neither looks
+// for a link that is there (TopicManager), and every message comes twice. Taken after a nodelet's own mutex.
+// Never while callbacks are waited for, so unsubscribe() goes without.
+std::mutex topics_mutex;
+
 }  // namespace
 
 void StageNodelet::onInit() {
   {
     // Subscribers may connect while the publishers are still being created.
     const std::lock_guard<std::mutex> lock(subscription_mutex_);
+    const std::lock_guard<std::mutex> alone(topics_mutex);
     setUp();
   }
   updater_ =
@@ -59,10 +66,12 @@ void StageNodelet::updateSubscription() {
   if (stopped_) return;
   const bool want = wanted();
   if (want == subscribed_) return;
-  if (want)
+  if (want) {
+    const std::lock_guard<std::mutex> alone(topics_mutex);
     subscribe();
-  else
+  } else {
     unsubscribe();
+  }
   subscribed_ = want;
 }
 

@@ -30,13 +30,14 @@ constexpr uint32_t kStageQueue = 20;
 
 /// What all nodelets of the chain share: parameters are checked before anything is subscribed; inputs are
 /// subscribed while somebody wants the output; a missing input is named in the log; diagnostics; no exception
-/// leaves a callback.
+/// leaves a callback; topics between nodelets of one process are linked once.
 class StageNodelet : public nodelet::Nodelet {
  protected:
   /// section: of the parameters, and the name in diagnostics.
   explicit StageNodelet(const char* section) : section_(section) {}
 
-  /// Loads the parameters, creates what needs them, advertises with onConnection().
+  /// Loads the parameters, creates what needs them, advertises with onConnection(). In a process only one
+  /// nodelet at a time is in here or in subscribe(), so neither may wait for callbacks or other nodelets.
   virtual void setUp() = 0;
   /// Somebody wants the output.
   virtual bool wanted() const = 0;
