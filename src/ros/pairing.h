@@ -6,6 +6,7 @@
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
 
+#include <boost/weak_ptr.hpp>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -21,8 +22,9 @@ namespace uav_landing {
 
 /// Finds the messages that belong together by their stamps (header.stamp), with message_filters. Fed by plain
 /// calls, so it serves subscriptions and bags alike. Repeated and late stamps are dropped; one that goes back
-/// farther clears everything that waits (StampOrder). Thread safe; the callback runs in the thread of the
-/// add() that completed the set, without the lock.
+/// farther clears everything that waits (StampOrder). The same message object twice counts once: roscpp may
+/// have linked a publisher in this process twice, if it is somebody else's (see stage_nodelet.cpp). Thread
+/// safe; the callback runs in the thread of the add() that completed the set, without the lock.
 template <class... Messages>
 class Pairing {
  public:
@@ -44,6 +46,7 @@ class Pairing {
     std::vector<Set> complete;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
+      if (cameTwice(message, std::get<kInput>(before_))) return;
       const ros::Time& stamp = message->header.stamp;
       const InputWatch::Arrival arrival = watch_.arrived(kInput, stamp);
       if (arrival == InputWatch::Arrival::kRepeated || arrival == InputWatch::Arrival::kLate) return;
@@ -65,6 +68,7 @@ class Pairing {
   void reset() {
     const std::lock_guard<std::mutex> lock(mutex_);
     watch_.forget();
+    before_ = {};
     rebuild();
   }
 
@@ -87,6 +91,18 @@ class Pairing {
   using Set = std::tuple<boost::shared_ptr<const Messages>...>;
   using ExactPolicy = message_filters::sync_policies::ExactTime<Messages...>;
   using ApproximatePolicy = message_filters::sync_policies::ApproximateTime<Messages...>;
+
+  /// The very message before, for the second time; a third one is somebody who sends it again.
+  template <class Message>
+  static bool cameTwice(const boost::shared_ptr<const Message>& message,
+                        boost::weak_ptr<const Message>& before) {
+    const bool twice = before.lock() == message;
+    if (twice)
+      before.reset();
+    else
+      before = message;
+    return twice;
+  }
 
   // A new synchronizer forgets also what its policy remembers of the stamps already served.
   void rebuild() {
@@ -118,6 +134,7 @@ class Pairing {
   const Callback callback_;
   mutable std::mutex mutex_;
   InputWatch watch_;
+  std::tuple<boost::weak_ptr<const Messages>...> before_;  // of each input
   std::unique_ptr<message_filters::Synchronizer<ExactPolicy>> exact_;
   std::unique_ptr<message_filters::Synchronizer<ApproximatePolicy>> approximate_;
   std::vector<Set> complete_;

@@ -138,6 +138,41 @@ TEST_F(StereoPairingTest, ARepeatedStampIsDropped) {
   EXPECT_EQ(pairing_.inputs()[0].repeated, 1u);
 }
 
+TEST_F(StereoPairingTest, AMessageThatComesTwiceCountsOnce) {
+  for (const double stamp : {1.0, 1.1}) {
+    const auto image = stamped<sensor_msgs::Image>(stamp);
+    pairing_.add<0>(image);
+    pairing_.add<0>(image);
+    pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(stamp));
+    addRight(stamp);
+  }
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.1, 1.1}}));
+  EXPECT_EQ(pairing_.inputs()[0].received, 2u);
+  EXPECT_EQ(pairing_.inputs()[0].paired, 2u);
+  EXPECT_EQ(pairing_.inputs()[0].dropped, 0u);
+}
+
+TEST_F(StereoPairingTest, AMessageThatIsSentAgainAndAgainIsARepeatedStamp) {
+  addPair(1.0);
+  pairing_.complaint();
+  const auto image = stamped<sensor_msgs::Image>(1.0);
+  for (int i = 0; i < 4; ++i) pairing_.add<0>(image);
+  addRight(1.0);
+  pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(1.0));
+  EXPECT_EQ(pairing_.inputs()[0].repeated, 2u);
+  EXPECT_NE(pairing_.complaint().find("the stamp never changes on /left/image_raw"), std::string::npos);
+}
+
+TEST_F(StereoPairingTest, AMessageFromBeforeAResetIsTakenAgain) {
+  const auto image = stamped<sensor_msgs::Image>(1.0);
+  pairing_.add<0>(image);
+  pairing_.reset();
+  pairing_.add<0>(image);
+  pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(1.0));
+  addRight(1.0);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}})) << "a latched message";
+}
+
 TEST_F(StereoPairingTest, TheComplaintNamesTheSilentInputs) {
   addLeft(1.0);
   addLeft(1.1);
