@@ -46,7 +46,7 @@ class Pairing {
     std::vector<Set> complete;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (cameTwice(message, std::get<kInput>(before_))) return;
+      if (cameTwice(message, std::get<kInput>(last_))) return;
       const ros::Time& stamp = message->header.stamp;
       const InputWatch::Arrival arrival = watch_.arrived(kInput, stamp);
       if (arrival == InputWatch::Arrival::kRepeated || arrival == InputWatch::Arrival::kLate) return;
@@ -68,7 +68,7 @@ class Pairing {
   void reset() {
     const std::lock_guard<std::mutex> lock(mutex_);
     watch_.forget();
-    before_ = {};
+    last_ = {};
     rebuild();
   }
 
@@ -92,15 +92,20 @@ class Pairing {
   using ExactPolicy = message_filters::sync_policies::ExactTime<Messages...>;
   using ApproximatePolicy = message_filters::sync_policies::ApproximateTime<Messages...>;
 
+  template <class Message>
+  struct Last {
+    boost::weak_ptr<const Message> message;
+    ros::Time stamp;  // a publisher may fill the same message in anew
+  };
+
   /// The very message before, for the second time; a third one is somebody who sends it again.
   template <class Message>
-  static bool cameTwice(const boost::shared_ptr<const Message>& message,
-                        boost::weak_ptr<const Message>& before) {
-    const bool twice = before.lock() == message;
+  static bool cameTwice(const boost::shared_ptr<const Message>& message, Last<Message>& last) {
+    const bool twice = last.message.lock() == message && last.stamp == message->header.stamp;
     if (twice)
-      before.reset();
+      last = {};
     else
-      before = message;
+      last = {message, message->header.stamp};
     return twice;
   }
 
@@ -134,7 +139,7 @@ class Pairing {
   const Callback callback_;
   mutable std::mutex mutex_;
   InputWatch watch_;
-  std::tuple<boost::weak_ptr<const Messages>...> before_;  // of each input
+  std::tuple<Last<Messages>...> last_;  // of each input
   std::unique_ptr<message_filters::Synchronizer<ExactPolicy>> exact_;
   std::unique_ptr<message_filters::Synchronizer<ApproximatePolicy>> approximate_;
   std::vector<Set> complete_;

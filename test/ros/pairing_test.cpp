@@ -163,6 +163,18 @@ TEST_F(StereoPairingTest, AMessageThatIsSentAgainAndAgainIsARepeatedStamp) {
   EXPECT_NE(pairing_.complaint().find("the stamp never changes on /left/image_raw"), std::string::npos);
 }
 
+TEST_F(StereoPairingTest, AMessageThatIsFilledInAnewIsAnotherOne) {
+  const auto image = boost::make_shared<sensor_msgs::Image>();
+  for (const double stamp : {1.0, 1.1}) {
+    image->header.stamp = ros::Time(stamp);
+    pairing_.add<0>(image);
+    pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(stamp));
+    addRight(stamp);
+  }
+  EXPECT_EQ(pairs_.size(), 2u);
+  EXPECT_EQ(pairing_.inputs()[0].paired, 2u);
+}
+
 TEST_F(StereoPairingTest, AMessageFromBeforeAResetIsTakenAgain) {
   const auto image = stamped<sensor_msgs::Image>(1.0);
   pairing_.add<0>(image);
