@@ -1,6 +1,7 @@
 """Runs the package's programs, and says which version of them made a result."""
 
 import hashlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,15 +10,26 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "src/tools"))
 from evaluation.pending_file import pending  # noqa: E402,F401 (stands beside evaluate)
 
+
+def built_space():
+    """Where the built package is: UAV_LANDING_DEVEL_DIR, else the first space of the sourced setup.bash that has it, as
+    rosrun searches, else that of scripts/build, built or not."""
+    if os.environ.get("UAV_LANDING_DEVEL_DIR"):
+        return Path(os.environ["UAV_LANDING_DEVEL_DIR"])
+    sourced = [Path(space) for space in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) if space]
+    return next((space for space in sourced if (space / "lib/uav_landing").is_dir()), ROOT / "build/devel")
+
+
 WORK = ROOT / "build" / "accuracy"
-DEVEL = ROOT / "build" / "devel"
+DEVEL = built_space()
+NOT_BUILT = "build first: scripts/build, or catkin_make and . devel/setup.bash in a catkin workspace"
 DEADLINE = 7200  # s, for one program
 
 
 def run(*command):
-    """Runs a program of the package in the development space; stops with its message when it fails."""
-    result = subprocess.run([str(ROOT / "build/catkin_generated/env_cached.sh"), "rosrun", "uav_landing", *map(str, command)],
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE)
+    """Runs a program of the package in the space where it is built; stops with its message when it fails."""
+    result = subprocess.run([str(DEVEL / "env.sh"), "rosrun", "uav_landing", *map(str, command)], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE)
     if result.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}\n{result.stdout}")
     return result.stdout

@@ -1,10 +1,11 @@
 import csv
 import os
+import shutil
 import tempfile
 import unittest
 from pathlib import Path
 
-from project import SOURCE_DIR, run
+from project import DEVEL_DIR, SOURCE_DIR, run
 from stereo_bag import noise_frames, write_bag
 
 PROCESS_BAGS = SOURCE_DIR / "scripts/process_bags"
@@ -52,6 +53,38 @@ class ProcessBagsTest(unittest.TestCase):
         rows = self.rows()
         self.assertEqual((rows["broken"]["result"], rows["good"]["result"]), ("failed", "done"))
         self.assertIn("2 bags, 1 failed", (self.output / "report.html").read_text())
+
+    def test_the_reason_is_the_message_and_not_the_list_below_it(self):
+        frames = noise_frames(3)
+        for frame in frames:
+            frame.messages["right/image_raw"] = frame.messages["right/camera_info"] = None
+        write_bag(self.bags / "one_camera.bag", frames)
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 1)
+        reason = (f"process_bag: {self.bags}/one_camera.bag: no topic /stereo/right/image_raw (sensor_msgs/Image); "
+                  "no topic /stereo/right/camera_info (sensor_msgs/CameraInfo)")
+        self.assertIn(f"failed: one_camera: {reason}\n", result.stderr)
+        self.assertEqual(self.rows()["one_camera"]["reason"], reason)
+        self.assertIn(f"<td>{reason}</td>", (self.output / "report.html").read_text())
+        self.assertIn("  /stereo/left/image_raw", (self.output / "one_camera.log").read_text())
+
+    def test_the_program_is_found_as_rosrun_finds_it(self):
+        """In a clone that is not built, as in the source space of a catkin workspace."""
+        clone = self.bags.parent / "src/uav_landing"
+        for folder in ("scripts", "src/tools/evaluation"):
+            shutil.copytree(str(SOURCE_DIR / folder), str(clone / folder))
+        self.bag("first.bag")
+        environment = {name: value for name, value in os.environ.items() if name != "UAV_LANDING_DEVEL_DIR"}
+
+        def process(spaces):
+            return run([clone / "scripts/process_bags", self.bags, "--output", self.output],
+                       env=dict(environment, CMAKE_PREFIX_PATH=spaces))
+        result = process("/usr")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("process_bag is missing (build first: scripts/build, or catkin_make", result.stderr)
+        result = process(f"/nowhere:{DEVEL_DIR}:/usr")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.rows()["first"]["result"], "done")
 
     def test_what_is_done_is_not_done_again(self):
         self.bag("first.bag")
