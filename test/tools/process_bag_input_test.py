@@ -321,6 +321,14 @@ class ImagesTest(ProcessBagTest):
                 self.assert_nothing_valid(rows)
                 self.assertEqual({row["reason"] for row in rows}, {"uniform_image"})
 
+    def test_the_last_line_counts_valid_pairs_and_reasons(self):
+        frames = noise_frames(4)
+        for frame in frames[1:]:
+            frame.messages["left/image_raw"] = image(np.full((HEIGHT, WIDTH), 90, np.uint8))
+        result = self.process_frames(frames)
+        other = self.rows()[0]["reason"]
+        self.assertEqual(result.stdout.splitlines()[-1], f"4 pairs, 0 valid: uniform_image 3, {other} 1")
+
     def test_noise_is_never_valid(self):
         self.assertEqual(self.process_frames(noise_frames(4)).returncode, 0)
         self.assert_nothing_valid(self.rows())
@@ -383,6 +391,8 @@ class DatasetTest(ProcessBagTest):
         self.assertGreater(sum(row["valid"] == "1" for row in rows), 110)
 
         self.assertIn("all stages", result.stdout)
+        valid = sum(row["valid"] == "1" for row in rows)
+        self.assertEqual(result.stdout.splitlines()[-1], f"120 pairs, {valid} valid: not_yet {120 - valid}")
         timing = (report / "timing.csv").read_text().splitlines()
         self.assertEqual(len(timing), 121)
         self.assertIn("overlay_ms", timing[0].split(","))

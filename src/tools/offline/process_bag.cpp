@@ -8,6 +8,7 @@
 #include "offline/estimate_bag.h"
 #include "offline/estimate_csv.h"
 #include "offline/offline_chain.h"
+#include "offline/pair_count.h"
 #include "offline/report_data.h"
 #include "offline/timing_table.h"
 #include "progress_bar.h"
@@ -46,6 +47,7 @@ std::vector<std::unique_ptr<PairSink>> makeSinks(const Options& options, const P
     sinks.push_back(
         std::make_unique<ReportData>(options.report_data, reader.leftImages(), parameters.overlay));
   sinks.push_back(std::make_unique<TimingTable>(std::cout));
+  sinks.push_back(std::make_unique<PairCount>(std::cout));
   return sinks;
 }
 
