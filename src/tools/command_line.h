@@ -1,22 +1,47 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <optional>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/parameters/parameters.h"
+#include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
 
 /// Exit status of all programs.
 enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2 };
 
+/// What is wrong with the command line, behind the program's name; a misspelt option with the nearest that
+/// there is, also where it leaves a required one missing.
+inline std::string usageMessage(const CLI::App* app, const CLI::Error& error) {
+  std::string problem = error.what();
+  const bool unexpected = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  if (unexpected || error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError)) {
+    const std::vector<std::string> extras = app->remaining();
+    const auto option = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& word) { return word.rfind("--", 0) == 0; });
+    if (option != extras.end()) {
+      std::vector<std::string> names;
+      for (const CLI::Option* known : app->get_options())
+        for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
+      const std::string given = option->substr(0, option->find('='));
+      problem = given + ": no such option" + suggestName(given, names);
+    } else if (!extras.empty() && unexpected) {
+      problem = extras.front() + ": not expected";
+    }
+  }
+  return app->get_name() + ": " + problem + "\nRun with --help for more information.\n";
+}
+
 /// Parses the command line, --version included. Returns an exit status when there is nothing left to do (help
-/// was asked for, or the usage was wrong; CLI11 has written which).
+/// was asked for, or the usage was wrong; what is written by then).
 inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
   app.add_flag_callback(
       "--version",
@@ -25,6 +50,7 @@ inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv)
         throw CLI::Success();
       },
       "print the version and leave");
+  app.failure_message(usageMessage);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

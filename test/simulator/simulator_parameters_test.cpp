@@ -73,7 +73,7 @@ TEST(SimulatorParameters, TextForANumberIsRefused) {
 TEST(SimulatorParameters, MissingFileIsNamed) {
   const Expected<SimulatorParameters> parameters = loadSimulatorParameterFile("/nowhere/a.yaml");
   ASSERT_FALSE(parameters);
-  EXPECT_EQ(parameters.error().detail, "/nowhere/a.yaml: cannot be read");
+  EXPECT_EQ(parameters.error().detail, "/nowhere/a.yaml: no such file");
 }
 
 }  // namespace

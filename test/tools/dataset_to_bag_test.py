@@ -133,6 +133,10 @@ class BadInputTest(DatasetToBagTest):
                 (self.dataset / name).unlink()
                 self.assert_refused(name)
 
+    def test_a_missing_table_does_not_exist(self):
+        (self.dataset / "frames.csv").unlink()
+        self.assert_refused("frames.csv: no such file")
+
     def test_a_missing_image_is_named_with_its_line_and_column(self):
         (self.dataset / "right/b.png").unlink()
         self.assert_refused("frames.csv, line 3, column right:", "right/b.png: no such file")

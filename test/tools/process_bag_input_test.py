@@ -56,6 +56,11 @@ class FilesTest(ProcessBagTest):
     def test_missing_bag(self):
         self.assert_refused(self.process(), str(self.bag), "no such file")
 
+    def test_a_folder_is_no_bag(self):
+        self.bag = self.folder / "flights"
+        self.bag.mkdir()
+        self.assert_refused(self.process(), f"{self.bag}: is a folder", "scripts/process_bags")
+
     def test_a_file_that_is_not_a_bag(self):
         self.bag.write_text("height,angle\n1,2\n")
         self.assert_refused(self.process(), str(self.bag), "cannot be read as a bag")
@@ -95,6 +100,17 @@ class UsageTest(ProcessBagTest):
             with self.subTest(options=options):
                 self.assertEqual(run([PROGRAMS / "process_bag", *options]).returncode, 2)
 
+    def test_what_is_wrong_is_said_behind_the_programs_name(self):
+        for options, message in ((["--input", "a.bag", "--cvs", "x.csv"], "--cvs: no such option; did you mean --csv?"),
+                                 (["--imput=a.bag"], "--imput: no such option; did you mean --input?"),
+                                 (["--input", "a.bag", "--nonsense"], "--nonsense: no such option"),
+                                 (["--input", "a.bag", "b.bag"], "b.bag: not expected"),
+                                 ([], "--input is required")):
+            with self.subTest(options=options):
+                result = run([PROGRAMS / "process_bag", *options])
+                self.assertEqual((result.returncode, result.stdout), (2, ""))
+                self.assertEqual(result.stderr, f"process_bag: {message}\nRun with --help for more information.\n")
+
     def test_help_names_every_option(self):
         result = run([PROGRAMS / "process_bag", "--help"])
         self.assertEqual(result.returncode, 0)
@@ -128,7 +144,7 @@ class ConfigTest(ProcessBagTest):
 
     def test_missing_file(self):
         write_bag(self.bag, noise_frames())
-        self.assert_refused(self.process("--config", "/nowhere.yaml"), "/nowhere.yaml", "cannot be read")
+        self.assert_refused(self.process("--config", "/nowhere.yaml"), "/nowhere.yaml: no such file")
 
 
 class TopicsTest(ProcessBagTest):
@@ -152,7 +168,7 @@ class TopicsTest(ProcessBagTest):
     def test_another_camera_name(self):
         write_bag(self.bag, noise_frames(), camera="/nose")
         self.assert_refused(self.process(), "no topic /stereo/left/image_raw",
-                            "/nose/left/image_raw (sensor_msgs/Image)")
+                            "/nose/left/image_raw (sensor_msgs/Image)", "\n--camera NAME names another namespace\n")
         self.assertEqual(self.process("--camera", "nose").returncode, 0)
 
     def test_a_topic_of_another_type(self):
@@ -180,7 +196,9 @@ class TopicsTest(ProcessBagTest):
         write_bag(self.bag, noise_frames())
         self.assertEqual(self.process().returncode, 0)
         self.csv.unlink()
-        self.assert_refused(self.process("--imu", "/mavros/imu/data"), "no topic /mavros/imu/data (sensor_msgs/Imu)")
+        result = self.process("--imu", "/mavros/imu/data")
+        self.assert_refused(result, "no topic /mavros/imu/data (sensor_msgs/Imu)")
+        self.assertNotIn("--camera", result.stderr)
         self.assert_refused(self.process("--imu", "/stereo/left/image_raw"),
                             "topic /stereo/left/image_raw is sensor_msgs/Image, expected sensor_msgs/Imu")
         self.assertEqual(self.process("--imu", "").returncode, 0)

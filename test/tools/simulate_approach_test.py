@@ -140,7 +140,7 @@ class BadInputTest(SimulateApproachTest):
         return self.simulate(config)
 
     def test_missing_config(self):
-        self.assert_refused(self.simulate("/nowhere.yaml"), "/nowhere.yaml: cannot be read")
+        self.assert_refused(self.simulate("/nowhere.yaml"), "/nowhere.yaml: no such file")
 
     def test_bad_configs_are_named_with_file_and_key(self):
         for yaml, message in (

@@ -3,9 +3,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -63,6 +65,9 @@ Expected<ParameterSet> parseSections(const std::string& yaml_text, const std::st
 
 template <class ParameterSet>
 Expected<ParameterSet> loadSectionFile(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none))
+    return tl::make_unexpected(Failure{Reason::kInputInvalid, path + ": no such file"});
   std::ifstream file(path);
   std::ostringstream content;
   if (!file || !(content << file.rdbuf() || file.eof()) || file.bad())

@@ -36,6 +36,10 @@ void add(StereoPairing& pairing, const rosbag::MessageInstance& message) {
 
 StereoBagReader::StereoBagReader(const std::string& path, const std::string& camera, const std::string& imu)
     : imu_(imu) {
+  if (std::filesystem::is_directory(path))
+    throw std::runtime_error(path +
+                             ": is a folder, expected a bag: scripts/process_bags takes folders of bags, "
+                             "dataset_to_bag and convert_recording make a bag of images");
   if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": no such file");
   try {
     checkBagStructure(path);
@@ -53,10 +57,12 @@ Failure StereoBagReader::checkTopics(bool imu_needed) const {
   constexpr char kImuType[] = "sensor_msgs/Imu";
   const std::map<std::string, std::string> found = topicsAndTypes(*bag_);
   std::ostringstream problems;
+  bool camera_missing = false;
   for (size_t i = 0; i < topics_.size(); ++i) {
     const auto topic = found.find(topics_[i]);
     if (topic == found.end()) {
       problems << "no topic " << topics_[i] << " (" << kTypes[i] << ")\n";
+      camera_missing = true;
     } else if (topic->second != kTypes[i]) {
       problems << "topic " << topics_[i] << " is " << topic->second << ", expected " << kTypes[i] << '\n';
     }
@@ -70,6 +76,7 @@ Failure StereoBagReader::checkTopics(bool imu_needed) const {
   if (problems.str().empty()) return {};
   problems << (found.empty() ? "The bag is empty" : "The bag contains:");
   for (const auto& [topic, type] : found) problems << "\n  " << topic << " (" << type << ")";
+  if (camera_missing) problems << "\n--camera NAME names another namespace";
   return {Reason::kInputInvalid, problems.str()};
 }
 

@@ -4,6 +4,7 @@
 #include <boost/algorithm/string.hpp>
 #include <boost/lexical_cast.hpp>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 namespace uav_landing {
@@ -22,7 +23,9 @@ Failure invalid(const std::string& detail) { return {Reason::kInputInvalid, deta
 
 Expected<CsvTable> CsvTable::read(const std::string& path) {
   std::ifstream file(path);
-  if (!file) return tl::make_unexpected(invalid(path + ": cannot be opened"));
+  if (!file)
+    return tl::make_unexpected(
+        invalid(path + (std::filesystem::exists(path) ? ": cannot be opened" : ": no such file")));
   CsvTable table;
   table.path_ = path;
   std::string line;

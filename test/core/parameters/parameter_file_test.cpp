@@ -108,7 +108,7 @@ TEST(ParameterFile, NamesTheLineOfASyntaxError) {
 TEST(ParameterFile, SaysWhichFileCannotBeRead) {
   const Expected<Parameters> missing = loadParameterFile("/nowhere/config.yaml");
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().detail, "/nowhere/config.yaml: cannot be read");
+  EXPECT_EQ(missing.error().detail, "/nowhere/config.yaml: no such file");
   const Expected<Parameters> folder = loadParameterFile(UAV_LANDING_SOURCE_DIR);
   ASSERT_FALSE(folder);
   EXPECT_EQ(folder.error().detail, UAV_LANDING_SOURCE_DIR ": cannot be read");
