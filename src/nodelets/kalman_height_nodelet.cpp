@@ -161,7 +161,7 @@ class KalmanHeightNodelet : public StageNodelet {
     if (cameras_.changed(left_info, right_info)) {
       stage_.reset();
       const auto rig = makeStereoRig(cameras_.left(), cameras_.right());
-      rig_failure_ = rig ? Failure() : rig.error();
+      rig_failure_ = rig ? Failure() : ofCameraInfo(rig.error());
       if (rig) stage_.emplace(*rig, parameters_);
     }
     return rig_failure_;
@@ -271,7 +271,7 @@ class KalmanHeightNodelet : public StageNodelet {
     } else {
       lost.stamp = stamp.toSec();
       lost.status = Status::kLost;
-      lost.failure = {Reason::kTimeout, "no image pair yet"};
+      lost.failure = {Reason::kTimeout, "no image pair yet, see the log of rectify"};
     }
     note(lost);
     std_msgs::Header header;

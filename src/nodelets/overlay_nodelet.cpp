@@ -68,7 +68,7 @@ class OverlayNodelet : public StageNodelet {
                const sensor_msgs::CameraInfo& right_info, const StereoDepth& stereo,
                const ApproachAngle& approach, const LandingEstimate& landing) {
     if (rig_.changed(left_info, right_info)) stereo_rig_ = makeStereoRig(rig_.left(), rig_.right());
-    if (!stereo_rig_) return refuse("camera_info: " + stereo_rig_.error().detail);
+    if (!stereo_rig_) return refuse(ofCameraInfo(stereo_rig_.error()).detail);
     const auto view = toMono8(left, rig_.left(), kLeftImage);
     if (!view) return refuse(view.error().detail);
     Timings timings;

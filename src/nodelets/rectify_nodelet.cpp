@@ -47,6 +47,7 @@ class RectifyNodelet : public StageNodelet {
     sensor_msgs::CameraInfoConstPtr left_info, right_info;
   };
   struct View {
+    std::string side;   // left or right
     std::string topic;  // of the raw image
     image_transport::Subscriber image_subscriber;
     ros::Subscriber info_subscriber;
@@ -82,6 +83,7 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void advertise(const std::string& side, View& view) {
+    view.side = side;
     view.topic = getNodeHandle().resolveName(node_.camera + "/" + side + "/image_raw");
     const image_transport::SubscriberStatusCallback changed =
         [this](const image_transport::SingleSubscriberPublisher&) { updateSubscription(); };
@@ -180,12 +182,19 @@ class RectifyNodelet : public StageNodelet {
     publish(job, left, right);
   }
 
+  using StageNodelet::refuse;
+  /// Says what is wrong with a camera's calibration.
+  void refuse(const View& view, const Failure& failure) {
+    refuse(ofCameraInfo({failure.reason, view.side + " " + failure.detail}).detail + " (" +
+           infoTopic(view.side) + ")");
+  }
+
   /// The rectified image, or null when the input cannot be used.
   sensor_msgs::ImagePtr rectify(View& view, const sensor_msgs::ImageConstPtr& raw,
                                 const sensor_msgs::CameraInfo& info) {
     CameraCalibration calibration = toCalibration(info);
     if (const Failure failure = checkCalibration(calibration)) {
-      refuse("camera_info of " + view.topic + ": " + failure.detail);
+      refuse(view, failure);
       return nullptr;
     }
     // The image comes before the rectifier: maps of a size that no image has would fill the memory.
@@ -200,7 +209,7 @@ class RectifyNodelet : public StageNodelet {
       view.calibration = std::move(calibration);
     }
     if (!view.rectifier) {
-      refuse("camera_info of " + view.topic + ": " + view.rectifier.error().detail);
+      refuse(view, view.rectifier.error());
       return nullptr;
     }
     const cv::Size size = view.calibration->imageSize();

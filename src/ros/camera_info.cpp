@@ -44,4 +44,6 @@ sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const
   return info;
 }
 
+Failure ofCameraInfo(const Failure& failure) { return {failure.reason, "camera_info: " + failure.detail}; }
+
 }  // namespace uav_landing

@@ -2,6 +2,7 @@
 
 #include <sensor_msgs/CameraInfo.h>
 
+#include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
@@ -11,5 +12,9 @@ CameraCalibration toCalibration(const sensor_msgs::CameraInfo& info);
 
 /// Inverse of toCalibration(); the header is the caller's.
 sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const std_msgs::Header& header);
+
+/// What is wrong with the calibrations of a rig, in the words of all nodelets and programs:
+/// "camera_info: right P[3]: 0, expected ...".
+Failure ofCameraInfo(const Failure& failure);
 
 }  // namespace uav_landing

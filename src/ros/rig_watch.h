@@ -44,7 +44,7 @@ class RigStage {
     const CameraCalibration left_camera = toCalibration(left_info), right_camera = toCalibration(right_info);
     // In this order: images before a stage is made for their size, which takes memory.
     const auto rig = makeStereoRig(left_camera, right_camera);
-    if (!rig) return tl::make_unexpected(rig.error());
+    if (!rig) return tl::make_unexpected(ofCameraInfo(rig.error()));
     const auto left_view = toMono8(left, left_camera, left_topic);
     if (!left_view) return tl::make_unexpected(left_view.error());
     const auto right_view = toMono8(right, right_camera, right_topic);
@@ -67,7 +67,7 @@ class RigStage {
     if (!cameras_.changed(left, right)) return failure_;
     stage_.reset();
     const auto model = makeRigModel(cameras_.left(), cameras_.right());
-    failure_ = model ? Failure() : model.error();
+    failure_ = model ? Failure() : ofCameraInfo(model.error());
     if (model) stage_.emplace(*model, parameters);
     return failure_;
   }

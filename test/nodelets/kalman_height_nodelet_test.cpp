@@ -284,7 +284,8 @@ TEST_F(KalmanHeightNodeletTest, ABadRigIsTheReasonOfEveryMessage) {
   scene_.baseline = 0;
   publish(0);
   ASSERT_TRUE(waitFor(0));
-  EXPECT_EQ(estimateOf(0).reason.rfind("input_invalid: right P[3]", 0), 0u) << estimateOf(0).reason;
+  EXPECT_EQ(estimateOf(0).reason.rfind("input_invalid: camera_info: right P[3]", 0), 0u)
+      << estimateOf(0).reason;
   EXPECT_FALSE(estimateOf(0).valid);
   EXPECT_TRUE(std::isnan(estimateOf(0).height));
 }

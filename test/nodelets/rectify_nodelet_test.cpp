@@ -155,9 +155,19 @@ TEST_F(RectifyNodeletTest, ACameraInfoOfZerosIsRefusedByName) {
   start();
   cameras_.publishLeft(ros::Time(1000), scene_.blank(0), boost::make_shared<sensor_msgs::CameraInfo>());
   cameras_.publishRight(ros::Time(1000), scene_.blank(0), scene_.info(true));
-  EXPECT_TRUE(logged("camera_info of /stereo/left/image_raw: ")) << wholeLog();
+  EXPECT_TRUE(logged("camera_info: left width: 0, expected 1 to 16384 pixels (/stereo/left/camera_info)"))
+      << wholeLog();
   cameras_.publish(scene_, 1);
   EXPECT_TRUE(left_->waitFor(1)) << "goes on with the next";
+}
+
+TEST_F(RectifyNodeletTest, AnUncalibratedCameraIsRefusedAsInTheListOfTroubles) {
+  start();
+  const auto info = boost::make_shared<sensor_msgs::CameraInfo>(*scene_.info(true));
+  info->K.fill(0);
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), info);
+  EXPECT_TRUE(logged("camera_info: right K[0]: 0, expected a positive focal length in pixels")) << wholeLog();
 }
 
 TEST_F(RectifyNodeletTest, ACameraInfoThatChangesIsFollowed) {

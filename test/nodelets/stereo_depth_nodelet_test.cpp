@@ -96,7 +96,7 @@ TEST_F(StereoDepthNodeletTest, ABaselineOfZeroIsTheReasonOfEveryMessage) {
   images_.publish(mono, 0.1);
   ASSERT_TRUE(output_->waitFor(2));
   for (const auto& depth : output_->messages()) {
-    EXPECT_EQ(depth->reason.rfind("input_invalid: right P[3]", 0), 0u) << depth->reason;
+    EXPECT_EQ(depth->reason.rfind("input_invalid: camera_info: right P[3]", 0), 0u) << depth->reason;
   }
 }
 

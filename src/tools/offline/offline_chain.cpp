@@ -95,15 +95,13 @@ void OfflineChain::followCalibration(const CameraCalibration& left, const Camera
   right_calibration_ = right;
   pipeline_.reset();
   Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters_);
-  calibration_failure_ = pipeline ? Failure() : pipeline.error();
+  calibration_failure_ = pipeline ? Failure() : ofCameraInfo(pipeline.error());
   if (pipeline) pipeline_.emplace(std::move(*pipeline));
 }
 
 Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right,
                           double skew, const AttitudePrior& imu) {
-  if (calibration_failure_) {
-    return {calibration_failure_.reason, "camera_info: " + calibration_failure_.detail};
-  }
+  if (calibration_failure_) return calibration_failure_;
   const auto left_image = toMono8(left, left_calibration_, "/" + camera_ + "/left/image_raw");
   if (!left_image) return left_image.error();
   const auto right_image = toMono8(right, right_calibration_, "/" + camera_ + "/right/image_raw");
