@@ -97,13 +97,16 @@ class ConvertRecordingTest(unittest.TestCase):
         np.testing.assert_allclose(np.reshape(info.R, (3, 3)), np.eye(3), atol=1e-9)  # no turn between the cameras
 
     def test_euroc_mistakes_are_named(self):
-        self.refused("sensor.yaml: cannot be read", "euroc", self.folder)
+        self.refused("sensor.yaml: no such file", "euroc", self.folder)
         self.euroc(model="equidistant")
         self.refused("distortion_model equidistant", "euroc", self.folder)
 
     def test_euroc_cameras_in_the_wrong_order_are_refused(self):
         self.euroc(baseline=-0.4)
         self.refused("not to the right of the first", "euroc", self.folder)
+
+    def test_a_folder_that_is_no_kitti_sequence_is_named_by_what_is_missing(self):
+        self.refused("calib.txt: no such file", "kitti", self.folder)
 
     def test_kitti_sequence_keeps_its_calibration(self):
         for side in ("image_0", "image_1"):

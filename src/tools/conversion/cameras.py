@@ -5,7 +5,7 @@ import numpy as np
 import yaml
 from sensor_msgs.msg import CameraInfo
 
-from .errors import InputError
+from .errors import InputError, unreadable
 
 
 def camera_info(size, K, D, R, P, model="plumb_bob"):
@@ -21,7 +21,9 @@ def load_yaml(path):
         with open(str(path)) as file:
             text = "\n".join(line for line in file.read().splitlines() if not line.startswith("%"))
         content = yaml.safe_load(text)
-    except (OSError, yaml.YAMLError) as error:
+    except OSError as error:
+        raise unreadable(path, error)
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
         raise InputError(f"{path}: cannot be read as YAML ({error})")
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected names and values")

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from . import cameras
-from .errors import InputError
+from .errors import InputError, unreadable
 
 
 def read_image(path):
@@ -27,7 +27,7 @@ def read_rows(path, separator):
             return [row for row in csv.reader(file, delimiter=separator, skipinitialspace=True)
                     if row and not row[0].startswith("#")]
     except OSError as error:
-        raise InputError(f"{path}: {error.strerror}")
+        raise unreadable(path, error)
 
 
 class Euroc:
