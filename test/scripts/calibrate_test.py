@@ -317,6 +317,23 @@ class ChecksTest(unittest.TestCase):
         with self.assertRaisesRegex(InputError, "tilted"):
             rig.calibrate(calibrator, views_of_ideal_cameras(tilt=0.0))
 
+    def test_coverage_has_a_verdict(self):
+        self.assertEqual(checks.coverage_in_words([]), "in all parts of it: good")
+        self.assertTrue(checks.coverage_in_words(["top", "bottom"]).endswith("none in: top, bottom, where the lens is a "
+                                                                             "guess: show the board there: usable"))
+        self.assertTrue(checks.coverage_in_words(5 * ["top"]).endswith(": poor"))
+
+    def test_an_unlikely_baseline_is_questioned(self):
+        for baseline, questioned in ((0.009, True), (0.012, False), (9.5, False), (65, True)):
+            with self.subTest(baseline=baseline):
+                report = checks.Report()
+                checks.add_baseline(report, baseline, None)
+                warned = [line for line in report.lines if line.startswith("warning")]
+                self.assertEqual(len(warned), questioned)
+                if questioned:
+                    self.assertIn(f"a baseline of {baseline:g} m is unlikely: is --square", warned[0])
+        self.assertEqual(report.faults, [])
+
     def test_coverage_names_the_empty_parts(self):
         corners = np.array([[u, v] for u in range(5, 320, 10) for v in range(5, 160, 10)], float)
         share, empty = checks.coverage(corners, (320, 240))

@@ -5,6 +5,8 @@ import numpy as np
 GOOD_PX, USABLE_PX = 0.25, 1.0  # rms
 GOOD_FOCAL_LENGTH, USABLE_FOCAL_LENGTH = 0.003, 0.02  # one sigma, share of it
 GOOD_BASELINE, USABLE_BASELINE = 0.005, 0.02  # share of the measured one
+LIKELY_BASELINE = (0.01, 10.0)  # m, between the cameras of an aircraft
+USABLE_EMPTY_PARTS = 4  # of nine
 # Default of kalman_height's max_height_error, which is three sigma: heights are valid up to this standard deviation.
 VALID_SHARE = 0.05 / 3
 GRID = (6, 8)  # rows, columns of cells that make the coverage in per cent
@@ -50,6 +52,14 @@ def coverage(corners, size):
     return float(occupied(corners, size, GRID).mean()), [REGIONS[i][j] for i, j in np.argwhere(empty)]
 
 
+def coverage_in_words(empty):
+    """Judges the ninths of an image that hold no corners."""
+    if not empty:
+        return "in all parts of it: good"
+    return (f"none in: {', '.join(empty)}, where the lens is a guess: show the board there: "
+            + ("usable" if len(empty) <= USABLE_EMPTY_PARTS else "poor"))
+
+
 class Report:
     """Lines for people, and what makes the calibration unusable."""
 
@@ -83,14 +93,14 @@ def make_report(calibrator, views, measured_baseline=None):
     add_baseline(report, calibrator.baseline, measured_baseline)
     for side in ("left", "right"):
         share, empty = coverage(np.concatenate([getattr(view, side) for view in views])[:, 0], calibrator.size)
-        text = f"corners in {100 * share:.0f} % of the {side} image"
-        report.add("coverage", text + (f", none in: {', '.join(empty)}. Show the board there: the lens is a guess there"
-                                       if empty else ", in all parts of it"))
+        report.add("coverage", f"corners in {100 * share:.0f} % of the {side} image, " + coverage_in_words(empty))
     add_height(report, epipolar, calibrator)
     return report
 
 
 def add_baseline(report, baseline, measured):
+    if not LIKELY_BASELINE[0] <= baseline <= LIKELY_BASELINE[1]:
+        report.add("warning", f"a baseline of {baseline:.4g} m is unlikely: is --square the side of one square in metres?")
     if measured is None:
         report.add("baseline", f"{baseline:.4f} m. Compare: a wrong --square is wrong in every height by as many per cent")
         return
