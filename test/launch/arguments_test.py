@@ -1,0 +1,48 @@
+"""What the launch files make of their arguments; no master is needed."""
+
+import unittest
+
+import yaml
+from roslaunch.arg_dump import get_args
+
+from project import SOURCE_DIR, run
+
+LAUNCH = SOURCE_DIR / "launch"
+
+
+def parameters(*arguments):
+    """Parameters that stereo.launch would set."""
+    result = run(["roslaunch", "--dump-params", LAUNCH / "stereo.launch", *arguments])
+    assert result.returncode == 0, result.stderr
+    return yaml.safe_load(result.stdout)
+
+
+class ArgumentsTest(unittest.TestCase):
+    def test_all_are_explained_and_none_is_listed_as_required(self):
+        for file in sorted(LAUNCH.glob("*.launch")):
+            with self.subTest(file.name):
+                # roslaunch calls those required that have no default, or an empty one.
+                lacking = [name for name, (doc, default) in get_args([str(file)]).items() if not doc or not default]
+                self.assertEqual(lacking, [])
+
+    def test_an_empty_value_is_the_default(self):
+        self.assertEqual(parameters("approximate_sync:=", "max_skew:=", "base_frame:=", "bag:="), parameters())
+
+    def test_defaults_leave_the_config_file_and_the_clock_alone(self):
+        default = parameters()
+        rectify = (yaml.safe_load((SOURCE_DIR / "config/stereo.yaml").read_text()) or {}).get("rectify") or {}
+        for name in ("approximate_sync", "max_skew"):
+            self.assertEqual(default.get(f"/uav_landing/rectify/{name}"), rectify.get(name))
+        self.assertEqual(default["/uav_landing/kalman_height/base_frame"], "")
+        self.assertNotIn("/use_sim_time", default)
+
+    def test_values_reach_the_nodelets(self):
+        given = parameters("approximate_sync:=true", "max_skew:=0.02", "base_frame:=base_link", "bag:=/tmp/a.bag")
+        self.assertEqual(given["/uav_landing/rectify/approximate_sync"], True)
+        self.assertEqual(given["/uav_landing/rectify/max_skew"], 0.02)
+        self.assertEqual(given["/uav_landing/kalman_height/base_frame"], "base_link")
+        self.assertEqual(given["/use_sim_time"], True)
+
+
+if __name__ == "__main__":
+    unittest.main()
