@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/ground_renderer.h"
+#include "support/rigs.h"
 
 namespace uav_landing {
 namespace {
@@ -16,14 +17,21 @@ using test::makePose;
 using test::Pose;
 
 /// A rig over textured ground and the blocks of its images, reduced by a factor.
-class Blocks {
- public:
+struct Blocks {
+  StereoRig rig = test::makeRig(640, 480, 0.65);
+  RigModel model = test::makeModel(rig);
+  RigRotation rows = test::levelRows();
+  Pose pose;
+  BlockDisparities disparities;
+  Eigen::Vector3d truth;
+  cv::Mat left, right;
+
   Blocks(int factor, double height, const Exposure& exposure, unsigned seed = 5)
-      : pose_(makePose(height, -8, 3)),
-        disparities(reduceLevel(model_, factor, 4), factor),
-        truth(pose_.down() / pose_.height()),
-        left(reduced(GroundRenderer(seed).left(rig, pose_, exposure), factor)),
-        right(reduced(GroundRenderer(seed).right(rig, pose_, exposure), factor)) {
+      : pose(makePose(height, -8, 3)),
+        disparities(reduceLevel(model, factor, 4), factor),
+        truth(pose.down() / pose.height()),
+        left(reduced(GroundRenderer(seed).left(rig, pose, exposure), factor)),
+        right(reduced(GroundRenderer(seed).right(rig, pose, exposure), factor)) {
     disparities.choose(left, truth);
   }
 
@@ -42,28 +50,11 @@ class Blocks {
     return sum / weights;
   }
 
-  StereoRig rig = test::makeRig(640, 480, 0.65);
-  RigRotation rows = levelRows();
-
- private:
-  static RigRotation levelRows() {
-    RigRotation rows;
-    rows.w.setZero();
-    rows.covariance.setZero();
-    return rows;
-  }
   static cv::Mat reduced(const cv::Mat& image, int factor) {
     cv::Mat small;
     cv::resize(image, small, image.size() / factor, 0, 0, cv::INTER_AREA);
     return small;
   }
-  RigModel model_ = test::makeModel(rig);
-  Pose pose_;
-
- public:
-  BlockDisparities disparities;
-  Eigen::Vector3d truth;
-  cv::Mat left, right;
 };
 
 TEST(BlockDisparities, AreInPixelsOfTheWholeImagesAtEveryFactor) {

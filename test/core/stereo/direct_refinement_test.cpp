@@ -8,6 +8,7 @@
 
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
+#include "support/rigs.h"
 
 namespace uav_landing {
 namespace {
@@ -33,14 +34,8 @@ struct Scene {
   Pose pose = makePose(4, -8, 3);
   Eigen::Vector3d truth = pose.down() / pose.height();
   cv::Mat left, right;
-  RigRotation rows = levelRows();
+  RigRotation rows = test::levelRows();
 
-  static RigRotation levelRows() {
-    RigRotation rows;
-    rows.w.setZero();
-    rows.covariance.setZero();
-    return rows;
-  }
   void render(const Exposure& of_left = {}, const Exposure& of_right = {}) {
     left = ground.left(rig, pose, of_left);
     right = ground.right(rig, pose, of_right);
