@@ -1,7 +1,7 @@
 #include "stereo/pair_disparities.h"
 
+#include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 namespace uav_landing {
 namespace {
@@ -12,12 +12,6 @@ constexpr int kHalved = 2;
 constexpr double kMostlyCertain = 0.5;
 // Rows that are looked at in one resolution: enough for their blocks to tell which.
 constexpr int kBand = 32;
-
-// Where noise was independent it stays so.
-void halveImage(const cv::Mat& image, cv::Mat& halved) {
-  const cv::Size size(image.cols / kHalved, image.rows / kHalved);
-  cv::resize(image(cv::Rect(cv::Point(), size * kHalved)), halved, size, 0, 0, cv::INTER_AREA);
-}
 
 int bandOf(const BlockDisparity& disparity) { return static_cast<int>(disparity.sample.v) / kBand; }
 
@@ -34,15 +28,15 @@ void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eig
                             const RigRotation& rows) {
   whole_.choose(left, g);
   whole_.measure(right, g, rows);
-  any_halved_ = halved_ && whole_.certainShare() < kMostlyCertain;
-  if (any_halved_) lookAtHalved(left, right, g, rows);
+  std::fill(is_halved_.begin(), is_halved_.end(), 0);
+  if (halved_ && whole_.certainShare() < kMostlyCertain) lookAtHalved(left, right, g, rows);
   collect();
 }
 
 void PairDisparities::lookAtHalved(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
                                    const RigRotation& rows) {
-  halveImage(left, halved_left_);
-  halveImage(right, halved_right_);
+  reduceImage(left, kHalved, halved_left_);
+  reduceImage(right, kHalved, halved_right_);
   halved_->choose(halved_left_, g);
   halved_->measure(halved_right_, g, rows);
   whole_.measureResponse(right, g, rows);
@@ -52,8 +46,12 @@ void PairDisparities::lookAtHalved(const cv::Mat& left, const cv::Mat& right, co
 
 void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
   whole_.measure(right, g, rows);
-  if (any_halved_) halved_->measure(halved_right_, g, rows);
+  if (anyHalved()) halved_->measure(halved_right_, g, rows);
   collect();
+}
+
+bool PairDisparities::anyHalved() const {
+  return std::find(is_halved_.begin(), is_halved_.end(), 1) != is_halved_.end();
 }
 
 void PairDisparities::chooseResolutions() {
@@ -72,13 +70,13 @@ void PairDisparities::collect() {
   informative_ = 0;
   const auto add = [&](const BlockDisparities& part, bool are_halved) {
     for (const BlockDisparity& disparity : part.disparities()) {
-      if (any_halved_ && is_halved_[bandOf(disparity)] != are_halved) continue;
+      if (is_halved_[bandOf(disparity)] != are_halved) continue;
       informative_ += disparity.blocks;
       if (disparity.alike) found_.push_back(disparity);
     }
   };
   add(whole_, false);
-  if (any_halved_) add(*halved_, true);
+  if (anyHalved()) add(*halved_, true);
 }
 
 }  // namespace uav_landing

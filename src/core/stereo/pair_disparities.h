@@ -30,12 +30,12 @@ class PairDisparities {
   void lookAtHalved(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
                     const RigRotation& rows);
   void chooseResolutions();
+  bool anyHalved() const;
   void collect();
 
   BlockDisparities whole_;
   std::optional<BlockDisparities> halved_;  // none where a halved image would not hold a block
   cv::Mat halved_left_, halved_right_;
-  bool any_halved_ = false;
   std::vector<char> is_halved_;  // for each band of rows, 1 if its halved images are looked at
   std::vector<BlockDisparity> found_;
   int informative_ = 0;

@@ -8,10 +8,15 @@
 
 namespace uav_landing {
 
+void reduceImage(const cv::Mat& image, int factor, cv::Mat& reduced) {
+  const cv::Size size = image.size() / factor;
+  cv::resize(image(cv::Rect(cv::Point(), size * factor)), reduced, size, 0, 0, cv::INTER_AREA);
+}
+
 StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   StereoLevel level;
   level.rig = model.rig;
-  level.rig.size = cv::Size(model.rig.size.width / factor, model.rig.size.height / factor);
+  level.rig.size = model.rig.size / factor;
   level.rig.fx /= factor;
   level.rig.fy /= factor;
   level.rig.cx = toCoarse(model.rig.cx, factor);
@@ -19,8 +24,7 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   level.rig.cx_right = toCoarse(model.rig.cx_right, factor);
   const auto reduce = [&](const cv::Mat& mask) {
     cv::Mat reduced;
-    const cv::Rect seen(cv::Point(), level.rig.size * factor);  // what is left over is in no mean
-    cv::resize(mask(seen), reduced, level.rig.size, 0, 0, cv::INTER_AREA);
+    reduceImage(mask, factor, reduced);
     cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
     return erodeMask(reduced, margin);
   };
