@@ -138,7 +138,9 @@ TEST_F(ApproachAngleNodeletTest, GoesOnAfterAJumpBackInTime) {
 /// An inertial sensor on the scene's level, straight flying aircraft.
 class ImuTest : public ApproachAngleNodeletTest {
  protected:
-  void startWithImu() {
+  /// imu_wait of a second: no message comes too late on a machine that is busy.
+  void startWithImu(double imu_wait = 1) {
+    setParameter("approach_angle", "imu_wait", imu_wait);
     start();
     ASSERT_TRUE(eventually([&] { return imu_.getNumSubscribers() > 0; }));
   }
@@ -215,16 +217,17 @@ TEST_F(ImuTest, APairWaitsForTheMessageAfterIt) {
 }
 
 TEST_F(ImuTest, ALateSensorHoldsNoPairUp) {
-  startWithImu();
+  startWithImu(0.02);
   publishMounting("imu_link");
   double t = 0;
   ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); }));
   publishPair(t + 0.3);
   const ApproachAngle late = resultOf(t + 0.3);
   EXPECT_EQ(late.imu.reason.find("timeout: the newest imu message is 0.3"), 0u) << late.imu.reason;
-  publishImu(t + 0.01, t + 0.41);
-  publishPair(t + 0.4);
-  EXPECT_EQ(resultOf(t + 0.4).imu.reason, "") << "and it is used again when it is back";
+  // No pair waits until a message of the sensor has come again.
+  publishImu(t + 0.01, t + 0.4);
+  t += 0.4;
+  EXPECT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
 }
 
 TEST_F(ImuTest, AMissingTransformIsNamedAndTheAngleIsFoundWithoutIt) {
