@@ -1,6 +1,7 @@
 #include "lines/line_refinement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -35,11 +36,17 @@ struct Parts {
 struct Station {
   int number;                ///< row or column
   int centre;                ///< column or row of the pixel nearest to the line
-  const uchar* grey;         ///< of that pixel
+  const uchar* grey;         ///< of that pixel; null outside image and ground
   std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
 
   /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
   int twiceGradient(int k) const { return grey[(k + 1) * neighbour] - grey[(k - 1) * neighbour]; }
+};
+
+/// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
+struct EdgeKind {
+  int sign;
+  double min_gradient;
 };
 
 /// Looks along one line.
@@ -52,6 +59,8 @@ class EdgeSampler {
         origin_(axis.origin, axis),
         along_(axis.along, axis),
         across_(axis.across, axis),
+        slope_(along_.minor / along_.major),
+        first_(origin_.minor - slope_ * origin_.major),
         scale_(0.5 / across_.minor),
         size_(axis.minor == 0 ? image.cols : image.rows),
         stations_(axis.minor == 0 ? image.rows : image.cols),
@@ -63,20 +72,41 @@ class EdgeSampler {
   /// `across`.
   double scale() const { return scale_; }
 
-  /// Nothing outside image and ground.
-  std::optional<Station> at(int station) const {
-    const int centre = cvRound(origin_.minor + along_.minor * ((station - origin_.major) / along_.major));
+  Station at(int station) const {
+    const int centre = cvRound(first_ + slope_ * station);
     constexpr int kReach = kRadius + 1;
-    if (centre < kReach || centre >= size_ - kReach || station < 0 || station >= stations_ ||
-        ground_[ground_step_.to(station, centre)] == 0)
-      return std::nullopt;
-    return Station{station, centre, image_ + image_step_.to(station, centre), image_step_.minor};
+    const bool inside = centre >= kReach && centre < size_ - kReach && station >= 0 && station < stations_ &&
+                        ground_[ground_step_.to(station, centre)] != 0;
+    return {station, centre, inside ? image_ + image_step_.to(station, centre) : nullptr, image_step_.minor};
   }
-  /// Of an edge this far from the station's pixel.
-  Peak peak(const Station& station, double distance, double gradient) const {
-    const double major = station.number - origin_.major;
-    const double minor = station.centre + distance - origin_.minor;
-    return {along_.dot(major, minor), across_.dot(major, minor), gradient};
+
+  /// The strongest gradient within kReach px of the line, interpolated by a parabola; false when there is
+  /// none of this kind.
+  template <int kReach>
+  bool findPeak(int station, const EdgeKind& kind, Peak& peak) const {
+    const Station sample = at(station);
+    if (sample.grey == nullptr) return false;
+    constexpr int kEnd = kReach + 1, kPixels = 2 * kEnd + 3, kBase = 16;
+    static_assert(2 * kEnd < kBase && kReach < kRadius, "the place fits below");
+    const int sign = kind.sign * scale_ >= 0 ? 1 : -1;
+    std::array<int, kPixels> grey;
+    const uchar* pixel = sample.grey - (kEnd + 1) * sample.neighbour;
+    for (int& value : grey) {
+      value = sign * *pixel;
+      pixel += sample.neighbour;
+    }
+    // Of two that are as strong the first: how far it is from the last one is in the lowest bits.
+    int strongest = std::numeric_limits<int>::min();
+    for (int i = 0; i + 2 < kPixels; ++i)
+      strongest = std::max(strongest, kBase * (grey[i + 2] - grey[i]) + 2 * kEnd - i);
+    const int i = 2 * kEnd - (strongest & (kBase - 1)), twice = grey[i + 2] - grey[i];
+    const double gradient = std::abs(scale_) * twice;
+    if (i == 0 || i == 2 * kEnd || gradient < kind.min_gradient) return false;
+    const int before = grey[i + 1] - grey[i - 1], after = grey[i + 3] - grey[i + 1];
+    const double top = 0.5 * (before - after) / (before - 2 * twice + after);
+    const double major = station - origin_.major, minor = sample.centre + i - kEnd + top - origin_.minor;
+    peak = {along_.dot(major, minor), across_.dot(major, minor), gradient};
+    return true;
   }
 
  private:
@@ -92,37 +122,15 @@ class EdgeSampler {
   const uchar *image_, *ground_;
   const Axis& axis_;
   Parts origin_, along_, across_;
+  double slope_, first_;  // of the line: px across by station, and where it crosses station 0
   double scale_;
   int size_, stations_;  // of the image, across and along
   Steps image_step_, ground_step_;
 };
 
-/// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
-struct EdgeKind {
-  int sign;
-  double min_gradient;
-};
-
-/// The strongest gradient within `reach` px of the line, interpolated by a parabola.
-std::optional<Peak> findPeak(const EdgeSampler& sampler, int station, const EdgeKind& kind, int reach) {
-  const std::optional<Station> sample = sampler.at(station);
-  if (!sample) return std::nullopt;
-  const double scale = kind.sign * sampler.scale();
-  const int sign = scale >= 0 ? 1 : -1;
-  int best = 0, strongest = std::numeric_limits<int>::min();
-  for (int k = -reach - 1; k <= reach + 1; ++k) {
-    const int gradient = sign * sample->twiceGradient(k);
-    best = gradient > strongest ? k : best;
-    strongest = std::max(strongest, gradient);
-  }
-  const auto g = [&](int k) { return scale * sample->twiceGradient(k); };
-  if (std::abs(best) > reach || g(best) < kind.min_gradient) return std::nullopt;
-  const double before = g(best - 1), after = g(best + 1);
-  return sampler.peak(*sample, best + 0.5 * (before - after) / (before - 2 * g(best) + after), g(best));
-}
-
 /// Peaks at so many rows or columns, or all, between two distances along the line.
-void collect(const EdgeSampler& sampler, double from, double to, int most, const EdgeKind& kind, int reach,
+template <int kReach>
+void collect(const EdgeSampler& sampler, double from, double to, int most, const EdgeKind& kind,
              Peaks& peaks) {
   const Axis& axis = sampler.axis();
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
@@ -131,9 +139,10 @@ void collect(const EdgeSampler& sampler, double from, double to, int most, const
   peaks.stations = 0;
   peaks.resize(2 * kMaxStations);
   int count = 0;
+  Peak peak;
   for (int station = first; station <= last; station += step) {
     ++peaks.stations;
-    if (const auto peak = findPeak(sampler, station, kind, reach)) peaks.set(count++, *peak);
+    if (sampler.findPeak<kReach>(station, kind, peak)) peaks.set(count++, peak);
   }
   peaks.resize(count);
 }
@@ -144,9 +153,9 @@ double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& k
   double end = from;
   int misses = 0;
   for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
-    const auto peak = findPeak(sampler, station, kind, 1);
-    if (peak && std::abs(peak->across) < 1) {
-      end = peak->along;
+    Peak peak;
+    if (sampler.findPeak<1>(station, kind, peak) && std::abs(peak.across) < 1) {
+      end = peak.along;
       misses = 0;
     } else {
       ++misses;
@@ -162,11 +171,11 @@ int edgeSign(const EdgeSampler& sampler, double half) {
   const int first = cvRound(axis.point(-half)[axis.major]), last = cvRound(axis.point(half)[axis.major]);
   const int step = std::max(1, (last - first) / 16);
   for (int station = first; station <= last; station += step)
-    if (const std::optional<Station> sample = sampler.at(station)) {
+    if (const Station sample = sampler.at(station); sample.grey != nullptr) {
       int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
       for (int k = 1 - kRadius; k < kRadius; ++k) {
-        lowest = std::min(lowest, sample->twiceGradient(k));
-        highest = std::max(highest, sample->twiceGradient(k));
+        lowest = std::min(lowest, sample.twiceGradient(k));
+        highest = std::max(highest, sample.twiceGradient(k));
       }
       sum += sampler.scale() * (highest + lowest);
     }
@@ -198,7 +207,7 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
     const auto used = (peaks.weight > 0).count();
     return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
   };
-  collect(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, 2, peaks);
+  collect<2>(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, peaks);
   if (peaks.size() < kMinStations) return std::nullopt;
   const Fit coarse = fitRobustly(peaks, scale);
   if (!isLine()) return std::nullopt;
@@ -208,7 +217,7 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
   const EdgeSampler sampler(image, ground, axis);
   from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
   to = grow(sampler, to - coarse.centre, kGrowStep, kind);
-  collect(sampler, from, to, kMaxStations, kind, 1, peaks);
+  collect<1>(sampler, from, to, kMaxStations, kind, peaks);
   if (peaks.size() < kMinStations) return std::nullopt;
   const Fit fit = refit(peaks, scale);
   if (!isLine()) return std::nullopt;

@@ -1,6 +1,7 @@
 #include "lines/segment_scanner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -33,8 +34,11 @@ class GrowingLine {
     svv_ += v * v;
     svu_ += v * u;
     suu_ += u * u;
+  }
+  /// To what has been added.
+  void fit() {
     const double svv = svv_ + kSlopePrior, svu = svu_ + kSlopePrior * first_slope_;
-    // One division for both: the next station waits for it.
+    // One division for both: the next stations wait for it.
     const double determinant = n_ * svv - sv_ * sv_, inverse = 1 / (n_ * determinant);
     slope_ = (n_ * svu - sv_ * su_) * (n_ * inverse);
     offset_ = (su_ - slope_ * sv_) * (determinant * inverse);
@@ -184,27 +188,31 @@ class SteepEdges {
 
   /// Column of the strongest brightness step of this sign within a pixel of the expected place, or -1.
   int edgeAt(int v, double expected, int sign) const {
+    constexpr int kLeft = 3, kRight = 4;  // pixels that are loaded with the middle one
     const int middle = static_cast<int>(expected + 0.5);
-    if (!(expected >= 2) || middle + 2 >= image_.cols) return -1;
-    if (v < 1 || v + 1 >= image_.rows) return -1;
-    const uchar* row = image_.ptr<uchar>(v) + middle - 2;
+    if (!(expected >= kLeft) || middle + kRight >= image_.cols || v < 1 || v + 1 >= image_.rows) return -1;
+    const uchar* row = image_.ptr<uchar>(v) + middle - kLeft;
     const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image_.step);
-    int sums[5];
-    for (int k = 0; k < 5; ++k) sums[k] = sign * (row[k - stride] + 2 * row[k] + row[k + stride]);
-    int best = -1, strongest = least_ - 1;
-    for (const int k : {1, 0, 2}) {
-      const int step = sums[k + 2] - sums[k];
-      if (step <= strongest) continue;
-      strongest = step;
-      best = middle - 1 + k;
-    }
-    return best >= 0 && ground_.has(best, v) ? best : -1;
+    const cv::v_uint16x8 here = cv::v_load_expand(row);
+    const cv::v_int16x8 sums = cv::v_reinterpret_as_s16(here + here + cv::v_load_expand(row - stride) +
+                                                        cv::v_load_expand(row + stride));
+    const cv::v_int16x8 steps = cv::v_rotate_right<2>(sums) - sums;  // i: across pixel middle - 2 + i
+    // Of steps that are as strong the one in the middle, then the one before: that is in the lowest bits.
+    constexpr int kBase = 4;
+    static constexpr std::array<int, kBase> kPlaces = {1, -1, 0, 0};  // by those bits, from the middle
+    const int strongest =
+        std::max({kBase * sign * cv::v_extract_n<2>(steps) + 2, kBase * sign * cv::v_extract_n<1>(steps) + 1,
+                  kBase * sign * cv::v_extract_n<3>(steps)});
+    if (strongest < kBase * least_) return -1;
+    const int best = middle + kPlaces[strongest & (kBase - 1)];
+    return ground_.has(best, v) ? best : -1;
   }
 
   template <class Emit>
   void follow(int u, int v, int sign, double slope, const Emit& emit) {
     GrowingLine line(slope);
     line.add(0, 0);
+    line.fit();
     struct Side {
       int step, end = 0, misses = 0;
       bool open = true;
@@ -216,17 +224,18 @@ class SteepEdges {
         if (!side.open) continue;
         const int station = side.step * distance;
         ++looked;
-        const bool inside = v + station >= 0 && v + station < image_.rows;
-        const int found = inside ? edgeAt(v + station, u + line.at(station), sign) : -1;
-        if (found >= 0 && std::abs(found - u - line.at(station)) < 1.25) {
+        const double expected = u + line.at(station);
+        const int found = edgeAt(v + station, expected, sign);
+        if (found >= 0 && std::abs(found - expected) < 1.25) {
           line.add(station, found - u);
           side.end = station;
           side.misses = 0;
-        } else if (!inside || ++side.misses * skip > limits_.max_gap) {
+        } else if (++side.misses * skip > limits_.max_gap) {
           side.open = false;
           looked -= side.misses;
         }
       }
+      line.fit();
       if (distance == kFirstLook && line.count() < kLeastShare * looked) return;
     }
     const double length = (sides[0].end - sides[1].end) * std::hypot(1, line.slope());

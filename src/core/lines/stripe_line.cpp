@@ -42,8 +42,7 @@ struct Profile {
     const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
     return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
   }
-  /// Where the gradient has a minimum of at most -least: bit k + kHalf - 1 for pixel k, |k| <= kReach; bits
-  /// beyond mean nothing.
+  /// Where the gradient has a minimum of at most -least: bit k + kReach for pixel k, |k| <= kReach.
   unsigned minima(int least) const {
     alignas(16) std::array<schar, kPadded> is_minimum;
     const short highest = static_cast<short>(-least);
@@ -51,9 +50,11 @@ struct Profile {
       const short before = gradient[i], here = gradient[i + 1], after = gradient[i + 2];
       is_minimum[i] = static_cast<schar>((here <= highest) & (here <= before) & (here <= after) ? -1 : 0);
     }
-    return static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data()))) |
-           static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data() + kPadded / 2)))
-               << (kPadded / 2);
+    constexpr unsigned kWithinReach = (1U << (2 * kReach + 1)) - 1;
+    return (static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data()))) |
+            static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data() + kPadded / 2)))
+                << (kPadded / 2)) &
+           kWithinReach;
   }
 };
 static_assert(Profile::kPixels <= Profile::kPadded, "all of a profile is in it");
@@ -127,15 +128,13 @@ std::optional<Station> stationOf(const Profiles& profiles, const Profile& profil
   const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
   Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
   const unsigned minima = profile.minima(static_cast<int>(std::ceil(kMinShare * strength)));
-  const auto isMinimum = [&](int k) { return (minima >> (k + kReach) & 1U) != 0; };
-  for (const int side : {0, 1}) {
-    const int step = side == 0 ? -1 : 1;
-    int k = own + step;
-    while (std::abs(k) <= kReach && !isMinimum(k)) k += step;
-    if (std::abs(k) > kReach) continue;
+  const unsigned before = minima & ((1U << (own + kReach)) - 1), after = minima >> (own + kReach + 1);
+  const auto set = [&](int side, int k) {
     station.other[side] = profiles.place(profile, profile.peak(k)).y();
     station.other_gradient[side] = profiles.gradient(-profile.at(k));
-  }
+  };
+  if (before != 0) set(0, 31 - __builtin_clz(before) - kReach);
+  if (after != 0) set(1, own + 1 + __builtin_ctz(after));
   return station;
 }
 
