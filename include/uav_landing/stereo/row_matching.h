@@ -5,16 +5,9 @@
 
 #include "uav_landing/image/window_template.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
+#include "uav_landing/stereo/row_warp.h"
 
 namespace uav_landing {
-
-/// How a small window of the reference image appears in the other one: the pixel at (dx, dy) from the
-/// window's centre lies at column position + scale dx + shear dy of the row dy from the same row.
-/// A plane with disparity a u + b v + c gives scale 1 - a and shear -b from left to right.
-struct RowWarp {
-  double scale = 1.0;
-  double shear = 0.0;
-};
 
 /// A place along the row that fits.
 struct RowCandidate {
@@ -58,15 +51,5 @@ class RowSearch {
   std::vector<float> column_sums_, column_squares_;
   std::vector<float> scores_;
 };
-
-/// Sub-pixel position by Gauss-Newton over (position, gain, offset): reference = gain other(warp) + offset.
-struct RowRefinement {
-  bool converged = false;
-  double position = 0;
-  double stddev = 0;  ///< 1 sigma of the position from residuals and gradient, pixels
-  double score = 0;   ///< correlation after refinement
-};
-RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
-                             const RowWarp& warp, int radius);
 
 }  // namespace uav_landing

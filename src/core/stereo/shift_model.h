@@ -1,7 +1,7 @@
 #pragma once
 
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/stereo/row_matching.h"
+#include "uav_landing/stereo/row_warp.h"
 
 namespace uav_landing {
 

@@ -12,6 +12,7 @@
 #include "uav_landing/image/corners.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/row_matching.h"
+#include "uav_landing/stereo/row_refinement.h"
 
 namespace uav_landing {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "support/random_texture.h"
 #include "uav_landing/image/match_image.h"
+#include "uav_landing/stereo/row_refinement.h"
 
 namespace uav_landing {
 namespace {

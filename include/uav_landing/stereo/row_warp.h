@@ -1,0 +1,13 @@
+#pragma once
+
+namespace uav_landing {
+
+/// How a small window of the reference image appears in the other one: the pixel at (dx, dy) from the
+/// window's centre lies at column position + scale dx + shear dy of the row dy from the same row.
+/// A plane with disparity a u + b v + c gives scale 1 - a and shear -b from left to right.
+struct RowWarp {
+  double scale = 1.0;
+  double shear = 0.0;
+};
+
+}  // namespace uav_landing
