@@ -96,6 +96,8 @@ uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
 uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
 
 # stages
+uav_landing_add_gtest(approach_angle_normal_test test/core/stages/approach_angle_normal_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(kalman_height_attitude_test test/core/stages/kalman_height_attitude_test.cpp)

@@ -8,99 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "support/ground_renderer.h"
+#include "support/approach_scene.h"
 
 namespace uav_landing {
 namespace {
 
-using test::GroundRenderer;
+using test::ApproachScene;
+using test::attitude;
+using test::expectMotion;
 using test::kDegree;
+using test::kPeriod;
 using test::Movement;
 using test::Pose;
-
-constexpr double kPeriod = 0.1;  // s
-constexpr double kHeightShare = 1e-3, kNormalStddev = 5e-4;
-
-/// One rig over one ground with two painted lines; what stereo says of it is the truth with a small
-/// covariance.
-struct Scene {
-  StereoRig rig = test::makeRig(320, 240, 0.65);
-  RigModel model = test::makeModel(rig);
-  GroundRenderer ground;
-  ApproachAngleParameters parameters;
-
-  explicit Scene(unsigned seed) : ground(seed) {
-    ground.line_offset = 1.0;
-    ground.line_width = 0.12;
-  }
-
-  StereoDepthResult stereo(const Pose& pose, double stamp) const {
-    StereoDepthResult result;
-    result.stamp = stamp;
-    result.plane = test::exactPlane(pose, kHeightShare, kNormalStddev);
-    for (int v = rig.size.height * 45 / 100; v < rig.size.height - 10; v += 7)
-      for (int u = 10; u < rig.size.width - 10; u += 9) {
-        const double disparity = result.plane.disparity(rig, u, v);
-        if (disparity > 1) result.points.push_back({double(u), double(v), disparity, 0.05, true});
-      }
-    return result;
-  }
-
-  std::vector<ApproachAngleResult> run(const std::function<Pose(double)>& path, int frames) const {
-    ApproachAngleStage stage(model, parameters);
-    std::vector<ApproachAngleResult> results;
-    for (int i = 0; i < frames; ++i) {
-      const Pose pose = path(i * kPeriod);
-      results.push_back(stage.process(i * kPeriod, ground.left(rig, pose), ground.right(rig, pose),
-                                      stereo(pose, i * kPeriod)));
-    }
-    return results;
-  }
-};
-
-Pose attitude(double pitch_deg, double roll_deg, double yaw_deg) {
-  Pose pose;
-  pose.pitch = pitch_deg * kDegree;
-  pose.roll = roll_deg * kDegree;
-  pose.yaw = yaw_deg * kDegree;
-  return pose;
-}
-
-/// Straight path from (x, 0, height): angle below the horizontal, drift to the left.
-std::function<Pose(double)> straight(const Pose& start, double height, double speed, double angle_deg,
-                                     double track_deg = 0) {
-  return [=](double t) {
-    Pose pose = start;
-    const double angle = angle_deg * kDegree, track = track_deg * kDegree;
-    pose.position = Eigen::Vector3d(0, 0, height) + speed * t *
-                                                        Eigen::Vector3d(std::cos(angle) * std::cos(track),
-                                                                        std::cos(angle) * std::sin(track),
-                                                                        -std::sin(angle));
-    return pose;
-  };
-}
-
-/// A motion is the one that the poses say, within what it claims; of the length of t, a thousandth is granted
-/// for errors that neighbouring matches have in common.
-void expectMotion(const ApproachAngleResult::Motion& motion, const Movement& truth, double height,
-                  const std::string& what) {
-  ASSERT_FALSE(motion.failure) << what << ": " << motion.failure.message();
-  const double stddev = std::sqrt(motion.angle_variance);
-  EXPECT_NEAR(motion.angle, truth.angle, 3.5 * stddev) << what;
-  EXPECT_LT(stddev, 0.6 * kDegree) << what;
-  const Eigen::Vector3d t = truth.t / height;
-  const Eigen::AngleAxisd turn(truth.R);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(motion.translation_over_height[i], t[i],
-                4 * std::hypot(std::sqrt(motion.covariance(3 + i, 3 + i)), 1e-3 * t.norm()))
-        << what;
-    EXPECT_NEAR(motion.rotation[i], turn.angle() * turn.axis()[i], 4 * std::sqrt(motion.covariance(i, i)))
-        << what;
-  }
-}
+using test::straight;
 
 TEST(ApproachAngleStage, ARepeatedPictureIsNoStandstillAndTheStepAfterItIsOverTheTimeOfBoth) {
-  const Scene scene(7);
+  const ApproachScene scene(7);
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
   ApproachAngleStage stage(scene.model, scene.parameters);
   ApproachAngleResult result;
@@ -141,7 +64,7 @@ TEST(ApproachAngleStage, MeasuresDescendingLevelDriftingAndRollingMotion) {
       {"rolling", rolling},
   };
   for (const Case& motion : cases) {
-    const Scene scene(31);
+    const ApproachScene scene(31);
     constexpr int kFrames = 7;
     const std::vector<ApproachAngleResult> results = scene.run(motion.path, kFrames);
     const Pose now = motion.path((kFrames - 1) * kPeriod), previous = motion.path((kFrames - 2) * kPeriod);
@@ -163,7 +86,7 @@ TEST(ApproachAngleStage, MeasuresDescendingLevelDriftingAndRollingMotion) {
 }
 
 TEST(ApproachAngleStage, SaysNotYetOnTheFirstFrame) {
-  const Scene scene(32);
+  const ApproachScene scene(32);
   const ApproachAngleResult first = scene.run(straight(attitude(-8, 0, 0), 1.8, 1.4, 12), 1).front();
   EXPECT_EQ(first.failure.reason, Reason::kNotYet);
   EXPECT_EQ(first.step.failure.reason, Reason::kNotYet);
@@ -180,7 +103,7 @@ TEST(ApproachAngleStage, ClaimsNoAngleWhenStandingStillOrOnlyTurning) {
     return pose;
   };
   for (const std::function<Pose(double)>& path : {std::function<Pose(double)>(still), {turning}}) {
-    const Scene scene(33);
+    const ApproachScene scene(33);
     const std::vector<ApproachAngleResult> results = scene.run(path, 6);
     for (size_t i = 1; i < results.size(); ++i) {
       EXPECT_EQ(results[i].failure.reason, Reason::kNoMotion) << i << " " << results[i].failure.message();
@@ -197,182 +120,12 @@ TEST(ApproachAngleStage, ClaimsNoAngleWhenStandingStillOrOnlyTurning) {
   }
 }
 
-TEST(ApproachAngleStage, WorksWithoutStereoFromPaintedLines) {
-  Scene scene(34);
-  scene.parameters.use_stereo = false;
-  scene.ground.contrast = 8;
-  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
-  constexpr int kFrames = 6;
-  const std::vector<ApproachAngleResult> results = scene.run(path, kFrames);
-  const ApproachAngleResult& last = results.back();
-  ASSERT_FALSE(last.failure) << last.failure.message();
-  const Pose now = path((kFrames - 1) * kPeriod);
-  // The lines run along x.
-  const Eigen::Vector3d wanted = now.seen(Eigen::Vector3d::UnitX());
-  EXPECT_LT(std::acos(std::min(1.0, last.vanishing_direction.dot(wanted))), 0.5 * kDegree);
-  EXPECT_LT(std::acos(std::min(1.0, last.n.dot(now.down()))), 2 * kDegree);
-  const double stddev = std::sqrt(last.window.angle_variance);
-  EXPECT_NEAR(last.window.angle, 10 * kDegree, 3.5 * stddev);
-  EXPECT_LT(stddev, 1.5 * kDegree);
-}
-
-TEST(ApproachAngleStage, SaysThatThereIsNoGroundNormalWithoutStereoAndLines) {
-  Scene scene(35);
-  scene.parameters.use_stereo = false;
-  scene.ground.line_offset = 0;
-  scene.ground.contrast = 1.5;  // strong texture has streaks along the runway
-  const std::vector<ApproachAngleResult> results = scene.run(straight(attitude(-8, 0, 0), 1.8, 1.4, 10), 3);
-  EXPECT_EQ(results.back().failure.reason, Reason::kNoGroundNormal) << results.back().failure.message();
-  EXPECT_TRUE(results.back().left.failure && results.back().right.failure);
-}
-
-TEST(ApproachAngleStage, GivesTheDirectionOfTheRunwayInBothViews) {
-  Scene scene(36);
-  scene.ground.contrast = 5;
-  const auto path = straight(attitude(-7, 4, 5), 1.8, 1.4, 8);
-  const ApproachAngleResult result = scene.run(path, 1).front();
-  const Eigen::Vector3d wanted = path(0).seen(Eigen::Vector3d::UnitX());
-  for (const ApproachAngleResult::View* view : {&result.left, &result.right}) {
-    ASSERT_FALSE(view->failure) << view->failure.message();
-    EXPECT_LT(std::acos(std::min(1.0, view->vanishing_direction.dot(wanted))), 0.3 * kDegree);
-    EXPECT_GE(
-        std::count_if(view->lines.begin(), view->lines.end(), [](const auto& line) { return line.inlier; }),
-        scene.parameters.min_lines);
-  }
-  EXPECT_LT(std::acos(std::min(1.0, result.vanishing_direction.dot(wanted))), 0.3 * kDegree);
-  const Eigen::Vector3d error = result.vanishing_direction - wanted;
-  for (int i = 0; i < 2; ++i) EXPECT_NEAR(error[i], 0, 4 * std::sqrt(result.vanishing_covariance(i, i)));
-  // What the runway's own slope and curve turn it by is up and down: seen from above it is straight.
-  const Eigen::Vector3d across = result.n.cross(result.vanishing_direction).normalized();
-  const double straightness = std::pow(scene.parameters.runway_straightness_deg * kDegree, 2);
-  EXPECT_LT(across.dot(result.vanishing_covariance * across), 0.5 * straightness);
-  EXPECT_GT(result.n.dot(result.vanishing_covariance * result.n), 0.98 * straightness);
-}
-
-TEST(ApproachAngleStage, CorrectsTheStereoNormalByTheVanishingPoint) {
-  // Stereo that is wrong in pitch by one of its own sigma, of 0.3 degrees.
-  Scene scene(37);
-  scene.ground.contrast = 5;
-  const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
-  Pose believed = pose;
-  believed.pitch += 0.3 * kDegree;
-  StereoDepthResult stereo = scene.stereo(pose, 0);
-  stereo.plane = test::exactPlane(believed, kHeightShare, 0.3 * kDegree);
-  ApproachAngleStage stage(scene.model, scene.parameters);
-  const ApproachAngleResult result =
-      stage.process(0, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo);
-  ASSERT_TRUE(result.vanishing_direction.allFinite());
-  EXPECT_LT(std::abs(pitchOf(result.n) - pose.pitch), 0.15 * kDegree);
-}
-
-/// What a perfect inertial sensor says, tipped by an error of pitch.
-AttitudePrior inertial(const Pose& then, const Pose& now, double pitch_error = 0) {
-  constexpr double kAttitude = 0.5 * kDegree, kRotation = 0.02 * kDegree;
-  AttitudePrior prior;
-  prior.failure = {};
-  Pose tipped = now;
-  tipped.pitch += pitch_error;
-  prior.normal = tipped.down();
-  prior.normal_covariance =
-      kAttitude * kAttitude * (Eigen::Matrix3d::Identity() - prior.normal * prior.normal.transpose());
-  const Eigen::AngleAxisd turn(Movement(then, now).R);
-  prior.duration = kPeriod;
-  prior.rotation = turn.angle() * turn.axis();
-  prior.rotation_covariance = kRotation * kRotation * Eigen::Matrix3d::Identity();
-  return prior;
-}
-
-TEST(ApproachAngleStage, AnInertialSensorIsGroundNormalEnough) {
-  // Neither stereo nor painted lines.
-  Scene scene(45);
-  scene.parameters.use_stereo = false;
-  scene.parameters.runway_slope_stddev_deg = 0.4;
-  scene.ground.line_offset = 0;
-  const auto path = straight(attitude(-8, 3, 0), 1.8, 1.4, 10);
-  ApproachAngleStage stage(scene.model, scene.parameters);
-  ApproachAngleResult result;
-  for (int i = 0; i < 3; ++i) {
-    const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
-    result = stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
-                           {}, inertial(then, now));
-  }
-  EXPECT_FALSE(result.failure) << result.failure.message();
-  EXPECT_NEAR(result.step.angle, 10 * kDegree, 0.5 * kDegree);
-  // The slope of the ground is not known.
-  EXPECT_GT(std::sqrt(pitchVariance(result.imu.normal, result.imu.normal_covariance)),
-            0.99 * std::hypot(0.5, 0.4) * kDegree);
-}
-
-TEST(ApproachAngleStage, FusesAnInertialSensorWithStereoUnlessItContradicts) {
-  Scene scene(46);
-  scene.ground.line_offset = 0;
-  const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
-  StereoDepthResult stereo = scene.stereo(pose, 0);
-  stereo.plane = test::exactPlane(pose, kHeightShare, 0.7 * kDegree);
-  const auto run = [&](double error, bool use) {
-    scene.parameters.use_imu = use;
-    ApproachAngleStage stage(scene.model, scene.parameters);
-    return stage.process(0, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo,
-                         inertial(pose, pose, error));
-  };
-  const double alone = pitchOf(run(0.5 * kDegree, false).n);
-  const ApproachAngleResult fused = run(0.5 * kDegree, true);
-  // 0.7 degrees against 0.5 and the ground's 0.5 are equals.
-  EXPECT_NEAR(pitchOf(fused.n) - alone, 0.25 * kDegree, 0.1 * kDegree);
-  EXPECT_FALSE(fused.imu.failure) << fused.imu.failure.message();
-  const ApproachAngleResult wrong = run(8 * kDegree, true);
-  EXPECT_EQ(pitchOf(wrong.n), alone);
-  EXPECT_EQ(wrong.imu.failure.reason, Reason::kRejected);
-  EXPECT_NE(wrong.imu.failure.message().find("deg off the ground ahead"), std::string::npos);
-}
-
-TEST(ApproachAngleStage, FollowsAQuickTurnByTheInertialSensorsRotation) {
-  // From one frame to the next 9 degrees of yaw and 5 of pitch, there and back: more than is searched.
-  Scene scene(47);
-  const auto path = [](double t) {
-    const bool there = std::lround(t / kPeriod) % 2 == 1;
-    return straight(attitude(there ? -13 : -8, 0, there ? 9 : 0), 1.8, 1.4, 10)(t);
-  };
-  const auto run = [&](bool use) {
-    scene.parameters.use_imu = use;
-    ApproachAngleStage stage(scene.model, scene.parameters);
-    int known = 0;
-    for (int i = 0; i < 5; ++i) {
-      const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
-      const ApproachAngleResult result =
-          stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
-                        scene.stereo(now, i * kPeriod), inertial(then, now));
-      if (result.step.failure) continue;
-      ++known;
-      expectMotion(result.step, Movement(then, now), now.height(), "frame " + std::to_string(i));
-    }
-    return known;
-  };
-  EXPECT_EQ(run(true), 4);
-  EXPECT_LT(run(false), 4);
-}
-
-TEST(ApproachAngleStage, LeavesOutARotationThatTheImagesContradict) {
-  Scene scene(48);
-  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
-  ApproachAngleStage stage(scene.model, scene.parameters);
-  for (int i = 0; i < 4; ++i) {
-    const Pose then = path((i - 1) * kPeriod), now = path(i * kPeriod);
-    AttitudePrior prior = inertial(then, now);
-    prior.rotation.y() += 1.0 * kDegree;
-    const ApproachAngleResult result =
-        stage.process(i * kPeriod, scene.ground.left(scene.rig, now), scene.ground.right(scene.rig, now),
-                      scene.stereo(now, i * kPeriod), prior);
-    if (i > 0) expectMotion(result.step, Movement(then, now), now.height(), "frame " + std::to_string(i));
-  }
-}
-
 TEST(ApproachAngleStage, GivesTheGeneralAngleAndEq1AsGeometrySays) {
   // With drift eq (1) is the difference of pitch and the focus' elevation in the image: worked out from the
   // poses.
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.8, 10, 20);
   constexpr int kFrames = 3;
-  Scene general(38), eq1(38);
+  ApproachScene general(38), eq1(38);
   general.parameters.angle_window = eq1.parameters.angle_window = 0;
   eq1.parameters.angle_formula = AngleFormula::kEq1;
   const ApproachAngleResult a = general.run(path, kFrames).back(), b = eq1.run(path, kFrames).back();
@@ -390,7 +143,7 @@ TEST(ApproachAngleStage, GivesTheGeneralAngleAndEq1AsGeometrySays) {
 TEST(ApproachAngleStage, PublishesThePapersFormsWhateverTheWindow) {
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.6, 10, 20);
   for (const bool eq1 : {true, false}) {
-    Scene scene(38);
+    ApproachScene scene(38);
     scene.parameters.angle_formula = eq1 ? AngleFormula::kEq1 : AngleFormula::kGeneral;
     scene.parameters.foe_method = eq1 ? FoeMethod::kMotion : FoeMethod::kSlidingWindow;
     const ApproachAngleResult result = scene.run(path, 5).back();
@@ -401,7 +154,7 @@ TEST(ApproachAngleStage, PublishesThePapersFormsWhateverTheWindow) {
 }
 
 TEST(ApproachAngleStage, FindsTheFocusByTheSlidingWindow) {
-  Scene scene(39);
+  ApproachScene scene(39);
   scene.parameters.foe_method = FoeMethod::kSlidingWindow;
   scene.parameters.angle_window = 0;
   const auto path = [](double t) {
@@ -422,7 +175,7 @@ TEST(ApproachAngleStage, FindsTheFocusByTheSlidingWindow) {
 }
 
 TEST(ApproachAngleStage, ForgetsThePastWhenTheStampDoesNotIncrease) {
-  const Scene scene(40);
+  const ApproachScene scene(40);
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
   for (const double back : {0.0, -20.0}) {
     ApproachAngleStage stage(scene.model, scene.parameters);
@@ -441,7 +194,7 @@ TEST(ApproachAngleStage, ForgetsThePastWhenTheStampDoesNotIncrease) {
 }
 
 TEST(ApproachAngleStage, GoesOnAfterBadPairs) {
-  const Scene scene(41);
+  const ApproachScene scene(41);
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
   ApproachAngleStage stage(scene.model, scene.parameters);
   const auto process = [&](double t, const cv::Mat& left, const StereoDepthResult& stereo) {
@@ -465,7 +218,7 @@ TEST(ApproachAngleStage, GoesOnAfterBadPairs) {
 }
 
 TEST(ApproachAngleStage, MeasuresStepsOverALostPair) {
-  const Scene scene(42);
+  const ApproachScene scene(42);
   const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
   ApproachAngleStage stage(scene.model, scene.parameters);
   ApproachAngleResult result;
