@@ -4,7 +4,7 @@
 
 namespace uav_landing {
 
-/// Clears the mask (mono8) wherever a u + b v + c < 0 at the pixel (u, v).
-void keepHalfPlane(cv::Mat& mask, double a, double b, double c);
+/// The mask (mono8), but 0 wherever a u + b v + c < 0 at the pixel (u, v). kept: takes it; may be the mask.
+void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& kept);
 
 }  // namespace uav_landing

@@ -15,12 +15,6 @@ class ImageMemory {
     bytes_.resize(std::max(bytes_.size(), static_cast<size_t>(size.area())));
     return cv::Mat(size, CV_8UC1, bytes_.data());
   }
-  /// A copy of a mono8 image, good until the next call.
-  cv::Mat copyOf(const cv::Mat& other) {
-    cv::Mat copy = image(other.size());
-    other.copyTo(copy);
-    return copy;
-  }
 
  private:
   std::vector<uchar> bytes_;

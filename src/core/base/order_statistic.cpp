@@ -141,6 +141,7 @@ double orderStatistic(const double* values, size_t count, size_t rank) {
     if (found < kFar) return found;
   }
   std::vector<double> left;
+  left.reserve(range.below_high - range.below_low);
   for (size_t i = 0; i < count; ++i)
     if (!(values[i] < range.low || values[i] >= range.high)) left.push_back(values[i]);
   if (rank - range.below_low >= left.size()) return std::numeric_limits<double>::quiet_NaN();

@@ -5,7 +5,8 @@
 
 namespace uav_landing {
 
-void keepHalfPlane(cv::Mat& mask, double a, double b, double c) {
+void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& kept) {
+  kept.create(mask.size(), CV_8UC1);
   for (int v = 0; v < mask.rows; ++v) {
     const double rest = b * v + c;
     // Kept are the columns first..last - 1.
@@ -13,9 +14,11 @@ void keepHalfPlane(cv::Mat& mask, double a, double b, double c) {
     if (a > 0) first = static_cast<int>(std::clamp(std::ceil(-rest / a), 0.0, double(mask.cols)));
     if (a < 0) last = static_cast<int>(std::clamp(std::floor(-rest / a) + 1, 0.0, double(mask.cols)));
     if (a == 0 && rest < 0) last = 0;
-    uchar* row = mask.ptr<uchar>(v);
+    last = std::max(first, last);
+    uchar* row = kept.ptr<uchar>(v);
     std::fill(row, row + first, uchar(0));
-    std::fill(row + std::max(first, last), row + mask.cols, uchar(0));
+    if (kept.data != mask.data) std::copy(mask.ptr<uchar>(v) + first, mask.ptr<uchar>(v) + last, row + first);
+    std::fill(row + last, row + mask.cols, uchar(0));
   }
 }
 

@@ -24,6 +24,11 @@ struct LineColumns {
   std::vector<double> middle_u, middle_v, along_u, along_v, across_u, across_v, top_u, top_v;
   std::vector<double> half2, reach, tolerance2;  // half: length; reach: with the clearance
 
+  void reserve(size_t count) {
+    for (std::vector<double>* column : {&middle_u, &middle_v, &along_u, &along_v, &across_u, &across_v,
+                                        &top_u, &top_v, &half2, &reach, &tolerance2})
+      column->reserve(count);
+  }
   void add(const VanishingCandidate& line, double tolerance) {
     middle_u.push_back(line.middle.x());
     middle_v.push_back(line.middle.y());
@@ -64,6 +69,9 @@ class Score {
  public:
   explicit Score(const VanishingLines& lines) : lines_(lines) {
     groupPieces();
+    columns_.reserve(lines.all().size());
+    turns_.reserve(lines.all().size());
+    impossible_.reserve(lines.all().size());
     for (const VanishingCandidate& line : lines.all()) {
       columns_.add(line, lines.toleranceOf(line));
       turns_.push_back(lines.toleranceOf(line) / line.half * lines.perTurn(line));

@@ -50,6 +50,7 @@ double VanishingLines::toleranceOf(const VanishingCandidate& line) const {
 std::vector<int> VanishingLines::passing(const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d V = K_ * direction;
   std::vector<int> indices;
+  indices.reserve(lines_.size());
   for (int i = 0; i < count(); ++i) {
     const VanishingCandidate& line = (*this)[i];
     if (line.endMiss2(V) <= std::pow(toleranceOf(line), 2) && !line.isAboveHorizon(V)) indices.push_back(i);

@@ -17,12 +17,13 @@ constexpr double kBorder = 16;             // px
 constexpr double kAlong = 3;               // sigma between the direction of a line and that of the runway
 constexpr double kStraight = 0.5;  // px, 1 sigma by which an edge in the picture is not a straight line
 
-double distanceOf(double lateral) { return std::hypot(1.0, lateral); }
+double distanceOf(double lateral) { return std::sqrt(1 + lateral * lateral); }
 
 bool isSame(const GroundEdge& a, const GroundEdge& b, double more_variance) {
+  if (a.brighter_left != b.brighter_left) return false;
   const double tolerance = kSameEdge * std::sqrt(a.variance + b.variance + more_variance) +
                            kLeastTolerance * distanceOf(a.lateral);
-  return a.brighter_left == b.brighter_left && std::abs(a.lateral - b.lateral) <= tolerance;
+  return std::abs(a.lateral - b.lateral) <= tolerance;
 }
 
 /// One view's lines on the ground.

@@ -29,8 +29,8 @@ cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::V
   const double margin = 0.01 * mask.rows;
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
   const double scale = line.head<2>().norm();
-  cv::Mat ground = memory.copyOf(mask);
-  keepHalfPlane(ground, line.x(), line.y(), line.z() - margin * scale);
+  cv::Mat ground = memory.image(mask.size());
+  keepHalfPlane(mask, line.x(), line.y(), line.z() - margin * scale, ground);
   return ground;
 }
 

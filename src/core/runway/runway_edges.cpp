@@ -56,7 +56,9 @@ class Search {
 
   std::vector<Symmetry> symmetries() const {
     std::vector<Symmetry> found;
-    for (const MirroredPair& pair : pairs_) found.push_back(around(pair));
+    found.reserve(pairs_.size());
+    Memory memory;
+    for (const MirroredPair& pair : pairs_) found.push_back(around(pair, memory));
     std::sort(found.begin(), found.end(),
               [](const Symmetry& l, const Symmetry& r) { return l.score > r.score; });
     return found;
@@ -192,17 +194,23 @@ class Search {
     return std::pow(a.centre - b.centre, 2) > kSafe * kGate * kGate * most;
   }
 
+  /// For one centre after another.
+  struct Memory {
+    std::vector<std::pair<double, const MirroredPair*>> near;  // pairs by their distance, in tolerances
+    std::vector<char> used;                                    // edges
+  };
+
   /// Every edge counts in one pair only, the one that fits best.
-  Symmetry around(const MirroredPair& centre) const {
-    std::vector<std::pair<double, const MirroredPair*>> near;
-    near.reserve(pairs_.size());
+  Symmetry around(const MirroredPair& centre, Memory& memory) const {
+    auto& [near, used] = memory;
+    near.clear();
     for (const MirroredPair& pair : pairs_) {
       if (areApart(pair, centre)) continue;
       const double miss = std::abs(pair.centre - centre.centre) / toleranceOf(pair, centre);
       if (miss <= 1) near.emplace_back(miss, &pair);
     }
     std::sort(near.begin(), near.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
-    std::vector<char> used(edges_.size(), 0);
+    used.assign(edges_.size(), 0);
     Symmetry symmetry;
     symmetry.pairs.reserve(near.size());
     symmetry.centre = centre.centre;

@@ -194,9 +194,9 @@ struct ApproachAngleStage::Implementation {
     // What is texture enough, matching decides; corners spread over the ground as for stereo.
     constexpr double kQuality = 1e-7, kDistance = 4.0, kHarris = 0.04;
     ScopedTimer timer(timings, "harris_corners_motion");
-    cv::Mat mask = left_mask.clone();
     const Eigen::Vector3d slope = model.rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
-    keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope);
+    cv::Mat mask;
+    keepHalfPlane(left_mask, slope.x(), slope.y(), slope.z() - kLeastSlope, mask);
     std::vector<TrackedCorner> corners;
     for (const cv::Point& point :
          findCorners(left, mask, parameters.corner_count, kQuality, kDistance, kHarris)) {

@@ -36,6 +36,8 @@ constexpr size_t kQuietestShare = 10, kQuietest = 20;
 // more noise it is too uncertain.
 void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
   std::vector<double> residuals, stddevs, ratios, missing;
+  for (std::vector<double>* values : {&residuals, &stddevs, &ratios, &missing})
+    values->reserve(samples.size());
   for (const DisparitySample& sample : samples) {
     residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
     stddevs.push_back(sample.stddev);

@@ -213,9 +213,11 @@ bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least)
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters) {
   static thread_local ImageMemory memory;
-  cv::Mat mask = memory.copyOf(level.left_mask);
-  for (const Eigen::Vector3d& side : GroundLimits(level, g).sides)
-    keepHalfPlane(mask, side.x(), side.y(), side.z());
+  cv::Mat mask = level.left_mask, kept = memory.image(mask.size());
+  for (const Eigen::Vector3d& side : GroundLimits(level, g).sides) {
+    keepHalfPlane(mask, side.x(), side.y(), side.z(), kept);
+    mask = kept;
+  }
   return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
                      parameters.harris_k);
 }

@@ -181,6 +181,7 @@ class ProfileFit {
   /// Stddevs of the samples that take a bend for noise are made smaller.
   void calmDown() {
     std::vector<double> ratios;
+    ratios.reserve(given_.size());
     for (size_t i = 0; i < given_.size(); ++i)
       if (plane_.agrees[i])
         ratios.push_back(std::abs(flattened_[i].disparity - disparity(i)) / flattened_[i].stddev);
@@ -215,6 +216,7 @@ class ProfileFit {
   void findDistances() {
     findPlaces();
     std::vector<double> seen;
+    seen.reserve(given_.size());
     for (size_t i = 0; i < given_.size(); ++i)
       if (plane_.agrees[i]) seen.push_back(reaches_[i] / expected_[i]);
     top_ = rig_.size.height;

@@ -8,13 +8,16 @@ namespace {
 void expectHalfPlane(double a, double b, double c) {
   cv::Mat mask(13, 17, CV_8UC1, cv::Scalar(255));
   mask.at<uchar>(6, 8) = 0;
-  keepHalfPlane(mask, a, b, c);
+  cv::Mat kept;
+  keepHalfPlane(mask, a, b, c, kept);
   for (int v = 0; v < mask.rows; ++v) {
     for (int u = 0; u < mask.cols; ++u) {
-      const bool kept = a * u + b * v + c >= 0 && !(u == 8 && v == 6);
-      EXPECT_EQ(mask.at<uchar>(v, u) != 0, kept) << a << " " << b << " " << c << " at " << u << ", " << v;
+      const bool wanted = a * u + b * v + c >= 0 && !(u == 8 && v == 6);
+      EXPECT_EQ(kept.at<uchar>(v, u) != 0, wanted) << a << " " << b << " " << c << " at " << u << ", " << v;
     }
   }
+  keepHalfPlane(mask, a, b, c, mask);
+  EXPECT_EQ(cv::countNonZero(mask != kept), 0) << a << " " << b << " " << c << " in place";
 }
 
 TEST(KeepHalfPlane, ClearsWhatLiesOnTheOtherSide) {
