@@ -2,9 +2,9 @@
 
 #include "autopilot_messages.h"
 #include "pairing.h"
+#include "rate_limit.h"
 #include "reconfigure_server.h"
 #include "stage_nodelet.h"
-#include "time_difference.h"
 
 namespace uav_landing {
 
@@ -57,10 +57,7 @@ class AutopilotNodelet : public StageNodelet {
 
   void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
     const ros::Time& stamp = pose.header.stamp;
-    // Half a microsecond of slack: stamps are rounded.
-    const double period = 1 / parameters_.max_rate - 5e-7;
-    if (!last_stamp_.isZero() && stamp > last_stamp_ && secondsBetween(last_stamp_, stamp) < period) return;
-    last_stamp_ = stamp;
+    if (!rate_.passes(stamp, parameters_.max_rate)) return;
     const auto range = autopilotRange(height, pose, parameters_);
     const auto enu_pose = autopilotPose(pose, parameters_);
     if (range) range_publisher_.publish(*range);
@@ -83,7 +80,7 @@ class AutopilotNodelet : public StageNodelet {
   std::unique_ptr<Inputs> pairing_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher range_publisher_, pose_publisher_;
-  ros::Time last_stamp_;
+  RateLimit rate_;
   bool sent_lately_ = false;
   std::string last_reason_;  // why nothing was sent
 };

@@ -14,6 +14,9 @@ using CovarianceMap = Eigen::Map<const Covariance>;
 
 constexpr double kMinCosTilt = 0.5;
 
+/// Of the up axis against the vertical.
+double cosTilt(const Eigen::Isometry3d& runway_from_aircraft) { return runway_from_aircraft.linear()(2, 2); }
+
 bool positiveDefinite(const Covariance& covariance) {
   return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
 }
@@ -25,7 +28,7 @@ std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& heigh
                                                  const AutopilotParameters& parameters) {
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  const double cos_tilt = runway_from_aircraft.linear()(2, 2);
+  const double cos_tilt = cosTilt(runway_from_aircraft);
   const double distance = height.range / cos_tilt;
   if (!(cos_tilt >= kMinCosTilt) || !(distance >= 0) || !(distance <= parameters.max_range))
     return std::nullopt;
@@ -46,6 +49,7 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   const Eigen::Isometry3d enu_from_runway(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
+  if (!(cosTilt(runway_from_aircraft) >= kMinCosTilt)) return std::nullopt;
   const Eigen::Isometry3d enu_from_aircraft = enu_from_runway * runway_from_aircraft;
   Covariance turn = Covariance::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = enu_from_runway.linear();

@@ -22,7 +22,7 @@ struct AutopilotParameters {
     v.number("max_range", max_range, 1.0, 655.0, "m",
              "no range above this; the autopilot's message holds 16 bit of centimetres");
     v.number("max_rate", max_rate, 1.0, 1000.0, "Hz",
-             "pairs that follow faster are left out; autopilots lose what comes faster than they fuse");
+             "on average; pairs beyond are left out, as autopilots lose what comes faster than they fuse");
     v.number("max_position_stddev", max_position_stddev, 0.01, 10000.0, "m",
              "no pose while 1 sigma of x or y is more: before the runway has been found its origin is "
              "arbitrary");
@@ -40,7 +40,8 @@ std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& heigh
                                                  const AutopilotParameters& parameters);
 
 /// The pose with east, north, up for axes, covariance included. None when a number is not finite, the
-/// covariance not positive definite, or the place not known well enough.
+/// covariance not positive definite, the place not known well enough, or tilted by more than 60 degrees: that
+/// is no aircraft but a camera, whose z axis is forward.
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 

@@ -120,6 +120,9 @@ TEST(AutopilotPose, KeepsTheCorrelationsOfPositionAndRotation) {
 
 TEST(AutopilotPose, IsSilentRatherThanWrong) {
   const AutopilotParameters parameters;
+  auto camera = someWhere();  // its optical frame: z is forward
+  turn(camera, 1, 90 * kDegree);
+  EXPECT_FALSE(autopilotPose(camera, parameters));
   auto unknown_place = someWhere();
   unknown_place.pose.covariance[0] = 1e6;
   EXPECT_FALSE(autopilotPose(unknown_place, parameters));
