@@ -19,6 +19,7 @@
 #include "rig_watch.h"
 #include "runway_path.h"
 #include "stage_nodelet.h"
+#include "uav_landing/results/consistency_test.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
@@ -176,7 +177,10 @@ class KalmanHeightNodelet : public StageNodelet {
     const Eigen::Isometry3d rectified_from_child =
         child.left_from_child ? rectified_from_left * *child.left_from_child : Eigen::Isometry3d::Identity();
     const Eigen::Vector3d lever_arm = rectified_from_child.translation();
-    LandingResult estimate = child.left_from_child ? referTo(lever_arm, camera, step) : camera;
+    const GroundPlane plane = toResult(stereo).plane;
+    LandingResult estimate = child.left_from_child ? referTo(lever_arm, camera, plane, step,
+                                                             normalQuantile(parameters_.integrity_risk))
+                                                   : camera;
     if (child.failure) {
       estimate.failure = child.failure;
       estimate.height_valid = estimate.angle_valid = false;
@@ -196,7 +200,6 @@ class KalmanHeightNodelet : public StageNodelet {
       Eigen::Isometry3d runway_from_child = Eigen::Isometry3d::Identity();
       runway_from_child.linear() = runway_from_camera * rectified_from_child.linear();
       runway_from_child.translation() = place->position + runway_from_camera * lever_arm;
-      const GroundPlane plane = toResult(stereo).plane;
       publishPose(header, runway_from_child, poseCovariance(camera, plane, lever_arm, place->variance));
       if (child.may_broadcast) broadcast(header, child.frame, runway_from_child);
     }

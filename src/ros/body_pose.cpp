@@ -1,8 +1,25 @@
 #include "body_pose.h"
 
 #include <cmath>
+#include <sstream>
+
+#include "pose_covariance.h"
 
 namespace uav_landing {
+namespace {
+
+void moveLevel(double by, LandingResult& body) {
+  body.height_protection_level += by;
+  if (!body.height_valid || !(body.height_protection_level > body.height_alert_limit)) return;
+  body.height_valid = false;
+  if (body.failure) return;
+  std::ostringstream text;
+  text << "the lever arm adds " << by << " m to the protection level: " << body.height_protection_level
+       << " m, alert limit " << body.height_alert_limit << " m";
+  body.failure = {Reason::kUncertain, text.str()};
+}
+
+}  // namespace
 
 Eigen::Matrix3d runwayFromCamera(const LandingResult& camera) {
   using Eigen::AngleAxisd;
@@ -14,32 +31,38 @@ Eigen::Matrix3d runwayFromCamera(const LandingResult& camera) {
          AngleAxisd(camera.roll, Vector3d::UnitX()) * body_from_optical;
 }
 
-LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
-                      const ApproachAngleResult::Motion& step) {
+// n = (sin roll cos pitch, cos roll cos pitch, -sin pitch), and the height moves by -n.point.
+double heightByRoll(const LandingResult& camera, const Eigen::Vector3d& point) {
+  return -Eigen::Vector3d(std::cos(camera.roll), -std::sin(camera.roll), 0).dot(point) *
+         std::cos(camera.pitch);
+}
+
+double heightByPitch(const LandingResult& camera, const Eigen::Vector3d& point) {
+  const double sp = std::sin(camera.pitch);
+  return Eigen::Vector3d(std::sin(camera.roll) * sp, std::cos(camera.roll) * sp, std::cos(camera.pitch))
+      .dot(point);
+}
+
+LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera, const GroundPlane& plane,
+                      const ApproachAngleResult::Motion& step, double level_sigmas) {
   LandingResult body = camera;
   const Eigen::Vector3d n = normalFromPitchRoll(camera.pitch, camera.roll);
   if (!n.allFinite()) {
     body.height = body.height_variance = body.raw_height = body.raw_height_variance = kUnknown;
     body.points_height = body.vertical_speed = body.vertical_speed_variance = kUnknown;
-    body.x = body.x_variance = body.y = body.y_variance = kUnknown;
+    body.x = body.x_variance = body.y = body.y_variance = body.height_protection_level = kUnknown;
     if (body.height_valid && !body.failure)
       body.failure = {Reason::kNoGroundNormal, "the lever arm needs the attitude"};
     body.height_valid = false;
     return body;
   }
-  // n = (sin roll cos pitch, cos roll cos pitch, -sin pitch) and its derivatives.
-  const double sp = std::sin(camera.pitch), cp = std::cos(camera.pitch);
-  const double sr = std::sin(camera.roll), cr = std::cos(camera.roll);
-  const double by_pitch = Eigen::Vector3d(-sr * sp, -cr * sp, -cp).dot(point);
-  const double by_roll = Eigen::Vector3d(cr * cp, -sr * cp, 0).dot(point);
   const double shift = -n.dot(point);
-  const double variance =
-      by_pitch * by_pitch * camera.pitch_variance + by_roll * by_roll * camera.roll_variance;
   body.height += shift;
-  body.height_variance += variance;
+  body.height_variance = heightVariance(camera, camera.height_variance, plane, point);
   body.raw_height += shift;
-  body.raw_height_variance += variance;
+  body.raw_height_variance = heightVariance(camera, camera.raw_height_variance, plane, point);
   body.points_height += shift;
+  moveLevel(level_sigmas * std::sqrt(heightVariance(camera, 0, GroundPlane(), point)), body);
 
   const Eigen::Vector3d across = runwayFromCamera(camera) * point;
   body.x += across.x();

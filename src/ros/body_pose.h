@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -11,12 +12,19 @@ namespace uav_landing {
 /// unknown.
 Eigen::Matrix3d runwayFromCamera(const LandingResult& camera);
 
+/// How much higher a point of the rectified left camera's optical frame (m) comes by a radian more of roll or
+/// of pitch, m.
+double heightByRoll(const LandingResult& camera, const Eigen::Vector3d& point);
+double heightByPitch(const LandingResult& camera, const Eigen::Vector3d& point);
+
 /// The estimate of the left rectified camera turned into that of a point fixed to the aircraft. point: in the
-/// rectified left camera's optical frame, m. Heights move by -n.point with the variance of the attitude, x
-/// and y by the point turned into the runway frame; the vertical speed by the rotation of step, without which
-/// it is unknown. Angles and velocity stay those of the camera. Without an attitude the point's height is
-/// unknown and not valid.
-LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
-                      const ApproachAngleResult::Motion& step);
+/// rectified left camera's optical frame, m. plane: of the pair, from which height and attitude err together.
+/// Heights move by -n.point, with variances as in poseCovariance, x and y by the point turned into the runway
+/// frame; the vertical speed by the rotation of step, without which it is unknown. Angles and velocity stay
+/// those of the camera. The protection level grows by level_sigmas standard deviations of how the point
+/// swings with the attitude, and the height is not valid where it is above the alert limit then. Without an
+/// attitude the point's height is unknown and not valid.
+LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera, const GroundPlane& plane,
+                      const ApproachAngleResult::Motion& step, double level_sigmas);
 
 }  // namespace uav_landing

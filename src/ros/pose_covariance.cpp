@@ -21,19 +21,26 @@ Eigen::Matrix3d ofPlane(const GroundPlane& plane) {
   return by_g * plane.covariance * by_g.transpose();
 }
 
-/// Of the camera's (x, y, height, roll, pitch, yaw). What the estimate claims beyond the plane's own variance
-/// is independent; where a filter claims less, the correlation stays.
-Matrix6d ofCamera(const LandingResult& camera, const GroundPlane& plane, const Eigen::Vector2d& xy_variance) {
-  const double yaw_variance = std::isfinite(camera.yaw_variance) ? camera.yaw_variance : M_PI * M_PI;
-  const Eigen::Vector3d claimed(camera.height_variance, camera.roll_variance, camera.pitch_variance);
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.diagonal() << xy_variance, claimed, yaw_variance;
+/// Of the camera's (height, roll, pitch). What the estimate claims beyond the plane's own variance is
+/// independent; where a filter claims less, the correlation stays.
+Eigen::Matrix3d ofCamera(const Eigen::Vector3d& claimed, const GroundPlane& plane) {
+  Eigen::Matrix3d covariance = claimed.asDiagonal();
   if (!plane.valid() || !plane.covariance.allFinite()) return covariance;
   const Eigen::Matrix3d together = ofPlane(plane);
   const auto scale = [&](int i) { return std::sqrt(std::min(1.0, claimed[i] / together(i, i))); };
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      if (i != j) covariance(2 + i, 2 + j) = together(i, j) * scale(i) * scale(j);
+      if (i != j) covariance(i, j) = together(i, j) * scale(i) * scale(j);
+  return covariance;
+}
+
+/// Of the camera's (x, y, height, roll, pitch, yaw).
+Matrix6d ofCamera(const LandingResult& camera, const GroundPlane& plane, const Eigen::Vector2d& xy_variance) {
+  const double yaw_variance = std::isfinite(camera.yaw_variance) ? camera.yaw_variance : M_PI * M_PI;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal() << xy_variance, Eigen::Vector3d::Zero(), yaw_variance;
+  covariance.block<3, 3>(2, 2) =
+      ofCamera({camera.height_variance, camera.roll_variance, camera.pitch_variance}, plane);
   return covariance;
 }
 
@@ -57,6 +64,13 @@ Matrix6d poseCovariance(const LandingResult& camera, const GroundPlane& plane, c
   by_camera.bottomRightCorner<3, 3>() = turns;
   by_camera.topRightCorner<3, 3>() = -crossMatrix(runwayFromCamera(camera) * point) * turns;
   return by_camera * ofCamera(camera, plane, xy_variance) * by_camera.transpose();
+}
+
+double heightVariance(const LandingResult& camera, double camera_variance, const GroundPlane& plane,
+                      const Eigen::Vector3d& point) {
+  const Eigen::Vector3d by_camera(1, heightByRoll(camera, point), heightByPitch(camera, point));
+  return by_camera.dot(ofCamera({camera_variance, camera.roll_variance, camera.pitch_variance}, plane) *
+                       by_camera);
 }
 
 }  // namespace uav_landing

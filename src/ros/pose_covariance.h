@@ -16,4 +16,8 @@ namespace uav_landing {
 Matrix6d poseCovariance(const LandingResult& camera, const GroundPlane& plane, const Eigen::Vector3d& point,
                         const Eigen::Vector2d& xy_variance);
 
+/// Variance of the height of that point, m^2, where that of the camera has this one: poseCovariance's [2, 2].
+double heightVariance(const LandingResult& camera, double camera_variance, const GroundPlane& plane,
+                      const Eigen::Vector3d& point);
+
 }  // namespace uav_landing

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+
+#include "pose_covariance.h"
 
 using namespace uav_landing;
 
@@ -67,12 +70,19 @@ class ReferToTest : public testing::Test {
     step_.rotation.setZero();
     step_.covariance.setZero();
   }
+  static constexpr double kLevelSigmas = 5;
+
+  LandingResult refer(const Eigen::Vector3d& point) const {
+    return referTo(point, camera_, plane_, step_, kLevelSigmas);
+  }
+
   LandingResult camera_;
+  GroundPlane plane_;  // none: height and attitude err independently
   ApproachAngleResult::Motion step_;
 };
 
 TEST_F(ReferToTest, APointBehindACameraThatLooksDownIsHigher) {
-  const LandingResult body = referTo({0, 0, -2}, camera_, step_);
+  const LandingResult body = refer({0, 0, -2});
   EXPECT_NEAR(body.height, 11, 1e-12) << "2 m sin 30 degrees";
   EXPECT_NEAR(body.raw_height, 11, 1e-12);
   EXPECT_NEAR(body.points_height, 11, 1e-12);
@@ -83,13 +93,62 @@ TEST_F(ReferToTest, APointBehindACameraThatLooksDownIsHigher) {
 TEST_F(ReferToTest, UncertainPitchMakesTheHeightOfAPointBehindUncertain) {
   camera_.pitch_variance = 1e-4;
   // The point moves by 2 m cos 30 degrees per radian.
-  EXPECT_NEAR(referTo({0, 0, -2}, camera_, step_).height_variance, 0.01 + 3 * 1e-4, 1e-12);
+  EXPECT_NEAR(refer({0, 0, -2}).height_variance, 0.01 + 3 * 1e-4, 1e-12);
 }
 
 TEST_F(ReferToTest, UncertainRollMattersForAPointToTheSide) {
   camera_.roll_variance = 1e-4;
-  EXPECT_NEAR(referTo({1, 0, 0}, camera_, step_).height_variance, 0.01 + 0.75 * 1e-4, 1e-12);
-  EXPECT_NEAR(referTo({0, 0, -2}, camera_, step_).height_variance, 0.01, 1e-12);
+  EXPECT_NEAR(refer({1, 0, 0}).height_variance, 0.01 + 0.75 * 1e-4, 1e-12);
+  EXPECT_NEAR(refer({0, 0, -2}).height_variance, 0.01, 1e-12);
+}
+
+TEST_F(ReferToTest, HeightAndAttitudeOfOnePlaneErrTogether) {
+  // Both by an error of the plane's slope ahead: nose too high by de means a height too large by 20 m de.
+  camera_ = attitude(0, 0, 0);
+  camera_.height = camera_.raw_height = 10;
+  camera_.height_valid = true;
+  const double slope_variance = 1e-6, by_slope = 20;
+  plane_.g = Eigen::Vector3d(0, 0.1, 0);
+  // g = n / h: dg = (0, -dh / h^2, -dpitch / h).
+  const Eigen::Vector3d by(0, -by_slope / 100, -0.1);
+  plane_.covariance = slope_variance * by * by.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
+  camera_.pitch_variance = slope_variance;
+  camera_.height_variance = camera_.raw_height_variance = by_slope * by_slope * slope_variance;
+  // The point behind comes down by 2 m a radian where the camera comes up by 20 m.
+  EXPECT_NEAR(refer({0, 0, -2}).height_variance, 18 * 18 * slope_variance, 2e-7);
+  EXPECT_NEAR(refer({0, 0, 2}).height_variance, 22 * 22 * slope_variance, 2e-7);
+  EXPECT_NEAR(refer({0, 0, 2}).raw_height_variance, 22 * 22 * slope_variance, 2e-7);
+}
+
+TEST_F(ReferToTest, ItsHeightVarianceIsThatOfThePose) {
+  camera_ = attitude(-7, 11, 25);
+  camera_.height = camera_.raw_height = 4;
+  camera_.height_variance = 4e-4;
+  camera_.pitch_variance = 3e-6;
+  camera_.roll_variance = 5e-6;
+  camera_.yaw_variance = 1e-5;
+  plane_.g = normalFromPitchRoll(camera_.pitch, camera_.roll) / camera_.height;
+  Eigen::Matrix3d root;
+  root << 2e-4, 1e-4, 0, -1e-4, 5e-4, 2e-4, 3e-4, 0, 4e-4;
+  plane_.covariance = root * root.transpose();
+  const Eigen::Vector3d point(0.4, -0.3, -2.5);
+  EXPECT_NEAR(refer(point).height_variance, poseCovariance(camera_, plane_, point, {1, 1})(2, 2), 1e-15);
+}
+
+TEST_F(ReferToTest, TheProtectionLevelHoldsForThePoint) {
+  camera_.pitch_variance = 1e-4;
+  camera_.height_protection_level = 0.5;
+  camera_.height_alert_limit = 0.6;
+  // 5 sigma of 2 m cos 30 degrees times 0.01 rad.
+  const LandingResult body = refer({0, 0, -2});
+  EXPECT_NEAR(body.height_protection_level, 0.5 + 5 * std::sqrt(3.0) * 0.01, 1e-12);
+  EXPECT_TRUE(body.height_valid);
+  camera_.height_alert_limit = 0.55;
+  const LandingResult beyond = refer({0, 0, -2});
+  EXPECT_FALSE(beyond.height_valid);
+  EXPECT_EQ(beyond.failure.reason, Reason::kUncertain);
+  EXPECT_NE(beyond.failure.message().find("the lever arm adds 0.0866"), std::string::npos)
+      << beyond.failure.message();
 }
 
 TEST_F(ReferToTest, NoseUpRotationLowersThePointBehind) {
@@ -99,18 +158,18 @@ TEST_F(ReferToTest, NoseUpRotationLowersThePointBehind) {
   // The camera turns up by 0.01 rad in 0.1 s: what it sees moves down (+y). x_now = R x_then with R about x
   // by -0.01 takes forward (z) towards +y.
   step_.rotation = {-0.01, 0, 0};
-  EXPECT_NEAR(referTo({0, 0, -2}, camera_, step_).vertical_speed, -2 * 0.1, 1e-3);
+  EXPECT_NEAR(refer({0, 0, -2}).vertical_speed, -2 * 0.1, 1e-3);
 }
 
 TEST_F(ReferToTest, WithoutTheRotationTheVerticalSpeedIsUnknown) {
   step_ = {};
-  EXPECT_TRUE(std::isnan(referTo({0, 0, -2}, camera_, step_).vertical_speed));
-  EXPECT_NEAR(referTo({0, 0, -2}, camera_, step_).height, 11, 1e-12);
+  EXPECT_TRUE(std::isnan(refer({0, 0, -2}).vertical_speed));
+  EXPECT_NEAR(refer({0, 0, -2}).height, 11, 1e-12);
 }
 
 TEST_F(ReferToTest, WithoutAnAttitudeTheHeightIsNotValid) {
   camera_.pitch = camera_.roll = kUnknown;
-  const LandingResult body = referTo({0, 0, -2}, camera_, step_);
+  const LandingResult body = refer({0, 0, -2});
   EXPECT_FALSE(body.height_valid);
   EXPECT_TRUE(std::isnan(body.height));
   EXPECT_EQ(body.failure.reason, Reason::kNoGroundNormal);
