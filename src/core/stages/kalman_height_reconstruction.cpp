@@ -75,7 +75,8 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   }
   const bool by_stereo = !reconstruction.failure;
   if (seen && parameters_.fuse_width_height) {
-    if (!by_stereo && confirmations_ >= kConfirmations) {
+    // What was refused for its tilt is the ground that the width was seen on, too.
+    if (!by_stereo && !result.rejected && confirmations_ >= kConfirmations) {
       reconstruction.failure = {};
       reconstruction.height = seen->height;
       reconstruction.variance = result.width_height_variance;

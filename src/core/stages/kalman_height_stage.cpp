@@ -106,8 +106,11 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                       approach.step.duration;
   {
     const ScopedTimer timer(timings_, "runway_filter");
-    position_.process(approach, reconstruction.plane.valid() ? reconstruction.plane.normal() : approach.n,
-                      result.height_valid ? result.height - reconstruction.bend : kUnknown,
+    const bool tilted = reconstruction.failure.reason == Reason::kRejected;
+    const Eigen::Vector3d n = tilted                         ? reconstruction.normal.mean
+                              : reconstruction.plane.valid() ? reconstruction.plane.normal()
+                                                             : approach.n;
+    position_.process(approach, n, result.height_valid ? result.height - reconstruction.bend : kUnknown,
                       result.height_variance, result);
   }
   reportRig(result);

@@ -17,6 +17,7 @@ using test::noStereo;
 using test::settle;
 using test::stereoAt;
 using test::usualRig;
+using test::withoutTurning;
 
 TEST(KalmanHeightReconstruction, ReportsTheMeasurementAndKeepsTheModelErrorInTheVariance) {
   KalmanHeightParameters parameters;
@@ -130,6 +131,28 @@ TEST(KalmanHeightReconstruction, CarriesOnByTheRunwaysWidthWithoutStereo) {
     // The learned width is no better than the heights that it was learned from.
     EXPECT_GE(std::sqrt(result.height_variance), 0.9 * 0.01);
   }
+}
+
+TEST(KalmanHeightReconstruction, TheWidthSeenOnAPlaneRefusedForItsTiltIsNoHeight) {
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  const auto runway = [&] {
+    ApproachAngleResult approach = withoutTurning(stamp);
+    approach.runway = runwayFrom(stamp, 20).runway;
+    const Eigen::Vector3d n = stereoAt(stamp, 20).plane.normal();
+    approach.step.translation_over_height = 0.1 * (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
+    return approach;
+  };
+  LandingResult before;
+  for (int i = 0; i < 20; ++i, stamp += kStep) before = stage.process(stereoAt(stamp, 20), runway());
+  ASSERT_TRUE(before.height_valid) << before.failure.message();
+  const LandingResult tilted = stage.process(stereoAt(stamp, 20, -0.1, 0.05 + 6 * kDegree), runway());
+  EXPECT_EQ(tilted.status, Status::kCoasting);
+  EXPECT_TRUE(tilted.rejected);
+  EXPECT_EQ(tilted.consecutive_rejections, 1);
+  EXPECT_NEAR(tilted.raw_height, 20, 1e-9) << "of the plane that was refused";
+  // A speed by the tilted plane would be of metres a second, as the flight is 2 m a pair.
+  EXPECT_NEAR(tilted.vertical_speed, before.vertical_speed, 0.05);
 }
 
 TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
