@@ -65,7 +65,8 @@ class AutopilotTest(unittest.TestCase):
             with Process("rosbag", "play", "--quiet", "--queue=1000", "--wait-for-subscribers", cls.bag,
                          "--topics", *INPUTS):
                 assert eventually(lambda: any(e.header.stamp == last for e in estimates.all())), stereo.text()
-            assert eventually(lambda: any(r.header.stamp == last for r in ranges.all())), autopilot.text()
+            assert eventually(lambda: all(any(m.header.stamp == last for m in listener.all())
+                                          for listener in (ranges, poses))), autopilot.text()
         cls.ranges, cls.poses = ranges.all(), poses.all()
         cls.valid = {e.header.stamp: e for e in estimates.all() if e.height_valid}
 

@@ -165,6 +165,9 @@ class LaunchTest(unittest.TestCase):
         transforms = self.listen("/tf", TFMessage)
         with launch(f"bag:={self.bag}", "delay:=5") as launched:
             self.assert_comes(lambda: self.estimate_of(self.stamps[-1]), launched)
+            # The transform of a pair comes after its estimate.
+            last = max(e.header.stamp for e in self.estimates.all() if e.valid)
+            self.assert_comes(lambda: any(t.header.stamp == last for m in transforms.all() for t in m.transforms), launched)
         estimates = [e for e in self.estimates.all() if e.header.stamp in self.truth]
         valid = [e for e in estimates if e.valid]
         self.assertGreater(len(valid), 20)

@@ -74,7 +74,12 @@ TEST_F(ChainTest, EveryPairOfADescentHasItsEstimate) {
   EXPECT_NEAR(last.height, scene_.heightAt(1.1), 0.02);
   EXPECT_NEAR(last.approach_angle, scene_.approach_angle, 0.5 * M_PI / 180);
   EXPECT_NEAR(last.pitch, scene_.pitch, 0.2 * M_PI / 180);
-  ASSERT_TRUE(overlay.waitFor(1));
+  // The overlay may have begun to listen after these pairs.
+  double t = 1.1;
+  ASSERT_TRUE(eventually([&] {
+    cameras_.publish(scene_, t += 0.1);
+    return overlay.waitFor([](const auto&) { return true; }, std::chrono::milliseconds(500));
+  }));
   EXPECT_EQ(overlay.messages()[0]->encoding, "bgr8");
   EXPECT_GE(overlay.messages()[0]->width, 640u);
 }

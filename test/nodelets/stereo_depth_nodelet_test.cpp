@@ -15,7 +15,8 @@ class StereoDepthNodeletTest : public NodeletTest {
     setParameter("stereo_depth", "complaint_period", 0.2);
     load("stereo_depth");
     output_ = std::make_unique<Listener<StereoDepth>>("/uav_landing/stereo_depth");
-    ASSERT_TRUE(eventually([&] { return images_.connected() && output_->connected(); }));
+    ASSERT_TRUE(
+        eventually([&] { return images_.connected() && images_.timeIsConnected() && output_->connected(); }));
   }
 
   StereoScene scene_;

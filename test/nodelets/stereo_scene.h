@@ -103,7 +103,9 @@ class PairPublisher {
       time_ = handle.advertise<sensor_msgs::TimeReference>(space + "right/time_reference", 100);
   }
 
-  /// All inputs have a subscriber, or those of the stage at hand.
+  /// What rectify tells of the right image's time has a subscriber.
+  bool timeIsConnected() const { return time_.getNumSubscribers() > 0; }
+  /// All images have a subscriber, or those of the stage at hand.
   bool connected() const {
     return left_.getNumSubscribers() > 0 && right_.getNumSubscribers() > 0 &&
            left_info_.getNumSubscribers() > 0 && right_info_.getNumSubscribers() > 0;

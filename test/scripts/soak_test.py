@@ -31,7 +31,7 @@ class SoakTest(unittest.TestCase):
     def test_memory_stays_for_a_short_while(self):
         folder = tempfile.mkdtemp(prefix="uav_landing_soak_test_")
         self.addCleanup(shutil.rmtree, folder)
-        result = run([SOAK, "--output", folder, "--offline", "8", "--nodelets", "25", "--limit", "5"])
+        result = run([SOAK, "--output", folder, "--offline", "8", "--nodelets", "25", "--limit", "10"])
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertIn("| offline |", result.stdout)
         self.assertIn("| nodelets |", result.stdout)

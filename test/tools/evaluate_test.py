@@ -230,7 +230,7 @@ class ReportTest(EvaluateTest):
                   [[stamp, 0, 1, 1] for stamp in STAMPS])
         folder, page = self.report()
         self.assertFalse((folder / "errors.png").exists())
-        self.assertIn("Errors of the scored frames: no valid frame has truth", page[page.index("Missing"):])
+        self.assertIn("Errors where height, or the angle, is valid: no valid frame has truth", page[page.index("Missing"):])
         self.assertTrue((folder / "timeline.png").is_file())
 
     def test_names_the_files_missing_from_report_data(self):

@@ -43,7 +43,7 @@ class InterruptedTest(unittest.TestCase):
 
     def test_process_bag(self):
         bag, csv, out = self.folder / "in.bag", self.folder / "e.csv", self.folder / "out.bag"
-        write_bag(bag, noise_frames(count=60))
+        write_bag(bag, noise_frames(count=200))
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             self.kill_while_writing([PROGRAMS / "process_bag", "--input", bag, "--csv", csv, "--output", out],
                                     self.folder / "out.bag.part", [csv, out], number)

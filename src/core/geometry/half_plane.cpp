@@ -7,6 +7,10 @@ namespace uav_landing {
 
 void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& kept) {
   kept.create(mask.size(), CV_8UC1);
+  if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c)) {
+    kept.setTo(0);
+    return;
+  }
   for (int v = 0; v < mask.rows; ++v) {
     const double rest = b * v + c;
     // Kept are the columns first..last - 1.

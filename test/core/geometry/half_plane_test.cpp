@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
+
 namespace uav_landing {
 namespace {
 
@@ -26,6 +30,18 @@ TEST(KeepHalfPlane, ClearsWhatLiesOnTheOtherSide) {
       for (const double c : {-30.5, -3.3, 0.1, 4.7, 40.2}) expectHalfPlane(a, b, c);
     }
   }
+}
+
+TEST(KeepHalfPlane, KeepsNothingOfNone) {
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  for (const double wrong : {nan, infinite, -infinite})
+    for (int i = 0; i < 3; ++i) {
+      std::array<double, 3> line = {0.4, 1, 2};
+      line[i] = wrong;
+      cv::Mat mask(13, 17, CV_8UC1, cv::Scalar(255));
+      keepHalfPlane(mask, line[0], line[1], line[2], mask);
+      EXPECT_EQ(cv::countNonZero(mask), 0) << wrong << " " << i;
+    }
 }
 
 }  // namespace
