@@ -10,7 +10,7 @@ namespace uav_landing {
 /// change is tested against. It survives a loss of track, so that another height afterwards shows.
 class HeightMemory {
  public:
-  /// Seconds without a height measurement before the remembered height is compared.
+  /// Age from which a remembered height is compared, s.
   static constexpr double kAge = 0.5;
 
   /// Carries on. speed, variance: vertical speed by motion, NaN when there is none. velocity: m/s, of the

@@ -19,9 +19,10 @@ struct LineSegment {
   Eigen::Vector2d middle() const { return 0.5 * (a + b); }
 };
 
-/// Stage 3: Hough transform on Canny edges of the ground part, each line then fitted to the gradient along
-/// it. image: rectified mono8. ground: mono8, 255 where lines are looked for (already eroded). Deterministic.
-/// Returns an empty list when there are none.
+/// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
+/// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:
+/// mono8, 255 where lines are looked for (already eroded). Deterministic. Returns an empty list when there
+/// are none.
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                                    const ApproachAngleParameters& parameters);
 

@@ -17,14 +17,14 @@ struct VanishingPoint {
   int inlier_count = 0;
 };
 
-/// Stage 4: RANSAC over pairs of lines (until those of the best point must have been drawn often), then least
-/// squares on the sphere over the inliers (great circles K' l, weighted by the lines' own uncertainty, scaled
-/// by the residuals). Only directions within max_yaw and max_elevation of the optical axis count as along the
-/// runway. K: 3x3 of the rectified view. Deterministic: the random numbers have a fixed seed. prior_normal:
-/// ground normal known from elsewhere, or null; then the direction must lie within 5 degrees of the ground.
-/// Fails when too few lines meet, when as many lines of random direction would, when the lines are parallel
-/// in the image within 3 degrees (all from one edge), and when the direction is uncertain by more than 5
-/// degrees.
+/// RANSAC (paper, section 2) over pairs of lines (until those of the best point must have been drawn often),
+/// then least squares on the sphere over the inliers (great circles K' l, weighted by the lines' own
+/// uncertainty, scaled by the residuals). Only directions within max_yaw and max_elevation of the optical
+/// axis count as along the runway. K: 3x3 of the rectified view. Deterministic: the random numbers have a
+/// fixed seed. prior_normal: ground normal known from elsewhere, or null; then the direction must lie within
+/// 5 degrees of the ground. Fails when too few lines meet, when as many lines of random direction would, when
+/// the lines are parallel in the image within 3 degrees (all from one edge), and when the direction is
+/// uncertain by more than 5 degrees.
 Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
                                             const ApproachAngleParameters& parameters,
                                             const Eigen::Vector3d* prior_normal = nullptr);
@@ -44,7 +44,7 @@ Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& 
                                                 const Expected<VanishingPoint>& right,
                                                 double runway_straightness);
 
-/// Stage 5, the paper's vanishing line: ground normal of a rig that is level but for roll. The vanishing
+/// The paper's vanishing line: ground normal of a rig that is level but for roll. The vanishing
 /// line runs through the vanishing point with the slope of the given roll (0: the paper's assumption).
 struct GroundNormal {
   Eigen::Vector3d n;

@@ -21,7 +21,7 @@ struct TemporalMatchOptions {
   int coarse_steps = 10;  ///< searched around the prediction at the coarse level; 0: the prediction is good
 };
 
-/// Stage 6's image velocity field: finds corners of the image now in the image then, with windows warped as
+/// The paper's image velocity field: finds corners of the image now in the image then, with windows warped as
 /// the ground plane (unit normal n) and the predicted motion say. memory: a list that is no longer needed.
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,

@@ -23,7 +23,7 @@ cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepth
                     const ApproachAngleResult& approach, const LandingResult& landing,
                     const OverlayParameters& parameters);
 
-/// One view's Hough lines alone (the paper's Fig. 4).
+/// One view's lines alone (the paper's Fig. 4).
 cv::Mat drawLines(const cv::Mat& image, const ApproachAngleResult::View& view,
                   const OverlayParameters& parameters);
 

@@ -61,7 +61,8 @@ struct ApproachAngleParameters {
              "Hough transforms of all edge pixels, the paper's");
     v.number("canny_low", canny_low, 1.0, 1000.0, "grey/px", "weak edges, 3x3 Sobel scale");
     v.number("canny_high", canny_high, 1.0, 1000.0, "grey/px", "strong edges");
-    v.number("hough_threshold", hough_threshold, 5, 1000, "votes", "fewest edge pixels on a line");
+    v.number("hough_threshold", hough_threshold, 5, 1000, "votes",
+             "fewest edge pixels on a line (not scan_lines)");
     v.number("min_line_length", min_line_length, 0.01, 1.0, "image heights", "shortest line kept");
     v.number("max_line_gap", max_line_gap, 0.0, 50.0, "px", "gap inside a line that is bridged");
     v.flag("refine_lines", refine_lines, "fit each line to the gradient along it to sub-pixel");

@@ -123,18 +123,20 @@ struct ApproachAngleResult {
   double stamp = 0;
   Failure failure;  ///< set when there is no approach angle
   View left, right;
-  /// Vanishing point of the runway from both views, left frame. Independent of stereo.
+  /// Vanishing point of the runway from both views, a unit vector in the left camera's frame, and its
+  /// covariance, rad^2. Independent of stereo.
   Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);
-  /// Ground normal from the vanishing points alone (level rig, roll variance large).
+  /// Ground normal from the vanishing points alone (level rig, roll variance large), left frame; rad^2.
   Eigen::Vector3d n_vp = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_vp_covariance = Eigen::Matrix3d::Constant(kUnknown);
-  /// Ground normal fused from stereo and the vanishing points: what the angles here refer to.
+  /// Ground normal fused from stereo and the vanishing points: what the angles here refer to. Left frame;
+  /// rad^2.
   Eigen::Vector3d n = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_covariance = Eigen::Matrix3d::Constant(kUnknown);
   Motion step;    ///< from the previous frame
   Motion window;  ///< over up to angle_window seconds; its angle is the path's now (angle_smoothing)
-  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, pixels
+  Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, px, px^2
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
   /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
@@ -155,9 +157,11 @@ struct LandingResult {
   double height = kUnknown, height_variance = kUnknown;          ///< filtered, m, m^2
   double raw_height = kUnknown, raw_height_variance = kUnknown;  ///< measured on this pair alone
   double points_height = kUnknown;  ///< eqs (4), (5) averaged over the points on the plane, m
-  double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< positive up
+  double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< up, m/s
+  /// Below the ground's horizontal, rad, rad^2; raw: of the last step alone.
   double approach_angle = kUnknown, approach_angle_variance = kUnknown;
   double raw_approach_angle = kUnknown, raw_approach_angle_variance = kUnknown;
+  /// Positive nose up, right side down, and to the left of the runway; rad, rad^2.
   double pitch = kUnknown, pitch_variance = kUnknown;
   double roll = kUnknown, roll_variance = kUnknown;
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen

@@ -11,7 +11,7 @@
 namespace uav_landing {
 
 /// Monocular branch for one pair (paper 2): lines, vanishing points, ground normal, motion, FOE, angle.
-/// Keeps the images and planes of the last angle_window seconds.
+/// Keeps the images of the last angle_window seconds, the path so far, and what is known of the runway.
 class ApproachAngleStage {
  public:
   ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters);

@@ -11,7 +11,8 @@
 namespace uav_landing {
 
 /// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane.
-/// Keeps the plane of the previous pair to predict where to search, nothing else.
+/// Keeps the plane of the previous pair to predict where to search, by how much the right camera's rows are
+/// off (some twenty pairs), and rows of the last images to know those that come again.
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
@@ -21,6 +22,7 @@ class StereoDepthStage {
   /// left, right: rectified mono8 of the rig's size. skew: stamp of right minus left, s.
   /// A stamp that does not increase starts the search anew.
   StereoDepthResult process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
+  /// As newly made.
   void reset();
   const Timings& timings() const;
 

@@ -17,7 +17,7 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
                                        const Eigen::Vector3d& g);
 
-/// Stage 8: matches corners along their rows around the disparity that g predicts: gain and offset free
+/// Matches corners along their rows around the disparity that g predicts: gain and offset free
 /// correlation (or SSD), uniqueness, left-right check, sub-pixel. One disparity a sample.
 std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
                                           const Eigen::Vector3d& g, const StereoDepthParameters& parameters);

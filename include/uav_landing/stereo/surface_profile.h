@@ -14,8 +14,8 @@ namespace uav_landing {
 constexpr std::array<double, 4> kBendShares = {1.0 / 16, 1.0 / 4, 1, 2};
 constexpr double kBendChance = 0.1;
 
-/// The surface ahead where it is not a plane: its slope along the line of sight wanders, as a random walk
-/// over the distance from the camera.
+/// The surface ahead where it is not a plane: its curvature along the line of sight is a random one that is
+/// alike over some 100 m.
 struct SurfaceProfile {
   /// Tangent plane straight below the camera: its height is the clearance.
   GroundPlane below;

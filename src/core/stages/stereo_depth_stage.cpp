@@ -335,7 +335,8 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 }
 
 void StereoDepthStage::reset() {
-  implementation_->has_last = false;
+  implementation_->has_last = implementation_->looks_swapped = false;
+  implementation_->failures = implementation_->failed_searches = 0;
   implementation_->rows.reset();
   implementation_->left_repeated.reset();
   implementation_->right_repeated.reset();

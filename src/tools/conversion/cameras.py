@@ -56,6 +56,8 @@ def from_ros_yaml(path):
     content = load_yaml(path)
     size = numbers(content, path, ("image_width",), 1)[0], numbers(content, path, ("image_height",), 1)[0]
     distortion = field(content, path, "distortion_coefficients", "data")
+    if not isinstance(distortion, list):
+        raise InputError(f"{path}: distortion_coefficients.data: expected a list of numbers")
     return camera_info(size, numbers(content, path, ("camera_matrix", "data"), 9),
                        numbers(content, path, ("distortion_coefficients", "data"), len(distortion)),
                        numbers(content, path, ("rectification_matrix", "data"), 9),

@@ -46,7 +46,7 @@ def save(figure, path):
 
 
 def draw_histograms(path, truth, joined, _report_data):
-    """Errors of the scored frames."""
+    """Errors of the frames on which each quantity is valid by itself."""
     found = scored_errors(truth, joined)
     figure, axes = plt.subplots(1, len(found), figsize=(10, 3.4), squeeze=False)
     for axis, (title, unit, errors, _) in zip(axes[0], found):

@@ -119,7 +119,7 @@ FIGURES = (("figure4.png", "Figure 4: edges by the Hough transform", figure_4),
            ("figure5.png", "Figure 5: Harris corners and their matches", figure_5),
            ("figure6.png", "Figure 6: approach angle", figure_6),
            ("figure7.png", "Figure 7: height", figure_7),
-           ("errors.png", "Errors of the scored frames", draw_histograms),
+           ("errors.png", "Errors where height, or the angle, is valid", draw_histograms),
            ("consistency.png", "Consistency: errors against the claimed uncertainty", draw_consistency),
            ("timeline.png", "Coverage and status", draw_timeline))
 
