@@ -148,6 +148,17 @@ class ConvertRecordingTest(unittest.TestCase):
         self.refused("none.avi: no such video", "videos", good, self.folder / "none.avi", *self.calibrations())
         self.refused("320x240 pixels, its calibration is for 160x120", "videos", good, large, *self.calibrations())
 
+    def test_numbers_that_are_none_in_a_calibration_are_named(self):
+        good, files = self.video("l.avi", 2), self.calibrations()
+        text = files[1].read_text()
+        for old, new, complaint in (("cols: 5, data: [0, 0, 0, 0, 0]", "data: 5", "data: expected a list of numbers"),
+                                    ("data: [0, 0, 0, 0, 0]", "data: [0, x]", "data: expected 2 finite numbers"),
+                                    ("image_width: 160", "image_width: wide", "image_width: expected 1 finite numbers")):
+            with self.subTest(new):
+                files[1].write_text(text.replace(old, new))
+                self.refused(f"{files[1]}: ", "videos", good, good, *files)
+                self.refused(complaint, "videos", good, good, *files)
+
     def renamed_bag(self, compressed):
         """A bag of /cam0/image... and /cam1/image..."""
         path = self.folder / "in.bag"
