@@ -29,8 +29,8 @@ below it has ground that bends. From 10 m on the roll is claimed too cautiously:
 the rig's rotation (a third of the claim at 10 m and noise of 1), for the share of a pair's error that the next pairs repeat
 (kept as it is at 3 m, where it is largest), and single pairs claim more than their error, too. Claims as small as pairs without
 lenses and noise would allow still fit at 10 m, but are 1.17 times too small at 3 m. Where the aircraft has been seen for 0.6 s
-only, most of the angle's claim at 30 m is for a gust that may just have begun. A lateral
-ratio of several is a single snippet in which other lines were taken for the edges of the runway, which no claim covers.
+only, most of the angle's claim at 30 m is for a gust that may just have begun. A lateral ratio of several is a single snippet in
+which other lines were taken for the edges of the runway, which no claim covers.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
 

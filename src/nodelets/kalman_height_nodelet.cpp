@@ -137,10 +137,13 @@ class KalmanHeightNodelet : public StageNodelet {
     last_stamp_ = stereo.header.stamp;
     double compute_ms = stereo.compute_ms + approach.compute_ms;
     const ApproachAngleResult approach_result = toResult(approach);
+    GroundPlane plane;
     LandingResult camera = attempt<LandingResult>([&]() -> Expected<LandingResult> {
       const Failure wrong_cameras = prepare(left_info, right_info);
       if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
-      LandingResult result = stage_->process(toResult(stereo), approach_result);
+      const StereoDepthResult stereo_result = toResult(stereo);
+      plane = stereo_result.plane;
+      LandingResult result = stage_->process(stereo_result, approach_result);
       compute_ms += stage_->timings().total();
       return result;
     });
@@ -155,7 +158,7 @@ class KalmanHeightNodelet : public StageNodelet {
       resets_ = camera.resets;
     }
     report_.served(stereo.header.stamp, compute_ms, camera.failure.message());
-    publish(stereo, compute_ms, camera, approach_result.step, left_info);
+    publish(stereo, compute_ms, camera, plane, approach_result.step, left_info);
   }
 
   Failure prepare(const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
@@ -169,7 +172,8 @@ class KalmanHeightNodelet : public StageNodelet {
   }
 
   void publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
-               const ApproachAngleResult::Motion& step, const sensor_msgs::CameraInfo& left_info) {
+               const GroundPlane& plane, const ApproachAngleResult::Motion& step,
+               const sensor_msgs::CameraInfo& left_info) {
     left_frame_ = left_info.header.frame_id;
     const RigFrames::Child child = frames_->find(left_frame_);
     // camera_info's R turns the camera as it is mounted into the rectified one.
@@ -177,7 +181,6 @@ class KalmanHeightNodelet : public StageNodelet {
     const Eigen::Isometry3d rectified_from_child =
         child.left_from_child ? rectified_from_left * *child.left_from_child : Eigen::Isometry3d::Identity();
     const Eigen::Vector3d lever_arm = rectified_from_child.translation();
-    const GroundPlane plane = toResult(stereo).plane;
     LandingResult estimate = child.left_from_child ? referTo(lever_arm, camera, plane, step,
                                                              normalQuantile(parameters_.integrity_risk))
                                                    : camera;

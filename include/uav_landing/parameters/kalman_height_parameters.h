@@ -55,8 +55,7 @@ struct KalmanHeightParameters {
     v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
     v.flag("average_attitude", average_attitude,
            "pitch and roll of the last second's pairs along the rotation between them, and the test tilt; "
-           "else of "
-           "each pair alone");
+           "else of each pair alone");
     v.number("acceleration_stddev", acceleration_stddev, 0.01, 50.0, "m/s^2",
              "1 sigma of the random vertical acceleration, eq (7)");
     v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",

@@ -53,7 +53,8 @@ class KalmanHeightStage {
     };
     Failure failure;  ///< set when there is no height
     GroundPlane plane;
-    Normal normal;  ///< of the ground, averaged over the pairs; set when the plane is valid
+    bool tilted = false;  ///< the plane contradicts those before: no height, speed or place by it
+    Normal normal;        ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
         Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
     GroundPlane alone;            ///< by stereo alone: without the vanishing point

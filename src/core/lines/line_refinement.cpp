@@ -34,7 +34,6 @@ struct Parts {
 /// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
 /// interpolating between them biases the peak by up to 0.1 px.
 struct Station {
-  int number;                ///< row or column
   int centre;                ///< column or row of the pixel nearest to the line
   const uchar* grey;         ///< of that pixel; null outside image and ground
   std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
@@ -77,7 +76,7 @@ class EdgeSampler {
     constexpr int kReach = kRadius + 1;
     const bool inside = centre >= kReach && centre < size_ - kReach && station >= 0 && station < stations_ &&
                         ground_[ground_step_.to(station, centre)] != 0;
-    return {station, centre, inside ? image_ + image_step_.to(station, centre) : nullptr, image_step_.minor};
+    return {centre, inside ? image_ + image_step_.to(station, centre) : nullptr, image_step_.minor};
   }
 
   /// The strongest gradient within kReach px of the line, interpolated by a parabola; false when there is

@@ -76,7 +76,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   const bool by_stereo = !reconstruction.failure;
   if (seen && parameters_.fuse_width_height) {
     // What was refused for its tilt is the ground that the width was seen on, too.
-    if (!by_stereo && !result.rejected && confirmations_ >= kConfirmations) {
+    if (!by_stereo && !reconstruction.tilted && confirmations_ >= kConfirmations) {
       reconstruction.failure = {};
       reconstruction.height = seen->height;
       reconstruction.variance = result.width_height_variance;
@@ -203,6 +203,7 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   if (std::isfinite(estimate.ratio))
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
   if (estimate.agrees || reconstruction.failure) return;
+  reconstruction.tilted = true;
   reconstruction.failure = {Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
                                                     " deg against the pairs before and the rotation since")};
   result.raw_height = reconstruction.height;

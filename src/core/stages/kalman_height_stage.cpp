@@ -106,10 +106,9 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                       approach.step.duration;
   {
     const ScopedTimer timer(timings_, "runway_filter");
-    const bool tilted = reconstruction.failure.reason == Reason::kRejected;
-    const Eigen::Vector3d n = tilted                         ? reconstruction.normal.mean
-                              : reconstruction.plane.valid() ? reconstruction.plane.normal()
-                                                             : approach.n;
+    Eigen::Vector3d n = approach.n;
+    if (reconstruction.plane.valid())
+      n = reconstruction.tilted ? reconstruction.normal.mean : reconstruction.plane.normal();
     position_.process(approach, n, result.height_valid ? result.height - reconstruction.bend : kUnknown,
                       result.height_variance, result);
   }

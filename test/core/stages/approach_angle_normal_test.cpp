@@ -11,14 +11,7 @@
 namespace uav_landing {
 namespace {
 
-using test::ApproachScene;
-using test::attitude;
-using test::expectMotion;
-using test::kDegree;
-using test::kPeriod;
-using test::Movement;
-using test::Pose;
-using test::straight;
+using namespace test;
 
 TEST(ApproachAngleNormal, WorksWithoutStereoFromPaintedLines) {
   ApproachScene scene(34);
@@ -80,7 +73,7 @@ TEST(ApproachAngleNormal, CorrectsTheStereoNormalByTheVanishingPoint) {
   Pose believed = pose;
   believed.pitch += 0.3 * kDegree;
   StereoDepthResult stereo = scene.stereo(pose, 0);
-  stereo.plane = test::exactPlane(believed, test::kHeightShare, 0.3 * kDegree);
+  stereo.plane = exactPlane(believed, kHeightShare, 0.3 * kDegree);
   ApproachAngleStage stage(scene.model, scene.parameters);
   const ApproachAngleResult result =
       stage.process(0, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo);
@@ -131,7 +124,7 @@ TEST(ApproachAngleNormal, FusesAnInertialSensorWithStereoUnlessItContradicts) {
   scene.ground.line_offset = 0;
   const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
   StereoDepthResult stereo = scene.stereo(pose, 0);
-  stereo.plane = test::exactPlane(pose, test::kHeightShare, 0.7 * kDegree);
+  stereo.plane = exactPlane(pose, kHeightShare, 0.7 * kDegree);
   const auto run = [&](double error, bool use) {
     scene.parameters.use_imu = use;
     ApproachAngleStage stage(scene.model, scene.parameters);

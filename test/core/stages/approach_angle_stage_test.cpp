@@ -13,14 +13,7 @@
 namespace uav_landing {
 namespace {
 
-using test::ApproachScene;
-using test::attitude;
-using test::expectMotion;
-using test::kDegree;
-using test::kPeriod;
-using test::Movement;
-using test::Pose;
-using test::straight;
+using namespace test;
 
 TEST(ApproachAngleStage, ARepeatedPictureIsNoStandstillAndTheStepAfterItIsOverTheTimeOfBoth) {
   const ApproachScene scene(7);
