@@ -45,6 +45,8 @@ uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 # stereo
 uav_landing_add_gtest(block_disparities_test test/core/stereo/block_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(pair_disparities_test test/core/stereo/pair_disparities_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
@@ -53,6 +55,8 @@ uav_landing_add_gtest(plane_tracking_test test/core/stereo/plane_tracking_test.c
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(region_planes_test test/core/stereo/region_planes_test.cpp)
 uav_landing_add_gtest(row_matching_test test/core/stereo/row_matching_test.cpp)
+uav_landing_add_gtest(sample_stddevs_test test/core/stereo/sample_stddevs_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(shift_evidence_test test/core/stereo/shift_evidence_test.cpp)
 uav_landing_add_gtest(shift_matching_test test/core/stereo/shift_matching_test.cpp)
 uav_landing_add_gtest(surface_profile_test test/core/stereo/surface_profile_test.cpp

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "base/median.h"
 #include "stereo/pair_disparities.h"
+#include "stereo/sample_stddevs.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -19,46 +19,10 @@ constexpr int kSteps = 10;
 constexpr double kConverged = 0.01;
 // By how much disparities of the first plane may be off, pixels.
 constexpr double kStartStddev = 0.3;
-// No error that blocks have in common is larger, pixels.
-constexpr double kLargestCommon = 1.5;
 // Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
 // where much of the picture stands on the ground, those that are on the plane by chance would have too much
 // to say.
 constexpr double kLeastShare = 0.5;
-// By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
-constexpr double kLargestFactor = 2.0;
-// The quietest samples are one of so many, and at least this many where that is less than half.
-constexpr size_t kQuietestShare = 10, kQuietest = 20;
-
-// Makes the samples' stddevs true: a factor on those of the noise, as pixels of rectified images are not
-// independent, and an error that all samples have besides, from the surface and the calibration. The factor
-// shows in the noisier half of the samples, the error in the quietest, which it concerns most: seen through
-// more noise it is too uncertain.
-void calibrate(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
-  std::vector<double> residuals, stddevs, ratios, missing;
-  for (std::vector<double>* values : {&residuals, &stddevs, &ratios, &missing})
-    values->reserve(samples.size());
-  for (const DisparitySample& sample : samples) {
-    residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
-    stddevs.push_back(sample.stddev);
-  }
-  const double offset = medianOf(residuals), middle = medianOf(stddevs);
-  for (size_t i = 0; i < samples.size(); ++i)
-    if (stddevs[i] >= middle) ratios.push_back(std::abs(residuals[i] - offset) / stddevs[i]);
-  const double factor = std::min(robustStddev(ratios), kLargestFactor);
-  const size_t count = std::min(std::max(samples.size() / kQuietestShare, kQuietest), samples.size() / 2);
-  const double quiet = orderStatistic(stddevs.data(), stddevs.size(), count);
-  // The variance without which half of the quietest samples were off by more than normal errors are.
-  for (size_t i = 0; i < samples.size(); ++i) {
-    if (stddevs[i] >= quiet) continue;
-    const double off = kPerMedian * (residuals[i] - offset), noise = factor * stddevs[i];
-    missing.push_back(off * off - noise * noise);
-  }
-  const double common =
-      missing.empty() ? 0 : std::clamp(medianOf(missing), 0.0, kLargestCommon * kLargestCommon);
-  for (DisparitySample& sample : samples)
-    sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common);
-}
 
 }  // namespace
 
@@ -73,7 +37,7 @@ struct DirectRefinement::Implementation {
   void takeSamples(const Eigen::Vector3d& g) {
     samples.clear();
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
-    calibrate(rig, g, samples);
+    makeStddevsTrue(rig, g, samples);
   }
 
   // Blocks and not samples: a share of them must not depend on how many speak together.

@@ -10,15 +10,17 @@ namespace {
 constexpr int kHalved = 2;
 // Nothing is halved where this share of the blocks is beyond doubt.
 constexpr double kMostlyCertain = 0.5;
-// Rows that are looked at in one resolution: enough for their blocks to tell which.
-constexpr int kBand = 32;
-
-int bandOf(const BlockDisparity& disparity) { return static_cast<int>(disparity.sample.v) / kBand; }
+// Pixels of a cell, which is looked at in one resolution: enough for its blocks to tell which. Blocks that
+// speak together are in one cell, those of the halved images, too.
+constexpr int kCellWidth = kHalved * PhotometricBlocks::kTogether * PhotometricBlocks::kWidth;
+constexpr int kCellHeight = 2 * kHalved * PhotometricBlocks::kHeight;
 
 }  // namespace
 
 PairDisparities::PairDisparities(const RigModel& model, int margin)
-    : whole_(reduceLevel(model, 1, margin), 1), is_halved_(model.rig.size.height / kBand + 1) {
+    : whole_(reduceLevel(model, 1, margin), 1),
+      cells_(model.rig.size.width / kCellWidth + 1, model.rig.size.height / kCellHeight + 1),
+      is_halved_(cells_.area()) {
   const cv::Size size = model.rig.size / kHalved;
   if (size.width < PhotometricBlocks::kWidth || size.height < PhotometricBlocks::kHeight) return;
   halved_.emplace(reduceLevel(model, kHalved, margin / kHalved), kHalved);
@@ -50,6 +52,12 @@ void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, co
   collect();
 }
 
+size_t PairDisparities::cellOf(const BlockDisparity& disparity) const {
+  const int column = static_cast<int>(disparity.sample.u) / kCellWidth;
+  const int row = static_cast<int>(disparity.sample.v) / kCellHeight;
+  return static_cast<size_t>(row) * cells_.width + column;
+}
+
 bool PairDisparities::anyHalved() const {
   return std::find(is_halved_.begin(), is_halved_.end(), 1) != is_halved_.end();
 }
@@ -58,7 +66,7 @@ void PairDisparities::chooseResolutions() {
   std::vector<double> gains(is_halved_.size(), 0);  // of information by halving, 1/pixels^2
   const auto add = [&](const BlockDisparities& part, double sign) {
     for (const BlockDisparity& disparity : part.disparities())
-      if (disparity.alike) gains[bandOf(disparity)] += sign / std::pow(disparity.sample.stddev, 2);
+      if (disparity.alike) gains[cellOf(disparity)] += sign / std::pow(disparity.sample.stddev, 2);
   };
   add(*halved_, 1);
   add(whole_, -1);
@@ -70,7 +78,7 @@ void PairDisparities::collect() {
   informative_ = 0;
   const auto add = [&](const BlockDisparities& part, bool are_halved) {
     for (const BlockDisparity& disparity : part.disparities()) {
-      if (is_halved_[bandOf(disparity)] != are_halved) continue;
+      if (is_halved_[cellOf(disparity)] != are_halved) continue;
       informative_ += disparity.blocks;
       if (disparity.alike) found_.push_back(disparity);
     }

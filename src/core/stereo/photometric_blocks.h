@@ -21,6 +21,7 @@ namespace uav_landing {
 class PhotometricBlocks {
  public:
   static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kWidth * kHeight;
+  static constexpr int kTogether = 8;  ///< blocks in a row that may speak together
   static constexpr int kMargin = 2;  ///< pixels to the left and right that interpolation and derivatives read
 
   /// Masks of the rectified images (mono8), eroded by at least two pixels.

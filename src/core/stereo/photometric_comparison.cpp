@@ -23,8 +23,6 @@ constexpr double kNoiseScatter = 1.45;
 constexpr double kLeastCorrelation = 0.75;
 // Share of a block's grey levels that must be more than noise.
 constexpr double kLeastShareOfGrey = 0.25;
-// Blocks in a row that may speak together.
-constexpr int kTogether = 8;
 // Least gain of the right image over the left one.
 constexpr double kLeastGain = 0.2;
 // Variance of rounding to whole grey levels in two images.

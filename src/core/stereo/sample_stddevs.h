@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/results/disparity_sample.h"
+
+namespace uav_landing {
+
+/// Makes the stddevs of samples true that come with those of the images' noise, by their residuals from the
+/// plane g, 1/m: a factor, as pixels of rectified images are not independent, and an error that all samples
+/// have besides, from the surface and the calibration. The factor shows in the noisier half of the samples,
+/// the error in the quietest, which it concerns most: seen through more noise it is too uncertain.
+/// samples: at least one.
+void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples);
+
+}  // namespace uav_landing
