@@ -115,7 +115,7 @@ def figure_7(path, truth, joined, _report_data):
                        (("raw_height_m", "b:", "matching of feature points"), ("height_m", "b-", "Kalman filter")))
 
 
-FIGURES = (("figure4.png", "Figure 4: edges by the Hough transform", figure_4),
+FIGURES = (("figure4.png", "Figure 4: straight edges (in the paper by the Hough transform)", figure_4),
            ("figure5.png", "Figure 5: Harris corners and their matches", figure_5),
            ("figure6.png", "Figure 6: approach angle", figure_6),
            ("figure7.png", "Figure 7: height", figure_7),
