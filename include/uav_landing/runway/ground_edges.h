@@ -43,6 +43,7 @@ struct GroundEdge {
   Eigen::Vector3d by_rotation;  ///< derivatives by the rotations of the axes: common to all edges
   bool brighter_left = false;   ///< which side is
   double near = 0, far = 0;     ///< from where to where it is seen, forward of the camera
+  double pixel = 0;             ///< angle of one, rad; 0 where blur moves nothing
   bool begins = false;          ///< within the picture: the near end is not where the picture ends
   double extent = 0;            ///< sum of log(far / near) of its pieces
   std::vector<EdgePiece> pieces;

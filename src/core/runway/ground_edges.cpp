@@ -208,6 +208,7 @@ std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes
     edge.by_rotation = view.byRotation(piece);
     edge.brighter_left = view.brighterLeft(lines[i]);
     edge.pieces = {piece};
+    edge.pixel = 1 / rig.fx;
     edge.begins = view.beginsInside(lines[i]);
     pieces.push_back(std::move(edge));
   }

@@ -12,6 +12,7 @@ namespace {
 constexpr size_t kMaxEdges = 30;      // longest ones
 constexpr double kGate = 3;           // sigma between two pairs' centres
 constexpr double kAsymmetry = 0.002;  // of the width: 1 sigma by which a pair of marks is painted off centre
+constexpr double kSharper = 2;        // times, by which one pair's centre is known much better
 constexpr double kWidthTolerance = 0.05;  // of the width that is known
 constexpr double kLong = 0.4;             // of the longest pair's extent: long enough for a runway's edge
 constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edges
@@ -52,6 +53,7 @@ class Search {
       for (size_t j = 0; j < edges_.size(); ++j)
         if (edges_[i].lateral > edges_[j].lateral && edges_[i].brighter_left != edges_[j].brighter_left)
           pairs_.push_back(mirrored(i, j));
+    paint_ = std::pow(kAsymmetry * widthOfLongest(), 2);
   }
 
   std::vector<Symmetry> symmetries() const {
@@ -194,6 +196,22 @@ class Search {
     return std::pow(a.centre - b.centre, 2) > kSafe * kGate * kGate * most;
   }
 
+  double widthOfLongest() const {
+    double longest = 0, width = 0;
+    for (const MirroredPair& pair : pairs_) {
+      if (pair.width <= kLeastWidth || pair.extent <= longest) continue;
+      longest = pair.extent;
+      width = pair.width;
+    }
+    return width;
+  }
+
+  /// A centre that is hardly known has room for any pairs, whether they agree with each other or not: what
+  /// gathers them is the one among them that knows best, as far as the runway's paint tells.
+  bool isSharper(const MirroredPair& pair, const MirroredPair& centre) const {
+    return std::max(pair.variance, paint_) * kSharper * kSharper < centre.variance;
+  }
+
   /// For one centre after another.
   struct Memory {
     std::vector<std::pair<double, const MirroredPair*>> near;  // pairs by their distance, in tolerances
@@ -205,7 +223,7 @@ class Search {
     auto& [near, used] = memory;
     near.clear();
     for (const MirroredPair& pair : pairs_) {
-      if (areApart(pair, centre)) continue;
+      if (isSharper(pair, centre) || areApart(pair, centre)) continue;
       const double miss = std::abs(pair.centre - centre.centre) / toleranceOf(pair, centre);
       if (miss <= 1) near.emplace_back(miss, &pair);
     }
@@ -228,6 +246,7 @@ class Search {
   const double spread_ = axes_.covariance.trace();
   std::vector<GroundEdge> edges_;
   std::vector<MirroredPair> pairs_;
+  double paint_ = 0;  // variance of a centre by how marks are painted, whose own width does not matter
 };
 
 /// The widest long pair; with a known width, the longest pair of that width.

@@ -7,11 +7,14 @@
 namespace uav_landing {
 namespace {
 
-/// A level camera that knows its attitude to 1 sigma of so much, rad.
-GroundAxes level(double stddev) {
-  const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * stddev * stddev;
-  return GroundAxes(Eigen::Vector3d::UnitY(), covariance, Eigen::Vector3d::UnitZ(), covariance);
+/// A level camera that knows its attitude to 1 sigma of so much, rad, and the runway's direction.
+GroundAxes level(double stddev, double direction_stddev) {
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  return GroundAxes(Eigen::Vector3d::UnitY(), unit * stddev * stddev, Eigen::Vector3d::UnitZ(),
+                    unit * direction_stddev * direction_stddev);
 }
+
+GroundAxes level(double stddev) { return level(stddev, stddev); }
 
 GroundEdge edge(double lateral, bool brighter_left, double extent = 1.5) {
   GroundEdge made;
@@ -199,12 +202,79 @@ TEST(RunwayEdges, LinesThatTurnAwayTogetherTurnTheRunway) {
     e.pieces[0].slope = 0.01;
     e.lateral += 0.04;
   }
-  const auto found = findRunwayEdges(level(1e-4), edges, 0, std::nullopt);
+  const auto found = findRunwayEdges(level(1e-4, 0.1), edges, 0, std::nullopt);
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_NEAR(found->centre, 0.3, 1e-6);
   EXPECT_NEAR(found->turn, 0.01, 1e-6);
   // Where the centre line passes the camera follows from its direction: the two err together.
   EXPECT_LT(found->own(0, 1), 0);
+}
+
+TEST(RunwayEdges, TheVanishingPointTellsTheDirectionToo) {
+  // Lines that tell the direction as well as it does, and a lean of 1 mrad: half of it is believed.
+  std::vector<GroundEdge> edges;
+  for (const double side : {1.0, -1.0}) {
+    edges.push_back(edge(side, side < 0));
+    EdgePiece& piece = edges.back().pieces[0];
+    piece.slope = 1e-3;
+    piece.covariance = Eigen::Vector2d(1e-6, 2 * 1e-6).asDiagonal();
+  }
+  const auto found = findRunwayEdges(level(1e-4, 1e-3), edges, 2, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->turn, 0.5e-3, 1e-5);
+}
+
+TEST(RunwayEdges, BlurOfLinesSeenFromAfarDoesNotTurnTheRunway) {
+  // Blur moves the inner sides of two thin lines apart, by half a pixel; the left one is seen better.
+  constexpr double kPixel = 1.0 / 550, kCentre = 0.3, kForward = 24;
+  std::vector<GroundEdge> edges;
+  for (const double side : {1.0, -1.0}) {
+    GroundEdge inner = edge(kCentre + side, side > 0);
+    EdgePiece& piece = inner.pieces[0];
+    piece.slope = side * 0.5 * kPixel;
+    piece.forward = kForward;
+    piece.lateral = inner.lateral + piece.slope * kForward;
+    const double slope_stddev = side > 0 ? 1.5e-4 : 4e-4;
+    piece.covariance = Eigen::Vector2d(4e-6, slope_stddev * slope_stddev).asDiagonal();
+    inner.lateral = piece.lateral;
+    inner.pixel = kPixel;
+    edges.push_back(inner);
+  }
+  const auto found =
+      findRunwayEdges(level(1e-4, 3e-4), edges, edges[0].lateral - edges[1].lateral, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->turn, 0, 1e-4);
+  EXPECT_NEAR(found->centre, kCentre, 0.004);
+}
+
+TEST(RunwayEdges, ACentreThatIsHardlyKnownGathersNothing) {
+  // Bars of a threshold about -1.47, one edge of the runway, and texture far to both sides whose middle may
+  // be anywhere. As seen from 4 m.
+  struct Seen {
+    double lateral, extent, near, far, stddev;
+    bool brighter_left;
+  };
+  std::vector<GroundEdge> edges;
+  for (const Seen& seen : {Seen{2.1084, 2.46772, 9.85, 116.19, 0.01, false},
+                           {1.91799, 2.3483, 8.81, 92.21, 0.01, true},
+                           {-1.92791, 1.02701, 9.12, 25.47, 0.01, false},
+                           {1.20607, 0.962085, 3.29, 25.48, 0.01, false},
+                           {-1.01108, 0.735296, 9.66, 20.34, 0.01, true},
+                           {-3.71548, 0.637902, 10.31, 19.50, 0.02, false},
+                           {0.771243, 0.608691, 5.86, 22.04, 0.01, true},
+                           {-4.14134, 0.572267, 12.43, 22.04, 0.02, true},
+                           {-3.25217, 0.504929, 12.25, 20.30, 0.01, true},
+                           {-2.81504, 0.497599, 11.87, 19.52, 0.01, false},
+                           {14.5196, 0.239656, 30.21, 38.39, 0.57, true},
+                           {-14.159, 0.0736607, 59.35, 63.88, 0.57, false}}) {
+    GroundEdge made = edge(seen.lateral, seen.brighter_left, seen.extent);
+    made.near = seen.near;
+    made.far = seen.far;
+    made.variance = seen.stddev * seen.stddev;
+    edges.push_back(made);
+  }
+  const auto found = findRunwayEdges(level(1e-3), edges, 0, std::nullopt);
+  EXPECT_TRUE(!found || std::abs(found->centre + 1.47) < 0.05) << found->centre;
 }
 
 TEST(RunwayEdges, TwoRunwaysSideBySideAreNotDecided) {
