@@ -12,8 +12,9 @@ struct MirroredEdges {
 };
 
 /// Centre line, direction and width of the runway by least squares over the pieces of all its edges in both
-/// views. Each edge has a lateral position of its own, all have one direction; the middles of the pairs
-/// differ from the centre line by how exactly the marks are painted, which shows when there are several.
+/// views. Each edge has a lateral position of its own, all have one direction, which the axes' forward tells
+/// as well, but for what blur does to both sides of a pair; the middles of the pairs differ from the centre
+/// line by how exactly the marks are painted, which shows when there are several.
 /// outermost: index of the pair that is the runway's own edges.
 RunwayCrossSection fitRunway(const GroundAxes& axes, const std::vector<MirroredEdges>& pairs,
                              size_t outermost);
