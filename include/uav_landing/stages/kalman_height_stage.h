@@ -121,7 +121,7 @@ class KalmanHeightStage {
   void reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const;
   void refuse(LandingResult& result, const Failure& failure) const;
   void reconstructFromPoints(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                             Reconstruction& reconstruction) const;
+                             Reconstruction& reconstruction);
   /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
   void useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
                 LandingResult& result);
@@ -181,6 +181,8 @@ class KalmanHeightStage {
   double surface_variance_ = 0;  ///< of the surface about its plane as far as it is certain, m^2
   int surface_pairs_ = 0;        ///< that the mean is of
   double bend_variance_ = 0;     ///< of the height, by the bend of the surface ahead, m^2
+  /// Of a height that is averaged over points, by what makes the average another than the plane's; m^2.
+  double averaging_variance_ = 0;
   int confirmations_ = 0;
   int consecutive_rejections_ = 0;
   int resets_ = 0;

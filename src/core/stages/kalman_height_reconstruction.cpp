@@ -50,7 +50,8 @@ const ApproachAngleResult::Motion& KalmanHeightStage::publishedMotion(const Appr
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
-  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_ + bend_variance_;
+  return std::pow(parameters_.height_model_error * height, 2) + surface_variance_ + bend_variance_ +
+         averaging_variance_;
 }
 
 CommonVariance KalmanHeightStage::commonVariance(double height) const {
@@ -125,6 +126,7 @@ void KalmanHeightStage::followBend(const StereoDepthResult& stereo, Reconstructi
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
                                                                  const ApproachAngleResult& approach) {
   const ScopedTimer timer(timings_, "reconstruction");
+  averaging_variance_ = 0;
   Reconstruction reconstruction;
   const GroundPlane measured = withSkew(rig_, stereo, approach.step);
   reconstruction.failure = missingPlane(stereo, measured);
@@ -240,7 +242,7 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
 
 void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
                                               const ApproachAngleResult& approach,
-                                              Reconstruction& reconstruction) const {
+                                              Reconstruction& reconstruction) {
   const Eigen::Vector3d n = reconstruction.plane.normal();
   double theta = -pitchOf(n), roll = rollOf(n);
   double theta_variance = pitchVariance(n, reconstruction.plane.normalCovariance());
@@ -268,9 +270,10 @@ void KalmanHeightStage::reconstructFromPoints(const StereoDepthResult& stereo,
   const double by_theta = averageHeight(rig_, stereo.points, theta + M_PI / 2, roll, only_on_plane).height;
   reconstruction.height = averaged.height;
   reconstruction.variance = averaged.variance + by_theta * by_theta * theta_variance;
-  // An angle of another meaning and matches off the ground make an error of their own, of which the scatter
-  // knows nothing. What they differ from the plane by is a measure of it.
-  if (!only_on_plane) reconstruction.variance += std::pow(averaged.height - reconstruction.plane.height(), 2);
+  // Depths of far points are too large on average, an angle of another meaning and matches off the ground
+  // make errors of their own, and the scatter knows nothing of it. What the average differs from the plane by
+  // is a measure of it, which the next pairs repeat.
+  averaging_variance_ = std::pow(averaged.height - reconstruction.plane.height(), 2);
 }
 
 }  // namespace uav_landing

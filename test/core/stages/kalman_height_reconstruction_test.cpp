@@ -103,6 +103,31 @@ TEST(KalmanHeightReconstruction, AveragesThePointsOnRequest) {
   EXPECT_EQ(result.failure.message(), "no_motion: standing still");
 }
 
+// The depths of all points are too large by a share, as those of far ones are on average.
+TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatMakesTheAverageAnotherThanThePlanes) {
+  constexpr double kHeight = 10, kShare = 0.02;
+  KalmanHeightParameters parameters;
+  parameters.height_source = HeightSource::kPoints;
+  parameters.height_model_error = 0;
+  KalmanHeightStage stage(usualRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 100; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, kHeight, 0, 0);
+    for (const double depth : {40.0, 60.0, 90.0}) {
+      StereoDepthResult::Point point;
+      point.u = 320;
+      point.v = 240 + 500 * kHeight / depth;
+      point.disparity = 500 * 1.0 / depth / (1 + kShare);
+      point.disparity_stddev = 0.1;
+      point.on_plane = true;
+      stereo.points.push_back(point);
+    }
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  EXPECT_NEAR(result.height, (1 + kShare) * kHeight, 1e-3);
+  EXPECT_NEAR(std::sqrt(result.height_variance), kShare * kHeight, 0.1 * kShare * kHeight);
+}
+
 /// Of a runway 45 m wide from this height.
 ApproachAngleResult runwayFrom(double stamp, double height) {
   ApproachAngleResult approach = angleAt(stamp);
