@@ -227,7 +227,17 @@ struct ApproachAngleStage::Implementation {
     }
     result.foe = foe->pixel;
     result.foe_covariance = foe->covariance;
-    if (paperForm()) angleFromFoe(result);
+    if (!paperForm()) return;
+    angleFromFoe(result);
+    claimDifference(motion, result);
+  }
+
+  // Rotation left in the velocities moves all of their crossings, and eq (1) leaves out roll and drift: the
+  // scatter knows nothing of it. What the paper's forms differ from the motion by is a measure of it.
+  void claimDifference(const MotionTracker::Result& motion, ApproachAngleResult& result) const {
+    const Eigen::Vector2d off = result.foe - model.rig.project(motion.step_estimate->motion.t);
+    result.foe_covariance += off * off.transpose();
+    result.step.angle_variance += std::pow(result.step.angle - motion.step.angle, 2);
   }
 
   // Approach angle of the step from the FOE as a pixel, as the paper does.

@@ -162,9 +162,36 @@ TEST(ApproachAngleStage, FindsTheFocusByTheSlidingWindow) {
   EXPECT_LT((result.foe - foe).norm(), 6);
   EXPECT_NEAR(result.window.angle, 10 * kDegree, 1.5 * kDegree);
   EXPECT_EQ(result.window.angle, result.step.angle);
+}
+
+TEST(ApproachAngleStage, ClaimsWhatRotationLeftInTheVelocitiesMakesOfTheFocus) {
+  ApproachScene scene(39);
+  scene.parameters.foe_method = FoeMethod::kSlidingWindow;
+  scene.parameters.angle_window = 0;
   scene.parameters.remove_rotation = false;
-  const ApproachAngleResult raw = scene.run(path, 3).back();
-  EXPECT_TRUE(raw.failure || (raw.foe - foe).norm() > (result.foe - foe).norm() + 5);
+  const auto path = [](double t) {
+    Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.8, 10)(t);
+    pose.pitch += 4 * t * kDegree;
+    return pose;
+  };
+  const ApproachAngleResult result = scene.run(path, 3).back();
+  ASSERT_FALSE(result.failure) << result.failure.message();
+  const Pose now = path(2 * kPeriod), previous = path(kPeriod);
+  const Eigen::Vector2d off = result.foe - scene.rig.project(now.seen(now.position - previous.position));
+  ASSERT_GT(off.norm(), 10);
+  EXPECT_LT(off.dot(result.foe_covariance.inverse() * off), 9);
+  EXPECT_LT(std::abs(result.window.angle - 10 * kDegree), 2 * std::sqrt(result.window.angle_variance));
+}
+
+TEST(ApproachAngleStage, ClaimsWhatEq1LeavesOut) {
+  ApproachScene scene(38);
+  scene.parameters.angle_window = 0;
+  scene.parameters.angle_formula = AngleFormula::kEq1;
+  const ApproachAngleResult result = scene.run(straight(attitude(-8, -8, 0), 1.8, 1.8, 10, 20), 3).back();
+  ASSERT_FALSE(result.failure) << result.failure.message();
+  const double error = std::abs(result.window.angle - 10 * kDegree);
+  ASSERT_GT(error, 1 * kDegree);
+  EXPECT_LT(error, 2 * std::sqrt(result.window.angle_variance));
 }
 
 TEST(ApproachAngleStage, ForgetsThePastWhenTheStampDoesNotIncrease) {
