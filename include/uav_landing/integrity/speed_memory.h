@@ -22,10 +22,11 @@ class SpeedMemory {
   /// third of that way is enough: late stamps make steps look longer or shorter than they were. None where it
   /// may have stopped.
   std::optional<Shortfall> compare(const CameraStep& step) const;
-  /// A step that agrees, as compared. One that does not leaves the speed as it was: the aircraft does not
-  /// slow down while its pictures stand still. After that as many steps in a row (up to three) must be long
-  /// enough, whatever their variance: pictures that change seem to move now and then. After half a minute
-  /// nothing is known.
+  /// A step that agrees, as compared. What is known falls no faster than the aircraft can slow down, whatever
+  /// the step: one so uncertain that it agrees would make the next, shorter one agree. One that does not
+  /// leaves the speed as it was: the aircraft does not slow down while its pictures stand still. After that
+  /// as many steps in a row (up to three) must be long enough, whatever their variance: pictures that change
+  /// seem to move now and then. After half a minute nothing is known.
   void learn(const CameraStep& step, bool agrees);
   /// The last steps known stood still, and no motion has been seen since.
   bool stands() const { return still_ > 0; }
@@ -37,6 +38,9 @@ class SpeedMemory {
   struct Speed {
     double mean = 0, variance = 0;  // m/s, m^2/s^2
   };
+  // After a step of this duration (s); none where it may have stopped.
+  std::optional<Speed> least(double duration) const;
+
   double max_deceleration_;
   std::deque<Speed> last_;     // of the last steps known, up to three
   double since_ = 0;           // s, since the last known step

@@ -11,14 +11,20 @@ constexpr int kSteps = 3;           // that are asked for at most, and that are 
 
 }  // namespace
 
-std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const CameraStep& step) const {
+std::optional<SpeedMemory::Speed> SpeedMemory::least(double duration) const {
   if (last_.size() < kSteps) return std::nullopt;
-  const Speed& slowest = *std::min_element(last_.begin(), last_.end(),
-                                           [](const Speed& a, const Speed& b) { return a.mean < b.mean; });
-  const double least = slowest.mean - max_deceleration_ * (since_ + step.duration);
-  if (!(least > 0)) return std::nullopt;
+  Speed slowest = *std::min_element(last_.begin(), last_.end(),
+                                    [](const Speed& a, const Speed& b) { return a.mean < b.mean; });
+  slowest.mean -= max_deceleration_ * (since_ + duration);
+  if (!(slowest.mean > 0)) return std::nullopt;
+  return slowest;
+}
+
+std::optional<SpeedMemory::Shortfall> SpeedMemory::compare(const CameraStep& step) const {
+  const std::optional<Speed> least = this->least(step.duration);
+  if (!least) return std::nullopt;
   const double share = kShare * step.duration;
-  return Shortfall{share * least - step.way, step.variance + share * share * slowest.variance};
+  return Shortfall{share * least->mean - step.way, step.variance + share * share * least->variance};
 }
 
 void SpeedMemory::learn(const CameraStep& step, bool agrees) {
@@ -31,9 +37,12 @@ void SpeedMemory::learn(const CameraStep& step, bool agrees) {
     if (contradicted_ > kPatience) return reset();
     if (moved_ < still_) return;
   }
+  Speed speed{step.way / step.duration, step.variance / (step.duration * step.duration)};
+  const std::optional<Speed> least = this->least(step.duration);
+  if (least && speed.mean < least->mean) speed = *least;
   contradicted_ = since_ = 0;
   still_ = moved_ = 0;
-  last_.push_back({step.way / step.duration, step.variance / (step.duration * step.duration)});
+  last_.push_back(speed);
   if (last_.size() > kSteps) last_.pop_front();
 }
 

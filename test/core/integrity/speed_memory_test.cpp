@@ -89,6 +89,15 @@ TEST(SpeedMemory, NoiseThatSeemsToMoveNowAndThenIsNotMotion) {
   EXPECT_FALSE(memory.stands());
 }
 
+TEST(SpeedMemory, ShortStepsThatAreUncertainDoNotMakeShorterOnesBelievable) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.05, 1);
+  // Of 0.3 (20 - 0.15) m/s for 0.05 s, 0.3 m: no contradiction, as uncertain as it is, and no speed either.
+  for (const double way : {0.2, 0.1, 0.05}) memory.learn({0.05, way, 0.1 * 0.1}, true);
+  EXPECT_GT(fly(memory, 0.05, 0), 4.4);
+  EXPECT_NEAR(memory.compare({0.05, 0, 0})->difference, 0.3 * 0.05 * (20 - 4 * 0.15), 1e-9);
+}
+
 TEST(SpeedMemory, NothingIsSaidWhereItMayHaveStoppedUnseen) {
   SpeedMemory memory(3);
   for (int i = 0; i < 5; ++i) fly(memory, 0.1, 0.1);
