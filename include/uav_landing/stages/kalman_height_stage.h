@@ -116,6 +116,9 @@ class KalmanHeightStage {
                       const Reconstruction& reconstruction, bool rejected);
   bool agreesWithFlight(const ApproachAngleResult::Motion& step, double T, double height,
                         const std::optional<Eigen::Vector3d>& normal) const;
+  /// Of the ground: by this pair, else that of the pairs before, carried on. After rememberGround.
+  Eigen::Vector3d knownNormal(const Reconstruction& reconstruction,
+                              const ApproachAngleResult& approach) const;
   /// No height after contradictions before nothing has contradicted for recovery_time.
   void awaitRecovery(double T, LandingResult& result);
   void reportProtection(const Eigen::Vector3d& normal, LandingResult& result) const;
@@ -153,7 +156,7 @@ class KalmanHeightStage {
   StereoRig rig_;
   KalmanHeightParameters parameters_;
   HeightFilter filter_;
-  InnovationScatter scatter_;
+  InnovationScatter scatter_, speed_scatter_;
   AttitudeFilter attitude_;
   PositionFilter position_;
   RigRotationFilter rig_rotation_;

@@ -73,4 +73,10 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   ground_.look(rig_, stereo.points, plane, stereo.plane.g);
 }
 
+Eigen::Vector3d KalmanHeightStage::knownNormal(const Reconstruction& reconstruction,
+                                               const ApproachAngleResult& approach) const {
+  if (reconstruction.plane.valid()) return reconstruction.normal.mean;
+  return approach.n.allFinite() ? approach.n : last_normal_.value_or(approach.n);
+}
+
 }  // namespace uav_landing

@@ -57,6 +57,7 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       parameters_(parameters),
       filter_(parameters.acceleration_stddev, parameters.initial_speed_stddev, parameters.gate),
       scatter_(parameters.gate * parameters.gate),
+      speed_scatter_(parameters.gate * parameters.gate),
       rig_rotation_(rig, parameters.rig_memory),
       width_(parameters.known_runway_width),
       separation_(parameters),
@@ -95,7 +96,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     testMemory(T, reconstruction, approach, result);
     awaitRecovery(T, result);
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
-    reportProtection(reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n, result);
+    reportProtection(knownNormal(reconstruction, approach), result);
   }
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
   reportAngle(approach, publishedMotion(approach), corrected ? &reconstruction.plane : nullptr,
@@ -217,6 +218,7 @@ void KalmanHeightStage::loseTrack() {
   ++resets_;
   filter_.reset();
   scatter_.reset();
+  speed_scatter_.reset();
   separation_.reset();
   confirmations_ = 0;
   consecutive_rejections_ = 0;
@@ -265,7 +267,10 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   if (update.accepted) {
     accept(stamp);
     separation_.update(reconstruction.without);
-    if (parameters_.use_motion && reconstruction.plane.valid()) updateSpeed(reconstruction, step);
+    // Of a plane that a vanishing point contradicts nobody knows which part of the motion was downwards.
+    if (parameters_.use_motion && reconstruction.plane.valid() &&
+        !tests_.failed(Consistency::kVanishingPoint))
+      updateSpeed(reconstruction, step);
     return;
   }
   result.rejected = true;
@@ -313,11 +318,14 @@ VerticalSpeed KalmanHeightStage::withStamps(VerticalSpeed speed) const {
 
 void KalmanHeightStage::updateSpeed(const Reconstruction& reconstruction,
                                     const ApproachAngleResult::Motion& step) {
-  const VerticalSpeed measured = withStamps(verticalSpeed(
+  const VerticalSpeed claimed = withStamps(verticalSpeed(
       step, reconstruction.below, reconstruction.height - reconstruction.bend, reconstruction.variance,
       parameters_.height_model_error, parameters_.acceleration_stddev));
-  if (filter_.updateSpeed(measured.speed, measured.variance).accepted)
-    separation_.updateSpeed(measured.speed, measured.variance);
+  const double variance = claimed.variance * (parameters_.integrity_monitor ? speed_scatter_.factor() : 1);
+  const HeightFilter::Update update = filter_.updateSpeed(claimed.speed, variance);
+  speed_scatter_.add(update.innovation * update.innovation /
+                     (update.innovation_variance - variance + claimed.variance));
+  if (update.accepted) separation_.updateSpeed(claimed.speed, variance);
 }
 
 void KalmanHeightStage::reportHeight(LandingResult& result) const {

@@ -16,6 +16,7 @@ namespace {
 
 using test::kDegree;
 using test::kStep;
+using test::noStereo;
 using test::stereoAt;
 using test::usualRig;
 using test::withoutTurning;
@@ -102,6 +103,26 @@ TEST(KalmanHeightGround, ATurnOfAMotionThatFailedDoesNotLiftTheGroundBelow) {
     EXPECT_LT(result.height_protection_level, before.height_protection_level + 0.4)
         << result.protection_source;
   }
+}
+
+TEST(KalmanHeightGround, APairThatSeesNothingDoesNotNarrowTheProtectionLevelOverAnotherSurfaceBelow) {
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  LandingResult before;
+  for (; stamp < 3; stamp += kStep) {
+    StereoDepthResult stereo = overGround(stamp);
+    for (StereoDepthResult::Point& point : stereo.points) point.disparity /= 1.03;  // 0.3 m lower
+    before = stage.process(stereo, alongGround(stamp));
+  }
+  ASSERT_EQ(before.protection_source, "surface_below");
+  ASSERT_GT(before.height_protection_level, 0.3);
+  ApproachAngleResult blind = alongGround(stamp);
+  blind.n.setConstant(std::numeric_limits<double>::quiet_NaN());
+  blind.step = {};
+  blind.step.failure = {Reason::kNoGroundNormal, "nothing is seen"};
+  const LandingResult result = stage.process(noStereo(stamp), blind);
+  EXPECT_EQ(result.protection_source, "surface_below");
+  EXPECT_GT(result.height_protection_level, before.height_protection_level - 0.02);
 }
 
 }  // namespace

@@ -96,6 +96,28 @@ TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThat
   EXPECT_GT(bold.height_variance, 1.5 * honest.height_variance);
 }
 
+TEST(KalmanHeightIntegrity, MotionsThatScatterMoreThanTheyClaimHaveASpeedThatSaysSo) {
+  const auto fly = [](double scatter) {
+    KalmanHeightStage stage(test::usualRig(), {});
+    std::mt19937 random(6);
+    std::normal_distribution<double> error(0, scatter);
+    LandingResult result;
+    for (int i = 0; i < 60; ++i) {
+      const double stamp = 1 + 0.05 * i;
+      StereoDepthResult stereo = stereoAt(stamp, 10);
+      stereo.points.clear();
+      stereo.plane.covariance *= 36;
+      ApproachAngleResult approach = levelFlight(stamp, 10);
+      approach.step.covariance = std::pow(0.002, 2) * Matrix6d::Identity();  // of 10 m in 0.05 s: 0.4 m/s
+      approach.step.translation_over_height += error(random) * stereo.plane.normal();
+      result = stage.process(stereo, approach);
+    }
+    return result.vertical_speed_variance;
+  };
+  EXPECT_NEAR(fly(0.5 * 0.002), fly(0), 1e-6);
+  EXPECT_GT(fly(3 * 0.002), 1.25 * fly(0));
+}
+
 TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentAvailable) {
   KalmanHeightStage stage(test::usualRig(), {});
   const auto height = [](double stamp) { return 20 - 1.5 * (stamp - 1); };

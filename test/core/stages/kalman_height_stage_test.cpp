@@ -234,6 +234,24 @@ TEST(KalmanHeightStage, LearnsTheVerticalSpeedFromTheMotion) {
   EXPECT_GT(std::sqrt(without.vertical_speed_variance), 0.4);
 }
 
+TEST(KalmanHeightStage, LearnsNoVerticalSpeedByAPlaneThatTheVanishingPointContradicts) {
+  // Level flight at 20 m/s over a plane that seems tilted by 2 degrees: 0.7 m/s upwards by the motion.
+  const auto speed_after = [](double seen_pitch) {
+    KalmanHeightStage stage(usualRig(), {});
+    LandingResult result;
+    for (int i = 0; i < 10; ++i) {
+      ApproachAngleResult approach = withStep(angleAt(i * kStep), 0.2);
+      approach.step.translation_over_height = {0, 0, 0.2};
+      approach.vanishing_direction = Eigen::Vector3d(0, std::sin(seen_pitch), std::cos(seen_pitch));
+      approach.vanishing_covariance = std::pow(0.05 * kDegree, 2) * Eigen::Matrix3d::Identity();
+      result = stage.process(stereoAt(i * kStep, 10, 2 * kDegree, 0, 0.05), approach);
+    }
+    return result.vertical_speed;
+  };
+  EXPECT_GT(std::abs(speed_after(2 * kDegree)), 0.5) << "what agrees is believed";
+  EXPECT_LT(std::abs(speed_after(0)), 0.05);
+}
+
 TEST(KalmanHeightStage, TimeoutIsLostAndNothingIsValid) {
   KalmanHeightStage stage(usualRig(), {});
   const double stamp = settle(stage, 10);
