@@ -148,17 +148,16 @@ class KalmanHeightNodelet : public StageNodelet {
       return result;
     });
     camera.stamp = stereo.header.stamp.toSec();
-    {
-      const std::lock_guard<std::mutex> lock(rig_mutex_);
-      rig_rotation_ = camera.rig_rotation;
-      test_results_ = camera.tests;
-      protection_level_ = camera.height_protection_level;
-      alert_limit_ = camera.height_alert_limit;
-      protection_source_ = camera.protection_source;
-      resets_ = camera.resets;
-    }
-    report_.served(stereo.header.stamp, compute_ms, camera.failure.message());
-    publish(stereo, compute_ms, camera, plane, approach_result.step, left_info);
+    const LandingResult estimate =
+        publish(stereo, compute_ms, camera, plane, approach_result.step, left_info);
+    report_.served(stereo.header.stamp, compute_ms, estimate.failure.message());
+    const std::lock_guard<std::mutex> lock(rig_mutex_);
+    rig_rotation_ = estimate.rig_rotation;
+    test_results_ = estimate.tests;
+    protection_level_ = estimate.height_protection_level;
+    alert_limit_ = estimate.height_alert_limit;
+    protection_source_ = estimate.protection_source;
+    resets_ = estimate.resets;
   }
 
   Failure prepare(const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
@@ -171,9 +170,10 @@ class KalmanHeightNodelet : public StageNodelet {
     return rig_failure_;
   }
 
-  void publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
-               const GroundPlane& plane, const ApproachAngleResult::Motion& step,
-               const sensor_msgs::CameraInfo& left_info) {
+  /// Returns what was published: of the child frame, and not valid where its transform is missing.
+  LandingResult publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
+                        const GroundPlane& plane, const ApproachAngleResult::Motion& step,
+                        const sensor_msgs::CameraInfo& left_info) {
     left_frame_ = left_info.header.frame_id;
     const RigFrames::Child child = frames_->find(left_frame_);
     // camera_info's R turns the camera as it is mounted into the rectified one.
@@ -216,6 +216,7 @@ class KalmanHeightNodelet : public StageNodelet {
       marker_publisher_.publish(drawLanding(header, node_, estimate, aircraft,
                                             (runway_from_camera * camera.velocity).head<2>(), path_.track()));
     }
+    return estimate;
   }
 
   void publishRange(const LandingResult& estimate, const ros::Time& stamp, const std::string& frame) {

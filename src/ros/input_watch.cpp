@@ -13,9 +13,12 @@ InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
   Waiting& waiting = waiting_[input];
   ++inputs_[input].received;
   const Arrival arrival = waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
-  if (arrival == Arrival::kRepeated || arrival == Arrival::kLate) {
-    ++(arrival == Arrival::kLate ? inputs_[input].late : inputs_[input].repeated);
-    ++inputs_[input].dropped;
+  if (!StampOrder::isUsed(arrival)) {
+    Input& counted = inputs_[input];
+    ++(arrival == Arrival::kLate       ? counted.late
+       : arrival == Arrival::kRepeated ? counted.repeated
+                                       : counted.unstamped);
+    ++counted.dropped;
     return arrival;
   }
   if (arrival == Arrival::kBackwards) {
@@ -53,13 +56,15 @@ void InputWatch::forget() {
 
 std::string InputWatch::complaint() {
   bool any_paired = false;
-  std::string silent, repeating, latest;
+  std::string silent, unstamped, repeating, latest;
   for (size_t i = 0; i < inputs_.size(); ++i) {
     const Input& input = inputs_[i];
     Waiting& waiting = waiting_[i];
     any_paired = any_paired || input.paired > waiting.paired_before;
     if (input.received == waiting.received_before) {
       silent += (silent.empty() ? "" : ", ") + input.topic;
+    } else if (input.unstamped - waiting.unstamped_before == input.received - waiting.received_before) {
+      unstamped += (unstamped.empty() ? "" : ", ") + input.topic;
     } else if (input.repeated - waiting.repeated_before == input.received - waiting.received_before) {
       repeating += (repeating.empty() ? "" : ", ") + input.topic;
     } else {
@@ -70,9 +75,11 @@ std::string InputWatch::complaint() {
     waiting.received_before = input.received;
     waiting.paired_before = input.paired;
     waiting.repeated_before = input.repeated;
+    waiting.unstamped_before = input.unstamped;
   }
   if (any_paired) return "";
   if (!silent.empty()) return "no message on " + silent;
+  if (!unstamped.empty()) return "the stamp (header.stamp) is 0 on " + unstamped;
   if (!repeating.empty()) return "the stamp never changes on " + repeating;
   return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger); latest: " +
          latest;

@@ -17,19 +17,20 @@ class InputWatch {
  public:
   struct Input {
     std::string topic;
-    uint64_t received = 0;  ///< messages
-    uint64_t paired = 0;    ///< of them, found all their counterparts
-    uint64_t dropped = 0;   ///< of them, given up: a counterpart missing, or the stamp repeated or late
-    uint64_t repeated = 0;  ///< of the dropped, had the stamp of the message before
-    uint64_t late = 0;      ///< of the dropped, came after newer ones
+    uint64_t received = 0;   ///< messages
+    uint64_t paired = 0;     ///< of them, found all their counterparts
+    uint64_t dropped = 0;    ///< of them, given up: a counterpart missing, or the stamp 0, repeated or late
+    uint64_t repeated = 0;   ///< of the dropped, had the stamp of the message before
+    uint64_t late = 0;       ///< of the dropped, came after newer ones
+    uint64_t unstamped = 0;  ///< of the dropped, had no stamp: 0
   };
   using Arrival = StampOrder::Arrival;
 
   /// queue_size: messages per input that wait for their counterparts. max_late: s, see StampOrder.
   InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late);
 
-  /// To be called for each message. kRepeated, kLate: must not be paired. kBackwards: the clock was set back;
-  /// what waits has been forgotten, and is to be so by others, before this message is used.
+  /// To be called for each message. kRepeated, kLate, kUnstamped: must not be paired. kBackwards: the clock
+  /// was set back; what waits has been forgotten, and is to be so by others, before this message is used.
   Arrival arrived(size_t input, const ros::Time& stamp);
   /// The message of this stamp has found its counterparts; older ones on this input never will.
   void paired(size_t input, const ros::Time& stamp);
@@ -39,8 +40,8 @@ class InputWatch {
   const std::vector<Input>& inputs() const { return inputs_; }
   uint64_t jumps() const { return jumps_; }  ///< times the clock went back
 
-  /// Why nothing was paired since the last call: "" when something was, else which topics are silent, or how
-  /// the stamps differ.
+  /// Why nothing was paired since the last call: "" when something was, else which topics are silent or have
+  /// no stamps, or how the stamps differ.
   std::string complaint();
 
  private:
@@ -52,6 +53,7 @@ class InputWatch {
     uint64_t received_before = 0;  // at the last complaint
     uint64_t paired_before = 0;
     uint64_t repeated_before = 0;
+    uint64_t unstamped_before = 0;
   };
 
   std::vector<Input> inputs_;

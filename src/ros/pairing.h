@@ -21,10 +21,11 @@
 namespace uav_landing {
 
 /// Finds the messages that belong together by their stamps (header.stamp), with message_filters. Fed by plain
-/// calls, so it serves subscriptions and bags alike. Repeated and late stamps are dropped; one that goes back
-/// farther clears everything that waits (StampOrder). The same message object twice counts once: roscpp may
-/// have linked a publisher in this process twice, if it is somebody else's (see stage_nodelet.cpp). Thread
-/// safe; the callback runs in the thread of the add() that completed the set, without the lock.
+/// calls, so it serves subscriptions and bags alike. Repeated, late and missing (0) stamps are dropped; one
+/// that goes back farther clears everything that waits (StampOrder). The same message object twice counts
+/// once: roscpp may have linked a publisher in this process twice, if it is somebody else's (see
+/// stage_nodelet.cpp). Thread safe; the callback runs in the thread of the add() that completed the set,
+/// without the lock.
 template <class... Messages>
 class Pairing {
  public:
@@ -49,7 +50,7 @@ class Pairing {
       if (cameTwice(message, std::get<kInput>(last_))) return;
       const ros::Time& stamp = message->header.stamp;
       const InputWatch::Arrival arrival = watch_.arrived(kInput, stamp);
-      if (arrival == InputWatch::Arrival::kRepeated || arrival == InputWatch::Arrival::kLate) return;
+      if (!StampOrder::isUsed(arrival)) return;
       if (arrival == InputWatch::Arrival::kBackwards) rebuild();
       using Message = std::tuple_element_t<kInput, std::tuple<Messages...>>;
       // The stamp stands in for the receipt time: the system clock need not be known (bags are read without

@@ -1,3 +1,4 @@
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
 #include <std_srvs/Empty.h>
@@ -278,6 +279,25 @@ TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {
     return waitFor(t) && estimateOf(t).valid;
   }));
   EXPECT_EQ(estimateOf(t).child_frame_id, "imu_link");
+}
+
+TEST_F(KalmanHeightNodeletTest, DiagnosticsSayWhyWhatIsPublishedIsNotValid) {
+  setParameter("kalman_height", "base_frame", std::string("imu_link"));
+  setParameter("kalman_height", "diagnostic_period", 0.2);
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
+  start();
+  const auto said = [&] {
+    for (const auto& array : diagnostics.messages())
+      for (const auto& status : array->status)
+        if (status.message.rfind("transform_missing: ", 0) == 0)
+          return status.level == diagnostic_msgs::DiagnosticStatus::WARN;
+    return false;
+  };
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && said();
+  }));
 }
 
 TEST_F(KalmanHeightNodeletTest, ABadRigIsTheReasonOfEveryMessage) {

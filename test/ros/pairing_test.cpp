@@ -217,6 +217,25 @@ TEST_F(StereoPairingTest, TheComplaintNamesAStampThatNeverChanges) {
   EXPECT_NE(pairing_.complaint().find("the stamp never changes on /left/image_raw"), std::string::npos);
 }
 
+TEST_F(StereoPairingTest, TheComplaintNamesACameraWithoutStamps) {
+  for (const double stamp : {1.0, 1.1}) {
+    addLeft(stamp);
+    addRight(0);
+  }
+  EXPECT_EQ(pairing_.complaint(), "the stamp (header.stamp) is 0 on /right/image_raw, /right/camera_info");
+}
+
+TEST_F(StereoPairingTest, AMessageWithoutAStampIsCountedAndChangesNothing) {
+  addPair(1.0);
+  addLeft(1.1);
+  addLeft(0);
+  addRight(0);
+  addRight(1.1);
+  EXPECT_EQ(pairs_, (Pairs{{1.0, 1.0}, {1.1, 1.1}}));
+  EXPECT_EQ(pairing_.jumps(), 0u);
+  for (const auto& input : pairing_.inputs()) EXPECT_EQ(input.unstamped, 1u) << input.topic;
+}
+
 TEST_F(StereoPairingTest, ResetForgetsWhatWaits) {
   addLeft(1.0);
   pairing_.reset();

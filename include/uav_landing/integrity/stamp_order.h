@@ -10,14 +10,16 @@ namespace uav_landing {
 /// row: then everything starts anew.
 class StampOrder {
  public:
-  enum class Arrival { kNext, kRepeated, kLate, kBackwards };
+  enum class Arrival { kNext, kRepeated, kLate, kBackwards, kUnstamped };
 
   /// max_late: s behind the newest stamp; 0: every step back is that of a clock.
   explicit StampOrder(double max_late);
 
-  /// stamp: ns; 0 is none. kRepeated and kLate: to be left out. kBackwards: what waits and what is remembered
-  /// is to be forgotten first.
+  /// stamp: ns; 0 is none. kRepeated, kLate and kUnstamped: to be left out. kBackwards: what waits and what
+  /// is remembered is to be forgotten first.
   Arrival follow(int64_t stamp);
+  /// Whether such a pair, or image, is to be used.
+  static bool isUsed(Arrival arrival) { return arrival == Arrival::kNext || arrival == Arrival::kBackwards; }
   /// Stamps may start anywhere again.
   void reset();
 

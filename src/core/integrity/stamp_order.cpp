@@ -13,6 +13,7 @@ constexpr int kMostLate = 10;
 StampOrder::StampOrder(double max_late) : max_late_(std::llround(1e9 * max_late)) {}
 
 StampOrder::Arrival StampOrder::follow(int64_t stamp) {
+  if (stamp == 0) return Arrival::kUnstamped;
   if (newest_ != 0 && stamp == newest_) return Arrival::kRepeated;
   if (newest_ != 0 && stamp < newest_) {
     if (newest_ - stamp <= max_late_ && ++late_ < kMostLate) return Arrival::kLate;

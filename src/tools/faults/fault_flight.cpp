@@ -43,8 +43,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
     if (!pair.delivered) continue;
     // As where images are paired.
-    const StampOrder::Arrival arrival = order.follow(std::llround(1e9 * (kStart + pair.time)));
-    if (arrival == StampOrder::Arrival::kRepeated || arrival == StampOrder::Arrival::kLate) continue;
+    if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, pair.left, pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;
     const double height = trueHeight(flight, pair.time);

@@ -26,6 +26,15 @@ TEST(StampOrder, AStepBackByMoreIsThatOfAClock) {
   EXPECT_EQ(order.follow(9700 * kMs), Arrival::kLate);
 }
 
+TEST(StampOrder, NoStampIsNoTime) {
+  StampOrder order(0.3);
+  EXPECT_EQ(order.follow(0), Arrival::kUnstamped);
+  EXPECT_EQ(order.follow(10000 * kMs), Arrival::kNext);
+  EXPECT_EQ(order.follow(0), Arrival::kUnstamped) << "and no clock set back";
+  EXPECT_EQ(order.follow(9999 * kMs), Arrival::kLate);
+  EXPECT_FALSE(StampOrder::isUsed(Arrival::kUnstamped));
+}
+
 TEST(StampOrder, WithoutALimitEveryStepBackIsThatOfAClock) {
   StampOrder order(0);
   order.follow(10000 * kMs);
