@@ -2,6 +2,8 @@
 
 #include <ros/param.h>
 
+#include <algorithm>
+
 #include "autopilot_messages.h"
 #include "uav_landing/parameters/section_loader.h"
 
@@ -43,7 +45,18 @@ struct NameCollector {
   void text(const char* name, Rest&&...) {
     names.emplace_back(name);
   }
+  template <class Enum>
+  void choice(const char* name, Enum&, std::initializer_list<const char*>, const char*) {
+    names.emplace_back(name);
+  }
 };
+
+/// Somebody else's: image_transport's plugins write theirs below the nodelet's name as well, as maps under
+/// the topic's name or their own, and they outlive the nodelet. No parameter of ours is a map.
+bool isForeign(const std::string& name, XmlRpc::XmlRpcValue& value, const std::vector<std::string>& own) {
+  return value.getType() == XmlRpc::XmlRpcValue::TypeStruct &&
+         std::find(own.begin(), own.end(), name) == own.end() && suggestName(name, own).empty();
+}
 
 /// Takes the keys of NodeParameters out of the map of all private parameters.
 YAML::Node takeNodeKeys(YAML::Node& all) {
@@ -68,7 +81,11 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
   if (ros::param::get(private_handle.getNamespace(), given)) {
     if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
       return {Reason::kInputInvalid, section + ": expected a map of names and values"};
-    for (auto& member : given) all[member.first] = toYaml(member.second);
+    std::vector<std::string> names;
+    NodeParameters().visit(NameCollector{names});
+    Section().visit(NameCollector{names});
+    for (auto& member : given)
+      if (!isForeign(member.first, member.second, names)) all[member.first] = toYaml(member.second);
   }
   SectionLoader loader(takeNodeKeys(all), section);
   NodeParameters loaded = node_parameters;

@@ -65,6 +65,14 @@ TEST_F(OverlayNodeletTest, DrawsAPictureOfTheImagesStampAlsoWhenNothingWasFound)
   EXPECT_EQ(picture.messages()[1]->width, 640u) << "enlarged";
 }
 
+TEST_F(OverlayNodeletTest, WhatImageTransportKeepsBelowItsNameIsNoParameter) {
+  // As its plugins leave it behind for the next nodelet of this name.
+  ros::param::set("/uav_landing/overlay/image/compressed/format", "jpeg");
+  ros::param::set("/uav_landing/overlay/image/disable_pub_plugins",
+                  std::vector<std::string>{"image_transport/compressed"});
+  load("overlay");
+}
+
 TEST_F(OverlayNodeletTest, BadParametersRefuseToLoadByName) {
   setParameter("overlay", "scale", 9);
   expectRefusal("overlay", "overlay/scale: 9 is out of range");
