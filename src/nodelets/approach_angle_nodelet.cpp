@@ -120,7 +120,7 @@ class ApproachAngleNodelet : public StageNodelet {
     imu_heard_ = imu_unused_ = false;
   }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
-    if (imu_) status.add("imu", imu_reason_.empty() ? "used" : imu_reason_);
+    if (imu_) status.add("imu", imu_use_);
   }
 
   void takeImu(const sensor_msgs::Imu& message) {
@@ -189,6 +189,7 @@ class ApproachAngleNodelet : public StageNodelet {
   void noteImu(const AttitudePrior& imu) {
     imu_unused_ = imu.failure && !imu.hasRotation();
     imu_reason_ = imu.failure.message();
+    imu_use_ = !imu.failure ? "used" : imu.hasRotation() ? "rotation only: " + imu_reason_ : imu_reason_;
   }
 
   ApproachAngleParameters parameters_;
@@ -207,6 +208,7 @@ class ApproachAngleNodelet : public StageNodelet {
   bool imu_silent_ = false;                      // nothing came while the last pair waited
   bool imu_heard_ = false, imu_unused_ = false;  // since the last complaint; by the last pair
   std::string imu_reason_;                       // of the last pair
+  std::string imu_use_ = "no pair yet";          // by that, for the diagnostics
 };
 
 }  // namespace uav_landing

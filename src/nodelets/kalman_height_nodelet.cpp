@@ -278,7 +278,8 @@ class KalmanHeightNodelet : public StageNodelet {
     } else {
       lost.stamp = stamp.toSec();
       lost.status = Status::kLost;
-      lost.failure = {Reason::kTimeout, "no image pair yet, see the log of rectify"};
+      lost.failure = {Reason::kTimeout, last_stamp_.isZero() ? "no image pair yet, see the log of rectify"
+                                                             : "no image pair any more"};
     }
     note(lost);
     std_msgs::Header header;

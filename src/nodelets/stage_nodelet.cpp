@@ -26,12 +26,7 @@ void StageNodelet::onInit() {
       std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), getPrivateNodeHandle(), getName());
   updater_->setHardwareID("none");
   updater_->add(section_, [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
-    bool subscribed = false;
-    {
-      const std::lock_guard<std::mutex> lock(subscription_mutex_);
-      subscribed = subscribed_;
-    }
-    report_.write(status, inputs(), subscribed);
+    report_.write(status, inputs(), subscribedFor());
     describe(status);
   });
   // Wall time: a clock that stands still is one of the things to report.
@@ -73,6 +68,13 @@ void StageNodelet::updateSubscription() {
     unsubscribe();
   }
   subscribed_ = want;
+  subscribed_since_ = ros::WallTime::now();
+}
+
+std::optional<double> StageNodelet::subscribedFor() const {
+  const std::lock_guard<std::mutex> lock(subscription_mutex_);
+  if (!subscribed_) return std::nullopt;
+  return (ros::WallTime::now() - subscribed_since_).toSec();
 }
 
 void StageNodelet::refuse(const std::string& problem) {
@@ -101,10 +103,8 @@ void StageNodelet::stop() {
 }
 
 void StageNodelet::complain() {
-  {
-    const std::lock_guard<std::mutex> lock(subscription_mutex_);
-    if (!subscribed_) return;
-  }
+  const std::optional<double> subscribed = subscribedFor();
+  if (!subscribed || *subscribed < node_.complaint_period) return;
   const std::string missing = complaint();
   const ros::WallTime now = ros::WallTime::now();
   const bool repeated = missing == last_complaint_ && (now - last_complaint_time_).toSec() < kRepeatAfter;

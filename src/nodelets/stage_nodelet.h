@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,8 @@ class StageNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() final;
+  /// Since when the inputs are subscribed, s; none while nobody wants the output.
+  std::optional<double> subscribedFor() const;
   [[noreturn]] void refuseToLoad(const std::string& problem);
   void complain();
   void diagnose();
@@ -135,6 +138,7 @@ class StageNodelet : public nodelet::Nodelet {
   const std::string section_;
   mutable std::mutex subscription_mutex_;
   bool subscribed_ = false, stopped_ = false;
+  ros::WallTime subscribed_since_;
   std::unique_ptr<diagnostic_updater::Updater> updater_;
   ros::WallTimer complaint_timer_, diagnostic_timer_, start_timer_;
   ros::ServiceServer reset_service_;

@@ -38,6 +38,7 @@ void PairsInFlight::Consumer::finished(const ros::Time& stamp) {
   const auto pair =
       std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return p.stamp == stamp; });
   if (pair != pairs_.end()) pairs_.erase(pairs_.begin(), pair + 1);
+  last_finished_ = std::chrono::steady_clock::now();
   owner_->changed_.notify_all();
 }
 
@@ -59,9 +60,12 @@ bool PairsInFlight::below(size_t limit) const {
 
 void PairsInFlight::forgetLost() {
   const auto now = std::chrono::steady_clock::now();
-  for (Consumer* consumer : consumers_)
+  for (Consumer* consumer : consumers_) {
+    // One that finishes others is only slow.
+    if (now - consumer->last_finished_ <= kLostAfter) continue;
     while (!consumer->pairs_.empty() && now - consumer->pairs_.front().since > kLostAfter)
       consumer->pairs_.pop_front();
+  }
 }
 
 }  // namespace uav_landing

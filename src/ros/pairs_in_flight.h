@@ -35,7 +35,9 @@ class PairsInFlight {
     explicit Consumer(std::shared_ptr<PairsInFlight> owner) : owner_(std::move(owner)) {}
 
     std::shared_ptr<PairsInFlight> owner_;
-    std::deque<Pair> pairs_;  // guarded by the owner's mutex
+    // Guarded by the owner's mutex:
+    std::deque<Pair> pairs_;
+    std::chrono::steady_clock::time_point last_finished_;
   };
 
   /// The object that everybody shares who names the same topic.
@@ -45,8 +47,8 @@ class PairsInFlight {
   static std::unique_ptr<Consumer> join(const std::string& topic);
 
   void handedOn(const ros::Time& stamp);
-  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. True when so. A
-  /// pair that a stage has not finished within a second counts as lost on the way.
+  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. True when so.
+  /// Where a stage finishes nothing for a second, pairs that it has had as long count as lost on the way.
   bool waitUntilBelow(size_t limit, std::chrono::milliseconds timeout);
 
  private:

@@ -36,7 +36,7 @@ void StageReport::refused(const std::string& problem) {
 }
 
 void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
-                        const std::vector<InputWatch::Input>& inputs, bool subscribed) {
+                        const std::vector<InputWatch::Input>& inputs, std::optional<double> subscribed) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
   const double seconds = std::max(1e-3, (now - since_).toSec());
@@ -57,6 +57,8 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
     status.summary(DiagnosticStatus::OK, "idle: nobody subscribes");
   } else if (now_.refused > 0) {
     status.summary(DiagnosticStatus::ERROR, now_.problem);
+  } else if (now_.served == 0 && *subscribed < seconds) {
+    status.summary(DiagnosticStatus::OK, "has just subscribed");
   } else if (now_.served == 0) {
     status.summary(DiagnosticStatus::ERROR, silent.empty() ? "nothing pairs up" : "no message on " + silent);
   } else if (now_.failed > 0) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ class StageReport {
   void refused(const std::string& problem);
 
   /// Fills in summary and values for the time since the last call and starts anew. inputs: counts of what is
-  /// paired here. subscribed: false when nobody wants the output.
+  /// paired here. subscribed: since when the inputs are, s; none when nobody wants the output.
   void write(diagnostic_updater::DiagnosticStatusWrapper& status,
-             const std::vector<InputWatch::Input>& inputs, bool subscribed);
+             const std::vector<InputWatch::Input>& inputs, std::optional<double> subscribed);
 
  private:
   struct Counts {

@@ -2,6 +2,8 @@
 
 import unittest
 
+import roslaunch.config
+import roslaunch.xmlloader
 import yaml
 from roslaunch.arg_dump import get_args
 
@@ -35,6 +37,14 @@ class ArgumentsTest(unittest.TestCase):
             self.assertEqual(default.get(f"/uav_landing/rectify/{name}"), rectify.get(name))
         self.assertEqual(default["/uav_landing/kalman_height/base_frame"], "")
         self.assertNotIn("/use_sim_time", default)
+
+    def test_parameters_of_an_earlier_launch_end_with_it(self):
+        for file, nodelets in (("stereo", ("rectify", "stereo_depth", "approach_angle", "kalman_height", "overlay")),
+                               ("autopilot", ("autopilot",))):
+            config = roslaunch.config.ROSLaunchConfig()
+            roslaunch.xmlloader.XmlLoader().load(str(LAUNCH / f"{file}.launch"), config, verbose=False)
+            for nodelet in nodelets:
+                self.assertIn(f"/uav_landing/{nodelet}/", config.clear_params)
 
     def test_values_reach_the_nodelets(self):
         given = parameters("approximate_sync:=true", "max_skew:=0.02", "base_frame:=base_link", "bag:=/tmp/a.bag")

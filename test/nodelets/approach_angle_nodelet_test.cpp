@@ -1,3 +1,4 @@
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <sensor_msgs/Imu.h>
 #include <tf2_msgs/TFMessage.h>
 #include <uav_landing/ApproachAngle.h>
@@ -118,6 +119,26 @@ TEST_F(ApproachAngleNodeletTest, MissingStereoIsNamed) {
   })) << wholeLog();
 }
 
+TEST_F(ApproachAngleNodeletTest, ComplainsOfNothingBeforeItHasWaitedForIt) {
+  setParameter("approach_angle", "complaint_period", 0.5);
+  setParameter("approach_angle", "diagnostic_period", 0.5);
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
+  load("approach_angle");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const ros::Time subscribed = ros::Time::now();
+  const Listener<ApproachAngle> listener("/uav_landing/approach_angle");
+  const std::string complaint = "nothing to work on for 0.5 s";
+  ASSERT_TRUE(logged(complaint)) << wholeLog();
+  for (const auto& line : log_.messages())
+    if (line->msg.find(complaint) != std::string::npos)
+      EXPECT_GE((line->header.stamp - subscribed).toSec(), 0.5) << line->msg;
+  EXPECT_TRUE(diagnostics.waitFor(
+      [&](const auto& array) { return array.status[0].level == diagnostic_msgs::DiagnosticStatus::ERROR; }));
+  for (const auto& array : diagnostics.messages())
+    if (array->status[0].level == diagnostic_msgs::DiagnosticStatus::ERROR)
+      EXPECT_GE((array->header.stamp - subscribed).toSec(), 0.5) << array->status[0].message;
+}
+
 TEST_F(ApproachAngleNodeletTest, RunsWithoutStereoWhenToldTo) {
   setParameter("approach_angle", "use_stereo", false);
   start(false);
@@ -191,6 +212,35 @@ class ImuTest : public ApproachAngleNodeletTest {
   ros::Publisher imu_ = handle_.advertise<sensor_msgs::Imu>("/imu/data", 1000);
   ros::Publisher tf_ = handle_.advertise<tf2_msgs::TFMessage>("/tf_static", 10, true);
 };
+
+TEST_F(ImuTest, DiagnosticsSayWhatItIsUsedFor) {
+  setParameter("approach_angle", "diagnostic_period", 0.2);
+  Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
+  const auto said = [&](const std::string& use) {
+    for (const auto& array : diagnostics.messages())
+      for (const auto& status : array->status)
+        for (const auto& value : status.values)
+          if (value.key == "imu" && value.value.rfind(use, 0) == 0) return true;
+    return false;
+  };
+  startWithImu();
+  EXPECT_TRUE(eventually([&] { return said("no pair yet"); }));
+  EXPECT_FALSE(said("used"));
+  publishMounting("imu_link");
+  double t = 0;
+  ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
+  EXPECT_TRUE(eventually([&] { return said("used"); }));
+  EXPECT_TRUE(eventually([&] {
+    for (int i = 1; i <= 3; ++i) {
+      sensor_msgs::Imu gyro = message(t + 0.01 * i);
+      gyro.orientation_covariance[0] = -1;
+      imu_.publish(gyro);
+    }
+    publishPair(t += 0.02);
+    return resultOf(t).imu.reason.empty() || said("rotation only: ");
+  })) << wholeLog();
+  EXPECT_TRUE(eventually([&] { return said("rotation only: "); }));
+}
 
 TEST_F(ImuTest, GivesTheNormalAndTheRotationOfEachPair) {
   startWithImu();

@@ -220,6 +220,16 @@ TEST_F(KalmanHeightNodeletTest, WithoutPairsItIsLost) {
   EXPECT_LT(lost.header.stamp, PairPublisher::stampOf(0.4) + ros::Duration(60));
 }
 
+TEST_F(KalmanHeightNodeletTest, LostAfterAResetItHasHadPairsAllTheSame) {
+  start(true);
+  publishSome(0, 3);
+  std_srvs::Empty nothing;
+  ASSERT_TRUE(ros::service::call("/uav_landing/kalman_height/reset", nothing));
+  estimates_.clear();
+  ASSERT_TRUE(estimates_.waitFor([](const auto& e) { return e.status == LandingEstimate::LOST; }));
+  EXPECT_EQ(estimates_.messages().back()->reason, "timeout: no image pair any more");
+}
+
 TEST_F(KalmanHeightNodeletTest, WhenNothingIsDroppedRecordedPairsDoNotGrowOld) {
   setParameter("kalman_height", "max_age", 0.05);
   start();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <thread>
 
 using namespace uav_landing;
 using std::chrono::milliseconds;
@@ -61,6 +62,19 @@ TEST(PairsInFlight, APairThatNeverArrivesHoldsNobodyUpForLong) {
   while (!below && std::chrono::steady_clock::now() < end)
     below = shared->waitUntilBelow(1, milliseconds(50));
   EXPECT_TRUE(below);
+}
+
+TEST(PairsInFlight, AStageThatTakesItsTimeHasLostNothing) {
+  const auto shared = PairsInFlight::of("slow");
+  const auto stage = PairsInFlight::join("slow");
+  for (int i = 1; i <= 6; ++i) shared->handedOn(ros::Time(i));
+  // Each takes 0.4 s: the last ones have waited for longer than a second.
+  for (int i = 1; i <= 3; ++i) {
+    std::this_thread::sleep_for(milliseconds(400));
+    stage->finished(ros::Time(i));
+  }
+  EXPECT_FALSE(shared->waitUntilBelow(3, kNoTime)) << "4, 5 and 6 wait";
+  EXPECT_TRUE(shared->waitUntilBelow(4, kNoTime));
 }
 
 TEST(PairsInFlight, OtherRigsAreNotConcerned) {

@@ -39,6 +39,16 @@ TEST(RigFrames, BaseLinkOfTheStaticTfIsEstimated) {
   EXPECT_TRUE(child.may_broadcast);
 }
 
+TEST(RigFrames, TheLeftCameraItselfMayBeConfiguredWithoutTf) {
+  const RigFrames frames("left", "runway");
+  const RigFrames::Child child = frames.find("/left");
+  EXPECT_FALSE(child.failure) << child.failure.message();
+  EXPECT_EQ(child.frame, "left");
+  ASSERT_TRUE(child.left_from_child);
+  EXPECT_TRUE(child.left_from_child->isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(child.may_broadcast);
+}
+
 TEST(RigFrames, ALeadingSlashMakesNoDifference) {
   RigFrames frames("/base_link", "/runway");
   frames.add(transform("base_link", "left", 1), true);
