@@ -5,6 +5,7 @@ devel=${UAV_LANDING_DEVEL_DIR:-}
 if [ -z "$devel" ]; then
   IFS=: read -ra spaces <<<"${CMAKE_PREFIX_PATH:-}"
   for space in "${spaces[@]}" "$(dirname "${BASH_SOURCE[0]}")/../build/devel"; do
+    [ -n "$space" ] || continue  # as where the variable ends in a colon
     devel=$(realpath -m "$space")
     [ ! -d "$devel/lib/uav_landing" ] || break
   done

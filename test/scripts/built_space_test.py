@@ -37,6 +37,12 @@ class BuiltSpaceTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout.splitlines(), [str(DEVEL_DIR.resolve()), str(SOURCE_DIR)])
 
+    def test_a_colon_too_many_is_no_space(self):
+        for path in (f":{DEVEL_DIR}", f"/nowhere::{DEVEL_DIR}:"):
+            result = self.look(CMAKE_PREFIX_PATH=path)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stdout.splitlines()[0], str(DEVEL_DIR.resolve()))
+
     def test_the_space_that_is_named_goes_first(self):
         result = self.look(CMAKE_PREFIX_PATH="/usr", UAV_LANDING_DEVEL_DIR=str(DEVEL_DIR))
         self.assertEqual(result.returncode, 0, result.stderr)

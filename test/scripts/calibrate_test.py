@@ -13,6 +13,8 @@ import rosbag
 import rospy
 import yaml
 from cv_bridge import CvBridge
+from sensor_msgs.msg import CompressedImage, Image
+
 from project import DEVEL_DIR, SOURCE_DIR, run
 from test_data import dataset
 
@@ -267,6 +269,18 @@ class BadInputTest(TemporaryFolderTest):
 
     def test_folder_of_one_camera_missing(self):
         self.assert_refused(calibrate(self.write("left/a.png"), self.output), "images", "no images of the right camera")
+
+    def test_bag_of_images_that_cannot_be_read(self):
+        bag = self.folder / "bad.bag"
+        for message, words in ((Image(height=4, width=4, encoding="strange", data=bytes(16)), "encoding 'strange'"),
+                               (Image(height=4, width=4, step=4, encoding="mono8", data=b"12"), "2 bytes"),
+                               (CompressedImage(format="png"), "sensor_msgs/CompressedImage, expected sensor_msgs/Image")):
+            with rosbag.Bag(str(bag), "w") as out:
+                message.header.stamp = rospy.Time(100)
+                for side in ("left", "right"):
+                    out.write(f"/stereo/{side}/image_raw", message, message.header.stamp)
+            with self.subTest(words):
+                self.assert_refused(calibrate(bag, self.output), "/stereo/left/image_raw at 100.000 s", words)
 
     def test_names_that_do_not_pair(self):
         self.assert_refused(calibrate(self.write("left/a.png", "right/b.png"), self.output), "left/a.png", "right/b.png")

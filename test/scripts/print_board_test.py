@@ -39,6 +39,17 @@ class PrintBoardTest(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("9x7 squares of 0.04 m do not fit A4: at most 0.027 m", result.stderr)
 
+    def test_squares_of_less_than_a_millimetre_are_refused(self):
+        result = self.print_board("--size", "500x500")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("501x501 squares of a millimetre do not fit A4", result.stderr)
+
+    def test_a_place_that_cannot_be_written_is_named(self):
+        self.file = self.file / "below/board.pdf"
+        result = self.print_board()
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"print_board: {self.file}: cannot be written", result.stderr)
+
     def test_wrong_usage(self):
         self.assertEqual(self.print_board("--size", "8").returncode, 2)
         self.assertEqual(self.print_board("--square", "-1").returncode, 2)

@@ -46,6 +46,12 @@ class RecordEstimatesTest(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
+    def test_a_file_that_is_no_bag_is_named(self):
+        self.bag.write_text("no bag")
+        process = self.start()
+        self.assertEqual(process.wait(timeout=30), 1)
+        self.assertIn(f"{self.bag}: cannot be read as a bag", process.stderr.read())
+
     def test_fails_when_no_estimate_comes(self):
         process = self.start("--deadline", "1")
         self.assertEqual(process.wait(timeout=30), 1)

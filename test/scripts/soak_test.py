@@ -7,6 +7,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import rosbag
+import rospy
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import Image
+from tf2_msgs.msg import TFMessage
+
 from project import SOURCE_DIR, run
 
 SOAK = SOURCE_DIR / "scripts/soak"
@@ -27,6 +33,26 @@ class SoakTest(unittest.TestCase):
         self.assertLess(abs(soak.growth(level)), 0.002)
         leaking = warm_up + [(t, 90 + 0.1 * (t - 20)) for t in range(20, 100)]
         self.assertAlmostEqual(soak.growth(leaking), 7.9 / 90, delta=0.005)
+
+    def test_stamps_of_tf_move_with_those_of_the_images(self):
+        soak = load_soak()
+        folder = Path(tempfile.mkdtemp(prefix="uav_landing_soak_test_"))
+        self.addCleanup(shutil.rmtree, folder)
+        with rosbag.Bag(str(folder / "a.bag"), "w") as bag:
+            transforms = TFMessage([TransformStamped()])
+            transforms.transforms[0].header.stamp = rospy.Time(10)
+            bag.write("/tf", transforms, rospy.Time(10))
+            for second in (10, 11, 12):
+                image = Image()
+                image.header.stamp = rospy.Time(second)
+                bag.write("/stereo/left/image_raw", image, image.header.stamp)
+        self.assertEqual(soak.repeated(folder / "a.bag", folder / "b.bag", 2), 6)
+        with rosbag.Bag(str(folder / "b.bag")) as bag:
+            stamps = [message.transforms[0].header.stamp.to_sec() for _, message, _ in bag.read_messages(["/tf"])]
+        self.assertEqual(stamps, [10, 14])
+
+    def test_what_is_said_while_no_image_comes_is_no_pair(self):
+        self.assertEqual(load_soak().pairs_in(["%time,field", "1000,1", "2000,3", "3000,2"]), 2)
 
     def test_memory_stays_for_a_short_while(self):
         folder = tempfile.mkdtemp(prefix="uav_landing_soak_test_")

@@ -101,6 +101,23 @@ class ConvertRecordingTest(unittest.TestCase):
         self.euroc(model="equidistant")
         self.refused("distortion_model equidistant", "euroc", self.folder)
 
+    def test_euroc_tables_and_poses_that_are_none_are_named(self):
+        self.euroc()
+        table = self.folder / "mav0/cam0/data.csv"
+        text = table.read_text()
+        for bad in (b"\xff\xfe1", b"1," + b"x" * 200000):
+            table.write_bytes(bad)
+            self.refused("cam0/data.csv: cannot be read as a table", "euroc", self.folder)
+        table.write_text(text)
+        (self.folder / "mav0/cam1/sensor.yaml").write_text(SENSOR.format(pose=[0.0] * 16, model="radial-tangential"))
+        self.refused("cam1/sensor.yaml: T_BS.data: expected a rotation", "euroc", self.folder)
+
+    def test_a_namespace_is_a_name(self):
+        self.euroc()
+        result = self.convert("euroc", self.folder, "--camera", "/stereo")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("'/stereo' is not a name like stereo", result.stderr)
+
     def test_euroc_cameras_in_the_wrong_order_are_refused(self):
         self.euroc(baseline=-0.4)
         self.refused("not to the right of the first", "euroc", self.folder)
@@ -123,6 +140,8 @@ class ConvertRecordingTest(unittest.TestCase):
         (self.folder / "times.txt").write_text("0\n")
         self.output.unlink()
         self.refused("times.txt: 1 times for 3 images", "kitti", self.folder)
+        (self.folder / "times.txt").write_text("0\nnan\n2\n")
+        self.refused("times.txt: expected one number of seconds a line", "kitti", self.folder)
 
     def video(self, name, count, size=(WIDTH, HEIGHT)):
         path = self.folder / name
@@ -203,8 +222,11 @@ class ConvertRecordingTest(unittest.TestCase):
         self.refused("must be different topics", "bag", bag, "--left", "/cam0/image", "--right", "/cam0/image")
         with rosbag.Bag(str(bag), "a") as result:
             result.write("/cam3/image/compressed", CompressedImage(format="h264", data=b"no picture"))
+            result.write("/cam4/image/compressed", CompressedImage(format="png"))
         self.refused("/cam3/image/compressed: an image with format 'h264'", "bag", bag, "--left",
                      "/cam0/image/compressed", "--right", "/cam3/image/compressed", "--right-info", "/cam1/camera_info")
+        self.refused("/cam4/image/compressed: an image with format 'png'", "bag", bag, "--left",
+                     "/cam0/image/compressed", "--right", "/cam4/image/compressed", "--right-info", "/cam1/camera_info")
         (self.folder / "text.bag").write_text("no bag")
         self.refused("", "bag", self.folder / "text.bag", "--left", "/a", "--right", "/b")
         self.assertEqual(rosrun("convert_recording", "bag").returncode, 2)

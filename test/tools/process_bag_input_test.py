@@ -90,6 +90,9 @@ class FilesTest(ProcessBagTest):
         write_bag(self.bag, noise_frames())
         before = self.bag.read_bytes()
         self.assert_refused(self.process("--output", self.bag), "is the input")
+        self.assert_refused(self.process("--output", self.csv), str(self.csv), "is the bag to write")
+        self.csv = self.bag
+        self.assert_refused(self.process(), "is the input")
         self.assertEqual(self.bag.read_bytes(), before)
 
 
@@ -370,6 +373,18 @@ class StampsTest(ProcessBagTest):
                          ["10.000000000", "10.200000000", "10.300000000", "10.400000000"])
         self.assertIn("of them 1 came after newer ones", result.stderr)
         self.assertNotIn("stamps went back", result.stderr)
+
+    def test_images_without_a_stamp_are_counted_and_named(self):
+        frames = noise_frames(4)
+        frames[2].stamp = 0
+        result = self.process_frames(frames)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([row["stamp_s"] for row in self.rows()], ["10.000000000", "10.100000000", "10.300000000"])
+        self.assertIn("1 of 4 messages on /stereo/left/image_raw belong to no pair, of them 1 with the stamp 0", result.stderr)
+        for frame in frames:
+            frame.stamp = 0
+        self.csv.unlink()
+        self.assert_refused(self.process_frames(frames), "the stamp (header.stamp) is 0 on /stereo/left/image_raw")
 
     def test_stamps_that_go_back_are_reported_and_followed(self):
         result = self.process_frames(noise_frames(3, start=20) + noise_frames(3, start=10))

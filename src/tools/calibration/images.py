@@ -65,11 +65,21 @@ def archive_files(path):
     return [(name, f"{path}: {name}", lambda data=data: data) for name, data in contents]
 
 
+def grey(message, source):
+    """Grey levels of a sensor_msgs/Image."""
+    from cv_bridge import CvBridge, CvBridgeError  # only here: folders and archives need no ROS
+    if message._type != "sensor_msgs/Image":
+        raise InputError(f"{source}: {message._type}, expected sensor_msgs/Image (convert_recording decodes others)")
+    try:
+        return CvBridge().imgmsg_to_cv2(message, "mono8")
+    except (CvBridgeError, TypeError, ValueError) as error:
+        raise InputError(f"{source}: {message.width}x{message.height} pixels with encoding '{message.encoding}' and "
+                         f"{len(message.data)} bytes cannot be read ({error})")
+
+
 def bag_images(path, camera):
     """Evenly spaced pairs of equal stamp, at most BAG_PAIRS: neighbours at 20 Hz show the same board twice."""
-    # Only here: folders and archives need no ROS.
-    import rosbag
-    from cv_bridge import CvBridge
+    import rosbag  # only here: folders and archives need no ROS
     topics = {f"/{camera.strip('/')}/{side}/image_raw": side for side in ("left", "right")}
     try:
         with rosbag.Bag(str(path)) as bag:
@@ -90,7 +100,7 @@ def bag_images(path, camera):
             for topic, message, _ in bag.read_messages(list(topics)):
                 if message.header.stamp in chosen:
                     name = f"{message.header.stamp.to_sec():.3f}"
-                    pixels = CvBridge().imgmsg_to_cv2(message, "mono8")
+                    pixels = grey(message, f"{path}: {topic} at {name} s")
                     png = cv2.imencode(".png", pixels)[1].tobytes()
                     images[topics[topic]][name] = Image(f"{path}: {topic} at {name} s", lambda data=png: data)
     except rosbag.ROSBagException as error:

@@ -16,7 +16,7 @@ def to_image(message, topic):
     if message._type == "sensor_msgs/Image":
         return message
     # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
-    pixels = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED)
+    pixels = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED) if message.data else None
     if pixels is None or pixels.dtype != np.uint8 or pixels.ndim == 3 and pixels.shape[2] != 3:
         raise InputError(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
                          "cannot be decoded to 8 bits")

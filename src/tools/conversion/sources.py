@@ -28,6 +28,8 @@ def read_rows(path, separator):
                     if row and not row[0].startswith("#")]
     except OSError as error:
         raise unreadable(path, error)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path}: cannot be read as a table ({error})")
 
 
 class Euroc:
@@ -53,6 +55,8 @@ class Euroc:
         fx, fy, cx, cy = cameras.numbers(content, path, ("intrinsics",), 4)
         width, height = cameras.numbers(content, path, ("resolution",), 2)
         pose = cameras.numbers(content, path, ("T_BS", "data"), 16).reshape(4, 4)
+        if not np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-3) or np.linalg.det(pose[:3, :3]) < 0:
+            raise InputError(f"{path}: T_BS.data: expected a rotation in its first three rows and columns")
         distortion = cameras.numbers(content, path, ("distortion_coefficients",), 4)
         return (int(width), int(height)), (np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]),
                                            np.append(distortion, 0)), pose
@@ -96,6 +100,8 @@ class KittiOdometry:
         try:
             times = [float(row[0]) for row in read_rows(path, " ")]
         except ValueError:
+            times = [float("nan")]
+        if not np.isfinite(times).all():
             raise InputError(f"{path}: expected one number of seconds a line")
         if len(times) < len(self.files):
             raise InputError(f"{path}: {len(times)} times for {len(self.files)} images")

@@ -57,6 +57,7 @@ void reportPairing(const StereoPairing& pairing, Complaints& complain) {
     const auto unpaired = input.received - input.paired;
     if (unpaired == 0) continue;
     std::string why;
+    if (input.unstamped > 0) why += ", of them " + std::to_string(input.unstamped) + " with the stamp 0";
     if (input.repeated > 0) why += ", of them " + std::to_string(input.repeated) + " with a repeated stamp";
     if (input.late > 0) why += ", of them " + std::to_string(input.late) + " came after newer ones";
     complain(std::to_string(unpaired) + " of " + std::to_string(input.received) + " messages on " +
@@ -95,9 +96,14 @@ Failure processBag(const Options& options, const Parameters& parameters, Complai
 int run(const CLI::App& app, const Options& options) {
   const Expected<Parameters> parameters = parametersOf(options.config);
   if (!parameters) return inputUnusable(app, parameters.error().detail);
-  std::error_code none;
-  if (!options.output.empty() && std::filesystem::equivalent(options.input, options.output, none))
-    return inputUnusable(app, options.output + ": is the input");
+  for (const std::string& written : {options.output, options.csv}) {
+    std::error_code none;
+    if (!written.empty() && std::filesystem::equivalent(options.input, written, none))
+      return inputUnusable(app, written + ": is the input");
+  }
+  if (!options.csv.empty() &&
+      std::filesystem::weakly_canonical(options.csv) == std::filesystem::weakly_canonical(options.output))
+    return inputUnusable(app, options.csv + ": is the bag to write");
   Complaints complain(app);
   const Failure failure = processBag(options, *parameters, complain);
   return failure ? inputUnusable(app, failure.detail) : kDone;
