@@ -98,9 +98,10 @@ struct KalmanHeightParameters {
         "max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
         "by which the aircraft can change its speed over the ground: a picture that stands still sooner is "
         "that of a camera that hangs, a speed that seems to jump says that stamps are wrong");
-    v.number("recovery_time", recovery_time, 0.0, 60.0, "s",
-             "after contradictions that took the height away none may come for this long before it is valid "
-             "again; 0: it is as soon as the tests pass");
+    v.number(
+        "recovery_time", recovery_time, 0.0, 60.0, "s",
+        "after contradictions that took the height away, or among the first heights, none may come for this "
+        "long before it is valid; 0: it is as soon as the tests pass");
     v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
              "the height is not valid when its protection level exceeds this and alert_limit_relative");
     v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height", "see alert_limit");

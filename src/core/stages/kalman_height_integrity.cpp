@@ -237,7 +237,10 @@ void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
     pair = Recovery::Pair::kAgrees;
   // What is missing without a contradiction is no fault.
   const bool outdated = consecutive_rejections_ > 0 && result.stamp - last_accepted_ > parameters_.max_age;
-  recovery_.follow(std::min(T, parameters_.max_age), pair, outdated || tests_.failed(Consistency::kSinkRate));
+  // Nor does anything say which of the first heights is wrong that contradict each other.
+  const bool disputed = contradicted && confirmations_ < kConfirmations;
+  recovery_.follow(std::min(T, parameters_.max_age), pair,
+                   outdated || disputed || tests_.failed(Consistency::kSinkRate));
   if (!recovery_.pending()) return;
   refuse(result,
          {Reason::kInconsistent, text("after contradictions nothing has contradicted for ", recovery_.quiet(),
