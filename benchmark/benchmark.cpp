@@ -1,5 +1,8 @@
 // Measures the time of each stage and of the whole chain, with peers on the same frames in the same run.
 
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/image_encodings.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -50,15 +53,18 @@ struct Measurement {
   }
 };
 
+sensor_msgs::ImageConstPtr toMessage(const cv::Mat& image) {
+  return cv_bridge::CvImage({}, sensor_msgs::image_encodings::MONO8, image).toImageMsg();
+}
+
 Expected<Measurement> measure(const Sequence& sequence, const Parameters& parameters) {
   Expected<Pipeline> chain = Pipeline::create(sequence.left, sequence.right, parameters);
   if (!chain) return tl::make_unexpected(chain.error());
-  const Rectifier left = Rectifier::create(sequence.left).value();
-  const Rectifier right = Rectifier::create(sequence.right).value();
-  PaperPipeline paper(chain->rig().rig, left, right);
-  BlockMatchingPeer block(left, right, BlockMatchingPeer::blockMatcher());
-  BlockMatchingPeer semi_global(left, right, BlockMatchingPeer::semiGlobalMatcher());
-  ImageFloor floor(sequence.left, sequence.right);
+  PaperPipeline paper(chain->rig().rig, sequence.left, sequence.right);
+  StereoImageProcPeer block(sequence, StereoImageProcPeer::Processor::BM);
+  StereoImageProcPeer semi_global(sequence, StereoImageProcPeer::Processor::SGBM);
+  BlockMatchingPeer matcher;
+  ImageFloor floor(sequence);
 
   Measurement result;
   result.sequence = sequence.name;
@@ -86,8 +92,10 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
       }
     }
     run("the paper, literally", [&] { paper.process(pair.left, pair.right, pair.stamp - last); });
-    run("rectify + StereoBM + plane", [&] { block.process(pair.left, pair.right); });
-    run("rectify + StereoSGBM + plane", [&] { semi_global.process(pair.left, pair.right); });
+    const sensor_msgs::ImageConstPtr left = toMessage(pair.left), right = toMessage(pair.right);
+    run("stereo_image_proc BM + plane", [&] { block.process(left, right); });
+    run("stereo_image_proc SGBM + plane", [&] { semi_global.process(left, right); });
+    run("StereoBM alone", [&] { matcher.process(block.rectifiedLeft(), block.rectifiedRight()); });
     run("image floor", [&] { floor.process(pair.left, pair.right); });
     last = pair.stamp;
   }

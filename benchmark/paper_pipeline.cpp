@@ -27,7 +27,8 @@ cv::Point bestMatch(const cv::Mat& image, const cv::Point& corner, const cv::Mat
 
 }  // namespace
 
-PaperPipeline::PaperPipeline(const StereoRig& rig, const Rectifier& left, const Rectifier& right)
+PaperPipeline::PaperPipeline(const StereoRig& rig, const CameraCalibration& left,
+                             const CameraCalibration& right)
     : rig_(rig), left_rectifier_(left), right_rectifier_(right) {}
 
 PaperPipeline::Result PaperPipeline::process(const cv::Mat& left, const cv::Mat& right, double duration) {

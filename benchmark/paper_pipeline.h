@@ -3,7 +3,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/image/rectification.h"
+#include "opencv_rectifier.h"
+#include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 namespace benchmark {
@@ -13,7 +14,7 @@ namespace benchmark {
 /// (1), SSD along the rows, eqs (3) to (5), mean and a Kalman filter.
 class PaperPipeline {
  public:
-  PaperPipeline(const StereoRig& rig, const Rectifier& left, const Rectifier& right);
+  PaperPipeline(const StereoRig& rig, const CameraCalibration& left, const CameraCalibration& right);
 
   struct Result {
     double approach_angle = 0;  ///< rad
@@ -28,7 +29,7 @@ class PaperPipeline {
   double filter(double height, double duration);
 
   StereoRig rig_;
-  const Rectifier &left_rectifier_, &right_rectifier_;
+  OpenCvRectifier left_rectifier_, right_rectifier_;
   cv::Mat left_, right_, last_left_, edges_;
   cv::Vec2d state_;  // height, vertical speed
   cv::Matx22d covariance_;

@@ -1,41 +1,60 @@
 #pragma once
 
+#include <image_geometry/stereo_camera_model.h>
+#include <sensor_msgs/Image.h>
+#include <stereo_image_proc/processor.h>
+
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
-#include <optional>
 
-#include "uav_landing/image/rectification.h"
+#include "opencv_rectifier.h"
+#include "sequences.h"
 
 namespace uav_landing {
 namespace benchmark {
 
-/// What a user would otherwise run: rectification and dense block matching with the settings that
-/// stereo_image_proc hands to OpenCV, then a ground plane by least squares over the disparities.
-class BlockMatchingPeer {
+/// What a user would otherwise run: stereo_image_proc's library with the settings its node begins with (64
+/// disparities, block 15), from raw images to disparities, then a ground plane by least squares over them.
+class StereoImageProcPeer {
  public:
-  BlockMatchingPeer(const Rectifier& left, const Rectifier& right, cv::Ptr<cv::StereoMatcher> matcher);
-  /// Disparity plane (a, b, c), d = a u + b v + c.
-  cv::Vec3d process(const cv::Mat& left, const cv::Mat& right);
+  using Processor = stereo_image_proc::StereoProcessor;
 
-  static cv::Ptr<cv::StereoMatcher> blockMatcher();
-  static cv::Ptr<cv::StereoMatcher> semiGlobalMatcher();
+  StereoImageProcPeer(const Sequence& sequence, Processor::StereoType algorithm);
+  /// Disparity plane (a, b, c), d = a u + b v + c.
+  cv::Vec3d process(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right);
+
+  const cv::Mat& rectifiedLeft() const { return images_.left.rect; }
+  const cv::Mat& rectifiedRight() const { return images_.right.rect; }
 
  private:
-  const Rectifier &left_rectifier_, &right_rectifier_;
+  image_geometry::StereoCameraModel model_;
+  Processor processor_;
+  stereo_image_proc::StereoImageSet images_;
+};
+
+/// OpenCV's block matching alone, on images that are rectified already: the least of what stereo_image_proc
+/// does.
+class BlockMatchingPeer {
+ public:
+  BlockMatchingPeer();
+  void process(const cv::Mat& left, const cv::Mat& right);
+
+ private:
   cv::Ptr<cv::StereoMatcher> matcher_;
-  cv::Mat left_, right_, disparity_;
+  cv::Mat disparity_;
 };
 
 /// The least that any method does that looks at whole images: two remaps and the 3x3 Sobel gradients of both.
 class ImageFloor {
  public:
-  ImageFloor(const CameraCalibration& left, const CameraCalibration& right);
+  explicit ImageFloor(const Sequence& sequence);
   void process(const cv::Mat& left, const cv::Mat& right);
 
  private:
   struct View {
-    cv::Mat map1, map2, rectified, gu, gv;
-    explicit View(const CameraCalibration& calibration);
+    OpenCvRectifier rectifier;
+    cv::Mat rectified, gu, gv;
+    explicit View(const CameraCalibration& calibration) : rectifier(calibration) {}
     void process(const cv::Mat& raw);
   };
   View left_, right_;

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from project import SOURCE_DIR, rosrun
 
-PROGRAMS = {"uav_landing", "the paper, literally", "rectify + StereoBM + plane", "rectify + StereoSGBM + plane",
-            "image floor"}
+PROGRAMS = {"uav_landing", "the paper, literally", "stereo_image_proc BM + plane", "stereo_image_proc SGBM + plane",
+            "StereoBM alone", "image floor"}
 
 
 class BenchmarkTest(unittest.TestCase):
