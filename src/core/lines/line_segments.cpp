@@ -15,9 +15,8 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kMaxCandidates = 250;  // segments looked at, longest first
-constexpr int kMaxRefined = 64;  // of these: what they know of a vanishing point goes with their length cubed
-constexpr int kMaxLines = 150;   // lines returned, longest first
+constexpr int kMaxCandidates = 250;  // segments refined, longest first
+constexpr int kMaxLines = 150;       // lines returned, longest first
 constexpr int kMaxHoughLines = 400;  // infinite lines of the standard transform, most votes first
 constexpr double kHoughAngle = CV_PI / 180;
 constexpr double kUnrefinedStddev = 0.5;  // px, of a Hough line's ends
@@ -171,11 +170,9 @@ bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment)
 std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const cv::Mat& image,
                                  const cv::Mat& ground, double min_length, double min_gradient) {
   std::vector<LineSegment> lines;
-  int left = kMaxRefined;
   for (RoughSegment& segment : candidates) {
     if (segment.brighter.isZero()) segment.brighter = brighterSide(image, ground, segment.a, segment.b);
     if (isKnown(lines, segment)) continue;
-    if (left-- == 0) break;
     const auto line = refineLine(image, ground, segment, min_gradient);
     if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }

@@ -218,27 +218,6 @@ TEST(FindLines, WithoutRefinementAreAsGoodAsTheirHoughCell) {
   }
 }
 
-TEST(FindLines, OfManyAreTheLongest) {
-  const auto polygons = runway();
-  cv::Mat image = render(polygons);
-  const std::vector<cv::Point2f> outline(polygons[0].begin(), polygons[0].end());
-  constexpr int kSide = 30, kSpacing = 42;
-  int squares = 0;
-  for (int y = 110; y + kSide < 470; y += kSpacing)
-    for (int x = 12; x + kSide < 628; x += kSpacing) {
-      const cv::Rect square(x, y, kSide, kSide);
-      const cv::Point2f centre(x + 0.5F * kSide, y + 0.5F * kSide);
-      if (cv::pointPolygonTest(outline, centre, true) > -kSide) continue;
-      image(square) = 160;
-      ++squares;
-    }
-  ASSERT_GT(squares, 40);
-  const std::vector<LineSegment> lines = findLines(image, allGround(), {});
-  // Four sides of each square would be more than twice as many.
-  EXPECT_LT(lines.size(), 2U * squares);
-  expectEdges(lines, polygons[0], 0.05);
-}
-
 TEST(FindLines, HaveNothingToSayOnAUniformImage) {
   for (const int grey : {0, 128, 255})
     EXPECT_TRUE(findLines(cv::Mat(kSize, CV_8UC1, cv::Scalar(grey)), allGround(), {}).empty());
