@@ -39,7 +39,7 @@ class MotionTracker {
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the window's is what it was,
   /// and the next step is from when the image first came.
-  Result repeat() const;
+  Result repeat(double stamp) const;
   void reset();
   /// Corners followed to the frame before by the last process(), those that contradict the motion included.
   const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
@@ -78,6 +78,7 @@ class MotionTracker {
   double last_sink_ = 0;      // in it, in heights at its end
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
+  double last_rate_stddev_ = 0;  // of its angle, rad/s
 };
 
 }  // namespace uav_landing

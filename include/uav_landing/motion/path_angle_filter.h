@@ -2,6 +2,7 @@
 
 #include <array>
 #include <deque>
+#include <limits>
 
 namespace uav_landing {
 
@@ -28,8 +29,8 @@ class PathAngleFilter {
     double by_normal = 0;  ///< 1 sigma by the error of the ground's normal, about the same in all, rad
   };
   struct Estimate {
-    double angle = 0;        ///< of the last step, rad
-    double variance = 0;     ///< rad^2
+    double angle = 0;        ///< of the middle of the last step, rad
+    double variance = 0;     ///< rad^2, as that of the angle now as far as the step is longer than usual
     double rate_stddev = 0;  ///< rad/s, of the model with the most weight
   };
 
@@ -50,6 +51,8 @@ class PathAngleFilter {
 
   double window_;
   std::deque<Step> steps_;  // oldest first
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  double shortest_ = kNone;  // of the steps, s
   std::array<double, kModels> log_weights_{};
 };
 

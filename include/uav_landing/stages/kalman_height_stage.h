@@ -64,7 +64,10 @@ class KalmanHeightStage {
     double height = kUnknown, variance = kUnknown;  ///< m, m^2, the surface's model error included
     double points_height = kUnknown;                ///< m
     bool by_width = false;                          ///< the height is from the runway's width
-    SolutionSeparation::Measurements without;       ///< the height with each source left out
+    double stereo_height = kUnknown, stereo_variance = kUnknown;  ///< m, m^2, before a known width is fused
+    bool teaches_width = false;  ///< the runway's width may be learned from the height, when it is accepted
+    bool refused = false;        ///< by a test: what else is made of the pair's images is not believed either
+    SolutionSeparation::Measurements without;  ///< the height with each source left out
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   /// measured: the plane of stereo with the pair's skew in its covariance.
@@ -106,6 +109,8 @@ class KalmanHeightStage {
   void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
   /// The first test of this pair alone that failed.
   std::optional<Consistency> failedTestOfPair() const;
+  /// Leaves a pair out that a test contradicts.
+  void refusePair(const Failure& failure, Reconstruction& reconstruction, LandingResult& result);
   /// Why the pair is left out, or "".
   std::string problemOfPair();
   /// The published height against the one remembered.
@@ -128,6 +133,9 @@ class KalmanHeightStage {
   /// The second height, from the runway's width, reported, and used where stereo has none or agrees.
   void useWidth(const ApproachAngleResult::Runway& runway, Reconstruction& reconstruction,
                 LandingResult& result);
+  /// Learns the width from a pair whose height was accepted.
+  void learnWidth(const ApproachAngleResult::Runway& runway, const Reconstruction& reconstruction,
+                  const LandingResult& result);
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
@@ -172,6 +180,7 @@ class KalmanHeightStage {
   Recovery recovery_;
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s
+  double ground_height_ = kUnknown;             // at that time, m
   std::optional<Eigen::Vector3d> last_normal_;  // of the ground on the pair before
   Timings timings_;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "base/thinned.h"
 #include "geometry/rotation.h"
 #include "uav_landing/image/image_check.h"
@@ -43,6 +44,9 @@ std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duratio
   return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
 }
 
+// 1 sigma of the rate of the angle at least, as long as no new image tells it, rad/s.
+constexpr double kLeastRate = 1 * M_PI / 180;
+
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
@@ -58,10 +62,18 @@ MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameter
   reset();
 }
 
-MotionTracker::Result MotionTracker::repeat() const {
+MotionTracker::Result MotionTracker::repeat(double stamp) const {
   Result result;
   result.step.failure = {Reason::kNoMotion, "the image is the one of the pair before"};
   result.window = last_window_;
+  if (last_window_.failure) return result;
+  const double age = stamp - past_.back().stamp;
+  if (age > 0 && age <= parameters_.angle_window) {
+    result.window.angle_variance += std::pow(std::max(last_rate_stddev_, kLeastRate) * age, 2);
+  } else {
+    result.window = {};
+    result.window.failure = {Reason::kNoMotion, text("the image is the one of ", age, " s ago")};
+  }
   return result;
 }
 
@@ -71,6 +83,7 @@ void MotionTracker::reset() {
   last_step_.reset();
   search_.reset();
   filter_.reset();
+  last_rate_stddev_ = 0;
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
@@ -231,6 +244,7 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
   }
   const PathAngleFilter::Measurement& step = *result.step_angle;
   const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, result.window_angle.value_or(step));
+  last_rate_stddev_ = estimate.rate_stddev;
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;

@@ -101,6 +101,7 @@ struct PathAngleFilter::Equations {
 
 void PathAngleFilter::reset() {
   steps_.clear();
+  shortest_ = kNone;
   log_weights_.fill(0);
 }
 
@@ -167,6 +168,9 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
   for (double& weight : log_weights_) weight -= largest;
   Estimate estimate = mixture(posteriors, log_weights_);
   estimate.angle += all.reference;
+  // Of the middle of the step: as long ago as usual, or longer after a gap.
+  shortest_ = std::min(shortest_, step.duration);
+  estimate.variance += std::pow(estimate.rate_stddev * 0.5 * (step.duration - shortest_), 2);
   return estimate;
 }
 

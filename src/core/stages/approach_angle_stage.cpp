@@ -163,7 +163,7 @@ struct ApproachAngleStage::Implementation {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(*stereo) : groundCorners(left, result.n);
     const MotionTracker::Result motion =
-        repeated ? tracker.repeat()
+        repeated ? tracker.repeat(stamp)
                  : tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
     ScopedTimer timer(timings, "foe_and_angle");
     result.step = motion.step;

@@ -28,7 +28,7 @@ bool KalmanHeightStage::agreesWithFlight(const ApproachAngleResult::Motion& step
                                          const std::optional<Eigen::Vector3d>& normal) const {
   const Eigen::Vector3d& t = step.translation_over_height;
   if (!t.allFinite() || !(height > 0)) return false;
-  if (T > 0 && !(std::abs(T - step.duration) <= AttitudeFilter::kStampRounding)) return false;
+  if (!(std::abs(T - step.duration) <= AttitudeFilter::kStampRounding)) return false;
   if (!filter_.initialised() || !normal) return true;
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   const double off = height * normal->dot(t) + T * filter_.state()[1];
@@ -45,6 +45,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
                                        const Reconstruction& reconstruction, bool rejected) {
   if (!parameters_.integrity_monitor) return;
   if (stereo.left_repeated) return ground_.wait();
+  ground_height_ = heightSoFar(reconstruction);
   const double T = ground_stamp_ ? stereo.stamp - *ground_stamp_ : 0;
   ground_stamp_ = stereo.stamp;
   // Above the plane ahead, which the motion is of.
@@ -58,7 +59,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   else if (before)
     last_normal_ = R * *before;
 
-  if (turn_known && !attitude_.doubtsTurn() && agreesWithFlight(step, T, height, last_normal_)) {
+  if (T > 0 && turn_known && !attitude_.doubtsTurn() && agreesWithFlight(step, T, height, last_normal_)) {
     if (believed) ground_.settleTurn(R.transpose() * *last_normal_, kTurnByNormals);
     ground_.move(R, height * step.translation_over_height, T);
   } else {

@@ -39,9 +39,10 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   SolutionSeparation::Measurement& stereo_alone =
       reconstruction.without[static_cast<int>(FaultySource::kVanishingPoint)];
   const GroundPlane& alone = reconstruction.alone;
-  stereo_alone.height = height + alone.height() - plane.height();
+  stereo_alone.height = reconstruction.stereo_height + alone.height() - plane.height();
   stereo_alone.variance = alone.heightVariance() + modelVariance(height);
   stereo_alone.common = commonVariance(height);
+  stereo_alone.common.width = 0;
   stereo_alone.common.lasting +=
       GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() - rig_variance_;
   leaveOutRegions(stereo, approach, reconstruction);
@@ -99,8 +100,8 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   testStandstill(T, approach.step, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
-    tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.height,
-               result.width_height_variance + reconstruction.variance);
+    tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.stereo_height,
+               result.width_height_variance + reconstruction.stereo_variance);
   if (reconstruction.alone.valid() && approach.vanishing_direction.allFinite()) {
     const GroundPlane& plane = reconstruction.alone;
     const Eigen::Vector3d& p = approach.vanishing_direction;
@@ -114,7 +115,13 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
   const std::string problem = problemOfPair();
   if (problem.empty()) return;
   confirming_ = !failedTestOfPair() && rig_change_.settled();
-  reconstruction.failure = {Reason::kInconsistent, problem};
+  refusePair({Reason::kInconsistent, problem}, reconstruction, result);
+}
+
+void KalmanHeightStage::refusePair(const Failure& failure, Reconstruction& reconstruction,
+                                   LandingResult& result) {
+  reconstruction.failure = failure;
+  reconstruction.refused = true;
   result.raw_height = reconstruction.height;
   result.raw_height_variance = reconstruction.variance;
   result.rejected = true;
@@ -256,8 +263,10 @@ void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingR
   if (!parameters_.integrity_monitor || !std::isfinite(result.height)) return;
   SolutionSeparation::Level level =
       separation_.protectionLevel(result.height, result.height_variance, varianceFactor());
+  // Of the last pair that is not a picture once more.
+  const double since = std::isfinite(ground_height_) ? result.height - ground_height_ : 0;
   if (const std::optional<GroundMemory::Below> below = ground_.below(normal))
-    level = separation_.larger(level, result.height, below->height, below->variance, "surface_below");
+    level = separation_.larger(level, result.height, below->height + since, below->variance, "surface_below");
   result.height_protection_level = level.bound;
   result.protection_source = level.source;
   result.height_alert_limit =

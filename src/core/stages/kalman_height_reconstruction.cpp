@@ -62,6 +62,8 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
                                  LandingResult& result) {
   constexpr double kAgreement = 3;  // sigma
   width_variance_ = 0;
+  reconstruction.stereo_height = reconstruction.height;
+  reconstruction.stereo_variance = reconstruction.variance;
   if (runway.failure) return;
   std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
   // What the width itself is wrong by does not tell whether it is that of the same edges.
@@ -75,6 +77,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
     result.width_height_variance = seen->variance + modelVariance(seen->height);
   }
   const bool by_stereo = !reconstruction.failure;
+  reconstruction.teaches_width = by_stereo && confirmations_ >= kConfirmations;
   if (seen && parameters_.fuse_width_height) {
     // What was refused for its tilt is the ground that the width was seen on, too.
     if (!by_stereo && !reconstruction.tilted && confirmations_ >= kConfirmations) {
@@ -88,14 +91,20 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
       const double sum = seen->variance + reconstruction.variance;
       if (difference * difference <= kAgreement * kAgreement * sum) {
         const double model = modelVariance(reconstruction.height), own = reconstruction.variance - model;
-        reconstruction.height += own / (own + seen->variance) * difference;
+        const double gain = own / (own + seen->variance);
+        reconstruction.height += gain * difference;
+        width_variance_ = gain * gain * seen->common;
         reconstruction.variance = own * seen->variance / (own + seen->variance) + model;
       }
     }
   }
-  if (by_stereo && confirmations_ >= kConfirmations)
-    width_.learn(runway.width, runway.width_variance, reconstruction.height - reconstruction.bend,
-                 reconstruction.variance);
+}
+
+void KalmanHeightStage::learnWidth(const ApproachAngleResult::Runway& runway,
+                                   const Reconstruction& reconstruction, const LandingResult& result) {
+  if (!reconstruction.teaches_width || reconstruction.failure || result.rejected) return;
+  width_.learn(runway.width, runway.width_variance, reconstruction.height - reconstruction.bend,
+               reconstruction.variance);
 }
 
 void KalmanHeightStage::followSurface(double surface_variance) {
@@ -166,9 +175,10 @@ void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepth
   if (parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
       approach.vanishing_covariance.allFinite())
     fuseDirection({approach.vanishing_direction, approach.vanishing_covariance}, reconstruction);
-  if (!parameters_.fuse_imu || !approach.imu.hasNormal()) return;
-  for (const GroundDirection& level : levelDirections(approach.imu.normal, approach.imu.normal_covariance))
-    fuseDirection(level, reconstruction);
+  if (parameters_.fuse_imu && approach.imu.hasNormal())
+    for (const GroundDirection& level : levelDirections(approach.imu.normal, approach.imu.normal_covariance))
+      fuseDirection(level, reconstruction);
+  rig_variance_ = GroundPlane{plane.g, common}.heightVariance();
 }
 
 void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const {
@@ -206,12 +216,9 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
   if (estimate.agrees || reconstruction.failure) return;
   reconstruction.tilted = true;
-  reconstruction.failure = {Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
-                                                    " deg against the pairs before and the rotation since")};
-  result.raw_height = reconstruction.height;
-  result.raw_height_variance = reconstruction.variance;
-  result.rejected = true;
-  ++consecutive_rejections_;
+  refusePair({Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
+                                      " deg against the pairs before and the rotation since")},
+             reconstruction, result);
 }
 
 void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,

@@ -25,9 +25,10 @@ double rigAngleVariance(const GroundPlane& plane, const ApproachAngleResult& app
   return std::isfinite(turn) ? turn * turn : 0;
 }
 
-/// motion: of which the angle is published; plane: of which the rig's rotation was taken out, or null.
+/// motion: of which the angle is published; plane: of which the rig's rotation was taken out, or null;
+/// refused: why nothing is believed that the pair's images say, if so.
 void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion,
-                 const GroundPlane* plane, double max_stddev, LandingResult& result) {
+                 const GroundPlane* plane, const Failure& refused, double max_stddev, LandingResult& result) {
   result.raw_approach_angle = approach.step.angle;
   result.raw_approach_angle_variance = approach.step.angle_variance;
   result.foe = approach.foe;
@@ -39,6 +40,7 @@ void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult:
   }
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
+  if (!failure) failure = refused;
   if (!failure && !std::isfinite(motion.angle))
     failure = {Reason::kNoMotion, "the approach angle is not finite"};
   const double stddev = std::sqrt(result.approach_angle_variance);
@@ -79,10 +81,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   result.stamp = stereo.stamp;
   if (!std::isfinite(stereo.stamp)) return withoutStamp(result);
   const double T = last_stamp_ ? stereo.stamp - *last_stamp_ : 0;
+  const Failure jump = result.failure = followTime(stereo.stamp);
   Reconstruction reconstruction = reconstruct(stereo, approach);
   {
     const ScopedTimer timer(timings_, "kalman_filter");
-    result.failure = followTime(stereo.stamp);
     if (!stereo.left_repeated) {  // else the next motion is from the pair before
       averageAttitude(stereo.stamp, approach, reconstruction, result);
       followStamps(approach.step, reconstruction);
@@ -92,6 +94,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     testPair(T, stereo, approach, reconstruction, result);
     if (!result.failure) result.failure = reconstruction.failure;
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
+    learnWidth(approach.runway, reconstruction, result);
     reportHeight(result);
     testMemory(T, reconstruction, approach, result);
     awaitRecovery(T, result);
@@ -99,8 +102,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     reportProtection(knownNormal(reconstruction, approach), result);
   }
   const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
+  // The angle of a picture once more is that of the pair before, of another plane.
+  const bool refused = reconstruction.refused && !stereo.left_repeated;
   reportAngle(approach, publishedMotion(approach), corrected ? &reconstruction.plane : nullptr,
-              parameters_.max_angle_stddev_deg * kDegree, result);
+              refused ? reconstruction.failure : jump, parameters_.max_angle_stddev_deg * kDegree, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
@@ -152,6 +157,7 @@ void KalmanHeightStage::reset() {
   recovery_.reset();
   ground_.reset();
   ground_stamp_.reset();
+  ground_height_ = kUnknown;
   last_normal_.reset();
   last_stamp_.reset();
   lost_ = false;

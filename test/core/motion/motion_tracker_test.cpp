@@ -103,9 +103,13 @@ TEST(MotionTracker, MeasuresTheStepFromWhereARepeatedImageFirstCame) {
   Scene scene;
   const auto at = [](double t) { return makePose(-1 + t, 1.8 - 0.1 * t); };
   for (const double t : {0.0, 0.1, 0.2}) scene.process(t, at(t));
-  const MotionTracker::Result last = scene.process(0.3, at(0.3)), again = scene.tracker.repeat();
+  const MotionTracker::Result last = scene.process(0.3, at(0.3)), again = scene.tracker.repeat(0.4);
   EXPECT_EQ(again.step.failure.reason, Reason::kNoMotion);
   EXPECT_EQ(again.window.angle, last.window.angle) << "the path is the one seen last";
+  // A degree a second is nothing unusual.
+  EXPECT_GE(again.window.angle_variance, last.window.angle_variance + std::pow(0.1 * M_PI / 180, 2));
+  EXPECT_EQ(scene.tracker.repeat(0.9).window.failure.reason, Reason::kNoMotion) << "too long ago";
+  EXPECT_EQ(scene.tracker.repeat(0.2).window.failure.reason, Reason::kNoMotion) << "the clock was set back";
   const MotionTracker::Result next = scene.process(0.5, at(0.5));
   EXPECT_NEAR(next.step.duration, 0.2, 1e-9);
   expectStep(next, at(0.3), at(0.5));

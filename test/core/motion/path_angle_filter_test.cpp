@@ -150,6 +150,25 @@ TEST(PathAngleFilter, DoesNotThinkThatDifferencesTellTheNormal) {
   EXPECT_LT(normal.run().ratio, 1.1) << "which the chord follows the other way";
 }
 
+TEST(PathAngleFilter, AfterAGapClaimsWhatThePathMayHaveDoneSince) {
+  const auto flare = [](double t) { return (6 - 2 * t) * kDegree; };
+  PathAngleFilter filter(0.5);
+  PathAngleFilter::Estimate estimate;
+  double now = 0;
+  const auto step = [&](double duration) {
+    now += duration;
+    const PathAngleFilter::Measurement middle{flare(now - 0.5 * duration), std::pow(0.03 * kDegree, 2),
+                                              duration};
+    estimate = filter.update(now, middle, middle);
+  };
+  while (now < 2) step(0.05);
+  EXPECT_LT(std::sqrt(estimate.variance), 0.05 * kDegree);
+  step(0.5);
+  const double error = std::abs(estimate.angle - flare(now - 0.025));
+  ASSERT_GT(error, 0.4 * kDegree) << "the middle of the gap is as long ago";
+  EXPECT_LT(error, 2 * std::sqrt(estimate.variance));
+}
+
 TEST(PathAngleFilter, GivesTheFirstStepAsItIs) {
   PathAngleFilter filter(0.5);
   const PathAngleFilter::Measurement step{0.07, 1e-6, 0.05};

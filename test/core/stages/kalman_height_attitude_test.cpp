@@ -95,6 +95,7 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
   LandingResult result;
   for (; stamp < 1; stamp += kStep) result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
   ASSERT_EQ(result.status, Status::kTracking);
+  ASSERT_TRUE(result.angle_valid);
   const double roll = result.roll;
   // The height alone would pass the gate; the roll of 4 degrees within one pair does not.
   result = stage.process(stereoAt(stamp, 10.02, -0.1, 0.05 + 4 * kDegree), withoutTurning(stamp));
@@ -105,8 +106,11 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
   EXPECT_NE(result.failure.detail.find("tilted by 3.98"), std::string::npos) << result.failure.detail;
   EXPECT_NEAR(result.raw_height, 10.02, 1e-9);
   EXPECT_NEAR(result.roll, roll, 0.1 * kDegree);
+  EXPECT_FALSE(result.angle_valid) << "it is measured against this plane";
   stamp += kStep;
-  EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
+  result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
+  EXPECT_EQ(result.status, Status::kTracking);
+  EXPECT_TRUE(result.angle_valid);
 }
 
 }  // namespace

@@ -76,6 +76,49 @@ TEST(KalmanHeightIntegrity, ARepeatedImageGivesNoMeasurementAndTheAlertComesInTi
   EXPECT_EQ(result.consecutive_rejections, result.tests[0].consecutive_failures);
 }
 
+TEST(KalmanHeightIntegrity, APairThatFailsItsTestsGivesNoAngleEither) {
+  KalmanHeightStage stage(test::usualRig(), {});
+  double stamp = 1;
+  LandingResult result;
+  const auto fly = [&](bool left_repeated, bool right_repeated) {
+    StereoDepthResult stereo = stereoAt(stamp, 10);
+    stereo.left_repeated = left_repeated;
+    stereo.right_repeated = right_repeated;
+    result = stage.process(stereo, levelFlight(stamp, 10));
+    stamp += 0.05;
+  };
+  for (int i = 0; i < 40; ++i) fly(false, false);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  fly(true, false);
+  EXPECT_TRUE(result.angle_valid) << "that of the pair before, as approach_angle gives it";
+  for (int i = 0; i < 10; ++i) fly(false, false);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  fly(false, true);
+  EXPECT_FALSE(result.angle_valid) << "by a plane of an old right image";
+}
+
+TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 40;
+  KalmanHeightStage stage(test::usualRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 80; ++i) {
+    const double stamp = 1 + 0.05 * i;
+    StereoDepthResult stereo = stereoAt(stamp, 20);
+    stereo.plane.covariance *= 900;  // 1 sigma of 0.3 m
+    stereo.points.clear();           // what regions say is not asked here
+    ApproachAngleResult approach = levelFlight(stamp, 20);
+    approach.runway.failure = {};
+    approach.runway.y = 0;
+    approach.runway.y_variance = 1e-4;
+    approach.runway.width = 41.6 / 20;
+    approach.runway.width_variance = 1e-6;
+    result = stage.process(stereo, approach);
+  }
+  ASSERT_GT(std::abs(result.height - 20), 0.4) << "the width is not used";
+  EXPECT_GT(result.height_protection_level, std::abs(result.height - 20));
+}
+
 TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThatSaysSo) {
   const auto fly = [](double scatter) {
     KalmanHeightStage stage(test::usualRig(), {});
@@ -148,6 +191,32 @@ TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentA
 
 // The camera nods by 0.1 deg from pair to pair, and planes are off by 0.05 deg this way and that: pairs of
 // which every one is shown twice say of the attitude what they say once.
+TEST(KalmanHeightIntegrity, TheGroundBelowIsAsMuchNearerAsTheHeightWhilePicturesRepeat) {
+  KalmanHeightStage stage(test::usualRig(), {});
+  const auto height = [](int i) { return 12 - 0.1 * i; };
+  LandingResult before, result;
+  for (int i = 0; i < 63; ++i) {
+    const bool repeated = i >= 60;
+    const double stamp = 1 + 0.05 * i, h = height(repeated ? 59 : i);
+    StereoDepthResult stereo = stereoAt(stamp, h);
+    stereo.left_repeated = stereo.right_repeated = repeated;
+    ApproachAngleResult approach = levelFlight(stamp, h);
+    approach.step.translation_over_height =
+        (approach.step.translation_over_height.normalized() + 0.1 * approach.n) / h;
+    if (repeated) {
+      approach.step = {};
+      approach.step.failure = {Reason::kNoMotion, ""};
+    } else {
+      before = result;
+    }
+    result = stage.process(stereo, approach);
+    if (!repeated) continue;
+    EXPECT_NEAR(result.height, height(i), 0.05);
+    EXPECT_NE(result.protection_source, "surface_below");
+    EXPECT_LT(result.height_protection_level, before.height_protection_level + 0.1);
+  }
+}
+
 TEST(KalmanHeightIntegrity, APictureOnceMoreCountsOnceForTheAttitude) {
   KalmanHeightStage once(test::usualRig(), {}), twice(test::usualRig(), {});
   constexpr double kNod = 0.1 * kDegree, kError = 0.05 * kDegree, kPeriod = 0.1;

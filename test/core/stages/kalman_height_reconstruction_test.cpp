@@ -48,6 +48,44 @@ TEST(KalmanHeightReconstruction, DoesNotAverageAwayTheUnevennessOfTheSurface) {
   EXPECT_LT(result.height_variance, 1.5 * 0.03 * 0.03);
 }
 
+TEST(KalmanHeightReconstruction, AJumpOfTheClockForgetsHowEvenTheSurfaceWas) {
+  const auto rough = [](KalmanHeightStage& stage, double stamp) {
+    StereoDepthResult stereo = stereoAt(stamp, 20);
+    stereo.surface_variance = 0.2 * 0.2;
+    return stage.process(stereo, angleAt(stamp));
+  };
+  KalmanHeightStage fresh(usualRig(), {}), jumps(usualRig(), {});
+  for (int i = 0; i < 30; ++i) {
+    StereoDepthResult stereo = stereoAt(500 + i * kStep, 20);
+    stereo.surface_variance = 0;
+    jumps.process(stereo, angleAt(500 + i * kStep));
+  }
+  for (int i = 0; i < 5; ++i) {
+    const LandingResult expected = rough(fresh, i * kStep), result = rough(jumps, i * kStep);
+    EXPECT_EQ(result.raw_height_variance, expected.raw_height_variance) << i;
+    EXPECT_EQ(result.height_variance, expected.height_variance) << i;
+  }
+}
+
+TEST(KalmanHeightReconstruction, DoesNotAverageAwayTheBiasOfARigThatIsNotWatched) {
+  constexpr double kHeight = 30, kBias = 0.1;  // m, px
+  const StereoRig rig = usualRig();
+  KalmanHeightParameters parameters;
+  parameters.rig_watch = false;
+  parameters.height_model_error = 0;
+  parameters.acceleration_stddev = 0.1;
+  KalmanHeightStage stage(rig, parameters);
+  LandingResult result;
+  for (int i = 0; i < 100; ++i) {
+    StereoDepthResult stereo = stereoAt(i * kStep, kHeight, -0.25);
+    stereo.disparity_bias_stddev = kBias;
+    stereo.plane.covariance(2, 2) += std::pow(kBias / rig.fb(), 2);
+    result = stage.process(stereo, angleAt(i * kStep));
+  }
+  // d height = -height^2 n.dg, and the bias is an error of g along the optical axis of bias / fb.
+  EXPECT_GT(std::sqrt(result.height_variance), 0.99 * kHeight * kHeight * std::sin(0.25) * kBias / rig.fb());
+}
+
 TEST(KalmanHeightReconstruction, IsHardlyLessCertainByASinglePairThatLeavesTheBendOpen) {
   KalmanHeightStage stage(usualRig(), {});
   LandingResult before, result;
@@ -188,6 +226,32 @@ TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
   for (int i = 0; i < 20; ++i) result = stage.process(stereoAt(i * kStep, 20), runwayFrom(i * kStep, 20));
   EXPECT_NEAR(result.width_height, 20 * 30.0 / 45, 1e-6);
   EXPECT_NEAR(result.raw_height, 20, 1e-6);
+}
+
+TEST(KalmanHeightReconstruction, HeightsThatAreRefusedDoNotTeachTheWidth) {
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+  LandingResult result;
+  for (int i = 0; i < 6; ++i, stamp += kStep) {
+    result = stage.process(stereoAt(stamp, 16), runwayFrom(stamp, 20));
+    ASSERT_TRUE(result.rejected) << i;
+  }
+  result = stage.process(noStereo(stamp), runwayFrom(stamp, 20));
+  EXPECT_NEAR(result.width_height, 20, 0.02);
+}
+
+TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatAKnownWidthIsWrongBy) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 45;
+  parameters.height_model_error = 0;
+  parameters.acceleration_stddev = 0.1;
+  KalmanHeightStage stage(usualRig(), parameters);
+  LandingResult result;
+  for (int i = 0; i < 100; ++i)
+    result = stage.process(stereoAt(i * kStep, 20, -0.1, 0.05, 0.3), runwayFrom(i * kStep, 20));
+  // 0.2 % of the width.
+  EXPECT_GT(std::sqrt(result.height_variance), 0.95 * 0.002 * 20);
 }
 
 TEST(KalmanHeightReconstruction, AKnownWidthThatAgreesImprovesTheHeight) {

@@ -129,10 +129,11 @@ TEST(KalmanHeightStage, StartsAnewWhenTheStampGoesBackRepeatsOrJumpsAhead) {
   for (const double jump : {-5.0, 0.0, 30.0}) {
     KalmanHeightStage stage(usualRig(), {});
     const double last = settle(stage, 10);
-    stage.process(stereoAt(last, 10), angleAt(last));
+    ASSERT_TRUE(stage.process(stereoAt(last, 10), angleAt(last)).angle_valid);
     const LandingResult result = stage.process(stereoAt(last + jump, 3), angleAt(last + jump));
     EXPECT_EQ(result.failure.reason, Reason::kTimeJump) << jump;
     EXPECT_FALSE(result.height_valid);
+    EXPECT_FALSE(result.angle_valid) << "of before the jump, or of half of it ago";
     EXPECT_EQ(result.resets, 1);
     EXPECT_NEAR(result.height, 3, 1e-9);
   }
