@@ -66,7 +66,7 @@ class KalmanHeightStage {
     bool by_width = false;                          ///< the height is from the runway's width
     double stereo_height = kUnknown, stereo_variance = kUnknown;  ///< m, m^2, before a known width is fused
     bool teaches_width = false;  ///< the runway's width may be learned from the height, when it is accepted
-    bool refused = false;        ///< by a test: what else is made of the pair's images is not believed either
+    bool refused = false;        ///< by a test of the pair: no angle that is made of it is believed either
     SolutionSeparation::Measurements without;  ///< the height with each source left out
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);

@@ -111,17 +111,19 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                    plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
   testAttitude(reconstruction.alone, approach.imu);
+  // A picture once more has no angle of its own.
+  reconstruction.refused = !stereo.left_repeated && failedTestOfPair();
   if (reconstruction.failure) return;
   const std::string problem = problemOfPair();
   if (problem.empty()) return;
   confirming_ = !failedTestOfPair() && rig_change_.settled();
+  reconstruction.refused = !stereo.left_repeated;
   refusePair({Reason::kInconsistent, problem}, reconstruction, result);
 }
 
 void KalmanHeightStage::refusePair(const Failure& failure, Reconstruction& reconstruction,
                                    LandingResult& result) {
   reconstruction.failure = failure;
-  reconstruction.refused = true;
   result.raw_height = reconstruction.height;
   result.raw_height_variance = reconstruction.variance;
   result.rejected = true;

@@ -15,28 +15,30 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-/// Variance of an angle for the sake of the rig: approach_angle knows nothing of its rotation and took
-/// another normal than the plane's here. Its matches may have made up for that or not, so the turn of the
-/// normal along the direction of motion counts as 1 sigma.
-double rigAngleVariance(const GroundPlane& plane, const ApproachAngleResult& approach,
-                        const ApproachAngleResult::Motion& motion) {
-  const double turn =
-      (plane.normal() - approach.n).dot(motion.translation_over_height.normalized()) / std::cos(motion.angle);
-  return std::isfinite(turn) ? turn * turn : 0;
+/// Variance of an angle for the sake of the ground's normal: approach_angle knows nothing of the rig's
+/// rotation nor of the pairs before, and took another one than is believed here. Its matches may have made up
+/// for that or not, so the turn of the normal along the direction of motion counts as 1 sigma.
+double normalAngleVariance(const Eigen::Vector3d& normal, const ApproachAngleResult& approach,
+                           const ApproachAngleResult::Motion& motion) {
+  const Eigen::Vector3d turn = normal - approach.n, &t = motion.translation_over_height;
+  if (!turn.allFinite()) return 0;
+  const double along = t.allFinite() ? turn.dot(t.normalized()) : turn.norm();
+  return std::pow(along / std::cos(motion.angle), 2);
 }
 
-/// motion: of which the angle is published; plane: of which the rig's rotation was taken out, or null;
-/// refused: why nothing is believed that the pair's images say, if so.
+/// motion: of which the angle is published; normal: of the ground, as believed, where that is not
+/// approach_angle's own; refused: why nothing is believed that the pair's images say, if so.
 void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion,
-                 const GroundPlane* plane, const Failure& refused, double max_stddev, LandingResult& result) {
+                 const std::optional<Eigen::Vector3d>& normal, const Failure& refused, double max_stddev,
+                 LandingResult& result) {
   result.raw_approach_angle = approach.step.angle;
   result.raw_approach_angle_variance = approach.step.angle_variance;
   result.foe = approach.foe;
   result.approach_angle = motion.angle;
   result.approach_angle_variance = motion.angle_variance;
-  if (plane != nullptr) {
-    result.raw_approach_angle_variance += rigAngleVariance(*plane, approach, approach.step);
-    result.approach_angle_variance += rigAngleVariance(*plane, approach, motion);
+  if (normal) {
+    result.raw_approach_angle_variance += normalAngleVariance(*normal, approach, approach.step);
+    result.approach_angle_variance += normalAngleVariance(*normal, approach, motion);
   }
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
@@ -101,11 +103,14 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(knownNormal(reconstruction, approach), result);
   }
-  const bool corrected = parameters_.rig_watch && reconstruction.plane.valid();
-  // The angle of a picture once more is that of the pair before, of another plane.
-  const bool refused = reconstruction.refused && !stereo.left_repeated;
-  reportAngle(approach, publishedMotion(approach), corrected ? &reconstruction.plane : nullptr,
-              refused ? reconstruction.failure : jump, parameters_.max_angle_stddev_deg * kDegree, result);
+  std::optional<Eigen::Vector3d> believed;
+  if (reconstruction.tilted)
+    believed = reconstruction.normal.mean;
+  else if (parameters_.rig_watch && reconstruction.plane.valid())
+    believed = reconstruction.plane.normal();
+  reportAngle(approach, publishedMotion(approach), believed,
+              reconstruction.refused ? reconstruction.failure : jump,
+              parameters_.max_angle_stddev_deg * kDegree, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /

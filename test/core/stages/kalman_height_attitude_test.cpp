@@ -95,7 +95,6 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
   LandingResult result;
   for (; stamp < 1; stamp += kStep) result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
   ASSERT_EQ(result.status, Status::kTracking);
-  ASSERT_TRUE(result.angle_valid);
   const double roll = result.roll;
   // The height alone would pass the gate; the roll of 4 degrees within one pair does not.
   result = stage.process(stereoAt(stamp, 10.02, -0.1, 0.05 + 4 * kDegree), withoutTurning(stamp));
@@ -106,11 +105,41 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
   EXPECT_NE(result.failure.detail.find("tilted by 3.98"), std::string::npos) << result.failure.detail;
   EXPECT_NEAR(result.raw_height, 10.02, 1e-9);
   EXPECT_NEAR(result.roll, roll, 0.1 * kDegree);
-  EXPECT_FALSE(result.angle_valid) << "it is measured against this plane";
   stamp += kStep;
-  result = stage.process(stereoAt(stamp, 10), withoutTurning(stamp));
-  EXPECT_EQ(result.status, Status::kTracking);
-  EXPECT_TRUE(result.angle_valid);
+  EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
+}
+
+TEST(KalmanHeightAttitude, AnAngleAgainstATiltedPlaneIsAsUncertainAsTheTilt) {
+  constexpr double kTilt = 3 * kDegree;
+  for (const double limit_deg : {1.0, 4.0}) {
+    KalmanHeightParameters parameters;
+    parameters.max_angle_stddev_deg = limit_deg;
+    KalmanHeightStage stage(usualRig(), parameters);
+    double stamp = 0;
+    LandingResult result;
+    const auto fly = [&](double pitch) {
+      const StereoDepthResult stereo = stereoAt(stamp, 10, pitch);
+      ApproachAngleResult approach = withoutTurning(stamp);
+      approach.n = stereo.plane.normal();
+      approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+      approach.window.duration = 0.5;
+      approach.window.rotation = approach.step.rotation;
+      approach.window.translation_over_height = {0, 0, 1};
+      approach.window.covariance = approach.step.covariance;
+      result = stage.process(stereo, approach);
+      stamp += kStep;
+    };
+    while (stamp < 1) fly(-0.1);
+    ASSERT_TRUE(result.angle_valid);
+    const double before = result.approach_angle_variance;
+    fly(-0.1 + kTilt);
+    ASSERT_NE(failedTests(result.tests).find("tilt"), std::string::npos);
+    // 5 degrees down the angle turns by 1 / cos(5 degrees) of the tilt, and the axis is not quite level.
+    EXPECT_NEAR(std::sqrt(result.approach_angle_variance - before), kTilt, 0.03 * kTilt);
+    EXPECT_EQ(result.angle_valid, limit_deg > 3);
+    fly(-0.1);
+    EXPECT_TRUE(result.angle_valid) << result.failure.message();
+  }
 }
 
 }  // namespace
