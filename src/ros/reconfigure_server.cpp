@@ -78,15 +78,25 @@ void ReconfigureDescription::text(const char* name, const std::string& value, co
   append(description_.max.strs, name, std::string());
 }
 
-void ReconfigureRequestReader::number(const char* name, double& value, double min, double max, const char*,
-                                      const char*) {
-  const auto* given = find(request_.doubles, name);
-  if (given != nullptr && given->value == given->value) value = std::clamp(given->value, min, max);
+template <class Value>
+Value ReconfigureRequestReader::inRange(const char* name, Value given, Value min, Value max,
+                                        const char* unit) const {
+  const Value used = std::clamp(given, min, max);
+  if (used != given)
+    ROS_WARN_STREAM(node_ << ": " << name << ": " << given << " is out of range, expected " << min << " to "
+                          << max << " " << unit << "; " << used << " is used");
+  return used;
 }
 
-void ReconfigureRequestReader::number(const char* name, int& value, int min, int max, const char*,
+void ReconfigureRequestReader::number(const char* name, double& value, double min, double max,
+                                      const char* unit, const char*) {
+  const auto* given = find(request_.doubles, name);
+  if (given != nullptr && given->value == given->value) value = inRange(name, given->value, min, max, unit);
+}
+
+void ReconfigureRequestReader::number(const char* name, int& value, int min, int max, const char* unit,
                                       const char*) {
-  if (const auto* given = find(request_.ints, name)) value = std::clamp(given->value, min, max);
+  if (const auto* given = find(request_.ints, name)) value = inRange(name, given->value, min, max, unit);
 }
 
 void ReconfigureRequestReader::flag(const char* name, bool& value, const char*) {

@@ -28,22 +28,27 @@ class ReconfigureDescription {
   dynamic_reconfigure::ConfigDescription description_;
 };
 
-/// Takes the values that a request gives; what it does not name stays.
+/// Takes the values that a request gives; what it does not name stays. node: for the warnings.
 class ReconfigureRequestReader {
  public:
-  explicit ReconfigureRequestReader(const dynamic_reconfigure::Config& request) : request_(request) {}
+  ReconfigureRequestReader(const dynamic_reconfigure::Config& request, const std::string& node)
+      : request_(request), node_(node) {}
   void number(const char* name, double& value, double min, double max, const char* unit, const char* meaning);
   void number(const char* name, int& value, int min, int max, const char* unit, const char* meaning);
   void flag(const char* name, bool& value, const char* meaning);
   void text(const char* name, std::string& value, const char* meaning);
 
  private:
+  template <class Value>
+  Value inRange(const char* name, Value given, Value min, Value max, const char* unit) const;
+
   const dynamic_reconfigure::Config& request_;
+  const std::string& node_;
 };
 
 /// The server side of dynamic_reconfigure for a parameter struct, from the same visit() that reads and
-/// documents it; values out of range become the nearest that is not, as clients expect. Topics and service
-/// are private names of the handle. Callbacks run where those of the handle do.
+/// documents it; values out of range become the nearest that is not, as clients expect, with a warning.
+/// Topics and service are private names of the handle. Callbacks run where those of the handle do.
 template <class Parameters>
 class ReconfigureServer {
  public:
@@ -72,7 +77,7 @@ class ReconfigureServer {
 
   bool set(dynamic_reconfigure::ReconfigureRequest& request,
            dynamic_reconfigure::ReconfigureResponse& response) {
-    parameters_.visit(ReconfigureRequestReader(request.config));
+    parameters_.visit(ReconfigureRequestReader(request.config, handle_.getNamespace()));
     changed_(parameters_);
     response.config = current();
     updates_.publish(response.config);

@@ -117,6 +117,8 @@ TEST_F(AutopilotNodeletTest, DynamicReconfigureChangesParametersInFlight) {
   EXPECT_EQ(request.response.config.doubles.at(0).value, 4.5);
   EXPECT_EQ(request.response.config.doubles.at(1).value, 20) << "not asked for";
   EXPECT_EQ(request.response.config.doubles.at(3).value, 360) << "the nearest that is in range";
+  EXPECT_TRUE(logged("runway_heading_deg: 400 is out of range, expected 0 to 360 deg; 360 is used"))
+      << wholeLog();
   publish(0, 5);
   publish(0.1, 4);
   ASSERT_TRUE(ranges_.waitFor(1));

@@ -106,6 +106,19 @@ class ProcessBagsTest(unittest.TestCase):
         self.assertEqual(self.process(self.bags).returncode, 1)
         self.assertFalse((self.output / "first.csv").exists())
 
+    def test_another_config_or_camera_is_not_taken_for_done(self):
+        self.bag("first.bag")
+        config = self.bags / "config.yaml"
+        config.write_text("kalman_height: {max_age: 0.2}\n")
+        for options in ([], ["--config", config], ["--camera", "rig"]):
+            self.assertNotIn("done already", self.process(self.bags, options=options).stdout, options)
+        self.assertEqual(self.process(self.bags, options=["--config", config]).returncode, 0)
+        self.assertIn("1 of 1 bags are done already", self.process(self.bags, options=["--config", config]).stdout)
+        before = config.stat().st_mtime
+        config.write_text("kalman_height: {max_age: 0.25}\n")
+        os.utime(config, (before, before))
+        self.assertNotIn("done already", self.process(self.bags, options=["--config", config]).stdout)
+
     def test_truth_beside_the_bag_gives_errors(self):
         self.bag("first.bag")
         (self.bags / "first.frames.csv").write_text("stamp_s,left,right,pitch\n10,a,b,0\n")
