@@ -8,9 +8,8 @@
 
 namespace uav_landing {
 
-/// After each pair that counts: what was said, the true height, whether the fault was there.
-using FaultObserver =
-    std::function<void(double time, const LandingResult&, double true_height, bool faulted)>;
+/// After each pair that counts: what was said, the pair's time on the flight, whether the fault was there.
+using FaultObserver = std::function<void(double time, const LandingResult&, double pair_time, bool faulted)>;
 
 /// Takes a flight with faults through the chain. in_flight: first frame with the faults that come in flight.
 /// onset: frame from which on faults are scored. seed: of what faults draw. observe: may be empty.

@@ -31,6 +31,14 @@ double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
   return (above == flight.frames.end() ? flight.frames.back() : *above).time - first.time;
 }
 
+double interpolate(const Flight& flight, double time, double Truth::*value) {
+  const auto& frames = flight.frames;
+  size_t next = 1;
+  while (next + 1 < frames.size() && frames[next].time < time) ++next;
+  const Flight::Frame &a = frames[next - 1], &b = frames[next];
+  return a.truth.*value + (time - a.time) / (b.time - a.time) * (b.truth.*value - a.truth.*value);
+}
+
 }  // namespace
 
 SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile)
@@ -85,12 +93,10 @@ Flight cutFlight(const Flight& whole, int first, int frames) {
   return part;
 }
 
-double trueHeight(const Flight& flight, double time) {
-  const auto& frames = flight.frames;
-  size_t next = 1;
-  while (next + 1 < frames.size() && frames[next].time < time) ++next;
-  const Flight::Frame &a = frames[next - 1], &b = frames[next];
-  return a.truth.height + (time - a.time) / (b.time - a.time) * (b.truth.height - a.truth.height);
+double trueHeight(const Flight& flight, double time) { return interpolate(flight, time, &Truth::height); }
+
+double trueAngle(const Flight& flight, double time) {
+  return interpolate(flight, time, &Truth::approach_angle);
 }
 
 }  // namespace uav_landing

@@ -30,7 +30,8 @@ constexpr const char* kHeader =
     "healthy_tests";
 constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
-    "alert_limit_m,raw_height_m,status,reason,failed_tests";
+    "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
+    "valid";
 
 std::string withoutCommas(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');
@@ -117,9 +118,8 @@ class Campaign {
     const int in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
     const int onset = healthy ? frames : whole ? 0 : in_flight;
     const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
-    const FaultObserver observe = [&](double time, const LandingResult& said, double height, bool faulted) {
-      trace(from, time, said, height, faulted);
-    };
+    const FaultObserver observe = [&](double time, const LandingResult& said, double pair_time,
+                                      bool faulted) { trace(from, time, said, flight, pair_time, faulted); };
     const FaultScore score = flyWithFaults(flight, faults, in_flight, onset, hash, parameters_,
                                            trace_.is_open() ? observe : FaultObserver());
     CsvRow row(file_);
@@ -137,12 +137,21 @@ class Campaign {
     file_ << std::endl;  // what is there already can be looked at
   }
 
-  void trace(const std::string& from, double time, const LandingResult& said, double height, bool faulted) {
+  void trace(const std::string& from, double time, const LandingResult& said, const Flight& flight,
+             double pair_time, bool faulted) {
+    constexpr double kDegree = M_PI / 180;
     CsvRow row(trace_);
-    row.text(from).number(time).flag(faulted).number(height).number(said.height).flag(said.height_valid);
+    row.text(from)
+        .number(time)
+        .flag(faulted)
+        .number(trueHeight(flight, pair_time))
+        .number(said.height)
+        .flag(said.height_valid);
     row.number(said.height_protection_level).text(said.protection_source).number(said.height_alert_limit);
     row.number(said.raw_height).text(toString(said.status)).text(toString(said.failure.reason));
     row.text(failedTests(said.tests));
+    row.number(trueAngle(flight, pair_time) / kDegree).number(said.approach_angle / kDegree);
+    row.number(std::sqrt(said.approach_angle_variance) / kDegree).flag(said.angle_valid);
     trace_ << std::endl;
   }
 
