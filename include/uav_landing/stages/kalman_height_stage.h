@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "uav_landing/base/timings.h"
 #include "uav_landing/height/attitude_filter.h"
@@ -136,6 +137,9 @@ class KalmanHeightStage {
   /// Learns the width from a pair whose height was accepted.
   void learnWidth(const ApproachAngleResult::Runway& runway, const Reconstruction& reconstruction,
                   const LandingResult& result);
+  /// Those that the ground may have instead of the one that the approach angle is measured against.
+  std::vector<Eigen::Vector3d> groundNormals(const Reconstruction& reconstruction,
+                                             const ApproachAngleResult& approach) const;
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,

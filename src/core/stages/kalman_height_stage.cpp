@@ -26,20 +26,22 @@ double normalAngleVariance(const Eigen::Vector3d& normal, const ApproachAngleRes
   return std::pow(along / std::cos(motion.angle), 2);
 }
 
-/// motion: of which the angle is published; normal: of the ground, as believed, where that is not
-/// approach_angle's own; refused: why nothing is believed that the pair's images say, if so.
+/// motion: of which the angle is published; normals: that the ground may have instead of approach_angle's
+/// own; refused: why nothing is believed that the pair's images say, if so.
 void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion,
-                 const std::optional<Eigen::Vector3d>& normal, const Failure& refused, double max_stddev,
+                 const std::vector<Eigen::Vector3d>& normals, const Failure& refused, double max_stddev,
                  LandingResult& result) {
+  const auto byNormal = [&](const ApproachAngleResult::Motion& m) {
+    double variance = 0;
+    for (const Eigen::Vector3d& n : normals)
+      variance = std::max(variance, normalAngleVariance(n, approach, m));
+    return variance;
+  };
   result.raw_approach_angle = approach.step.angle;
-  result.raw_approach_angle_variance = approach.step.angle_variance;
+  result.raw_approach_angle_variance = approach.step.angle_variance + byNormal(approach.step);
   result.foe = approach.foe;
   result.approach_angle = motion.angle;
-  result.approach_angle_variance = motion.angle_variance;
-  if (normal) {
-    result.raw_approach_angle_variance += normalAngleVariance(*normal, approach, approach.step);
-    result.approach_angle_variance += normalAngleVariance(*normal, approach, motion);
-  }
+  result.approach_angle_variance = motion.angle_variance + byNormal(motion);
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
   if (!failure) failure = refused;
@@ -103,13 +105,11 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(knownNormal(reconstruction, approach), result);
   }
-  std::optional<Eigen::Vector3d> believed;
-  if (reconstruction.tilted)
-    believed = reconstruction.normal.mean;
-  else if (parameters_.rig_watch && reconstruction.plane.valid())
-    believed = reconstruction.plane.normal();
-  reportAngle(approach, publishedMotion(approach), believed,
-              reconstruction.refused ? reconstruction.failure : jump,
+  // While the height waits for contradictions to end, so does the angle, which is of the same images.
+  const Failure refused = reconstruction.refused ? reconstruction.failure
+                          : recovery_.pending()  ? result.failure
+                                                 : jump;
+  reportAngle(approach, publishedMotion(approach), groundNormals(reconstruction, approach), refused,
               parameters_.max_angle_stddev_deg * kDegree, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
@@ -126,6 +126,21 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   reportRig(result);
   if (parameters_.integrity_monitor) result.tests = tests_.finish();
   return result;
+}
+
+// Of a plane and a vanishing point that contradict each other either may be right.
+std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstruction& reconstruction,
+                                                              const ApproachAngleResult& approach) const {
+  std::vector<Eigen::Vector3d> normals;
+  if (reconstruction.tilted)
+    normals.push_back(reconstruction.normal.mean);
+  else if (parameters_.rig_watch && reconstruction.plane.valid())
+    normals.push_back(reconstruction.plane.normal());
+  if (tests_.failed(Consistency::kVanishingPoint)) {
+    const Eigen::Vector3d n = reconstruction.alone.normal(), &p = approach.vanishing_direction;
+    normals.push_back((n - n.dot(p) * p).normalized());
+  }
+  return normals;
 }
 
 // A pair of no time says nothing, and what is known stays as it is.

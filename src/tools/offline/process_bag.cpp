@@ -126,7 +126,8 @@ int main(int argc, char** argv) {
           ->capture_default_str();
   app.add_option("--config", options.config, "parameter file; without it the defaults");
   app.add_option("--csv", options.csv, "estimates to write, one row per pair");
-  app.add_option("--output", options.output, "bag to write, with stereo_depth, approach_angle and landing_estimate");
+  app.add_option("--output", options.output,
+                 "bag to write, with stereo_depth, approach_angle and landing_estimate");
   app.add_option("--report-data", options.report_data,
                  "folder for what `evaluate --report` needs: timing.csv and pictures");
   app.add_flag_callback(

@@ -109,6 +109,31 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
   EXPECT_EQ(stage.process(stereoAt(stamp, 10), withoutTurning(stamp)).status, Status::kTracking);
 }
 
+TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatTheVanishingPointContradictsIsAsUncertainAsTheyDiffer) {
+  constexpr double kDifference = 3 * kDegree;
+  for (const bool contradicts : {false, true}) {
+    KalmanHeightStage stage(usualRig(), {});
+    const StereoDepthResult stereo = stereoAt(0, 10, -0.1, 0);
+    const Eigen::Vector3d n = stereo.plane.normal();
+    ApproachAngleResult approach = withoutTurning(0);
+    approach.n = n;
+    approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    approach.window = approach.step;
+    approach.window.translation_over_height = {0, 0, 1};
+    approach.window.angle = 0;
+    approach.window.angle_variance = 1e-6;
+    const double elevation =
+        0.1 - (contradicts ? kDifference : 0);  // of the plane ahead: 0.1 rad below the axis
+    approach.vanishing_direction = {0, -std::sin(elevation), std::cos(elevation)};
+    approach.vanishing_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    const LandingResult result = stage.process(stereo, approach);
+    ASSERT_EQ(failedTests(result.tests) == "vanishing_point", contradicts) << failedTests(result.tests);
+    EXPECT_EQ(result.angle_valid, !contradicts) << result.failure.message();
+    EXPECT_NEAR(std::sqrt(result.approach_angle_variance - 1e-6), contradicts ? kDifference : 0,
+                0.2 * kDegree);
+  }
+}
+
 TEST(KalmanHeightAttitude, AnAngleAgainstATiltedPlaneIsAsUncertainAsTheTilt) {
   constexpr double kTilt = 3 * kDegree;
   for (const double limit_deg : {1.0, 4.0}) {
@@ -122,6 +147,9 @@ TEST(KalmanHeightAttitude, AnAngleAgainstATiltedPlaneIsAsUncertainAsTheTilt) {
       ApproachAngleResult approach = withoutTurning(stamp);
       approach.n = stereo.plane.normal();
       approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+      const Eigen::Vector3d level = stereoAt(0, 10).plane.normal();
+      approach.step.translation_over_height =
+          0.2 * (Eigen::Vector3d::UnitZ() - level.z() * level).normalized();
       approach.window.duration = 0.5;
       approach.window.rotation = approach.step.rotation;
       approach.window.translation_over_height = {0, 0, 1};
