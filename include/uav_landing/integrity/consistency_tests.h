@@ -45,6 +45,8 @@ class ConsistencyTests {
   /// A test that was made elsewhere.
   void addRatio(Consistency test, double difference, double ratio, double limit);
   bool failed(Consistency test) const { return tests_[static_cast<int>(test)].failed(); }
+  /// Of this pair, with the failures in a row of the pairs before.
+  const TestResult& result(Consistency test) const { return tests_[static_cast<int>(test)]; }
   /// Counts failures in a row. After the last test of the pair.
   std::vector<TestResult> finish();
 

@@ -128,7 +128,8 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   return result;
 }
 
-// Of a plane and a vanishing point that contradict each other either may be right.
+// Of a plane and a vanishing point that contradict each other either may be right. But a wrong vanishing
+// point comes and goes, and a plane that turns does so against the pairs before.
 std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstruction& reconstruction,
                                                               const ApproachAngleResult& approach) const {
   std::vector<Eigen::Vector3d> normals;
@@ -138,7 +139,10 @@ std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstructi
     normals.push_back(reconstruction.plane.normal());
   if (tests_.failed(Consistency::kVanishingPoint)) {
     const Eigen::Vector3d n = reconstruction.alone.normal(), &p = approach.vanishing_direction;
-    normals.push_back((n - n.dot(p) * p).normalized());
+    constexpr double kTurned = 9;  // squared sigmas
+    const bool lasts = tests_.result(Consistency::kVanishingPoint).consecutive_failures + 1 >= kConfirmations;
+    const bool turned = tests_.result(Consistency::kTilt).ratio > kTurned;
+    if (lasts || turned) normals.push_back((n - n.dot(p) * p).normalized());
   }
   return normals;
 }

@@ -110,28 +110,43 @@ TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBe
 }
 
 TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatTheVanishingPointContradictsIsAsUncertainAsTheyDiffer) {
-  constexpr double kDifference = 3 * kDegree;
-  for (const bool contradicts : {false, true}) {
-    KalmanHeightStage stage(usualRig(), {});
-    const StereoDepthResult stereo = stereoAt(0, 10, -0.1, 0);
-    const Eigen::Vector3d n = stereo.plane.normal();
-    ApproachAngleResult approach = withoutTurning(0);
-    approach.n = n;
+  constexpr double kPitch = -0.1, kDifference = 1.2 * kDegree;
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  LandingResult result;
+  const auto fly = [&](double pitch, double vanishing_elevation) {
+    const StereoDepthResult stereo = stereoAt(stamp, 10, pitch, 0, 0.002);
+    ApproachAngleResult approach = withoutTurning(stamp);
+    approach.n = stereo.plane.normal();
     approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    approach.step.translation_over_height = {0, 0.2 * std::sin(kPitch), 0.2 * std::cos(kPitch)};
     approach.window = approach.step;
-    approach.window.translation_over_height = {0, 0, 1};
     approach.window.angle = 0;
     approach.window.angle_variance = 1e-6;
-    const double elevation =
-        0.1 - (contradicts ? kDifference : 0);  // of the plane ahead: 0.1 rad below the axis
-    approach.vanishing_direction = {0, -std::sin(elevation), std::cos(elevation)};
+    approach.vanishing_direction = {0, -std::sin(vanishing_elevation), std::cos(vanishing_elevation)};
     approach.vanishing_covariance = 1e-8 * Eigen::Matrix3d::Identity();
-    const LandingResult result = stage.process(stereo, approach);
-    ASSERT_EQ(failedTests(result.tests) == "vanishing_point", contradicts) << failedTests(result.tests);
-    EXPECT_EQ(result.angle_valid, !contradicts) << result.failure.message();
-    EXPECT_NEAR(std::sqrt(result.approach_angle_variance - 1e-6), contradicts ? kDifference : 0,
-                0.2 * kDegree);
-  }
+    result = stage.process(stereo, approach);
+    stamp += kStep;
+  };
+  while (stamp < 2) fly(kPitch, -kPitch);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), 1e-3, 1e-4);
+
+  fly(kPitch, -kPitch - kDifference);
+  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
+  EXPECT_TRUE(result.angle_valid) << "once, and the pairs before are of another mind: "
+                                  << result.failure.message();
+  fly(kPitch, -kPitch - kDifference);
+  fly(kPitch, -kPitch - kDifference);
+  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
+  EXPECT_FALSE(result.angle_valid) << "three times in a row";
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), kDifference, 0.1 * kDegree);
+
+  for (int i = 0; i < 20; ++i) fly(kPitch, -kPitch);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  fly(kPitch + kDifference, -kPitch);
+  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
+  EXPECT_FALSE(result.angle_valid) << "the plane has turned";
 }
 
 TEST(KalmanHeightAttitude, AnAngleAgainstATiltedPlaneIsAsUncertainAsTheTilt) {
