@@ -37,8 +37,9 @@ class MotionTracker {
                  Timings& timings, const AttitudePrior& imu = {});
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
-  /// The image is the very one of the call before: nothing of the motion since, the window's is what it was,
-  /// and the next step is from when the image first came.
+  /// The image is the very one of the call before: nothing of the motion since, the next step is from when
+  /// the image first came. The window's motion is what it was, its angle less certain the longer that was
+  /// ago, and after angle_window, or with a stamp before it, there is none.
   Result repeat(double stamp) const;
   void reset();
   /// Corners followed to the frame before by the last process(), those that contradict the motion included.
