@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <numeric>
+#include <opencv2/calib3d.hpp>
 #include <stdexcept>
 
 #include "command_line.h"
@@ -63,7 +64,8 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
   PaperPipeline paper(chain->rig().rig, sequence.left, sequence.right);
   StereoImageProcPeer block(sequence, StereoImageProcPeer::Processor::BM);
   StereoImageProcPeer semi_global(sequence, StereoImageProcPeer::Processor::SGBM);
-  BlockMatchingPeer matcher;
+  const cv::Ptr<cv::StereoMatcher> matcher = cv::StereoBM::create(64, 15);
+  cv::Mat disparities;
   ImageFloor floor(sequence);
 
   Measurement result;
@@ -95,7 +97,8 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
     const sensor_msgs::ImageConstPtr left = toMessage(pair.left), right = toMessage(pair.right);
     run("stereo_image_proc BM + plane", [&] { block.process(left, right); });
     run("stereo_image_proc SGBM + plane", [&] { semi_global.process(left, right); });
-    run("StereoBM alone", [&] { matcher.process(block.rectifiedLeft(), block.rectifiedRight()); });
+    run("StereoBM alone",
+        [&] { matcher->compute(block.rectifiedLeft(), block.rectifiedRight(), disparities); });
     run("image floor", [&] { floor.process(pair.left, pair.right); });
     last = pair.stamp;
   }

@@ -69,12 +69,6 @@ cv::Vec3d StereoImageProcPeer::process(const sensor_msgs::ImageConstPtr& left,
                                   reinterpret_cast<float*>(image.data.data()), image.step));
 }
 
-BlockMatchingPeer::BlockMatchingPeer() : matcher_(cv::StereoBM::create(64, 15)) {}
-
-void BlockMatchingPeer::process(const cv::Mat& left, const cv::Mat& right) {
-  matcher_->compute(left, right, disparity_);
-}
-
 ImageFloor::ImageFloor(const Sequence& sequence) : left_(sequence.left), right_(sequence.right) {}
 
 void ImageFloor::View::process(const cv::Mat& raw) {

@@ -4,7 +4,6 @@
 #include <sensor_msgs/Image.h>
 #include <stereo_image_proc/processor.h>
 
-#include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
 #include "opencv_rectifier.h"
@@ -30,18 +29,6 @@ class StereoImageProcPeer {
   image_geometry::StereoCameraModel model_;
   Processor processor_;
   stereo_image_proc::StereoImageSet images_;
-};
-
-/// OpenCV's block matching alone, on images that are rectified already: the least of what stereo_image_proc
-/// does.
-class BlockMatchingPeer {
- public:
-  BlockMatchingPeer();
-  void process(const cv::Mat& left, const cv::Mat& right);
-
- private:
-  cv::Ptr<cv::StereoMatcher> matcher_;
-  cv::Mat disparity_;
 };
 
 /// The least that any method does that looks at whole images: two remaps and the 3x3 Sobel gradients of both.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "uav_landing/parameters/out_of_range.h"
+
 namespace uav_landing {
 namespace {
 
@@ -83,8 +85,8 @@ Value ReconfigureRequestReader::inRange(const char* name, Value given, Value min
                                         const char* unit) const {
   const Value used = std::clamp(given, min, max);
   if (used != given)
-    ROS_WARN_STREAM(node_ << ": " << name << ": " << given << " is out of range, expected " << min << " to "
-                          << max << " " << unit << "; " << used << " is used");
+    ROS_WARN_STREAM(node_ << ": " << name << ": " << outOfRange(given, min, max, unit) << "; " << used
+                          << " is used");
   return used;
 }
 

@@ -17,6 +17,7 @@ namespace uav_landing {
 class AttitudeFilter {
  public:
   static constexpr double kGate = 25.0;           ///< squared sigmas of the two angles together
+  static constexpr double kDoubtful = 9.0;        ///< the same, from which a normal that agrees is in doubt
   static constexpr double kStampRounding = 1e-3;  ///< s, by which stamps of the same pairs may differ
   /// 1 sigma of the camera's angular velocity where no step tells the rotation, and what may as well be a
   /// wrong turn, rad/s.

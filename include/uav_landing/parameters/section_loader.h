@@ -3,12 +3,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <initializer_list>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
+#include "uav_landing/parameters/out_of_range.h"
 
 namespace uav_landing {
 
@@ -28,13 +28,10 @@ class SectionLoader {
   void number(const char* name, Number& value, double min, double max, const char* unit, const char*) {
     Number given;
     if (!read(name, std::is_integral<Number>::value ? "a whole number" : "a number", given)) return;
-    if (given >= min && given <= max) {
+    if (given >= min && given <= max)
       value = given;
-      return;
-    }
-    std::ostringstream problem;  // also for NaN
-    problem << given << " is out of range, expected " << min << " to " << max;
-    refuse(name, problem.str() + (*unit == '\0' ? "" : " ") + unit);
+    else
+      refuse(name, outOfRange(given, min, max, unit));
   }
 
   void flag(const char* name, bool& value, const char*) { read(name, "true or false", value); }

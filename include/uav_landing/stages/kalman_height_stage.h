@@ -84,6 +84,8 @@ class KalmanHeightStage {
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   void reportRig(LandingResult& result) const;
+  void reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
+                   const Failure& jump, LandingResult& result) const;
   /// What the pair measures without each source.
   void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction) const;

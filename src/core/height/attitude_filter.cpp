@@ -16,8 +16,7 @@ constexpr double kMemory = 1.0;    // s
 constexpr double kPatience = 3.0;  // s, with normals that contradict
 // Pairs in a row that agree make a normal that others are measured by.
 constexpr int kConfirmed = 3;
-// Squared sigmas from which a normal that agrees is in doubt, and for how many pairs.
-constexpr double kDoubtful = 9;
+// For how many pairs a normal that agrees is in doubt.
 constexpr int kDoubtPairs = 4;
 // 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
 constexpr double kUnevenness = 0.3 * M_PI / 180;

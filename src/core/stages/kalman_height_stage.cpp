@@ -15,47 +15,6 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-/// Variance of an angle for the sake of the ground's normal: approach_angle knows nothing of the rig's
-/// rotation nor of the pairs before, and took another one than is believed here. Its matches may have made up
-/// for that or not, so the turn of the normal along the direction of motion counts as 1 sigma.
-double normalAngleVariance(const Eigen::Vector3d& normal, const ApproachAngleResult& approach,
-                           const ApproachAngleResult::Motion& motion) {
-  const Eigen::Vector3d turn = normal - approach.n, &t = motion.translation_over_height;
-  if (!turn.allFinite()) return 0;
-  const double along = t.allFinite() ? turn.dot(t.normalized()) : turn.norm();
-  return std::pow(along / std::cos(motion.angle), 2);
-}
-
-/// motion: of which the angle is published; normals: that the ground may have instead of approach_angle's
-/// own; refused: why nothing is believed that the pair's images say, if so.
-void reportAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion,
-                 const std::vector<Eigen::Vector3d>& normals, const Failure& refused, double max_stddev,
-                 LandingResult& result) {
-  const auto byNormal = [&](const ApproachAngleResult::Motion& m) {
-    double variance = 0;
-    for (const Eigen::Vector3d& n : normals)
-      variance = std::max(variance, normalAngleVariance(n, approach, m));
-    return variance;
-  };
-  result.raw_approach_angle = approach.step.angle;
-  result.raw_approach_angle_variance = approach.step.angle_variance + byNormal(approach.step);
-  result.foe = approach.foe;
-  result.approach_angle = motion.angle;
-  result.approach_angle_variance = motion.angle_variance + byNormal(motion);
-
-  Failure failure = approach.failure ? approach.failure : motion.failure;
-  if (!failure) failure = refused;
-  if (!failure && !std::isfinite(motion.angle))
-    failure = {Reason::kNoMotion, "the approach angle is not finite"};
-  const double stddev = std::sqrt(result.approach_angle_variance);
-  if (!failure && !(stddev <= max_stddev)) {
-    failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", stddev / kDegree,
-                                        " deg, more than ", max_stddev / kDegree, " deg")};
-  }
-  result.angle_valid = !failure;
-  if (!result.failure) result.failure = failure;
-}
-
 }  // namespace
 
 KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
@@ -105,12 +64,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(knownNormal(reconstruction, approach), result);
   }
-  // While the height waits for contradictions to end, so does the angle, which is of the same images.
-  const Failure refused = reconstruction.refused ? reconstruction.failure
-                          : recovery_.pending()  ? result.failure
-                                                 : jump;
-  reportAngle(approach, publishedMotion(approach), groundNormals(reconstruction, approach), refused,
-              parameters_.max_angle_stddev_deg * kDegree, result);
+  reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
@@ -126,25 +80,6 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   reportRig(result);
   if (parameters_.integrity_monitor) result.tests = tests_.finish();
   return result;
-}
-
-// Of a plane and a vanishing point that contradict each other either may be right. But a wrong vanishing
-// point comes and goes, and a plane that turns does so against the pairs before.
-std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstruction& reconstruction,
-                                                              const ApproachAngleResult& approach) const {
-  std::vector<Eigen::Vector3d> normals;
-  if (reconstruction.tilted)
-    normals.push_back(reconstruction.normal.mean);
-  else if (parameters_.rig_watch && reconstruction.plane.valid())
-    normals.push_back(reconstruction.plane.normal());
-  if (tests_.failed(Consistency::kVanishingPoint)) {
-    const Eigen::Vector3d n = reconstruction.alone.normal(), &p = approach.vanishing_direction;
-    constexpr double kTurned = 9;  // squared sigmas
-    const bool lasts = tests_.result(Consistency::kVanishingPoint).consecutive_failures + 1 >= kConfirmations;
-    const bool turned = tests_.result(Consistency::kTilt).ratio > kTurned;
-    if (lasts || turned) normals.push_back((n - n.dot(p) * p).normalized());
-  }
-  return normals;
 }
 
 // A pair of no time says nothing, and what is known stays as it is.
