@@ -16,9 +16,8 @@ gradients of the same pictures, with gain and offset between the cameras unknown
 the estimate comes with. Asked is a ratio of at most 2 at noise of 2 grey levels and more. This bound knows the gradients
 without noise. In brackets is the ratio to one that has to tell the texture from the noise as well, by the spectrum of each
 part of the picture (the delay between two receivers, Knapp and Carter 1976): who does not know the texture can hardly come
-nearer to the first bound than that. What is left beyond it is the estimator's, most of it at 2 m: there the sides of
-the centre line tell nearly all, but roll is held by faint texture to both sides, of whose blocks each shows hardly more than
-noise.
+nearer to the first bound than that. What is left beyond it is the estimator's: at noise of 1 errors that are not noise, of
+interpolation for instance; under much noise what it takes to find out which of the texture to believe.
 
 ![Errors of the plane over noise, with the bound](images/noise.png)
 

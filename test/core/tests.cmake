@@ -43,6 +43,12 @@ uav_landing_add_gtest(reconstruction_test test/core/height/reconstruction_test.c
 uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
+uav_landing_add_gtest(aligned_rows_test test/core/stereo/aligned_rows_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(band_disparities_test test/core/stereo/band_disparities_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(band_evidence_test test/core/stereo/band_evidence_test.cpp)
+uav_landing_add_gtest(texture_bands_test test/core/stereo/texture_bands_test.cpp)
 uav_landing_add_gtest(block_disparities_test test/core/stereo/block_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(pair_disparities_test test/core/stereo/pair_disparities_test.cpp

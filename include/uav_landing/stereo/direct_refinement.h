@@ -13,9 +13,8 @@ namespace uav_landing {
 /// plane's homography (along the rows only, as the images are rectified), over the blocks of ground that have
 /// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
 /// projected out. A block's normal equations say by how much the plane's disparity is off there; the plane is
-/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight. Of
-/// images whose gradients are mostly noise the means of two by two pixels are aligned instead where they show
-/// more.
+/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight. Where
+/// gradients are mostly noise all of the ground's texture is looked at instead, band by band.
 class DirectRefinement {
  public:
   /// margin: pixels that stay away from the edges of the model's masks, at least 4.

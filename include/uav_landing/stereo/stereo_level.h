@@ -13,10 +13,6 @@ struct StereoLevel {
   cv::Mat left, right;            ///< CV_32F, smoothed
 };
 
-/// Means of factor by factor pixels of an 8 bit image, so that noise which was independent stays so; what is
-/// left over on the right and below is in none.
-void reduceImage(const cv::Mat& image, int factor, cv::Mat& reduced);
-
 /// Rig and masks at a resolution reduced by an integer factor; the masks are eroded by margin pixels there.
 StereoLevel reduceLevel(const RigModel& model, int factor, int margin);
 

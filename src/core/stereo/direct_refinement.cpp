@@ -37,7 +37,7 @@ struct DirectRefinement::Implementation {
   void takeSamples(const Eigen::Vector3d& g) {
     samples.clear();
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
-    makeStddevsTrue(rig, g, samples);
+    makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
   }
 
   // Blocks and not samples: a share of them must not depend on how many speak together.

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
+#include "stereo/band_disparities.h"
 #include "stereo/block_disparities.h"
 
 namespace uav_landing {
 
-/// Disparities of the ground from blocks of a pair's images. Where a block's gradients are mostly noise, as
-/// on coarse texture close below, the means of two by two pixels lose little of the texture and most of the
-/// noise: each cell of a grid is looked at in the resolution that tells more, so that a painted line stays
-/// sharp beside texture that is hardly seen.
+/// Disparities of the ground from a pair's images: by the blocks that show most, or, where most of these are
+/// hardly more than noise, by all of the ground's texture, faint as it is.
 class PairDisparities {
  public:
   /// margin: pixels that stay away from the edges of the model's masks, at least 4.
@@ -26,20 +24,15 @@ class PairDisparities {
   const std::vector<BlockDisparity>& found() const { return found_; }
   /// Blocks that show more than noise, also those that the right image does not show.
   int informative() const { return informative_; }
+  /// Whether neighbours have errors in common, so that they scatter less than they are wrong.
+  bool haveCommonErrors() const { return noisy_; }
 
  private:
-  void lookAtHalved(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
-                    const RigRotation& rows);
-  void chooseResolutions();
-  size_t cellOf(const BlockDisparity& disparity) const;
-  bool anyHalved() const;
   void collect();
 
-  BlockDisparities whole_;
-  std::optional<BlockDisparities> halved_;  // none where a halved image would not hold a block
-  cv::Mat halved_left_, halved_right_;
-  cv::Size cells_;               // of the grid, across and down
-  std::vector<char> is_halved_;  // for each cell, row by row, 1 if its halved images are looked at
+  BlockDisparities blocks_;
+  BandDisparities bands_;
+  bool noisy_ = false;  // by which of them
   std::vector<BlockDisparity> found_;
   int informative_ = 0;
 };

@@ -20,7 +20,8 @@ constexpr double kMedianScatter = 2.33;
 
 }  // namespace
 
-void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, std::vector<DisparitySample>& samples) {
+void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
+                     std::vector<DisparitySample>& samples) {
   std::vector<double> residuals, stddevs, ratios, missing;
   for (std::vector<double>* values : {&residuals, &stddevs, &ratios, &missing})
     values->reserve(samples.size());
@@ -31,7 +32,7 @@ void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, std::vector
   const double offset = medianOf(residuals), middle = medianOf(stddevs);
   for (size_t i = 0; i < samples.size(); ++i)
     if (stddevs[i] >= middle) ratios.push_back(std::abs(residuals[i] - offset) / stddevs[i]);
-  const double factor = std::min(robustStddev(ratios), kLargestFactor);
+  const double factor = std::clamp(robustStddev(ratios), least_factor, kLargestFactor);
   const size_t count = std::min(std::max(samples.size() / kQuietestShare, kQuietest), samples.size() / 2);
   const double quiet = orderStatistic(stddevs.data(), stddevs.size(), count);
   // The variance without which half of the quietest samples were off by more than normal errors are.

@@ -8,11 +8,6 @@
 
 namespace uav_landing {
 
-void reduceImage(const cv::Mat& image, int factor, cv::Mat& reduced) {
-  const cv::Size size = image.size() / factor;
-  cv::resize(image(cv::Rect(cv::Point(), size * factor)), reduced, size, 0, 0, cv::INTER_AREA);
-}
-
 StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   StereoLevel level;
   level.rig = model.rig;
@@ -23,8 +18,10 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   level.rig.cy = toCoarse(model.rig.cy, factor);
   level.rig.cx_right = toCoarse(model.rig.cx_right, factor);
   const auto reduce = [&](const cv::Mat& mask) {
+    // What is left over on the right and below is in none.
+    const cv::Size size = mask.size() / factor;
     cv::Mat reduced;
-    reduceImage(mask, factor, reduced);
+    cv::resize(mask(cv::Rect(cv::Point(), size * factor)), reduced, size, 0, 0, cv::INTER_AREA);
     cv::threshold(reduced, reduced, 254, 255, cv::THRESH_BINARY);
     return erodeMask(reduced, margin);
   };

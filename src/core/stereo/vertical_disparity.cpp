@@ -185,32 +185,31 @@ void RowAlignment::average(const RigRotation& measured) {
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
+  pair_covariance_ = measured.covariance;
   levelled_by_ = taken_out_;
   measured_ = true;
 }
 
 RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
-  // Error that all pairs have, pixels: of lenses, which is no rotation, and of texture.
-  constexpr double kCommon = 0.003;
+  // Pairs in a row see the same texture: a share of a pair's variance is that of their mean as well.
+  constexpr double kLasting = 1.0 / 3;
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
   const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
-  const Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
-  RigRotation residual;
-  residual.covariance = (information_ + prior).inverse();
-  residual.w = residual.covariance * right_;
+  RigRotation residual{Eigen::Vector3d::Zero(), calibrated * Eigen::Matrix3d::Identity()};
   if (measured_) {
+    Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
     const Eigen::Matrix3d alone = information_.inverse();
     const Eigen::Vector3d w = alone * right_;
     const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
-    if (w.dot(both.inverse() * w) > kBelievable) {
-      residual.covariance = alone;
-      residual.w = w;
-    }
+    if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
+    residual.covariance = (information_ + prior).inverse();
+    residual.w = residual.covariance * right_;
+    const Eigen::Matrix3d gain = residual.covariance * information_;
+    residual.covariance += kLasting * gain * pair_covariance_ * gain.transpose();
   }
   residual.w -= levelled_by_;
-  residual.covariance(0, 0) += std::pow(kCommon / rig.fy, 2);
   return residual;
 }
 

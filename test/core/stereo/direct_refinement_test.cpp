@@ -236,6 +236,34 @@ TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesThatItIsTold) {
   EXPECT_TRUE(claimed->plane.covariance.isApprox(told->plane.covariance + claimed->row_covariance));
 }
 
+/// The same where lines are seen in noise.
+TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesInNoise) {
+  constexpr int kPairs = 10;
+  double told = 0, untold = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    Scene scene;
+    scene.pose = makePose(4, -8, 0);
+    scene.truth = scene.pose.down() / scene.pose.height();
+    scene.ground = GroundRenderer(500 + i);
+    scene.ground.contrast = 4;
+    scene.ground.line_offset = 4;
+    scene.ground.line_width = 1;
+    scene.ground.bend.x() = 0.3 / scene.rig.fy;
+    scene.render({0.5, 50, 7}, {0.5, 50, 7});
+    const auto rollError = [&](const Expected<PlaneFit>& fit) {
+      return rollOf(fit->plane.normal()) - rollOf(scene.truth.normalized());
+    };
+    const Expected<PlaneFit> without = scene.refine(scene.truth);
+    scene.rows.w = scene.ground.bend;
+    const Expected<PlaneFit> with = scene.refine(scene.truth);
+    ASSERT_TRUE(without && with);
+    untold += rollError(without) / kPairs;
+    told += rollError(with) / kPairs;
+  }
+  EXPECT_GT(std::abs(untold), 0.1 * kDegree) << "these scenes show nothing";
+  EXPECT_LT(std::abs(told), 0.2 * std::abs(untold));
+}
+
 TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {
   Scene scene;
   const auto expectTooFew = [&](const std::string& count) {

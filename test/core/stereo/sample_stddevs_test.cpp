@@ -37,7 +37,7 @@ Outcome outcomeOf(double noise, double common) {
       const double error = noise * stddev * normal(random) + common * normal(random);
       samples.push_back({u, v, stddev, rig.fb() * g.dot(rig.ray(u, v)) + error});
     }
-    makeStddevsTrue(rig, g, samples);
+    makeStddevsTrue(rig, g, 0, samples);
     // Next to no error besides shows in the noisy ones.
     const double factor = samples[1].stddev / kNoisy;
     outcome.factor += factor / kDraws;

@@ -1,0 +1,101 @@
+#include "stereo/band_disparities.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+// Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+constexpr double kLeastDisparity = 0.3;
+// Blocks in a row that speak together, until they know the shift to this (1 sigma, pixels), and those that
+// know it to less than that say nothing.
+constexpr int kTogether = 8;
+constexpr double kKnown = 0.25, kLeastKnown = 1.0;
+// The comparison is first order in the shift: farther than this (pixels) it means nothing.
+constexpr double kLargestShift = 1.5;
+
+}  // namespace
+
+BandDisparities::BandDisparities(const StereoLevel& level)
+    : rig_(level.rig), rows_(level.left_mask, level.right_mask) {}
+
+bool BandDisparities::isSeen(int column, int line) const {
+  constexpr int kAround = 4;  // pixels beside what is filled up
+  const int u = kGridColumn + column * kBlockWidth, v = kGridRow + line * kBlockHeight;
+  for (int row = v; row < v + kBlockHeight; ++row) {
+    const cv::Range& seen = rows_.seen(row);
+    if (u - kAround < seen.start || u + kBlockWidth + kAround > seen.end) return false;
+  }
+  return true;
+}
+
+void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
+  rows_.begin(left, ShiftModel(rig_, g), kLeastDisparity + rig_.principalOffset());
+  grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
+  grid_.lines = std::max(0, (rows_.left().rows - 2 * kGridRow) / kBlockHeight);
+  grid_.seen.clear();
+  for (int line = 0; line < grid_.lines; ++line)
+    for (int column = 0; column < grid_.columns; ++column) grid_.seen.push_back(isSeen(column, line));
+  if (!grid_.seen.empty()) left_.split(rows_.left());
+}
+
+void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
+  disparities_.clear();
+  differ_by_noise_ = false;
+  if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;
+  const ShiftModel shift(rig_, g);
+  rows_.align(right, shift);
+  right_.split(rows_.right());
+  weigh();
+  for (int line = 0; differ_by_noise_ && line < grid_.lines; ++line) tellLine(line, shift, rows);
+}
+
+void BandDisparities::weigh() {
+  constexpr int kCoarsest = TextureBands::kBands - 1;
+  // Rectification takes some of the noise off the finest band; pictures of different things differ in all.
+  constexpr double kMostCoarse = 4 * TextureBands::kWhiteCoarsest;
+  evidence_.assign(grid_.seen.size(), {});
+  differ_by_noise_ = false;
+  std::array<double, TextureBands::kBands> residuals;
+  std::optional<double> gain;
+  // The coarsest, which has the least noise, knows the gain best.
+  for (int band = kCoarsest; band >= 0; --band) {
+    addUp(left_[band], right_[band], TextureBands::factor(band), grid_, sums_);
+    if (!gain) gain = gainOf(sums_);
+    if (!gain) return;
+    addNeighbours(grid_, sums_, around_);
+    const BandNoise noise = noiseOf(grid_, around_, *gain);
+    residuals[band] = noise.residual;
+    addEvidence(grid_, sums_, around_, *gain, noise, TextureBands::signalNoise(band), evidence_);
+  }
+  differ_by_noise_ = residuals[kCoarsest] <= kMostCoarse * residuals[0];
+}
+
+void BandDisparities::tellLine(int line, const ShiftModel& shift, const RigRotation& rows) {
+  const double v = rows_.firstRow() + kGridRow + (line + 0.5) * kBlockHeight - 0.5;
+  BandEvidence sum;
+  double place = 0;
+  int blocks = 0;
+  for (int column = 0; column < grid_.columns; ++column) {
+    const size_t at = grid_.at(column, line);
+    if (grid_.seen[at]) {
+      sum.add(evidence_[at]);
+      place += evidence_[at].information * (kGridColumn + (column + 0.5) * kBlockWidth - 0.5);
+      ++blocks;
+    }
+    const bool last = (column + 1) % kTogether == 0 || column + 1 == grid_.columns;
+    if (!last && sum.stddev() > kKnown) continue;
+    if (sum.stddev() < kLeastKnown) {
+      const ShiftMatch match{place / sum.information, v, sum.shift(), sum.stddev(), sum.lean(), blocks, false,
+                             sum.looksAlike()};
+      disparities_.push_back(disparityOf(match, kLargestShift, rig_, shift, rows));
+    }
+    sum = {};
+    place = 0;
+    blocks = 0;
+  }
+}
+
+}  // namespace uav_landing

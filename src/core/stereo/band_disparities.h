@@ -1,0 +1,50 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "stereo/aligned_rows.h"
+#include "stereo/band_evidence.h"
+#include "stereo/block_disparity.h"
+#include "stereo/texture_bands.h"
+#include "uav_landing/rig/rig_rotation.h"
+#include "uav_landing/stereo/stereo_level.h"
+
+namespace uav_landing {
+
+/// Disparities of the ground where its texture is hardly more than noise. Such texture is faint in other
+/// frequencies than a painted line beside it: the aligned images are taken apart into bands, and each block
+/// counts in each band by the signal it has there.
+class BandDisparities {
+ public:
+  /// level: of the whole images; its masks are eroded by at least two pixels.
+  explicit BandDisparities(const StereoLevel& level);
+
+  /// Takes the left image (mono8) below the horizon of the plane g, 1/m.
+  void choose(const cv::Mat& left, const Eigen::Vector3d& g);
+  /// Compares it with the right image (mono8) warped by the plane g. rows: rotation that the vertical
+  /// disparities of the images have.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+
+  /// Whether what the images differed by was noise in the last measurement. Else they do not show the same,
+  /// and there are no disparities.
+  bool differByNoise() const { return differ_by_noise_; }
+  /// Of the last measurement, for some blocks of a row each.
+  const std::vector<BlockDisparity>& disparities() const { return disparities_; }
+
+ private:
+  bool isSeen(int column, int line) const;
+  void weigh();
+  void tellLine(int line, const ShiftModel& shift, const RigRotation& rows);
+
+  StereoRig rig_;
+  AlignedRows rows_;
+  BlockGrid grid_;
+  TextureBands left_, right_;
+  std::vector<BandSums> sums_, around_;  // of one band
+  std::vector<BandEvidence> evidence_;
+  std::vector<BlockDisparity> disparities_;
+  bool differ_by_noise_ = false;
+};
+
+}  // namespace uav_landing

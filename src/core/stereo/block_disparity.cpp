@@ -1,0 +1,22 @@
+#include "stereo/block_disparity.h"
+
+#include <cmath>
+
+namespace uav_landing {
+
+BlockDisparity disparityOf(const ShiftMatch& match, double largest, const StereoRig& rig,
+                           const ShiftModel& shift, const RigRotation& rows) {
+  // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a place
+  // that has the error of the shift in it would pull the plane.
+  const double density = 1 - shift.a;  // of right pixels over left ones
+  const double place = shift.at(match.u, match.v);
+  const double disparity = place + match.shift * density - rig.principalOffset();
+  const Eigen::RowVector3d leak =
+      -density * match.lean * verticalDisparityByRotation(rig, match.u - place, match.v);
+  return {{match.u, match.v, density * match.stddev, disparity - leak.dot(rows.w)},
+          leak,
+          match.blocks,
+          match.alike && std::abs(match.shift) < largest};
+}
+
+}  // namespace uav_landing
