@@ -17,6 +17,7 @@
 #include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/integrity/speed_memory.h"
 #include "uav_landing/integrity/stamp_scatter.h"
+#include "uav_landing/integrity/velocity_memory.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/rig/rig_change.h"
@@ -103,6 +104,9 @@ class KalmanHeightStage {
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
+  /// The step since the pair before against the velocity on those before that. Only the angle is less certain
+  /// for it: what is wrong in the direction of flight hardly changes a height.
+  void testVelocity(double T, const ApproachAngleResult& approach, const Reconstruction& reconstruction);
   /// Adds to the height's variance what it changes by between the stamp and the time of the images.
   void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);
   /// The vertical speed by motion, uncertain by what the stamps are wrong by as well.
@@ -192,6 +196,9 @@ class KalmanHeightStage {
   bool confirming_ = false;                  // this pair passed, but has been left out for those that failed
   HeightMemory memory_;
   SpeedMemory speed_;
+  VelocityMemory velocity_;
+  double longest_window_ = 0;  // of the angles so far, s
+  double path_doubt_ = 0;      // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
   NormalDoubt doubt_;

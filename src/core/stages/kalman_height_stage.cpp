@@ -114,6 +114,8 @@ void KalmanHeightStage::reset() {
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   speed_.reset();
+  velocity_.reset();
+  longest_window_ = 0;
   stamps_.reset();
   recovery_.reset();
   doubt_.reset();
