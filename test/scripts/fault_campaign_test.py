@@ -105,6 +105,14 @@ class ShortCampaignTest(unittest.TestCase):
         self.assertEqual(row["misleading"], "0")
         self.assertGreater(int(row["faulted_valid"]), 0.8 * int(row["faulted"]))
 
+    def test_an_angle_does_not_mislead_by_a_turned_camera_or_a_period_of_a_pattern(self):
+        rows = self.fly("--first", 31, "--frames", 110, "--faults", "none,swapped,bent_yaw_0.05,bent_yaw_0.2,repeated_pattern")
+        self.assertEqual({name: (row["angle_misleading"], row["healthy_angle_misleading"]) for name, row in rows.items()},
+                         {name: ("0", "0") for name in rows})
+        self.assertEqual(rows["bent_yaw_0.05"]["faulted_angle_valid"], rows["bent_yaw_0.05"]["faulted"])
+        for name in ("swapped", "bent_yaw_0.2"):  # claimed as they are, not thrown away
+            self.assertGreater(int(rows[name]["faulted_angle_valid"]), 0.7 * int(rows[name]["faulted"]), name)
+
     def test_a_frozen_scene_does_not_mislead_under_noise(self):
         row = self.fly("--first", 1, "--frames", 60, "--faults", "none,frozen_both,noise", "--pairs", 4)["frozen_both+noise"]
         self.assertEqual(row["misleading"], "0")
