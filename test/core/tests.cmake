@@ -99,17 +99,20 @@ uav_landing_add_gtest(consistency_tests_test test/core/integrity/consistency_tes
 uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
 uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
 uav_landing_add_gtest(innovation_scatter_test test/core/integrity/innovation_scatter_test.cpp)
+uav_landing_add_gtest(normal_doubt_test test/core/integrity/normal_doubt_test.cpp)
 uav_landing_add_gtest(recovery_test test/core/integrity/recovery_test.cpp)
 uav_landing_add_gtest(solution_separation_test test/core/integrity/solution_separation_test.cpp)
 uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cpp)
 uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
 uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
+uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
 
 # stages
 uav_landing_add_gtest(approach_angle_normal_test test/core/stages/approach_angle_normal_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(kalman_height_angle_test test/core/stages/kalman_height_angle_test.cpp)
 uav_landing_add_gtest(kalman_height_attitude_test test/core/stages/kalman_height_attitude_test.cpp)
 uav_landing_add_gtest(kalman_height_ground_test test/core/stages/kalman_height_ground_test.cpp)
 uav_landing_add_gtest(kalman_height_integrity_test test/core/stages/kalman_height_integrity_test.cpp)

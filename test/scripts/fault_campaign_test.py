@@ -17,7 +17,8 @@ PROGRAM = BUILD_DIR / "devel/lib/uav_landing/inject_faults"
 
 def row(name, **counts):
     numbers = dict(healthy=0, healthy_valid=0, healthy_uncertain=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
-                   worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0, healthy_tests="")
+                   worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0, healthy_tests="", faulted_angle_valid=0, angle_misleading=0,
+                   worst_angle_ratio=0, healthy_angle_misleading=0)
     return {"faults": name, "source": "simulator", "seed": "1", **{key: str(value) for key, value in
                                                                   {**numbers, **counts}.items()}}
 
@@ -33,6 +34,23 @@ class CountsTest(unittest.TestCase):
         misled = dict(faulted=40, faulted_valid=40, misleading=3)
         self.assertEqual(faults.Campaign([row("baseline_8", **misled), row("dirt+baseline_2", **misled)]).problems(), [])
         self.assertIn("dirt: 3 misleading frames (dirt simulator 1)", faults.Campaign([row("dirt", **misled)]).problems())
+
+    def test_a_misleading_angle_is_a_problem_also_where_nothing_could_have_seen_the_height(self):
+        misled = dict(faulted=40, faulted_angle_valid=20, angle_misleading=3, worst_angle_ratio=1.5)
+        rows = [row("baseline_8", **misled), row("dirt", faulted=40), {**row("dirt", **misled), "seed": "2"}]
+        self.assertEqual(faults.Campaign(rows).problems(), ["baseline_8: 3 misleading angles (baseline_8 simulator 1)",
+                                                            "dirt: 3 misleading angles (dirt simulator 2)"])
+        # Of 80 frames 20 are valid and 3 misled; at most 9.5 % with 95 %. Of two runs one misled: 1 - 0.05 = 97.5 % squared.
+        self.assertRegex(faults.Campaign(rows).angle_table(), r"\n\| *dirt *\| *2 *\| *80 *\| *25% *\| *3 *\| *9.\d+% *\| *1 *\| "
+                                                              r"*97.5% *\| *1.50 *\|")
+
+    def test_angles_are_counted_only_where_they_are_known(self):
+        misled = dict(faulted=40, faulted_angle_valid=20, angle_misleading=3, healthy=9, healthy_valid=9,
+                      healthy_angle_misleading=2)
+        road = [{**row(name, **misled), "source": "kitti_road"} for name in ("none", "dirt")]
+        self.assertEqual(faults.Campaign(road).problems(), [])
+        self.assertNotIn("dirt", faults.Campaign(road).angle_table())
+        self.assertIn("2 misleading angles without a fault", faults.Campaign([row("none", **misled)]).problems())
 
     def test_false_alarms_are_counted_on_healthy_runs_only_and_half_a_per_cent_is_too_much(self):
         rows = [row("none", healthy=1000, healthy_valid=996), row("dirt", healthy=1000, healthy_valid=0)]
@@ -86,6 +104,14 @@ class ShortCampaignTest(unittest.TestCase):
         row = self.fly("--first", 101, "--frames", 110, "--faults", "slope")["slope"]
         self.assertEqual(row["misleading"], "0")
         self.assertGreater(int(row["faulted_valid"]), 0.8 * int(row["faulted"]))
+
+    def test_an_angle_does_not_mislead_by_a_turned_camera_or_a_period_of_a_pattern(self):
+        rows = self.fly("--first", 31, "--frames", 110, "--faults", "none,swapped,bent_yaw_0.05,bent_yaw_0.2,repeated_pattern")
+        self.assertEqual({name: (row["angle_misleading"], row["healthy_angle_misleading"]) for name, row in rows.items()},
+                         {name: ("0", "0") for name in rows})
+        self.assertEqual(rows["bent_yaw_0.05"]["faulted_angle_valid"], rows["bent_yaw_0.05"]["faulted"])
+        for name in ("swapped", "bent_yaw_0.2"):  # claimed as they are, not thrown away
+            self.assertGreater(int(rows[name]["faulted_angle_valid"]), 0.7 * int(rows[name]["faulted"]), name)
 
     def test_a_frozen_scene_does_not_mislead_under_noise(self):
         row = self.fly("--first", 1, "--frames", 60, "--faults", "none,frozen_both,noise", "--pairs", 4)["frozen_both+noise"]

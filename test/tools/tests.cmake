@@ -11,4 +11,6 @@ uav_landing_add_gtest(bag_structure_test test/tools/bag_structure_test.cpp LIBS 
 uav_landing_add_gtest(old_bag_structure_test test/tools/old_bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(random_approach_test test/tools/random_approach_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(fast_low_pass_test test/tools/fast_low_pass_test.cpp LIBS uav_landing_tools)
+uav_landing_add_gtest(fault_score_test test/tools/fault_score_test.cpp SOURCES src/tools/faults/fault_score.cpp
+  LIBS uav_landing_tools)
 uav_landing_add_python_test(test/tools/interrupted_test.py DEPENDENCIES process_bag simulate_approach)

@@ -16,6 +16,7 @@ enum class Consistency {
   kRigRotation,
   kBaselineDirection,
   kStandstill,
+  kVelocity,
   kTilt,
   kVanishingPoint,
   kImu,
@@ -24,7 +25,7 @@ enum class Consistency {
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 13;
+constexpr int kConsistencyTests = 14;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.

@@ -12,10 +12,12 @@
 #include "uav_landing/integrity/ground_memory.h"
 #include "uav_landing/integrity/height_memory.h"
 #include "uav_landing/integrity/innovation_scatter.h"
+#include "uav_landing/integrity/normal_doubt.h"
 #include "uav_landing/integrity/recovery.h"
 #include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/integrity/speed_memory.h"
 #include "uav_landing/integrity/stamp_scatter.h"
+#include "uav_landing/integrity/velocity_memory.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/rig/rig_change.h"
@@ -102,6 +104,9 @@ class KalmanHeightStage {
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
+  /// The step since the pair before against the velocity on those before that. Only the angle is less certain
+  /// for it: what is wrong in the direction of flight hardly changes a height.
+  void testVelocity(double T, const ApproachAngleResult& approach, const Reconstruction& reconstruction);
   /// Adds to the height's variance what it changes by between the stamp and the time of the images.
   void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);
   /// The vertical speed by motion, uncertain by what the stamps are wrong by as well.
@@ -139,9 +144,18 @@ class KalmanHeightStage {
   /// Learns the width from a pair whose height was accepted.
   void learnWidth(const ApproachAngleResult::Runway& runway, const Reconstruction& reconstruction,
                   const LandingResult& result);
-  /// Those that the ground may have instead of the one that the approach angle is measured against.
-  std::vector<Eigen::Vector3d> groundNormals(const Reconstruction& reconstruction,
-                                             const ApproachAngleResult& approach) const;
+  /// One that the ground may have instead of that which the approach angle is measured against.
+  struct OtherNormal {
+    Eigen::Vector3d normal;
+    Eigen::Matrix3d covariance;  ///< by which it is less certain than that, rad^2
+    Eigen::Matrix3d by_noise;    ///< of the difference, as far as that is expected, rad^2
+    double probability;
+    double angleVariance(const Eigen::Vector3d& used, const ApproachAngleResult::Motion& motion) const;
+  };
+  std::vector<OtherNormal> otherNormals(const Reconstruction& reconstruction,
+                                        const ApproachAngleResult& approach) const;
+  /// What the vanishing point says of the normal. After the tests of the pair.
+  void doubtNormal(const Reconstruction& reconstruction, const ApproachAngleResult& approach);
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
@@ -182,8 +196,12 @@ class KalmanHeightStage {
   bool confirming_ = false;                  // this pair passed, but has been left out for those that failed
   HeightMemory memory_;
   SpeedMemory speed_;
+  VelocityMemory velocity_;
+  double longest_window_ = 0;  // of the angles so far, s
+  double path_doubt_ = 0;      // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
+  NormalDoubt doubt_;
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s
   double ground_height_ = kUnknown;             // at that time, m

@@ -20,6 +20,8 @@ const char* toString(Consistency test) {
       return "baseline_direction";
     case Consistency::kStandstill:
       return "standstill";
+    case Consistency::kVelocity:
+      return "velocity";
     case Consistency::kTilt:
       return "tilt";
     case Consistency::kVanishingPoint:

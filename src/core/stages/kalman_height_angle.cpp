@@ -11,33 +11,55 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-/// Variance of an angle for the sake of the ground's normal: approach_angle knows nothing of the rig's
-/// rotation nor of the pairs before, and took another one than is believed here. Its matches may have made up
-/// for that or not, so the turn of the normal along the direction of motion counts as 1 sigma.
-double normalAngleVariance(const Eigen::Vector3d& normal, const ApproachAngleResult& approach,
-                           const ApproachAngleResult::Motion& motion) {
-  const Eigen::Vector3d turn = normal - approach.n, &t = motion.translation_over_height;
-  if (!turn.allFinite()) return 0;
-  const double along = t.allFinite() ? turn.dot(t.normalized()) : turn.norm();
-  return std::pow(along / std::cos(motion.angle), 2);
+// Error that noise alone stays within with 95 %, squared and over its variance.
+const double kCertain = chiSquareLimit(0.05, 1);
+
+double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
+  return t.allFinite() ? t.dot(covariance * t) / t.squaredNorm() : covariance.trace();
 }
 
 }  // namespace
 
-// Of a plane and a vanishing point that contradict each other either may be right. But a wrong vanishing
-// point comes and goes, and a plane that turns does so against the pairs before.
-std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstruction& reconstruction,
-                                                              const ApproachAngleResult& approach) const {
-  std::vector<Eigen::Vector3d> normals;
-  if (reconstruction.tilted)
-    normals.push_back(reconstruction.normal.mean);
-  else if (parameters_.rig_watch && reconstruction.plane.valid())
-    normals.push_back(reconstruction.plane.normal());
-  if (tests_.failed(Consistency::kVanishingPoint)) {
-    const Eigen::Vector3d n = reconstruction.alone.normal(), &p = approach.vanishing_direction;
-    const bool lasts = tests_.result(Consistency::kVanishingPoint).consecutive_failures + 1 >= kConfirmations;
-    const bool turned = tests_.result(Consistency::kTilt).ratio > AttitudeFilter::kDoubtful;
-    if (lasts || turned) normals.push_back((n - n.dot(p) * p).normalized());
+// Variance of an angle that is measured against this normal, if the ground has the other one. The angle's
+// matches may have made up for the difference or not, so its part along the direction of motion counts as 1
+// sigma.
+double KalmanHeightStage::OtherNormal::angleVariance(const Eigen::Vector3d& used,
+                                                     const ApproachAngleResult::Motion& motion) const {
+  const Eigen::Vector3d turn = normal - used, &t = motion.translation_over_height;
+  if (!turn.allFinite()) return 0;
+  const double off = t.allFinite() ? turn.dot(t.normalized()) : turn.norm();
+  const double variance = std::max(0.0, off * off - along(by_noise, t)) + std::max(0.0, along(covariance, t));
+  return probability * variance / std::pow(std::cos(motion.angle), 2);
+}
+
+void KalmanHeightStage::doubtNormal(const Reconstruction& reconstruction,
+                                    const ApproachAngleResult& approach) {
+  const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
+  if (!reconstruction.alone.valid() || !p.allFinite()) return;
+  doubt_.add(approach.stamp, tests_.result(Consistency::kVanishingPoint).ratio,
+             (n - n.dot(p) * p).normalized() - n, n.dot(approach.vanishing_covariance * n),
+             tests_.result(Consistency::kTilt).ratio > AttitudeFilter::kDoubtful);
+}
+
+std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
+    const Reconstruction& reconstruction, const ApproachAngleResult& approach) const {
+  std::vector<OtherNormal> normals;
+  const GroundPlane& plane = reconstruction.plane;
+  const Reconstruction::Normal& average = reconstruction.normal;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero(), &used = approach.n_covariance;
+  // approach_angle knows nothing of the rig's rotation, nor of how well that is known.
+  if (!reconstruction.tilted && parameters_.rig_watch && plane.valid())
+    normals.push_back({plane.normal(), plane.normalCovariance() - used, none, 1});
+  // Nor of the pairs before: a plane that turns against them within what a test allows is one of two.
+  if (plane.valid())
+    normals.push_back(
+        {average.mean, none, reconstruction.tilted ? none : kCertain * (average.covariance + used), 1});
+  // Of a plane and a vanishing point that contradict each other either may be right.
+  const double doubt = doubt_.probability(approach.stamp);
+  if (doubt > 0) {
+    const Eigen::Matrix3d by_vanishing_point = doubt_.variance() * Eigen::Matrix3d::Identity();
+    normals.push_back({approach.n + doubt_.turn(), by_vanishing_point, none, doubt});
+    if (reconstruction.alone.valid()) normals.push_back({reconstruction.alone.normal(), none, none, doubt});
   }
   return normals;
 }
@@ -46,11 +68,11 @@ std::vector<Eigen::Vector3d> KalmanHeightStage::groundNormals(const Reconstructi
 void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                                     const Failure& jump, LandingResult& result) const {
   const ApproachAngleResult::Motion& motion = publishedMotion(approach);
-  const std::vector<Eigen::Vector3d> normals = groundNormals(reconstruction, approach);
+  const std::vector<OtherNormal> normals = otherNormals(reconstruction, approach);
   const auto byNormal = [&](const ApproachAngleResult::Motion& m) {
     double variance = 0;
-    for (const Eigen::Vector3d& n : normals)
-      variance = std::max(variance, normalAngleVariance(n, approach, m));
+    for (const OtherNormal& other : normals)
+      variance = std::max(variance, other.angleVariance(approach.n, m));
     return variance;
   };
   result.raw_approach_angle = approach.step.angle;
@@ -58,6 +80,10 @@ void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const R
   result.foe = approach.foe;
   result.approach_angle = motion.angle;
   result.approach_angle_variance = motion.angle_variance + byNormal(motion);
+  // The path has a step in it for as long as the window is.
+  if (velocity_.sinceContradiction() < longest_window_)
+    result.approach_angle_variance += path_doubt_ * path_doubt_;
+  if (tests_.failed(Consistency::kVelocity)) result.raw_approach_angle_variance += path_doubt_ * path_doubt_;
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
   if (!failure && reconstruction.refused) failure = reconstruction.failure;

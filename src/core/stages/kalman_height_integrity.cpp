@@ -9,6 +9,7 @@
 #include "geometry/rotation.h"
 #include "height/vertical_speed.h"
 #include "rig/pair_skew.h"
+#include "uav_landing/motion/approach_angle.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 #include "uav_landing/stereo/region_planes.h"
 
@@ -98,6 +99,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
     rig_rotation_.startAnew(rig_change_.mean());
   testBaseline(stereo, approach.step);
   testStandstill(T, approach.step, reconstruction);
+  testVelocity(T, approach, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
     tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.stereo_height,
@@ -182,6 +184,31 @@ void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Moti
   const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(*way);
   if (shortfall) tests_.addOneSided(Consistency::kStandstill, shortfall->difference, shortfall->variance);
   speed_.learn(*way, !tests_.failed(Consistency::kStandstill));
+}
+
+void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approach,
+                                     const Reconstruction& reconstruction) {
+  const ApproachAngleResult::Motion& step = approach.step;
+  const double height = heightSoFar(reconstruction);
+  const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
+  // A repeated picture, and a pair without motion: the next step is over the time of both.
+  if (step.failure || !(step.duration > 0) || !(height > 0) || !covariance.allFinite())
+    return velocity_.skip(std::max(T, 0.0));
+  if (std::isfinite(approach.window.duration))
+    longest_window_ = std::max(longest_window_, approach.window.duration);
+  const VelocityMemory::Step known{step.duration, rotationMatrix(step.rotation),
+                                   height * step.translation_over_height, height * height * covariance,
+                                   stamps_.ofDuration()};
+  const std::optional<VelocityMemory::Innovation> innovation = velocity_.follow(known);
+  if (innovation) tests_.add(Consistency::kVelocity, innovation->difference, innovation->covariance);
+  const bool agrees = !tests_.failed(Consistency::kVelocity);
+  if (!agrees) {
+    const Eigen::Vector3d expected = known.way / known.duration - innovation->difference;
+    const double off = std::abs(step.angle - approachAngle(approach.n, expected));
+    const bool again = velocity_.sinceContradiction() < longest_window_;
+    path_doubt_ = again ? std::max(off, path_doubt_) : off;
+  }
+  velocity_.learn(known, agrees);
 }
 
 void KalmanHeightStage::testRegions(const Reconstruction& reconstruction) {

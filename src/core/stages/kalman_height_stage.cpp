@@ -29,7 +29,8 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       tests_(parameters.false_alarm_rate),
       speed_(parameters.max_deceleration),
       stamps_(parameters.max_deceleration),
-      recovery_(parameters.recovery_time) {}
+      recovery_(parameters.recovery_time),
+      doubt_(parameters.fault_probability, parameters.reset_timeout) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
@@ -64,6 +65,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(knownNormal(reconstruction, approach), result);
   }
+  doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
@@ -112,8 +114,11 @@ void KalmanHeightStage::reset() {
   if (filter_.initialised()) loseTrack();
   memory_.reset();
   speed_.reset();
+  velocity_.reset();
+  longest_window_ = 0;
   stamps_.reset();
   recovery_.reset();
+  doubt_.reset();
   ground_.reset();
   ground_stamp_.reset();
   ground_height_ = kUnknown;

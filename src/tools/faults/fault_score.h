@@ -22,6 +22,10 @@ struct FaultScore {
   double worst_level_ratio = 0;  ///< error over protection level, of valid faulted frames
   double worst_limit_ratio = 0;  ///< error over alert limit, of valid faulted frames
   std::string alarm;             ///< reason of the first faulted frame that is not valid
+  int faulted_angle_valid = 0;
+  int angle_misleading = 0;          ///< valid, and the error is larger than angleBound()
+  int healthy_angle_misleading = 0;  ///< the same before the onset
+  double worst_angle_ratio = 0;      ///< error over angleBound(), of valid faulted angles
 
   struct TestCount {
     int made = 0, failed = 0;
@@ -30,10 +34,16 @@ struct FaultScore {
   /// "name made failed" of each, with semicolons between.
   std::string testCounts() const;
 
-  /// One frame. duration: s since the frame before.
-  void take(const LandingResult& landing, double true_height, bool is_faulted, double duration);
+  /// One frame. true_angle: rad, NaN where not known. duration: s since the frame before.
+  void take(const LandingResult& landing, double true_height, double true_angle, bool is_faulted,
+            double duration);
+  /// Error beyond which a valid approach angle misleads, rad. variance: the one claimed.
+  static double angleBound(double variance);
 
  private:
+  void takeHealthy(const LandingResult& landing, bool misleads);
+  void takeAngle(const LandingResult& landing, double true_angle, bool is_faulted);
+
   double misled_for_ = 0;  // s
 };
 

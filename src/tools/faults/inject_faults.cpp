@@ -27,7 +27,7 @@ struct Options {
 constexpr const char* kHeader =
     "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
     "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_uncertain,"
-    "healthy_tests";
+    "healthy_tests,faulted_angle_valid,angle_misleading,worst_angle_ratio,healthy_angle_misleading";
 constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
     "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
@@ -134,6 +134,8 @@ class Campaign {
     row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
     row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
     row.number(score.healthy_uncertain).text(score.testCounts());
+    row.number(score.faulted_angle_valid).number(score.angle_misleading).number(score.worst_angle_ratio);
+    row.number(score.healthy_angle_misleading);
     file_ << std::endl;  // what is there already can be looked at
   }
 
@@ -172,7 +174,7 @@ Failure run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Flies approaches with faults through the chain and counts misleading heights.",
+  CLI::App app("Flies approaches with faults through the chain and counts misleading heights and angles.",
                "inject_faults");
   Options options;
   app.add_option("--csv", options.csv, "rows to write, one per run");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/degree.h"
+#include "support/ground_matches.h"
 #include "support/kalman_height_inputs.h"
 #include "support/rigs.h"
 #include "uav_landing/stages/kalman_height_stage.h"
@@ -147,6 +148,121 @@ TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatTheVanishingPointContradictsI
   fly(kPitch + kDifference, -kPitch);
   ASSERT_EQ(failedTests(result.tests), "vanishing_point");
   EXPECT_FALSE(result.angle_valid) << "the plane has turned";
+}
+
+/// Of a level flight over level ground, as stereo and a vanishing point at this elevation see it.
+ApproachAngleResult levelFlight(const StereoDepthResult& stereo, double vanishing_elevation,
+                                double vanishing_stddev) {
+  ApproachAngleResult approach = withoutTurning(stereo.stamp);
+  approach.n = stereo.plane.normal();
+  approach.n_covariance = stereo.plane.normalCovariance();
+  const Eigen::Vector3d ahead(0, approach.n.z(), -approach.n.y());
+  approach.step.translation_over_height = -0.2 * ahead.normalized();
+  approach.step.covariance *= 1e-2;
+  approach.window = approach.step;
+  approach.window.angle = 0;
+  approach.window.angle_variance = std::pow(0.06 * kDegree, 2);
+  approach.vanishing_direction = {0, -std::sin(vanishing_elevation), std::cos(vanishing_elevation)};
+  approach.vanishing_covariance = std::pow(vanishing_stddev, 2) * Eigen::Matrix3d::Identity();
+  return approach;
+}
+
+// A right camera that has turned in yaw makes a plane that is tilted, and nothing but the vanishing point
+// contradicts it, by less than a test needs.
+TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsAContradictionThatNoTestRefusesIsLikelyToBeAFault) {
+  constexpr double kPitch = -0.1, kVanishing = 0.15 * kDegree;
+  // 1 sigma of the plane's normal is 0.002 m over 10 m. The odds of a fault are 1 : 999 beforehand.
+  const double stddev = std::hypot(kVanishing, 0.002 / 10);
+  for (const double sigmas : {0.0, 1.0, 3.0, 3.6}) {
+    SCOPED_TRACE(sigmas);
+    KalmanHeightStage stage(usualRig(), {});
+    LandingResult result;
+    for (double stamp = 0; stamp < 2; stamp += kStep) {
+      const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
+      result = stage.process(stereo, levelFlight(stereo, -kPitch - sigmas * stddev, kVanishing));
+    }
+    ASSERT_EQ(failedTests(result.tests), "");
+    ASSERT_TRUE(result.angle_valid) << result.failure.message();
+    const double likelier = std::exp(0.5 * sigmas * sigmas), probability = likelier / (likelier + 999);
+    const double off = sigmas * stddev;
+    const double expected = std::pow(0.06 * kDegree, 2) + probability * (off * off + kVanishing * kVanishing);
+    EXPECT_NEAR(std::sqrt(result.approach_angle_variance), std::sqrt(expected), 0.02 * std::sqrt(expected));
+  }
+}
+
+TEST(KalmanHeightAttitude, APairWithoutAVanishingPointIsAsUncertainAsThoseBeforeThatContradicted) {
+  constexpr double kPitch = -0.1, kDifference = 0.8 * kDegree;
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  LandingResult result;
+  for (; stamp < 1; stamp += kStep) {
+    const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
+    result = stage.process(stereo, levelFlight(stereo, -kPitch - kDifference, 0.15 * kDegree));
+  }
+  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
+  const double before = result.approach_angle_variance;
+  const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
+  ApproachAngleResult unseen = levelFlight(stereo, 0, 1);
+  unseen.vanishing_direction.setConstant(kUnknown);
+  unseen.vanishing_covariance.setConstant(kUnknown);
+  result = stage.process(stereo, unseen);
+  EXPECT_EQ(failedTests(result.tests), "");
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), std::sqrt(before), 0.01 * kDegree);
+}
+
+TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatHasTurnedIsAsUncertainAsTheTurnUntilThePairsAgree) {
+  constexpr double kPitch = -0.1, kTurn = 0.25 * kDegree;  // within what the ground's unevenness may do
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  const auto stddev = [&](double pitch) {
+    const StereoDepthResult stereo = stereoAt(stamp, 10, pitch, 0, 0.002);
+    ApproachAngleResult approach = levelFlight(stereo, 0, 1);
+    approach.vanishing_direction.setConstant(kUnknown);
+    approach.vanishing_covariance.setConstant(kUnknown);
+    stamp += kStep;
+    const LandingResult result = stage.process(stereo, approach);
+    EXPECT_EQ(failedTests(result.tests), "");
+    return std::sqrt(result.approach_angle_variance);
+  };
+  while (stamp < 1) stddev(kPitch);
+  // What noise of 0.011 degrees does is no turn.
+  EXPECT_NEAR(stddev(kPitch + 0.015 * kDegree), 0.06 * kDegree, 1e-9);
+  EXPECT_NEAR(stddev(kPitch), 0.06 * kDegree, 1e-9);
+  // The mean of a second has a part of the new one in it.
+  const double turned = stddev(kPitch + kTurn);
+  EXPECT_GT(turned, 0.5 * kTurn);
+  EXPECT_LT(turned, std::hypot(kTurn, 0.06 * kDegree));
+  while (stamp < 6) stddev(kPitch + kTurn);
+  EXPECT_NEAR(stddev(kPitch + kTurn), 0.06 * kDegree, 0.005 * kDegree);
+}
+
+// A constant disparity of 0.3 px, 1 sigma, tilts the plane by h / (f b) of it. That of a yaw grows with 1 +
+// x^2, to 1.4 at the image's borders, and pitch and roll of the rig are open besides.
+TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsTheRigsRotationThatItsNormalDoesNotKnowOf) {
+  const StereoRig rig = usualRig();
+  constexpr double kBias = 0.3, kHeight = 10;
+  for (const bool known : {true, false}) {
+    KalmanHeightStage stage(rig, {});
+    LandingResult result;
+    for (double stamp = 0; stamp < 1; stamp += kStep) {
+      StereoDepthResult stereo = stereoAt(stamp, kHeight, -0.1, 0, 0.002);
+      stereo.points = test::matchesOn(rig, stereo.plane.g);
+      stereo.disparity_bias_stddev = kBias;
+      const Eigen::Matrix3d alone = stereo.plane.normalCovariance();
+      stereo.plane.covariance(2, 2) += std::pow(kBias / rig.fb(), 2);
+      ApproachAngleResult approach = levelFlight(stereo, 0, 1);
+      approach.vanishing_direction.setConstant(kUnknown);
+      approach.vanishing_covariance.setConstant(kUnknown);
+      if (!known) approach.n_covariance = alone;
+      result = stage.process(stereo, approach);
+    }
+    const double more = std::sqrt(result.approach_angle_variance - std::pow(0.06 * kDegree, 2));
+    const double share = more / (kHeight * kBias / rig.fb());
+    if (known)
+      EXPECT_LT(share, 0.6) << "but for what the constant leaves out";
+    else
+      EXPECT_TRUE(share > 1 && share < 1.25) << share;
+  }
 }
 
 TEST(KalmanHeightAttitude, AnAngleAgainstATiltedPlaneIsAsUncertainAsTheTilt) {

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/degree.h"
+#include "support/ground_matches.h"
+#include "support/rigs.h"
+#include "uav_landing/stages/kalman_height_stage.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+
+constexpr double kT = 0.05, kWindow = 0.5;
+constexpr double kStddev = 0.06 * kDegree;
+
+/// A camera that looks 4 degrees down and moves by so many metres ahead, down and aside; the angle is that.
+class Flight {
+ public:
+  LandingResult fly(double ahead, double down, double aside = 0) {
+    height_ -= down;
+    StereoDepthResult stereo;
+    stereo.stamp = stamp_;
+    stereo.plane.g = normal_ / height_;
+    stereo.plane.covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    stereo.points = test::matchesOn(test::usualRig(), stereo.plane.g);
+    ApproachAngleResult approach;
+    approach.stamp = stamp_;
+    approach.n = normal_;
+    approach.n_covariance = stereo.plane.normalCovariance();
+    ApproachAngleResult::Motion& step = approach.step;
+    step.duration = kT;
+    step.rotation.setZero();
+    const Eigen::Vector3d forward(0, -std::sin(4 * kDegree), std::cos(4 * kDegree));
+    step.translation_over_height =
+        (ahead * forward + down * normal_ + Eigen::Vector3d(aside, 0, 0)) / height_;
+    step.covariance = 1e-8 * Matrix6d::Identity();
+    step.angle = std::atan2(down, std::hypot(ahead, aside));
+    step.angle_variance = kStddev * kStddev;
+    approach.window = step;
+    approach.window.duration = kWindow;
+    stamp_ += kT;
+    return stage_.process(stereo, approach);
+  }
+
+ private:
+  KalmanHeightStage stage_{test::usualRig(), {}};
+  Eigen::Vector3d normal_ = normalFromPitchRoll(-4 * kDegree, 0);
+  double stamp_ = 1, height_ = 12;
+};
+
+double stddevOf(const LandingResult& result) { return std::sqrt(result.approach_angle_variance); }
+
+// 20 m/s, and matches that are one period of 2 m too far.
+TEST(KalmanHeightAngle, IsAsUncertainAsItChangesByAStepOfAPeriodTooLongWhileTheHeightIsValid) {
+  Flight flight;
+  LandingResult result;
+  for (int i = 0; i < 40; ++i) {
+    result = flight.fly(1, 0.01);
+    EXPECT_EQ(failedTests(result.tests), "") << i;
+  }
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
+  const double off = std::atan2(0.01, 1) - std::atan2(0.01, 3);
+  for (int i = 0; i < 20; ++i) {
+    result = flight.fly(3, 0.01);
+    EXPECT_EQ(failedTests(result.tests), "velocity") << i;
+    EXPECT_NEAR(stddevOf(result), std::hypot(off, kStddev), 0.02 * off) << i;
+    EXPECT_NEAR(std::sqrt(result.raw_approach_angle_variance), std::hypot(off, kStddev), 0.02 * off) << i;
+    EXPECT_TRUE(result.height_valid) << result.failure.message();
+  }
+}
+
+TEST(KalmanHeightAngle, IsNotValidForAsLongAsAStepAsideIsInItsWindow) {
+  Flight flight;
+  LandingResult result;
+  for (int i = 0; i < 40; ++i) result = flight.fly(1, 0.06);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  result = flight.fly(1, 0.06, 2);
+  EXPECT_EQ(failedTests(result.tests), "velocity");
+  // As far as to the other camera: 1.5 degrees instead of 3.4.
+  EXPECT_NEAR(stddevOf(result), std::atan(0.06) - std::atan(0.06 / std::sqrt(5)), 0.1 * kDegree);
+  int until = 1;
+  while (!(result = flight.fly(1, 0.06)).angle_valid && until < 40) {
+    EXPECT_EQ(failedTests(result.tests), "");
+    EXPECT_EQ(result.failure.reason, Reason::kUncertain);
+    EXPECT_NEAR(std::sqrt(result.raw_approach_angle_variance), kStddev, 0.02 * kStddev) << "the last step";
+    ++until;
+  }
+  EXPECT_NEAR(until * kT, kWindow, 1.01 * kT);
+  EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
+}
+
+}  // namespace
+}  // namespace uav_landing
