@@ -104,8 +104,9 @@ class KalmanHeightStage {
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
-  /// The step since the pair before against the velocity on those before that. Only the angle is less certain
-  /// for it: what is wrong in the direction of flight hardly changes a height.
+  /// The step since the pair before against the velocity on those before that. Not of a picture that came
+  /// once more: the next step is over the time of both. Only the angle is less certain for it: what is wrong
+  /// in the direction of flight hardly changes a height.
   void testVelocity(double T, const ApproachAngleResult& approach, const Reconstruction& reconstruction);
   /// Adds to the height's variance what it changes by between the stamp and the time of the images.
   void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);

@@ -82,7 +82,7 @@ class RowAlignment {
   // Of the sum of what is taken out and what is left, old pairs forgotten.
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d pair_covariance_ = Eigen::Matrix3d::Zero();  // of the pair measured last, rad^2
+  double pairs_ = 0;  // in the sums, old ones forgotten
   Eigen::Vector3d levelled_by_ =
       Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
   bool measured_ = false;

@@ -99,7 +99,7 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
     rig_rotation_.startAnew(rig_change_.mean());
   testBaseline(stereo, approach.step);
   testStandstill(T, approach.step, reconstruction);
-  testVelocity(T, approach, reconstruction);
+  if (!stereo.left_repeated) testVelocity(T, approach, reconstruction);
   testRegions(reconstruction);
   if (!reconstruction.by_width && std::isfinite(result.width_height) && !reconstruction.failure)
     tests_.add(Consistency::kRunwayWidth, result.width_height - reconstruction.stereo_height,
@@ -191,7 +191,6 @@ void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approa
   const ApproachAngleResult::Motion& step = approach.step;
   const double height = heightSoFar(reconstruction);
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
-  // A repeated picture, and a pair without motion: the next step is over the time of both.
   if (step.failure || !(step.duration > 0) || !(height > 0) || !covariance.allFinite())
     return velocity_.skip(std::max(T, 0.0));
   if (std::isfinite(approach.window.duration))

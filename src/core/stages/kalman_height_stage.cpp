@@ -65,7 +65,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     rememberGround(stereo, approach.step, reconstruction, result.rejected);
     reportProtection(knownNormal(reconstruction, approach), result);
   }
-  doubtNormal(reconstruction, approach);
+  if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)

@@ -13,12 +13,23 @@ constexpr int kTogether = 4;
 // Right pixels over left ones, below which the ground is seen too much from the side.
 constexpr double kLeastDensity = 0.2;
 
-/// First and last pixel that are set, as a range; empty when none is.
+/// The longest run of pixels that are set. Distorted pictures may have nothing in the middle of a row.
 cv::Range setColumns(const cv::Mat& mask, int v) {
-  const uchar *begin = mask.ptr<uchar>(v), *end = begin + mask.cols;
-  const uchar* first = std::find_if(begin, end, [](uchar value) { return value != 0; });
-  while (end > first && end[-1] == 0) --end;
-  return {static_cast<int>(first - begin), static_cast<int>(end - begin)};
+  const uchar* row = mask.ptr<uchar>(v);
+  cv::Range longest(0, 0);
+  for (int begin = 0; begin < mask.cols;) {
+    int end = begin;
+    while (end < mask.cols && row[end] != 0) ++end;
+    if (end - begin > longest.size()) longest = {begin, end};
+    begin = end + 1;
+  }
+  return longest;
+}
+
+std::vector<cv::Range> setColumns(const cv::Mat& mask) {
+  std::vector<cv::Range> columns;
+  for (int v = 0; v < mask.rows; ++v) columns.push_back(setColumns(mask, v));
+  return columns;
 }
 
 /// Whole columns between two places, of 0 to cols.
@@ -35,8 +46,8 @@ cv::Range whole(int begin, int end) {
 
 void fillUp(const cv::Range& known, cv::Mat& image, int row) {
   float* values = image.ptr<float>(row);
-  if (known.empty()) {
-    std::fill(values, values + image.cols, row > 0 ? image.at<float>(row - 1, 0) : 0.F);
+  if (known.empty()) {  // between others that are not
+    if (row > 0) std::copy(image.ptr<float>(row - 1), image.ptr<float>(row - 1) + image.cols, values);
     return;
   }
   std::fill(values, values + known.start, values[known.start]);
@@ -45,20 +56,20 @@ void fillUp(const cv::Range& known, cv::Mat& image, int row) {
 
 }  // namespace
 
-AlignedRows::AlignedRows(cv::Mat left_mask, cv::Mat right_mask)
-    : left_mask_(std::move(left_mask)), right_mask_(std::move(right_mask)) {}
+AlignedRows::AlignedRows(const cv::Mat& left_mask, const cv::Mat& right_mask)
+    : size_(left_mask.size()), left_columns_(setColumns(left_mask)), right_columns_(setColumns(right_mask)) {}
 
 // The highest row that may be ground, at either side.
 int AlignedRows::findFirstRow(const ShiftModel& shift, double least) const {
   const auto horizon = [&](double u) { return (least - shift.c - shift.a * u) / shift.b; };
-  const double highest = shift.b > 0 ? std::min(horizon(0), horizon(left_mask_.cols - 1)) : 0;
-  return static_cast<int>(std::clamp<double>(std::ceil(highest), 0, left_mask_.rows));
+  const double highest = shift.b > 0 ? std::min(horizon(0), horizon(size_.width - 1)) : 0;
+  return static_cast<int>(std::clamp<double>(std::ceil(highest), 0, size_.height));
 }
 
 cv::Range AlignedRows::seenColumns(const ShiftModel& shift, double least, int v) const {
   // Pixels that interpolation reads beside a place, and by which a later model may be off this one.
   constexpr int kAround = 5;
-  const cv::Range left = setColumns(left_mask_, v), right = setColumns(right_mask_, v);
+  const cv::Range &left = left_columns_[v], &right = right_columns_[v];
   const double density = 1 - shift.a, down = shift.b * v + shift.c;
   if (!(density > kLeastDensity) || right.size() <= 2 * kAround) return {0, 0};
   double begin = std::max<double>(left.start, (right.start + kAround + down) / density);
@@ -67,20 +78,28 @@ cv::Range AlignedRows::seenColumns(const ShiftModel& shift, double least, int v)
   if (shift.a > 0) begin = std::max(begin, (least - down) / shift.a);
   if (shift.a < 0) end = std::min(end, (least - down) / shift.a);
   if (shift.a == 0 && down < least) return {0, 0};
-  const cv::Range columns = between(begin, end, left_mask_.cols);
+  const cv::Range columns = between(begin, end, size_.width);
   return whole(columns.start, columns.end);
 }
 
-void AlignedRows::begin(const cv::Mat& left, const ShiftModel& shift, double least) {
-  first_row_ = findFirstRow(shift, least);
-  left_memory_.create(left.size(), CV_32F);
-  left_ = left_memory_.rowRange(first_row_, left.rows);
-  left.rowRange(first_row_, left.rows).convertTo(left_, CV_32F);
+void AlignedRows::findRows(const ShiftModel& shift, double least) {
   seen_.clear();
-  for (int v = 0; v < left_.rows; ++v) {
-    seen_.push_back(seenColumns(shift, least, first_row_ + v));
-    fillUp(seen_.back(), left_, v);
+  first_row_ = findFirstRow(shift, least);
+  for (int v = first_row_; v < size_.height; ++v) {
+    const cv::Range seen = seenColumns(shift, least, v);
+    if (seen_.empty() && seen.empty()) ++first_row_;
+    if (!(seen_.empty() && seen.empty())) seen_.push_back(seen);
   }
+  while (!seen_.empty() && seen_.back().empty()) seen_.pop_back();
+}
+
+void AlignedRows::begin(const cv::Mat& left, const ShiftModel& shift, double least) {
+  findRows(shift, least);
+  const int count = static_cast<int>(seen_.size());
+  left_memory_.create(left.size(), CV_32F);
+  left_ = left_memory_.rowRange(0, count);
+  left.rowRange(first_row_, first_row_ + count).convertTo(left_, CV_32F);
+  for (int row = 0; row < count; ++row) fillUp(seen_[row], left_, row);
 }
 
 // Of those that both cameras see: all, unless the model is far from the first one.
@@ -89,13 +108,13 @@ cv::Range AlignedRows::readableColumns(const ShiftModel& shift, int row, int col
   const double density = 1 - shift.a, down = shift.b * (first_row_ + row) + shift.c;
   if (seen.empty() || !(density > kLeastDensity)) return {0, 0};
   // One pixel before a place and two behind it.
-  const cv::Range inside = between((1 + down) / density, (cols - 3 + down) / density, left_mask_.cols);
+  const cv::Range inside = between((1 + down) / density, (cols - 3 + down) / density, size_.width);
   return whole(std::max(seen.start, inside.start), std::min(seen.end, inside.end));
 }
 
 void AlignedRows::align(const cv::Mat& right, const ShiftModel& shift) {
   right_memory_.create(right.size(), CV_32F);
-  right_ = right_memory_.rowRange(first_row_, right.rows);
+  right_ = right_memory_.rowRange(0, static_cast<int>(seen_.size()));
   source_.resize(right.cols);
   for (int row = 0; row < right_.rows; ++row) {
     const int v = first_row_ + row;

@@ -13,10 +13,10 @@ namespace uav_landing {
 class AlignedRows {
  public:
   /// Masks of the rectified images (mono8), eroded by at least two pixels.
-  AlignedRows(cv::Mat left_mask, cv::Mat right_mask);
+  AlignedRows(const cv::Mat& left_mask, const cv::Mat& right_mask);
 
-  /// Takes the rows of the left image (mono8) that have ground by the shift model: shifts of more than least,
-  /// pixels.
+  /// Takes the rows of the left image (mono8) that have ground by the shift model, shifts of more than least,
+  /// pixels, which both cameras see.
   void begin(const cv::Mat& left, const ShiftModel& shift, double least);
   /// Interpolates the right image (mono8) by a model that is near the one of begin().
   void align(const cv::Mat& right, const ShiftModel& shift);
@@ -33,10 +33,13 @@ class AlignedRows {
   int findFirstRow(const ShiftModel& shift, double least) const;
   /// Of row v of the whole images.
   cv::Range seenColumns(const ShiftModel& shift, double least, int v) const;
+  /// The rows to the last one that both cameras see some of.
+  void findRows(const ShiftModel& shift, double least);
   cv::Range readableColumns(const ShiftModel& shift, int row, int cols) const;
 
-  cv::Mat left_mask_, right_mask_;
-  cv::Mat left_memory_, right_memory_;  // for all rows
+  cv::Size size_;
+  std::vector<cv::Range> left_columns_, right_columns_;  // with picture, of each row of the whole images
+  cv::Mat left_memory_, right_memory_;                   // for all rows
   int first_row_ = 0;
   cv::Mat left_, right_;
   std::vector<cv::Range> seen_;

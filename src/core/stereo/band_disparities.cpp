@@ -13,8 +13,6 @@ constexpr double kLeastDisparity = 0.3;
 // know it to less than that say nothing.
 constexpr int kTogether = 8;
 constexpr double kKnown = 0.25, kLeastKnown = 1.0;
-// The comparison is first order in the shift: farther than this (pixels) it means nothing.
-constexpr double kLargestShift = 1.5;
 
 }  // namespace
 
@@ -23,7 +21,7 @@ BandDisparities::BandDisparities(const StereoLevel& level)
 
 bool BandDisparities::isSeen(int column, int line) const {
   constexpr int kAround = 4;  // pixels beside what is filled up
-  const int u = kGridColumn + column * kBlockWidth, v = kGridRow + line * kBlockHeight;
+  const int u = kGridColumn + column * kBlockWidth, v = grid_.first_row + line * kBlockHeight;
   for (int row = v; row < v + kBlockHeight; ++row) {
     const cv::Range& seen = rows_.seen(row);
     if (u - kAround < seen.start || u + kBlockWidth + kAround > seen.end) return false;
@@ -34,7 +32,10 @@ bool BandDisparities::isSeen(int column, int line) const {
 void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
   rows_.begin(left, ShiftModel(rig_, g), kLeastDisparity + rig_.principalOffset());
   grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
-  grid_.lines = std::max(0, (rows_.left().rows - 2 * kGridRow) / kBlockHeight);
+  const int height = std::max(0, rows_.left().rows - 2 * kGridRow);
+  grid_.lines = height / kBlockHeight;
+  // The lowest rows, which say most, are in a block.
+  grid_.first_row = kGridRow + height % kBlockHeight / 2 * 2;
   grid_.seen.clear();
   for (int line = 0; line < grid_.lines; ++line)
     for (int column = 0; column < grid_.columns; ++column) grid_.seen.push_back(isSeen(column, line));
@@ -57,6 +58,7 @@ void BandDisparities::weigh() {
   // Rectification takes some of the noise off the finest band; pictures of different things differ in all.
   constexpr double kMostCoarse = 4 * TextureBands::kWhiteCoarsest;
   evidence_.assign(grid_.seen.size(), {});
+  scores_.clear();
   differ_by_noise_ = false;
   std::array<double, TextureBands::kBands> residuals;
   std::optional<double> gain;
@@ -68,34 +70,38 @@ void BandDisparities::weigh() {
     addNeighbours(grid_, sums_, around_);
     const BandNoise noise = noiseOf(grid_, around_, *gain);
     residuals[band] = noise.residual;
-    addEvidence(grid_, sums_, around_, *gain, noise, TextureBands::signalNoise(band), evidence_);
+    addEvidence(grid_, sums_, around_, *gain, noise, TextureBands::noise(band), scores_, evidence_);
   }
   differ_by_noise_ = residuals[kCoarsest] <= kMostCoarse * residuals[0];
 }
 
 void BandDisparities::tellLine(int line, const ShiftModel& shift, const RigRotation& rows) {
-  const double v = rows_.firstRow() + kGridRow + (line + 0.5) * kBlockHeight - 0.5;
-  BandEvidence sum;
-  double place = 0;
-  int blocks = 0;
+  const double v = rows_.firstRow() + grid_.first_row + (line + 0.5) * kBlockHeight - 0.5;
+  std::array<Group, 2> groups;  // of those that do not look alike, and of those that do
   for (int column = 0; column < grid_.columns; ++column) {
-    const size_t at = grid_.at(column, line);
-    if (grid_.seen[at]) {
-      sum.add(evidence_[at]);
-      place += evidence_[at].information * (kGridColumn + (column + 0.5) * kBlockWidth - 0.5);
-      ++blocks;
-    }
+    const BandEvidence& block = evidence_[grid_.at(column, line)];
     const bool last = (column + 1) % kTogether == 0 || column + 1 == grid_.columns;
-    if (!last && sum.stddev() > kKnown) continue;
-    if (sum.stddev() < kLeastKnown) {
-      const ShiftMatch match{place / sum.information, v, sum.shift(), sum.stddev(), sum.lean(), blocks, false,
-                             sum.looksAlike()};
-      disparities_.push_back(disparityOf(match, kLargestShift, rig_, shift, rows));
+    if (block.information > 0)
+      groups[block.looksAlike()].add(block, kGridColumn + (column + 0.5) * kBlockWidth - 0.5);
+    for (Group& group : groups) {
+      if (!last && group.sum.stddev() > kKnown) continue;
+      if (group.sum.stddev() < kLeastKnown) tell(group, v, shift, rows);
+      group = {};
     }
-    sum = {};
-    place = 0;
-    blocks = 0;
   }
+}
+
+void BandDisparities::Group::add(const BandEvidence& block, double u) {
+  sum.add(block);
+  place += block.information * u;
+  ++blocks;
+}
+
+void BandDisparities::tell(const Group& group, double v, const ShiftModel& shift, const RigRotation& rows) {
+  const BandEvidence& sum = group.sum;
+  const double u = group.place / sum.information;
+  const ShiftMatch match{u, v, sum.shift(), sum.stddev(), sum.lean(), group.blocks, false, sum.looksAlike()};
+  disparities_.push_back(disparityOf(match, rig_, shift, rows));
 }
 
 }  // namespace uav_landing

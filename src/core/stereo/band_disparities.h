@@ -36,12 +36,21 @@ class BandDisparities {
   bool isSeen(int column, int line) const;
   void weigh();
   void tellLine(int line, const ShiftModel& shift, const RigRotation& rows);
+  /// Blocks of a row that speak together.
+  struct Group {
+    BandEvidence sum;
+    double place = 0;  // column times information
+    int blocks = 0;
+    void add(const BandEvidence& block, double u);
+  };
+  void tell(const Group& group, double v, const ShiftModel& shift, const RigRotation& rows);
 
   StereoRig rig_;
   AlignedRows rows_;
   BlockGrid grid_;
   TextureBands left_, right_;
   std::vector<BandSums> sums_, around_;  // of one band
+  std::vector<BandScore> scores_;        // of the last one
   std::vector<BandEvidence> evidence_;
   std::vector<BlockDisparity> disparities_;
   bool differ_by_noise_ = false;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stereo/band_sums.h"
+#include "stereo/texture_bands.h"
 
 namespace uav_landing {
 
@@ -39,14 +40,22 @@ struct BandNoise {
 /// around: as by addNeighbours().
 BandNoise noiseOf(const BlockGrid& grid, const std::vector<BandSums>& around, double gain);
 
+/// What a block has said in a band.
+struct BandScore {
+  double score = 0;
+  double response = 0, lean = 0;  ///< to a shift by a pixel, and by a row
+  double stddev = 0;              ///< of the score; 0: it said nothing
+};
+
 /// Adds what the blocks of one band say. Each counts by its signal over its noise (Knapp, Carter 1976: the
 /// weights of the best delay between two receivers of a faint signal), where the signal is what the slopes of
 /// both images have in common. That of a faint block is mostly chance, but much like those of its neighbours,
 /// so it is drawn towards their mean unless it differs by more than chance (James, Stein 1961). What all of
-/// them owe to chance in spite of that is known on average, and taken out. signal_noise:
-/// TextureBands::signalNoise() of the band.
+/// them owe to chance in spite of that is known on average, and taken out. white: of
+/// the band. scores: of the next coarser band, whose share in this one's is taken out; then of this one.
 void addEvidence(const BlockGrid& grid, const std::vector<BandSums>& sums,
                  const std::vector<BandSums>& around, double gain, const BandNoise& noise,
-                 double signal_noise, std::vector<BandEvidence>& evidence);
+                 const TextureBands::Noise& white, std::vector<BandScore>& scores,
+                 std::vector<BandEvidence>& evidence);
 
 }  // namespace uav_landing

@@ -80,7 +80,7 @@ void addUp(const cv::Mat& left, const cv::Mat& right, int factor, const BlockGri
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(left.step1());
   sums.assign(grid.seen.size(), {});
   for (int line = 0; line < grid.lines; ++line) {
-    const int v = kGridRow / factor + line * height;
+    const int v = grid.first_row / factor + line * height;
     for (int column = 0; column < grid.columns; ++column) {
       const size_t at = grid.at(column, line);
       if (!grid.seen[at]) continue;

@@ -5,8 +5,6 @@ namespace {
 
 // Blocks compared: about 100 thousand pixels, which hold nearly all that an image says.
 constexpr int kBlocks = 800;
-// The comparison is first order in the shift: farther than this (pixels) it means nothing.
-constexpr double kLargestShift = 1.5;
 
 }  // namespace
 
@@ -22,7 +20,7 @@ void BlockDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, c
   blocks_.compare(right, shift, matches_);
   disparities_.clear();
   for (const PhotometricBlocks::Match& match : matches_)
-    disparities_.push_back(disparityOf(match, kLargestShift, rig_, shift, rows));
+    disparities_.push_back(disparityOf(match, rig_, shift, rows));
 }
 
 double BlockDisparities::certainShare() const {

@@ -4,8 +4,10 @@
 
 namespace uav_landing {
 
-BlockDisparity disparityOf(const ShiftMatch& match, double largest, const StereoRig& rig,
-                           const ShiftModel& shift, const RigRotation& rows) {
+BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& shift,
+                           const RigRotation& rows) {
+  // Comparisons are first order in the shift: farther than this (pixels) it means nothing.
+  constexpr double kLargestShift = 1.5;
   // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a place
   // that has the error of the shift in it would pull the plane.
   const double density = 1 - shift.a;  // of right pixels over left ones
@@ -16,7 +18,7 @@ BlockDisparity disparityOf(const ShiftMatch& match, double largest, const Stereo
   return {{match.u, match.v, density * match.stddev, disparity - leak.dot(rows.w)},
           leak,
           match.blocks,
-          match.alike && std::abs(match.shift) < largest};
+          match.alike && std::abs(match.shift) < kLargestShift};
 }
 
 }  // namespace uav_landing

@@ -25,7 +25,9 @@ void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eig
 }
 
 void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
-  noisy_ ? bands_.measure(right, g, rows) : blocks_.measure(right, g, rows);
+  if (noisy_) bands_.measure(right, g, rows);
+  noisy_ = noisy_ && bands_.differByNoise();
+  if (!noisy_) blocks_.measure(right, g, rows);
   collect();
 }
 

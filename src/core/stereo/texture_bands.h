@@ -6,16 +6,26 @@
 namespace uav_landing {
 
 /// An image taken apart by how fine its texture is: differences of Gaussians (Burt, Adelson 1983), with
-/// standard deviations of 0, 1, 2.5 and 6.4 pixels. White noise in one band has next to nothing in common
-/// with that in another, and what is left out has a gain and an offset in it rather than texture.
+/// standard deviations of 0, 1, 2.5 and 6.4 pixels. What is left out has a gain and an offset in it rather
+/// than texture.
 class TextureBands {
  public:
   static constexpr int kBands = 3;
   /// Pixels of the image to each side that are one of the band.
   static constexpr int factor(int band) { return band == 0 ? 1 : 2; }
-  /// Of the sum over a block of the products of two images' derivatives (BandSums::signal), both white noise,
-  /// the variance: this times the sum of the squares of one's and the variance of the other's band.
-  static constexpr double signalNoise(int band) { return band == 0 ? 1.5 : band == 1 ? 0.44 : 0.52; }
+  /// What white noise does to the sums over blocks of 16 by 8 pixels (BandSums).
+  struct Noise {
+    /// Variance of a signal, both images noise: this times slopes and the variance of the other's band.
+    double signal;
+    /// Correlation of the scores with those of the next coarser band.
+    double alike_coarser;
+    /// The residual that blocks with their neighbours may have by chance (three sigma), over the lower
+    /// quartile.
+    double most;
+  };
+  static constexpr Noise noise(int band) {
+    return band == 0 ? Noise{1.5, 0.07, 1.3} : band == 1 ? Noise{0.44, 0.35, 1.9} : Noise{0.52, 0, 2.5};
+  }
   /// Variance of white noise in the coarsest band over that in the finest.
   static constexpr double kWhiteCoarsest = 0.0105;
 

@@ -185,13 +185,14 @@ void RowAlignment::average(const RigRotation& measured) {
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
-  pair_covariance_ = measured.covariance;
+  pairs_ = kKept * pairs_ + 1;
   levelled_by_ = taken_out_;
   measured_ = true;
 }
 
 RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
-  // Pairs in a row see the same texture: a share of a pair's variance is that of their mean as well.
+  // Pairs in a row see the same texture: a share of a pair's variance is that of their mean as well. Of all
+  // pairs' mean, pairs_ times that of the sum, as far as they and not the calibration tell.
   constexpr double kLasting = 1.0 / 3;
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
@@ -206,8 +207,8 @@ RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) con
     if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
     residual.covariance = (information_ + prior).inverse();
     residual.w = residual.covariance * right_;
-    const Eigen::Matrix3d gain = residual.covariance * information_;
-    residual.covariance += kLasting * gain * pair_covariance_ * gain.transpose();
+    const Eigen::Matrix3d own = residual.covariance;
+    residual.covariance += kLasting * pairs_ * own * information_ * own;
   }
   residual.w -= levelled_by_;
   return residual;

@@ -86,6 +86,19 @@ TEST(AlignedRows, AreFilledUpWithTheLastPixelThatBothSee) {
   }
 }
 
+/// Masks are eroded at the image's border, and distorted pictures may have corners without a middle.
+TEST(AlignedRows, AreThoseThatBothSeeAndOneRunOfEach) {
+  Ground ground;
+  ground.left_mask.rowRange(230, 240) = 0;
+  ground.right_mask.rowRange(225, 240) = 0;
+  ground.left_mask(cv::Rect(250, 200, 10, 30)) = 0;
+  const AlignedRows rows = ground.aligned(0);
+  EXPECT_EQ(rows.firstRow() + rows.left().rows, 225);
+  EXPECT_FALSE(rows.seen(0).empty());
+  EXPECT_LE(rows.seen(205 - rows.firstRow()).end, 250);
+  EXPECT_GT(rows.seen(195 - rows.firstRow()).end, 260);
+}
+
 /// As after a wild step of the refinement: nothing outside the right image is read.
 TEST(AlignedRows, KeepInsideTheRightImageFarFromTheFirstModel) {
   const Ground ground;

@@ -25,11 +25,12 @@ struct Scene {
   Eigen::Vector3d truth = pose.down() / pose.height();
   cv::Mat left, right;
 
+  /// The right camera shows it darker.
   Scene(unsigned seed, const Exposure& exposure) {
     GroundRenderer ground(seed);
     ground.grain = 0.04;
     left = ground.left(rig, pose, exposure);
-    right = ground.right(rig, pose, exposure);
+    right = ground.right(rig, pose, {0.9 * exposure.gain, exposure.offset + 5, exposure.noise});
   }
   StereoLevel level() const { return reduceLevel(model, 1, 4); }
   /// The true plane with its disparities off by some pixels.

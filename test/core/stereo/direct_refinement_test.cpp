@@ -249,7 +249,7 @@ TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesInNoise) {
     scene.ground.line_offset = 4;
     scene.ground.line_width = 1;
     scene.ground.bend.x() = 0.3 / scene.rig.fy;
-    scene.render({0.5, 50, 7}, {0.5, 50, 7});
+    scene.render({0.5, 50, 7}, {0.45, 60, 7});
     const auto rollError = [&](const Expected<PlaneFit>& fit) {
       return rollOf(fit->plane.normal()) - rollOf(scene.truth.normalized());
     };

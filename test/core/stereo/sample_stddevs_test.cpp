@@ -20,7 +20,7 @@ struct Outcome {
 };
 
 /// noise: how many times its 1 sigma is as large as the samples say. common: 1 sigma of an error besides.
-Outcome outcomeOf(double noise, double common) {
+Outcome outcomeOf(double noise, double common, double least_factor = 0) {
   constexpr int kDraws = 300, kSamples = 400;
   const StereoRig rig = test::makeRig(640, 480, 0.65);
   const test::Pose pose = test::makePose(4, -8, 3);
@@ -37,7 +37,7 @@ Outcome outcomeOf(double noise, double common) {
       const double error = noise * stddev * normal(random) + common * normal(random);
       samples.push_back({u, v, stddev, rig.fb() * g.dot(rig.ray(u, v)) + error});
     }
-    makeStddevsTrue(rig, g, 0, samples);
+    makeStddevsTrue(rig, g, least_factor, samples);
     // Next to no error besides shows in the noisy ones.
     const double factor = samples[1].stddev / kNoisy;
     outcome.factor += factor / kDraws;
@@ -56,6 +56,11 @@ TEST(SampleStddevs, GrowWithNoiseThatIsLargerThanTheySay) {
   const Outcome outcome = outcomeOf(1.5, 0);
   EXPECT_NEAR(outcome.factor, 1.5, 0.1);
   EXPECT_LT(outcome.common, 0.15 * std::pow(1.5 * kQuiet, 2));
+}
+
+TEST(SampleStddevs, ShrinkWhereSamplesScatterLessUnlessTheyHaveErrorsInCommon) {
+  EXPECT_NEAR(outcomeOf(0.7, 0).factor, 0.7, 0.05);
+  EXPECT_NEAR(outcomeOf(0.7, 0, 1).factor, 1, 0.01);
 }
 
 TEST(SampleStddevs, TakeInAnErrorBesidesTheNoise) {
