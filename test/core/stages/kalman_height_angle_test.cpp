@@ -19,6 +19,8 @@ constexpr double kStddev = 0.06 * kDegree;
 class Flight {
  public:
   LandingResult fly(double ahead, double down, double aside = 0) {
+    const double duration = pending_ + kT;
+    pending_ = 0;
     height_ -= down;
     StereoDepthResult stereo;
     stereo.stamp = stamp_;
@@ -30,7 +32,7 @@ class Flight {
     approach.n = normal_;
     approach.n_covariance = stereo.plane.normalCovariance();
     ApproachAngleResult::Motion& step = approach.step;
-    step.duration = kT;
+    step.duration = duration;
     step.rotation.setZero();
     const Eigen::Vector3d forward(0, -std::sin(4 * kDegree), std::cos(4 * kDegree));
     step.translation_over_height =
@@ -43,11 +45,24 @@ class Flight {
     stamp_ += kT;
     return stage_.process(stereo, approach);
   }
+  /// The left picture of the pair before once more: the next step is over the time of both.
+  LandingResult repeat() {
+    StereoDepthResult stereo;
+    stereo.stamp = stamp_;
+    stereo.left_repeated = true;
+    stereo.failure = {Reason::kNoPlane, ""};
+    ApproachAngleResult approach;
+    approach.stamp = stamp_;
+    approach.failure = approach.step.failure = approach.window.failure = {Reason::kNoMotion, ""};
+    stamp_ += kT;
+    pending_ += kT;
+    return stage_.process(stereo, approach);
+  }
 
  private:
   KalmanHeightStage stage_{test::usualRig(), {}};
   Eigen::Vector3d normal_ = normalFromPitchRoll(-4 * kDegree, 0);
-  double stamp_ = 1, height_ = 12;
+  double stamp_ = 1, height_ = 12, pending_ = 0;
 };
 
 double stddevOf(const LandingResult& result) { return std::sqrt(result.approach_angle_variance); }
@@ -90,6 +105,20 @@ TEST(KalmanHeightAngle, IsNotValidForAsLongAsAStepAsideIsInItsWindow) {
   }
   EXPECT_NEAR(until * kT, kWindow, 1.01 * kT);
   EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
+}
+
+TEST(KalmanHeightAngle, CountsTheTimeOfRepeatedPicturesOnce) {
+  Flight flight;
+  for (int i = 0; i < 40; ++i) flight.fly(1, 0.06);
+  flight.fly(1, 0.06, 2);
+  int pairs = 0;
+  do {
+    flight.repeat();
+    flight.repeat();
+    pairs += 3;
+  } while (!flight.fly(3, 0.18).angle_valid && pairs < 40);
+  EXPECT_GE(pairs * kT, kWindow - 1e-9);
+  EXPECT_LE(pairs * kT, kWindow + 3.01 * kT);
 }
 
 }  // namespace
