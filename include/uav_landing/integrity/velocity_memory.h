@@ -35,12 +35,16 @@ class VelocityMemory {
 
  private:
   void restart(const Step& step);
+  /// Over a time of which no turn is known.
+  void carryOn(double duration);
   Eigen::Matrix3d lasting() const;
 
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();    // m/s
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // m^2/s^2
-  int agreements_ = 0;                                    // in a row, up to three
-  double contradicted_ = 0;                               // s, since one agreed
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();         // m/s
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();       // m^2/s^2
+  Eigen::Vector3d velocity_before_ = Eigen::Vector3d::Zero();  // before the last step
+  Eigen::Matrix3d covariance_before_ = Eigen::Matrix3d::Zero();
+  int agreements_ = 0;       // in a row, up to three
+  double contradicted_ = 0;  // s, since one agreed
   double since_contradiction_ = std::numeric_limits<double>::infinity();
 };
 

@@ -198,8 +198,8 @@ class KalmanHeightStage {
   HeightMemory memory_;
   SpeedMemory speed_;
   VelocityMemory velocity_;
-  double longest_window_ = 0;  // of the angles so far, s
-  double path_doubt_ = 0;      // angle of the last steps that contradicted less the one expected, rad
+  double window_ = 0;      // of the angles of late, s
+  double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
   NormalDoubt doubt_;

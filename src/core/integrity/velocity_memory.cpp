@@ -27,6 +27,8 @@ VelocityMemory::Innovation measuredBy(const VelocityMemory::Step& step) {
 
 std::optional<VelocityMemory::Innovation> VelocityMemory::follow(const Step& step) {
   since_contradiction_ += step.duration;
+  velocity_before_ = velocity_;
+  covariance_before_ = covariance_;
   velocity_ = step.rotation * velocity_;
   covariance_ = (step.rotation * covariance_ * step.rotation.transpose()).eval();
   covariance_.diagonal().array() += std::pow(kAcceleration * step.duration, 2);
@@ -48,7 +50,10 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
   } else if (!agrees) {
     since_contradiction_ = 0;
     contradicted_ += step.duration;
-    return;
+    // Nor is its turn believed.
+    velocity_ = velocity_before_;
+    covariance_ = covariance_before_;
+    return carryOn(step.duration);
   }
   covariance_ += lasting();
   contradicted_ = 0;
@@ -74,6 +79,10 @@ void VelocityMemory::restart(const Step& step) {
 void VelocityMemory::skip(double duration) {
   since_contradiction_ += duration;
   if (contradicted_ > 0) contradicted_ += duration;
+  carryOn(duration);
+}
+
+void VelocityMemory::carryOn(double duration) {
   covariance_.diagonal().array() += std::pow(kAcceleration * duration, 2);
   const double turn = kTurnRate * duration;
   covariance_ += turn * turn *

@@ -193,8 +193,12 @@ void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approa
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   if (step.failure || !(step.duration > 0) || !(height > 0) || !covariance.allFinite())
     return velocity_.skip(std::max(T, 0.0));
+  // A turn that may be a wrong one would turn the velocity, and contradict all that comes.
+  if (step.rotation.norm() > AttitudeFilter::kUnusualTurn * step.duration)
+    return velocity_.skip(step.duration);
+  // After a gap windows are short at first.
   if (std::isfinite(approach.window.duration))
-    longest_window_ = std::max(longest_window_, approach.window.duration);
+    window_ = std::min(std::max(approach.window.duration, window_ - T), parameters_.reset_timeout);
   const VelocityMemory::Step known{step.duration, rotationMatrix(step.rotation),
                                    height * step.translation_over_height, height * height * covariance,
                                    stamps_.ofDuration()};
@@ -204,7 +208,7 @@ void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approa
   if (!agrees) {
     const Eigen::Vector3d expected = known.way / known.duration - innovation->difference;
     const double off = std::abs(step.angle - approachAngle(approach.n, expected));
-    const bool again = velocity_.sinceContradiction() < longest_window_;
+    const bool again = velocity_.sinceContradiction() < window_;
     path_doubt_ = again ? std::max(off, path_doubt_) : off;
   }
   velocity_.learn(known, agrees);

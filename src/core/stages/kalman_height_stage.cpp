@@ -115,7 +115,7 @@ void KalmanHeightStage::reset() {
   memory_.reset();
   speed_.reset();
   velocity_.reset();
-  longest_window_ = 0;
+  window_ = 0;
   stamps_.reset();
   recovery_.reset();
   doubt_.reset();

@@ -105,5 +105,13 @@ TEST(VelocityMemory, StampsThatAreKnownToBeWrongAndPairsWithoutMotionLeaveMoreOp
   EXPECT_GT(fly(memory, stepOf(kForward + Eigen::Vector3d(0, 0, 40))), kLimit);
 }
 
+TEST(VelocityMemory, AStepThatContradictsDoesNotTurnTheVelocity) {
+  VelocityMemory memory = known();
+  VelocityMemory::Step wrong = stepOf({0, 0, 100});
+  wrong.rotation = Eigen::AngleAxisd(80 * kDegree, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_GT(fly(memory, wrong), kLimit);
+  for (int i = 0; i < 5; ++i) EXPECT_LT(fly(memory, stepOf(kForward)), kLimit) << i;
+}
+
 }  // namespace
 }  // namespace uav_landing
