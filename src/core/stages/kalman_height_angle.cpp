@@ -81,8 +81,7 @@ void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const R
   result.approach_angle = motion.angle;
   result.approach_angle_variance = motion.angle_variance + byNormal(motion);
   // The path has a step in it for as long as the window is.
-  if (velocity_.sinceContradiction() < window_)
-    result.approach_angle_variance += path_doubt_ * path_doubt_;
+  if (velocity_.sinceContradiction() < window_) result.approach_angle_variance += path_doubt_ * path_doubt_;
   if (tests_.failed(Consistency::kVelocity)) result.raw_approach_angle_variance += path_doubt_ * path_doubt_;
 
   Failure failure = approach.failure ? approach.failure : motion.failure;
