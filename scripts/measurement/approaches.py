@@ -52,7 +52,7 @@ def score(rows):
 
 
 def measure(options):
-    rows = fly("approaches", options.approaches, 1, options.jobs, "--noise", NOISE)
+    rows = fly("approaches", 1, options.approaches, 1, options.jobs, "--noise", NOISE)
     seeds = sorted({int(row["seed"]) for row in rows})
     results = [[str(seed), score([row for row in rows if int(row["seed"]) == seed])] for seed in seeds]
     results.append(["all", score(rows)])

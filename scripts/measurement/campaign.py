@@ -10,8 +10,8 @@ from .programs import DEADLINE, DEVEL, ROOT, WORK, fingerprint
 PROGRAM = DEVEL / "lib/uav_landing/simulate_campaign"
 
 
-def fly(kind, count, piece, jobs, *options):
-    """Rows of the seeds 1 to count as dictionaries, flown in pieces of so many seeds."""
+def fly(kind, begin, count, piece, jobs, *options):
+    """Rows of so many seeds from begin on as dictionaries, flown in pieces."""
     config = ROOT / "config/stereo.yaml"
     folder = WORK / f"{kind}-{fingerprint(PROGRAM, config)}"
     folder.mkdir(parents=True, exist_ok=True)
@@ -25,13 +25,13 @@ def fly(kind, count, piece, jobs, *options):
                                     stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE)
             if result.returncode != 0:
                 raise SystemExit(f"simulate_campaign {kind} --first {first}: {result.stdout}")
-            print(f"{kind}: seeds {first} to {first + piece - 1} of {count}", flush=True)
+            print(f"{kind}: seeds {first} to {first + piece - 1} of {begin} to {begin + count - 1}", flush=True)
         with rows.open() as file:
             return list(csv.DictReader(file))
 
     with ThreadPoolExecutor(jobs) as pool:
-        pieces = list(pool.map(one, range(1, count + 1, piece)))
-    return [row for rows in pieces for row in rows if int(row["seed"]) <= count]
+        pieces = list(pool.map(one, range(begin, begin + count, piece)))
+    return [row for rows in pieces for row in rows if int(row["seed"]) < begin + count]
 
 
 def number(row, column):

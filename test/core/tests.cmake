@@ -55,6 +55,8 @@ uav_landing_add_gtest(pair_disparities_test test/core/stereo/pair_disparities_te
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(refined_rows_test test/core/stereo/refined_rows_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_tracking_test test/core/stereo/plane_tracking_test.cpp

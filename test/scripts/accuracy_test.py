@@ -107,7 +107,8 @@ class ConsistencyTest(unittest.TestCase):
 
     def test_page_has_a_row_for_every_cell_and_a_plot(self):
         scores = {"count": 4, "share": 0.75, "interval": [0.3, 0.95], "ratio": 1.25}
-        cell = {"height": 3, "noise": 1, "quantities": {name: scores for name, _, _ in consistency.QUANTITIES}}
+        cell = {"height": 3, "noise": 1, "flat_height": {**scores, "ratio": 0.5},
+                "quantities": {name: scores for name, _, _ in consistency.QUANTITIES}}
         cell["quantities"]["y"] = None
         with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
                 mock.patch.object(consistency, "IMAGE", Path(folder) / "images" / "consistency.png"):
@@ -115,7 +116,22 @@ class ConsistencyTest(unittest.TestCase):
             self.assertTrue(consistency.IMAGE.exists())
         rows = [line for line in text.splitlines() if line.startswith("| 3 m")]
         self.assertEqual(len(rows), 2)
-        self.assertEqual(cells(rows[0]), ["3 m", "1", "4"] + 4 * ["75.0 (30.0–95.0); 1.25"] + ["–", "–"])
+        self.assertEqual(cells(rows[0]), ["3 m", "1", "4"] + 4 * ["75.0 (30.0–95.0); 1.25"] + ["–", "–", "75.0 (30.0–95.0); 0.50"])
+
+    def test_flat_ground_is_that_which_happens_not_to_bend_and_more(self):
+        def fly(kind, begin, count, piece, jobs, *options):
+            # Every third seed's ground bends at 3 m, every second one's elsewhere.
+            return [{"seed": str(seed), "cell_height_m": str(height), "noise": str(level),
+                     "slope_change_deg": "0.1" if "--bend" in options and seed % (3 if height == 3 else 2) == 0 else "0"}
+                    for seed in range(begin, begin + count) for height in consistency.HEIGHTS for level in consistency.NOISE]
+
+        with mock.patch.object(consistency, "fly", fly):
+            bent, flat = consistency.flights(mock.Mock(snippets=12, jobs=1))
+        self.assertEqual(len(bent), 12 * 9)
+        for height, count in ((3, 14), (10, 12), (30, 12)):
+            cell = [row["seed"] for row in flat if row["cell_height_m"] == str(height) and row["noise"] == "2"]
+            self.assertEqual(len(cell), count)
+            self.assertEqual(len(set(cell)), count)
 
 
 class NoiseTest(unittest.TestCase):

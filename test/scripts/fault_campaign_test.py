@@ -110,8 +110,9 @@ class ShortCampaignTest(unittest.TestCase):
         self.assertEqual({name: (row["angle_misleading"], row["healthy_angle_misleading"]) for name, row in rows.items()},
                          {name: ("0", "0") for name in rows})
         self.assertEqual(rows["bent_yaw_0.05"]["faulted_angle_valid"], rows["bent_yaw_0.05"]["faulted"])
-        for name in ("swapped", "bent_yaw_0.2"):  # claimed as they are, not thrown away
-            self.assertGreater(int(rows[name]["faulted_angle_valid"]), 0.7 * int(rows[name]["faulted"]), name)
+        # Claimed as they are, not thrown away; but a camera turned so far is contradicted more and more on the way down.
+        for name, share in (("swapped", 0.7), ("bent_yaw_0.2", 0.4)):
+            self.assertGreater(int(rows[name]["faulted_angle_valid"]), share * int(rows[name]["faulted"]), name)
 
     def test_a_frozen_scene_does_not_mislead_under_noise(self):
         row = self.fly("--first", 1, "--frames", 60, "--faults", "none,frozen_both,noise", "--pairs", 4)["frozen_both+noise"]

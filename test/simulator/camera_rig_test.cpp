@@ -73,6 +73,21 @@ TEST(CameraRig, RightCameraTurnsWithoutTheCalibrationKnowing) {
   }
 }
 
+TEST(CameraRig, RightPictureIsLowerAndInclinedWithoutTheCalibrationKnowing) {
+  SimulatorParameters exact = realisticRig(), off = exact;
+  off.rig.lens_rows = 0.4, off.rig.lens_tilt_deg = 0.1;
+  const CameraRig before = makeCameraRig(exact).value(), after = makeCameraRig(off).value();
+  EXPECT_TRUE(after.right.calibration == before.right.calibration);
+  EXPECT_EQ(after.left.rays[100].y, before.left.rays[100].y);
+  for (int i = 0; i < 320 * 240; i += 997) {
+    const PixelRay& was = before.right.rays[i];
+    const PixelRay& is = after.right.rays[i];
+    EXPECT_FLOAT_EQ(is.x, was.x) << i;
+    // What was seen in a pixel is now this much lower: the pixel sees what is higher.
+    EXPECT_NEAR(is.y - was.y, -0.4 / exact.right_camera.fy - 0.1 * kDegree * was.x, 1e-6) << i;
+  }
+}
+
 TEST(CameraRig, BaselineStretchesWithoutTheCalibrationKnowing) {
   SimulatorParameters parameters = realisticRig();
   const CameraRig before = makeCameraRig(parameters).value();

@@ -61,6 +61,19 @@ TEST(RandomApproach, CalibrationErrorsAreAsLargeAsTheEstimatorIsTold) {
   EXPECT_LT(std::abs(products) / 1000, 0.1);
 }
 
+TEST(RandomApproach, LensErrorsAreAsLargeAsTheEstimatorExpects) {
+  std::vector<double> rows, tilt;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    const SimulatedRigParameters rig = drawSnippet(seed, 10, 13, {}).rig;
+    rows.push_back(rig.lens_rows);
+    tilt.push_back(rig.lens_tilt_deg);
+  }
+  EXPECT_NEAR(spread(rows), 0.03, 0.003) << "px";
+  // Rows 0.3 focal lengths from the middle are off by as much.
+  EXPECT_NEAR(spread(tilt), 0.03 / (0.3 * 554.26) / kDegree, 0.001);
+  EXPECT_EQ(drawApproach(3).rig.lens_rows, 0) << "an exact calibration";
+}
+
 TEST(RandomApproach, GroundBendsByAsMuchAsTheEstimatorIsToldAndTheHeightOverItStays) {
   Parameters parameters;
   parameters.stereo_depth.slope_change_deg = 0.5;

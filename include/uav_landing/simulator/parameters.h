@@ -62,6 +62,7 @@ struct SimulatedRigParameters {
   double rx_deg = 0, ry_deg = 0, rz_deg = 0;
   double bend_rx_deg = 0, bend_ry_deg = 0, bend_rz_deg = 0;
   double stretch = 0;
+  double lens_rows = 0, lens_tilt_deg = 0;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -80,6 +81,10 @@ struct SimulatedRigParameters {
     v.number("bend_rz_deg", bend_rz_deg, -2.0, 2.0, "deg", "component along z");
     v.number("stretch", stretch, -0.5, 0.5, "of the baseline",
              "by which the real baseline is longer than the calibration says");
+    v.number("lens_rows", lens_rows, -10.0, 10.0, "px",
+             "by which the right camera's picture lies lower than the calibration of its lens says");
+    v.number("lens_tilt_deg", lens_tilt_deg, -2.0, 2.0, "deg",
+             "by which its rows are inclined, and its columns are not, without the calibration knowing");
   }
 };
 

@@ -14,7 +14,8 @@ namespace uav_landing {
 /// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
 /// projected out. A block's normal equations say by how much the plane's disparity is off there; the plane is
 /// the weighted least squares solution over the blocks, and what stands on the ground loses its weight. Where
-/// gradients are mostly noise all of the ground's texture is looked at instead, band by band.
+/// gradients are mostly noise all of the ground's texture is looked at instead, band by band. Edges aslant
+/// tell how far rows are off beside what is known of them, and plane and rows are solved for together.
 class DirectRefinement {
  public:
   /// margin: pixels that stay away from the edges of the model's masks, at least 4.

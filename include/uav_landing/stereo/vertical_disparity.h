@@ -24,10 +24,13 @@ struct VerticalDisparities {
 
 /// samples: matched corners with the disparity found in the level's right image. The right row of a few of
 /// them is measured to sub-pixel (gain and offset free, within 2 rows), then the rotation and the direction
-/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m.
+/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m. start:
+/// rotation near the one to be found, rad, from which rows are measured: noise makes steps fall short, and
+/// all of them by the same share.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius);
+                                               const Eigen::Vector3d& g, int window_radius,
+                                               const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
 
 /// The rotation with nothing matched yet: looks for corners around the places that a rough plane predicts,
 /// within 3 columns and 3 rows of whole pixels first.
@@ -73,6 +76,8 @@ class RowAlignment {
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
+  VerticalDisparities measureRows(const StereoLevel& level, const std::vector<DisparitySample>& samples,
+                                  const Eigen::Vector3d& g) const;
   bool adapt(const StereoRig& rig, const RigRotation& residual);
   void average(const RigRotation& measured);
 
@@ -82,7 +87,6 @@ class RowAlignment {
   // Of the sum of what is taken out and what is left, old pairs forgotten.
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
-  double pairs_ = 0;  // in the sums, old ones forgotten
   Eigen::Vector3d levelled_by_ =
       Eigen::Vector3d::Zero();  // what was taken out of the pair measured last, rad
   bool measured_ = false;

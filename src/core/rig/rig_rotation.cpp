@@ -39,6 +39,11 @@ Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disp
   return rig.fy / rig.fx * disparity * Eigen::RowVector2d(-1, y);
 }
 
+Eigen::Vector3d lensVariances(const StereoRig& rig) {
+  const Eigen::Vector3d pixels(kLensError, 0, kLensError / kLensReach);
+  return (pixels / rig.fy).array().square();
+}
+
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                                 const Eigen::Vector3d& g) {
   constexpr double kTukey = 4.0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uav_landing/rig/rig_rotation.h"
+
 namespace uav_landing {
 namespace {
 
@@ -14,9 +16,6 @@ constexpr double kCorrelationTime = 1.0;
 // misjudged by much the same (blur, ragged paint, which of them are found) until they are seen from much
 // nearer.
 constexpr double kLinesTime = 5.0;
-// Vertical disparities that a good lens calibration leaves, pixels, and how far from the middle of the image,
-// in focal lengths, they tell a roll.
-constexpr double kLensError = 0.03, kLensReach = 0.3;
 // Degrees of freedom of the Student t: the fewer, the sooner a bent rig is believed.
 constexpr double kFreedom = 2.0;
 // Share of the vanishing point's smallest variance seen that is not the runway's slope.
@@ -56,8 +55,9 @@ void RigRotationFilter::setPrior(double bias_stddev) {
   if (variance == calibrated_variance_) return;
   calibrated_variance_ = variance;
   prior_.head<3>().setConstant(variance);
-  prior_[4] = std::pow(kLensError / rig_.fy, 2);
-  prior_[5] = std::pow(kLensError / (kLensReach * rig_.fy), 2);
+  const Eigen::Vector3d lens = lensVariances(rig_);
+  prior_[4] = lens.x();
+  prior_[5] = lens.z();
   solve();
 }
 

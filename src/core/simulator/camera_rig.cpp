@@ -112,13 +112,25 @@ void turn(std::vector<cv::Point2d>& directions, const Eigen::Vector3d& rotation)
   }
 }
 
-Failure traceRays(const char* section, const Eigen::Vector3d& bend, SimulatedCamera& camera) {
+/// What a calibration leaves of a lens: rows that lie lower (focal lengths), and inclined (rad).
+void shearRows(std::vector<cv::Point2d>& directions, double lower, double inclined) {
+  for (cv::Point2d& direction : directions) direction.y -= lower + inclined * direction.x;
+}
+
+/// What the calibration does not know of a camera.
+struct Uncalibrated {
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // rotation vector, rad
+  double lower = 0, inclined = 0;                  // see shearRows()
+};
+
+Failure traceRays(const char* section, const Uncalibrated& error, SimulatedCamera& camera) {
   const std::vector<cv::Point2d> pixels = pixelCorners(camera.calibration);
   std::vector<cv::Point2d> directions = directionsOf(pixels, camera.calibration);
   if (!(worstReprojection(pixels, directions, camera.calibration) < 0.01))
     return {Reason::kInputInvalid,
             std::string(section) + "/k1: the lens's distortion folds back within the image"};
-  turn(directions, bend);
+  turn(directions, error.turn);
+  shearRows(directions, error.lower, error.inclined);
   camera.rays = raysFromCorners(directions, {camera.calibration.width, camera.calibration.height});
   return {};
 }
@@ -136,12 +148,12 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   if (!usable)
     return tl::make_unexpected(Failure{
         Reason::kInputInvalid, "rig: the cameras stand too far out of line to be rectified as a pair"});
-  if (Failure failure = traceRays("left_camera", Eigen::Vector3d::Zero(), rig.left))
-    return tl::make_unexpected(failure);
+  if (Failure failure = traceRays("left_camera", {}, rig.left)) return tl::make_unexpected(failure);
   const SimulatedRigParameters& bent = parameters.rig;
-  const Eigen::Vector3d bend =
-      Eigen::Vector3d(bent.bend_rx_deg, bent.bend_ry_deg, bent.bend_rz_deg) * kRadiansPerDegree;
-  if (Failure failure = traceRays("right_camera", bend, rig.right)) return tl::make_unexpected(failure);
+  const Uncalibrated error{
+      Eigen::Vector3d(bent.bend_rx_deg, bent.bend_ry_deg, bent.bend_rz_deg) * kRadiansPerDegree,
+      bent.lens_rows / parameters.right_camera.fy, bent.lens_tilt_deg * kRadiansPerDegree};
+  if (Failure failure = traceRays("right_camera", error, rig.right)) return tl::make_unexpected(failure);
   rig.right.offset_x *= 1 + bent.stretch;
   return rig;
 }

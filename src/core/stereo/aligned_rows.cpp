@@ -115,16 +115,13 @@ cv::Range AlignedRows::readableColumns(const ShiftModel& shift, int row, int col
 void AlignedRows::align(const cv::Mat& right, const ShiftModel& shift) {
   right_memory_.create(right.size(), CV_32F);
   right_ = right_memory_.rowRange(0, static_cast<int>(seen_.size()));
-  source_.resize(right.cols);
   for (int row = 0; row < right_.rows; ++row) {
     const int v = first_row_ + row;
     const cv::Range columns = readableColumns(shift, row, right.cols);
     if (!columns.empty()) {
-      const uchar* pixels = right.ptr<uchar>(v);
-      std::copy(pixels, pixels + right.cols, source_.begin());
-      sampleParabolicRow(source_.data(), ParabolicTable::fixed(columns.start - shift.at(columns.start, v)),
-                         ParabolicTable::fixed(1 - shift.a), columns.size(),
-                         right_.ptr<float>(row) + columns.start);
+      sampleParabolicRow(
+          right.ptr<float>(v), ParabolicTable::fixed(columns.start - shift.at(columns.start, v)),
+          ParabolicTable::fixed(1 - shift.a), columns.size(), right_.ptr<float>(row) + columns.start);
     }
     fillUp(columns, right_, row);
   }

@@ -18,7 +18,7 @@ class AlignedRows {
   /// Takes the rows of the left image (mono8) that have ground by the shift model, shifts of more than least,
   /// pixels, which both cameras see.
   void begin(const cv::Mat& left, const ShiftModel& shift, double least);
-  /// Interpolates the right image (mono8) by a model that is near the one of begin().
+  /// Interpolates the right image (CV_32F) by a model that is near the one of begin().
   void align(const cv::Mat& right, const ShiftModel& shift);
 
   /// Row of the whole images that the first one here is.
@@ -43,7 +43,6 @@ class AlignedRows {
   int first_row_ = 0;
   cv::Mat left_, right_;
   std::vector<cv::Range> seen_;
-  std::vector<float> source_;  // a row of the right image
 };
 
 }  // namespace uav_landing

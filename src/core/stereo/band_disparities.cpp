@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "uav_landing/stereo/vertical_disparity.h"
+
 namespace uav_landing {
 namespace {
 
@@ -47,10 +49,18 @@ void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, co
   differ_by_noise_ = false;
   if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;
   const ShiftModel shift(rig_, g);
-  rows_.align(right, shift);
+  rows_.align(levelled(right, rows), shift);
   right_.split(rows_.right());
   weigh();
-  for (int line = 0; differ_by_noise_ && line < grid_.lines; ++line) tellLine(line, shift, rows);
+  for (int line = 0; differ_by_noise_ && line < grid_.lines; ++line) tellLine(line, shift);
+}
+
+// By how much a row that is off moves what fine texture shows, its derivatives tell too little of.
+const cv::Mat& BandDisparities::levelled(const cv::Mat& right, const RigRotation& rows) {
+  right.convertTo(grey_, CV_32F);
+  if (rows.w.isZero()) return grey_;
+  straightenRows(rig_, rows.w, grey_, level_);
+  return level_;
 }
 
 void BandDisparities::weigh() {
@@ -75,7 +85,7 @@ void BandDisparities::weigh() {
   differ_by_noise_ = residuals[kCoarsest] <= kMostCoarse * residuals[0];
 }
 
-void BandDisparities::tellLine(int line, const ShiftModel& shift, const RigRotation& rows) {
+void BandDisparities::tellLine(int line, const ShiftModel& shift) {
   const double v = rows_.firstRow() + grid_.first_row + (line + 0.5) * kBlockHeight - 0.5;
   std::array<Group, 2> groups;  // of those that do not look alike, and of those that do
   for (int column = 0; column < grid_.columns; ++column) {
@@ -85,7 +95,7 @@ void BandDisparities::tellLine(int line, const ShiftModel& shift, const RigRotat
       groups[block.looksAlike()].add(block, kGridColumn + (column + 0.5) * kBlockWidth - 0.5);
     for (Group& group : groups) {
       if (!last && group.sum.stddev() > kKnown) continue;
-      if (group.sum.stddev() < kLeastKnown) tell(group, v, shift, rows);
+      if (group.sum.stddev() < kLeastKnown) tell(group, v, shift);
       group = {};
     }
   }
@@ -97,11 +107,11 @@ void BandDisparities::Group::add(const BandEvidence& block, double u) {
   ++blocks;
 }
 
-void BandDisparities::tell(const Group& group, double v, const ShiftModel& shift, const RigRotation& rows) {
+void BandDisparities::tell(const Group& group, double v, const ShiftModel& shift) {
   const BandEvidence& sum = group.sum;
   const double u = group.place / sum.information;
   const ShiftMatch match{u, v, sum.shift(), sum.stddev(), sum.lean(), group.blocks, false, sum.looksAlike()};
-  disparities_.push_back(disparityOf(match, rig_, shift, rows));
+  disparities_.push_back(disparityOf(match, rig_, shift, Eigen::Vector3d::Zero()));
 }
 
 }  // namespace uav_landing

@@ -33,9 +33,11 @@ class BandDisparities {
   const std::vector<BlockDisparity>& disparities() const { return disparities_; }
 
  private:
+  /// The right image as floats, its rows level with the left one's.
+  const cv::Mat& levelled(const cv::Mat& right, const RigRotation& rows);
   bool isSeen(int column, int line) const;
   void weigh();
-  void tellLine(int line, const ShiftModel& shift, const RigRotation& rows);
+  void tellLine(int line, const ShiftModel& shift);
   /// Blocks of a row that speak together.
   struct Group {
     BandEvidence sum;
@@ -43,10 +45,11 @@ class BandDisparities {
     int blocks = 0;
     void add(const BandEvidence& block, double u);
   };
-  void tell(const Group& group, double v, const ShiftModel& shift, const RigRotation& rows);
+  void tell(const Group& group, double v, const ShiftModel& shift);
 
   StereoRig rig_;
   AlignedRows rows_;
+  cv::Mat grey_, level_;
   BlockGrid grid_;
   TextureBands left_, right_;
   std::vector<BandSums> sums_, around_;  // of one band

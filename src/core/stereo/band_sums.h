@@ -10,13 +10,13 @@ namespace uav_landing {
 /// Blocks of kBlockWidth by kBlockHeight pixels, side by side.
 struct BlockGrid {
   int columns = 0, lines = 0;
-  int first_row = 2;       ///< even
+  int first_row = 4;       ///< even
   std::vector<char> seen;  ///< for each, line by line, whether both cameras see all of it
 
   size_t at(int column, int line) const { return static_cast<size_t>(line) * columns + column; }
 };
 /// Pixels beside a grid, and at least above and below it, for derivatives. Even.
-constexpr int kGridColumn = 4, kGridRow = 2;
+constexpr int kGridColumn = 4, kGridRow = 4;
 
 /// Sums over the pixels of a block of one band: of what the aligned images (their means are zero) have in
 /// common, and of the left one's derivative along the row, the slope, per pixel of the whole images.

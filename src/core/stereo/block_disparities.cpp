@@ -20,7 +20,7 @@ void BlockDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, c
   blocks_.compare(right, shift, matches_);
   disparities_.clear();
   for (const PhotometricBlocks::Match& match : matches_)
-    disparities_.push_back(disparityOf(match, rig_, shift, rows));
+    disparities_.push_back(disparityOf(match, rig_, shift, rows.w));
 }
 
 double BlockDisparities::certainShare() const {

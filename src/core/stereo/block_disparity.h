@@ -15,9 +15,9 @@ struct BlockDisparity {
   bool alike;               ///< whether the right image shows them: of others the disparity means nothing
 };
 
-/// Of a shift between the left image and the right one that is warped by the model. rows: rotation that the
-/// vertical disparities of the images have.
+/// Of a shift between the left image and the right one that is warped by the model. w: rotation that the
+/// vertical disparities of the images have, rad.
 BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& shift,
-                           const RigRotation& rows);
+                           const Eigen::Vector3d& w);
 
 }  // namespace uav_landing

@@ -24,6 +24,13 @@ constexpr double kStartStddev = 0.3;
 // to say.
 constexpr double kLeastShare = 0.5;
 
+/// What rows may be off by besides the rotation that matches found, 1 sigma: texture that is finer than
+/// pixels seems to stay with them, so that matches see rows move by less than they do.
+Eigen::Matrix3d priorOf(const RigRotation& rows) {
+  constexpr double kUnseen = 0.12;
+  return rows.covariance + kUnseen * kUnseen * rows.w * rows.w.transpose();
+}
+
 }  // namespace
 
 struct DirectRefinement::Implementation {
@@ -48,16 +55,38 @@ struct DirectRefinement::Implementation {
     return blocks;
   }
 
-  // What an error of the rows' rotation does to the plane. 1/m per rad.
-  Eigen::Matrix3d planeByRows(const PlaneFit& fit) const {
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
+  // What edges aslant say of the rows: those that lean to opposite sides would be on planes of their own. A
+  // step of the least squares problem of plane and rows together, the rows known by their prior.
+  void solveWithRows(const Eigen::Matrix3d& prior, double bias_stddev, PlaneFit& fit) {
+    Eigen::Matrix3d by_plane = Eigen::Matrix3d::Zero(), mixed = by_plane, by_rows = by_plane;
+    Eigen::Vector3d plane_right = Eigen::Vector3d::Zero(), rows_right = plane_right;
     for (size_t i = 0; i < samples.size(); ++i) {
       if (!fit.agrees[i]) continue;
-      const Eigen::Vector3d by_plane = rig.fb() * rig.ray(samples[i].u, samples[i].v) / samples[i].stddev;
-      information += by_plane * by_plane.transpose();
-      right += by_plane * disparities.found()[i].leak / samples[i].stddev;
+      const double precision = 1 / samples[i].stddev;
+      const Eigen::Vector3d row = precision * rig.fb() * rig.ray(samples[i].u, samples[i].v);
+      const Eigen::Vector3d leak = precision * disparities.found()[i].leak.transpose();
+      const double residual = precision * samples[i].disparity - row.dot(fit.plane.g);
+      by_plane += row * row.transpose();
+      mixed += row * leak.transpose();
+      by_rows += leak * leak.transpose();
+      plane_right += row * residual;
+      rows_right += leak * residual;
     }
-    return information.inverse() * right;
+    const Eigen::Matrix3d plane_by_rows = by_plane.inverse() * mixed;
+    // Residuals that are larger than claimed, or alike, tell the rows the worse, as they tell the plane.
+    const Eigen::Vector3d bias = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
+    const Eigen::Matrix3d own = fit.plane.covariance - bias * bias.transpose();
+    const double inflation = std::max(1.0, (by_plane * own).trace() / 3);
+    const Eigen::Matrix3d information = (by_rows - mixed.transpose() * plane_by_rows) / inflation;
+    const Eigen::Matrix3d left_over = (Eigen::Matrix3d::Identity() + information * prior).inverse();
+    const Eigen::Matrix3d covariance = prior * left_over;
+    const Eigen::Vector3d w = covariance * (rows_right - plane_by_rows.transpose() * plane_right) / inflation;
+    for (size_t i = 0; i < samples.size(); ++i) samples[i].disparity -= disparities.found()[i].leak.dot(w);
+    fit.plane.g -= plane_by_rows * w;
+    fit.plane.covariance += plane_by_rows * covariance * plane_by_rows.transpose();
+    // The prior of the next pairs is wrong by the same, not what their edges say.
+    const Eigen::Matrix3d of_prior = left_over.transpose() * prior * left_over;
+    fit.row_covariance = plane_by_rows * of_prior * plane_by_rows.transpose();
   }
 
   Failure tooFew(int least) const {
@@ -105,9 +134,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
       return tl::make_unexpected(own.tooFewOnThePlane());
     const double change = own.change(g, fit->plane.g);
     if (step + 1 == kSteps || (step > 0 && change < kConverged)) {
-      const Eigen::Matrix3d by_rows = own.planeByRows(*fit);
-      fit->row_covariance = by_rows * rows.covariance * by_rows.transpose();
-      fit->plane.covariance += fit->row_covariance;
+      own.solveWithRows(priorOf(rows), bias_stddev, *fit);
       // What has not settled is known no better than it moves.
       if (change > kConverged) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;

@@ -1,5 +1,6 @@
 #include "uav_landing/stereo/vertical_disparity.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -93,15 +94,17 @@ void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int 
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius) {
+                                               const Eigen::Vector3d& g, int window_radius,
+                                               const Eigen::Vector3d& start) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
   const std::vector<DisparitySample> some = thinned(samples, kMeasured);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
   for (const DisparitySample& sample : some) {
     const double column = sample.u - sample.disparity - level.rig.principalOffset();
-    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
-           {column, sample.v}, warp, window_radius, rows);
+    const double row = sample.v + verticalDisparityByRotation(level.rig, column, sample.v).dot(start);
+    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity, {column, row},
+           warp, window_radius, rows);
   }
   VerticalDisparities measured;
   if (!some.empty()) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(some.size());
@@ -170,7 +173,7 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
                                              const std::vector<DisparitySample>& samples,
                                              const Eigen::Vector3d& g) {
   if (!enabled_) return {};
-  const VerticalDisparities found = measureVerticalDisparities(level, samples, g, window_radius_);
+  const VerticalDisparities found = measureRows(level, samples, g);
   Measured measured{{}, found.baseline, found.agreement};
   if (!found.rotation) return measured;
   measured.rotation = *found.rotation;
@@ -180,35 +183,49 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
   return measured;
 }
 
+// From where the pairs before lead to; the first pair from where its own rows do.
+VerticalDisparities RowAlignment::measureRows(const StereoLevel& level,
+                                              const std::vector<DisparitySample>& samples,
+                                              const Eigen::Vector3d& g) const {
+  // What looks like ry is rather the residual of a lens.
+  const Eigen::Vector3d believed(1, 0, 1);
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();
+  if (measured_) {
+    start = information_.ldlt().solve(right_) - taken_out_;
+  } else {
+    const VerticalDisparities first = measureVerticalDisparities(level, samples, g, window_radius_);
+    if (!first.rotation) return first;
+    start = first.rotation->w;
+  }
+  return measureVerticalDisparities(level, samples, g, window_radius_, start.cwiseProduct(believed));
+}
+
 void RowAlignment::average(const RigRotation& measured) {
   constexpr double kKept = 0.95;  // of a pair's weight when the next comes
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
-  pairs_ = kKept * pairs_ + 1;
   levelled_by_ = taken_out_;
   measured_ = true;
 }
 
 RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
-  // Pairs in a row see the same texture: a share of a pair's variance is that of their mean as well. Of all
-  // pairs' mean, pairs_ times that of the sum, as far as they and not the calibration tell.
-  constexpr double kLasting = 1.0 / 3;
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
-  const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
-  RigRotation residual{Eigen::Vector3d::Zero(), calibrated * Eigen::Matrix3d::Identity()};
+  const double rotation = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+  // Rows are moved by what the calibration of a lens leaves, too, that does not rotate anything.
+  const Eigen::Vector3d lens = lensVariances(rig);
+  const Eigen::Matrix3d calibrated = (lens.array() + rotation).matrix().asDiagonal();
+  RigRotation residual{Eigen::Vector3d::Zero(), calibrated};
   if (measured_) {
-    Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
+    Eigen::Matrix3d prior = calibrated.inverse();
     const Eigen::Matrix3d alone = information_.inverse();
     const Eigen::Vector3d w = alone * right_;
-    const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d both = alone + calibrated;
     if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
     residual.covariance = (information_ + prior).inverse();
     residual.w = residual.covariance * right_;
-    const Eigen::Matrix3d own = residual.covariance;
-    residual.covariance += kLasting * pairs_ * own * information_ * own;
   }
   residual.w -= levelled_by_;
   return residual;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/simulator/ground_profile.h"
 #include "uav_landing/stereo/surface_profile.h"
 
@@ -48,6 +49,11 @@ void drawCalibration(Draw& draw, const CalibrationPrior& prior, SimulatorParamet
   p.rig.bend_rx_deg = draw.normal(prior.rx) / kDegree;
   p.rig.bend_ry_deg = draw.normal(prior.ry) / kDegree;
   p.rig.bend_rz_deg = draw.normal(prior.rz) / kDegree;
+}
+
+void drawLens(Draw& draw, const CalibrationPrior& prior, SimulatedRigParameters& rig) {
+  rig.lens_rows = draw.normal(prior.lens_rows);
+  rig.lens_tilt_deg = draw.normal(prior.lens_tilt) / kDegree;
 }
 
 void drawImu(Draw& draw, const CalibrationPrior& prior, SimulatedImuParameters& imu) {
@@ -140,6 +146,8 @@ CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_len
   // The simulator's ground is flat here: a baseline error stands for what the height may be wrong by in all.
   prior.baseline = parameters.kalman_height.height_model_error;
   prior.rx = prior.ry = prior.rz = parameters.stereo_depth.disparity_bias_stddev / focal_length;
+  prior.lens_rows = kLensError;
+  prior.lens_tilt = kLensError / (kLensReach * focal_length);
   const ApproachAngleParameters& imu = parameters.approach_angle;
   prior.imu_attitude = std::hypot(imu.imu_attitude_stddev_deg, imu.runway_slope_stddev_deg) * kDegree;
   prior.imu_rate_bias = imu.imu_rate_bias_deg * kDegree;
@@ -151,12 +159,14 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
                                 bool imu) {
   Draw draw(seed);
   SimulatorParameters p = drawFlight(draw);
-  drawCalibration(draw, calibrationPrior(parameters, p.left_camera.fx), p);
+  const CalibrationPrior prior = calibrationPrior(parameters, p.left_camera.fx);
+  drawCalibration(draw, prior, p);
   p.path.duration = (frames - 1) / kRate;
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   const double y = draw.uniform(-0.35, 0.35) * p.runway.width;
   place(height + sink * p.path.duration, draw.uniform(0, 400), y, p.path);
-  if (imu) drawImu(draw, calibrationPrior(parameters, p.left_camera.fx), p.imu);
+  drawLens(draw, prior, p.rig);
+  if (imu) drawImu(draw, prior, p.imu);
   return p;
 }
 

@@ -11,6 +11,8 @@ namespace uav_landing {
 struct CalibrationPrior {
   double baseline = 0;            ///< share of the baseline
   double rx = 0, ry = 0, rz = 0;  ///< rotation of the right camera in rectified axes, rad
+  double lens_rows = 0;           ///< by which its rows lie too low, px
+  double lens_tilt = 0;           ///< by which they are inclined, and its columns are not, rad
   double imu_attitude = 0;        ///< of an inertial sensor, with the ground's slope, which is flat here, rad
   double imu_rate_bias = 0;       ///< rad/s
   double imu_rate = 0;            ///< of each message, rad/s

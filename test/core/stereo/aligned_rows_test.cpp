@@ -21,8 +21,9 @@ struct Ground {
   Pose pose = makePose(3, -8, 4);
   Eigen::Vector3d truth = pose.down() / pose.height();
   cv::Mat left = GroundRenderer(2).left(rig, pose, {1, 0, 0});
-  cv::Mat right = GroundRenderer(2).right(rig, pose, {1, 0, 0});
+  cv::Mat right;
 
+  Ground() { GroundRenderer(2).right(rig, pose, {1, 0, 0}).convertTo(right, CV_32F); }
   ShiftModel off(double pixels) const { return {rig, truth + Eigen::Vector3d(0, 0, pixels / rig.fb())}; }
   AlignedRows aligned(double pixels_off) const {
     AlignedRows rows(left_mask, right_mask);

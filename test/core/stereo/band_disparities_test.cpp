@@ -5,69 +5,77 @@
 #include <cmath>
 
 #include "stereo/block_disparities.h"
-#include "support/ground_renderer.h"
-#include "support/rigs.h"
+#include "support/ground_pair.h"
 
 namespace uav_landing {
 namespace {
 
 using test::Exposure;
-using test::GroundRenderer;
-using test::makePose;
-using test::Pose;
+using test::GroundPair;
 
-/// A rig over textured ground close below.
-struct Scene {
-  StereoRig rig = test::makeRig(640, 480, 0.65);
-  RigModel model = test::makeModel(rig);
-  RigRotation rows = test::levelRows();
-  Pose pose = makePose(1.5, -8, 3);
-  Eigen::Vector3d truth = pose.down() / pose.height();
-  cv::Mat left, right;
-
-  /// The right camera shows it darker.
-  Scene(unsigned seed, const Exposure& exposure) {
-    GroundRenderer ground(seed);
-    ground.grain = 0.04;
-    left = ground.left(rig, pose, exposure);
-    right = ground.right(rig, pose, {0.9 * exposure.gain, exposure.offset + 5, exposure.noise});
-  }
-  StereoLevel level() const { return reduceLevel(model, 1, 4); }
-  /// The true plane with its disparities off by some pixels.
-  Eigen::Vector3d off(double pixels) const { return truth + Eigen::Vector3d(0, 0, pixels / rig.fb()); }
-
-  struct Mean {
-    double error = 0, stddev = 0;  // pixels
-  };
-  /// Weighted mean of the disparities' errors.
-  Mean mean(const std::vector<BlockDisparity>& disparities) const {
-    double sum = 0, weights = 0;
-    for (const BlockDisparity& found : disparities) {
-      if (!found.alike) continue;
-      const DisparitySample& sample = found.sample;
-      const double weight = 1 / (sample.stddev * sample.stddev);
-      sum += weight * (sample.disparity - rig.fb() * truth.dot(rig.ray(sample.u, sample.v)));
-      weights += weight;
-    }
-    return {sum / weights, 1 / std::sqrt(weights)};
-  }
-};
+/// Textured ground close below, which the right camera shows darker.
+GroundPair closeBelow(unsigned seed, const Exposure& exposure) {
+  GroundPair pair({640, 480}, seed, 1.5, -8, 3);
+  pair.ground.grain = 0.04;
+  pair.render(exposure, {0.9 * exposure.gain, exposure.offset + 5, exposure.noise});
+  return pair;
+}
 
 const Exposure kFaint{0.25, 80, 7};
 
 TEST(BandDisparities, FollowAShiftOfFaintTextureFully) {
+  constexpr int kPairs = 8;
   for (const double side : {-1.0, 1.0}) {
-    const Scene scene(7, kFaint);
+    double mean = 0;
+    for (int i = 0; i < kPairs; ++i) {
+      const GroundPair scene = closeBelow(1 + i, kFaint);
+      BandDisparities bands(scene.level());
+      bands.choose(scene.left, scene.truth);
+      bands.measure(scene.right, scene.off(side * 0.4), scene.rows);
+      mean += scene.mean(bands.disparities()).error / kPairs;
+    }
+    EXPECT_NEAR(mean, 0, 0.03) << side << " of 0.4 px that the warp is off";
+  }
+}
+
+/// Rows that are off are made level before fine texture is looked at.
+TEST(BandDisparities, AreTheSameWithRowsThatAreOffAsTold) {
+  constexpr int kPairs = 8;
+  double told = 0, untold = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    GroundPair scene({640, 480}, 50 + i, 1.5, -8, 0);
+    scene.ground.line_offset = 2;
+    scene.ground.line_width = 0.3;
+    scene.ground.bend.x() = 0.4 / scene.rig.fy;
+    scene.render(kFaint, kFaint);
     BandDisparities bands(scene.level());
     bands.choose(scene.left, scene.truth);
-    bands.measure(scene.right, scene.off(side * 0.4), scene.rows);
-    EXPECT_NEAR(scene.mean(bands.disparities()).error, 0, 0.06) << side << " of 0.4 px that the warp is off";
+    const auto tilt = [&] {  // disparities that grow to the right, px over the focal length
+      double sum = 0, squares = 0;
+      for (const BlockDisparity& found : bands.disparities()) {
+        const DisparitySample& sample = found.sample;
+        const double x = (sample.u - scene.rig.cx) / scene.rig.fx,
+                     weight = 1 / (sample.stddev * sample.stddev);
+        sum += weight * x *
+               (sample.disparity - scene.rig.fb() * scene.truth.dot(scene.rig.ray(sample.u, sample.v)));
+        squares += weight * x * x;
+      }
+      return sum / squares;
+    };
+    bands.measure(scene.right, scene.truth, scene.rows);
+    untold += tilt() / kPairs;
+    scene.rows.w = scene.ground.bend;
+    bands.measure(scene.right, scene.truth, scene.rows);
+    told += tilt() / kPairs;
   }
+  EXPECT_GT(std::abs(untold), 0.5) << "these scenes show nothing";
+  EXPECT_LT(std::abs(told), 0.2 * std::abs(untold));
 }
 
 /// As where images were not taken at the same time.
 TEST(BandDisparities, AreNoneWhereTheImagesDifferByMoreThanNoise) {
-  const Scene scene(8, kFaint), other(9, kFaint), clear(8, {1, 0, 1});
+  const GroundPair scene = closeBelow(8, kFaint), other = closeBelow(9, kFaint),
+                   clear = closeBelow(8, {1, 0, 1});
   BandDisparities bands(scene.level());
   bands.choose(scene.left, scene.truth);
   bands.measure(scene.right, scene.truth, scene.rows);
@@ -85,14 +93,14 @@ TEST(BandDisparities, KnowMoreOfFaintTextureThanBlocksAlone) {
   constexpr int kPairs = 12;
   double by_bands = 0, by_blocks = 0, normalised = 0;
   for (int i = 0; i < kPairs; ++i) {
-    const Scene scene(100 + i, kFaint);
+    const GroundPair scene = closeBelow(100 + i, kFaint);
     BandDisparities bands(scene.level());
     bands.choose(scene.left, scene.truth);
     bands.measure(scene.right, scene.truth, scene.rows);
     BlockDisparities blocks(scene.level());
     blocks.choose(scene.left, scene.truth);
     blocks.measure(scene.right, scene.truth, scene.rows);
-    const Scene::Mean mean = scene.mean(bands.disparities());
+    const GroundPair::Mean mean = scene.mean(bands.disparities());
     by_bands += std::pow(mean.error, 2);
     by_blocks += std::pow(scene.mean(blocks.disparities()).error, 2);
     normalised += std::pow(mean.error / mean.stddev, 2) / kPairs;
@@ -102,7 +110,7 @@ TEST(BandDisparities, KnowMoreOfFaintTextureThanBlocksAlone) {
 }
 
 TEST(BandDisparities, AreNoneWhereThereIsNoGround) {
-  const Scene scene(10, kFaint);
+  const GroundPair scene = closeBelow(10, kFaint);
   BandDisparities bands(scene.level());
   bands.choose(scene.left, Eigen::Vector3d(0, 0.3, -0.4));
   bands.measure(scene.right, scene.truth, scene.rows);

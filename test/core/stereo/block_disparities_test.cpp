@@ -4,47 +4,20 @@
 
 #include <algorithm>
 
-#include "support/ground_renderer.h"
-#include "support/rigs.h"
+#include "support/ground_pair.h"
 
 namespace uav_landing {
 namespace {
 
-using test::Exposure;
-using test::GroundRenderer;
-using test::makePose;
-using test::Pose;
+/// The blocks of a pair's images.
+struct Blocks : test::GroundPair {
+  BlockDisparities disparities{level()};
 
-/// A rig over textured ground and the blocks of its images.
-struct Blocks {
-  StereoRig rig = test::makeRig(640, 480, 0.65);
-  RigModel model = test::makeModel(rig);
-  RigRotation rows = test::levelRows();
-  Pose pose = makePose(4, -8, 3);
-  BlockDisparities disparities{reduceLevel(model, 1, 4)};
-  Eigen::Vector3d truth = pose.down() / pose.height();
-  cv::Mat left, right;
-
-  explicit Blocks(const Exposure& exposure)
-      : left(GroundRenderer(5).left(rig, pose, exposure)),
-        right(GroundRenderer(5).right(rig, pose, exposure)) {
+  explicit Blocks(const test::Exposure& exposure) : GroundPair({640, 480}, 5, 4, -8, 3) {
+    render(exposure, exposure);
     disparities.choose(left, truth);
   }
-
-  /// The true plane with its disparities off by some pixels.
-  Eigen::Vector3d off(double pixels) const { return truth + Eigen::Vector3d(0, 0, pixels / rig.fb()); }
-  /// Weighted mean of the disparities' errors, pixels.
-  double meanError() const {
-    double sum = 0, weights = 0;
-    for (const BlockDisparity& found : disparities.disparities()) {
-      if (!found.alike) continue;
-      const DisparitySample& sample = found.sample;
-      const double weight = 1 / (sample.stddev * sample.stddev);
-      sum += weight * (sample.disparity - rig.fb() * truth.dot(rig.ray(sample.u, sample.v)));
-      weights += weight;
-    }
-    return sum / weights;
-  }
+  double meanError() const { return mean(disparities.disparities()).error; }
 };
 
 TEST(BlockDisparities, AreThoseOfTheGroundWhateverTheWarp) {

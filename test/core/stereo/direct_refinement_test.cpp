@@ -7,60 +7,19 @@
 #include <string>
 
 #include "support/consistency.h"
-#include "support/ground_renderer.h"
-#include "support/rigs.h"
+#include "support/refined_pair.h"
 
 namespace uav_landing {
 namespace {
 
-using test::Exposure;
 using test::GroundRenderer;
 using test::kDegree;
 using test::makePose;
 using test::Pose;
-
-PlaneLimits makeLimits() {
-  PlaneLimits limits;
-  limits.max_roll = limits.max_pitch = 30 * kDegree;
-  limits.min_points = 20;
-  return limits;
-}
-
-/// A rig over textured ground.
-struct Scene {
-  StereoRig rig = test::makeRig(320, 240, 0.65);
-  RigModel model = test::makeModel(rig);
-  GroundRenderer ground{5};
-  Pose pose = makePose(4, -8, 3);
-  Eigen::Vector3d truth = pose.down() / pose.height();
-  cv::Mat left, right;
-  RigRotation rows = test::levelRows();
-
-  void render(const Exposure& of_left = {}, const Exposure& of_right = {}) {
-    left = ground.left(rig, pose, of_left);
-    right = ground.right(rig, pose, of_right);
-  }
-  /// The true plane with its disparities off by some pixels and a share.
-  Eigen::Vector3d off(double pixels, double share) const {
-    return truth * (1 + share) + Eigen::Vector3d(0, 0, pixels / rig.fb());
-  }
-  Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
-    return DirectRefinement(model, 4).refine(left, right, start, makeLimits(), 0, rows);
-  }
-  /// Largest error of the disparity over the ground's part of the image, pixels.
-  double error(const Eigen::Vector3d& g) const {
-    double largest = 0;
-    for (const int v : {120, 239}) {
-      for (const int u : {0, 319}) {
-        largest = std::max(largest, std::abs(rig.fb() * (g - truth).dot(rig.ray(u, v))));
-      }
-    }
-    return largest;
-  }
-};
+using test::RefinedPair;
 
 TEST(DirectRefinement, FindsThePlaneFromAFractionOfAPixelOff) {
-  Scene scene;
+  RefinedPair scene;
   scene.render();
   for (const double pixels : {-0.5, 0.0, 0.4}) {
     for (const double share : {-0.005, 0.0, 0.005}) {
@@ -73,7 +32,7 @@ TEST(DirectRefinement, FindsThePlaneFromAFractionOfAPixelOff) {
 }
 
 TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
-  Scene scene;
+  RefinedPair scene;
   scene.render();
   const Expected<PlaneFit> plain = scene.refine(scene.off(0.2, 0));
   scene.render({1.05, 3, 1}, {0.9, -6, 1});
@@ -92,7 +51,7 @@ TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
 }
 
 TEST(DirectRefinement, IsNotPulledByWhatStandsOnTheGround) {
-  Scene scene;
+  RefinedPair scene;
   scene.ground.boxes = {
       {{8, -3, 0}, {9, -1.5, 0.6}}, {{11, 1, 0}, {13, 3, 0.4}}, {{6, 1.5, 0}, {7, 2.5, 0.3}}};
   scene.render();
@@ -105,7 +64,7 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
   constexpr int kPairs = 40;
   double sum = 0;
   for (int i = 0; i < kPairs; ++i) {
-    Scene scene;
+    RefinedPair scene;
     scene.ground = GroundRenderer(100 + i);
     scene.pose = makePose(3 + 0.05 * i, -8, 0.2 * i - 4);
     scene.truth = scene.pose.down() / scene.pose.height();
@@ -125,7 +84,7 @@ TEST(DirectRefinement, UsesFaintTextureEverywhere) {
   constexpr int kPairs = 20;
   double squares = 0;
   for (int i = 0; i < kPairs; ++i) {
-    Scene scene;
+    RefinedPair scene;
     scene.ground = GroundRenderer(200 + i);
     scene.render({0.25, 80, 5}, {0.25, 80, 5});
     const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
@@ -140,7 +99,7 @@ TEST(DirectRefinement, SeesCoarseTextureThroughMuchNoise) {
   constexpr int kPairs = 24;
   double squares = 0, normalised = 0;
   for (int i = 0; i < kPairs; ++i) {
-    Scene scene;
+    RefinedPair scene;
     scene.ground = GroundRenderer(400 + i);
     scene.ground.grain = 0.04;
     scene.pose = makePose(1.2, -8, 3);
@@ -157,14 +116,14 @@ TEST(DirectRefinement, SeesCoarseTextureThroughMuchNoise) {
 }
 
 TEST(DirectRefinement, FindsTheSameInAPairWhateverCameBefore) {
-  Scene clear, faint;
+  RefinedPair clear, faint;
   clear.render();
   faint.render({0.25, 80, 5}, {0.25, 80, 5});
   DirectRefinement refinement(clear.model, 4);
-  for (const Scene* scene : {&faint, &clear, &faint, &clear}) {
+  for (const RefinedPair* scene : {&faint, &clear, &faint, &clear}) {
     const Eigen::Vector3d start = scene->off(0.2, 0);
     const Expected<PlaneFit> fit =
-        refinement.refine(scene->left, scene->right, start, makeLimits(), 0, scene->rows);
+        refinement.refine(scene->left, scene->right, start, test::groundLimits(), 0, scene->rows);
     const Expected<PlaneFit> alone = scene->refine(start);
     ASSERT_TRUE(fit && alone);
     EXPECT_EQ(fit->plane.g, alone->plane.g);
@@ -174,7 +133,7 @@ TEST(DirectRefinement, FindsTheSameInAPairWhateverCameBefore) {
 }
 
 TEST(DirectRefinement, TakesFaintImagesOfOddSize) {
-  Scene scene;
+  RefinedPair scene;
   scene.rig.size = cv::Size(319, 239);
   scene.model = test::makeModel(scene.rig);
   scene.render({0.25, 80, 5}, {0.25, 80, 5});
@@ -184,7 +143,7 @@ TEST(DirectRefinement, TakesFaintImagesOfOddSize) {
 }
 
 TEST(DirectRefinement, RefusesImagesTooSmallForABlock) {
-  Scene scene;
+  RefinedPair scene;
   scene.rig.size = cv::Size(20, 1);
   scene.model = test::makeModel(scene.rig);
   scene.render();
@@ -194,7 +153,7 @@ TEST(DirectRefinement, RefusesImagesTooSmallForABlock) {
 }
 
 TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {
-  Scene scene;
+  RefinedPair scene;
   scene.ground.line_offset = 1;
   scene.render({0.2, 90, 5}, {0.2, 90, 5});
   const Expected<PlaneFit> above = scene.refine(scene.off(0.4, 0)), below = scene.refine(scene.off(-0.4, 0));
@@ -202,70 +161,8 @@ TEST(DirectRefinement, ForgetsItsStartWhereMostBlocksAreNoise) {
   EXPECT_LT((above->plane.g - below->plane.g).norm() * scene.rig.fb(), 0.22) << "of 0.8 px";
 }
 
-/// Between two painted lines the camera sees one lean to the left and one to the right.
-TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesThatItIsTold) {
-  Scene scene;
-  scene.pose = makePose(4, -8, 0);
-  scene.truth = scene.pose.down() / scene.pose.height();
-  scene.ground.contrast = 4;
-  scene.ground.line_offset = 4;
-  scene.ground.line_width = 1;
-  scene.ground.bend.x() = 0.3 / scene.rig.fy;
-  scene.render();
-  const auto rollError = [&](const Expected<PlaneFit>& fit) {
-    return rollOf(fit->plane.normal()) - rollOf(scene.truth.normalized());
-  };
-  const Expected<PlaneFit> untold = scene.refine(scene.truth);
-  ASSERT_TRUE(untold);
-  scene.rows.w = scene.ground.bend;
-  const Expected<PlaneFit> told = scene.refine(scene.truth);
-  ASSERT_TRUE(told);
-  EXPECT_GT(std::abs(rollError(untold)), 0.1 * kDegree) << "this scene shows nothing";
-  EXPECT_LT(std::abs(rollError(told)), 0.2 * std::abs(rollError(untold)));
-
-  // One sigma more of rotation rolls the plane by one sigma of the rows' share.
-  const double sigma = 0.02 / scene.rig.fy;
-  scene.rows.covariance(0, 0) = sigma * sigma;
-  const Expected<PlaneFit> claimed = scene.refine(scene.truth);
-  scene.rows.w.x() += sigma;
-  const Expected<PlaneFit> off = scene.refine(scene.truth);
-  ASSERT_TRUE(claimed && off);
-  const GroundPlane share{claimed->plane.g, claimed->row_covariance};
-  const double stddev = std::sqrt(rollVariance(share.normal(), share.normalCovariance()));
-  EXPECT_NEAR(std::abs(rollError(off) - rollError(claimed)), stddev, 0.3 * stddev);
-  EXPECT_TRUE(claimed->plane.covariance.isApprox(told->plane.covariance + claimed->row_covariance));
-}
-
-/// The same where lines are seen in noise.
-TEST(DirectRefinement, IsNotRolledByVerticalDisparitiesInNoise) {
-  constexpr int kPairs = 10;
-  double told = 0, untold = 0;
-  for (int i = 0; i < kPairs; ++i) {
-    Scene scene;
-    scene.pose = makePose(4, -8, 0);
-    scene.truth = scene.pose.down() / scene.pose.height();
-    scene.ground = GroundRenderer(500 + i);
-    scene.ground.contrast = 4;
-    scene.ground.line_offset = 4;
-    scene.ground.line_width = 1;
-    scene.ground.bend.x() = 0.3 / scene.rig.fy;
-    scene.render({0.5, 50, 7}, {0.45, 60, 7});
-    const auto rollError = [&](const Expected<PlaneFit>& fit) {
-      return rollOf(fit->plane.normal()) - rollOf(scene.truth.normalized());
-    };
-    const Expected<PlaneFit> without = scene.refine(scene.truth);
-    scene.rows.w = scene.ground.bend;
-    const Expected<PlaneFit> with = scene.refine(scene.truth);
-    ASSERT_TRUE(without && with);
-    untold += rollError(without) / kPairs;
-    told += rollError(with) / kPairs;
-  }
-  EXPECT_GT(std::abs(untold), 0.1 * kDegree) << "these scenes show nothing";
-  EXPECT_LT(std::abs(told), 0.2 * std::abs(untold));
-}
-
 TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {
-  Scene scene;
+  RefinedPair scene;
   const auto expectTooFew = [&](const std::string& count) {
     const Expected<PlaneFit> fit = scene.refine(scene.truth);
     ASSERT_FALSE(fit);
@@ -281,7 +178,7 @@ TEST(DirectRefinement, HasTooFewMatchesWithoutTexture) {
 }
 
 TEST(DirectRefinement, HasTooFewMatchesWithTextureInOnePlaceOnly) {
-  Scene scene;
+  RefinedPair scene;
   scene.render();
   // At most four by four blocks of 16 x 8 pixels see some of it.
   const cv::Rect place(120, 180, 40, 20);
@@ -297,7 +194,7 @@ TEST(DirectRefinement, HasTooFewMatchesWithTextureInOnePlaceOnly) {
 }
 
 TEST(DirectRefinement, FindsNoPlaneInNoiseAlone) {
-  Scene scene;
+  RefinedPair scene;
   scene.ground.contrast = 0;
   scene.render({1, 0, 6}, {1, 0, 6});
   EXPECT_FALSE(scene.refine(scene.truth));

@@ -2,29 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include "support/ground_renderer.h"
-#include "support/rigs.h"
+#include "support/ground_pair.h"
 
 namespace uav_landing {
 namespace {
 
-using test::Exposure;
-using test::GroundRenderer;
-using test::makePose;
-using test::Pose;
+using test::GroundPair;
 
-struct Pair {
-  StereoRig rig = test::makeRig(320, 240, 0.65);
-  RigModel model = test::makeModel(rig);
-  RigRotation rows = test::levelRows();
-  Pose pose = makePose(1.2, -8, 0);
-  Eigen::Vector3d truth = pose.down() / pose.height();
-  cv::Mat left, right;
-
-  explicit Pair(const Exposure& exposure)
-      : left(GroundRenderer(3).left(rig, pose, exposure)),
-        right(GroundRenderer(3).right(rig, pose, exposure)) {}
-};
+GroundPair closeBelow(const test::Exposure& exposure) {
+  GroundPair pair({320, 240}, 3, 1.2, -8, 0);
+  pair.render(exposure, exposure);
+  return pair;
+}
 
 void expectSame(const std::vector<BlockDisparity>& found, const std::vector<BlockDisparity>& all) {
   size_t next = 0;
@@ -38,9 +27,9 @@ void expectSame(const std::vector<BlockDisparity>& found, const std::vector<Bloc
 }
 
 TEST(PairDisparities, AreOfBlocksInClearImages) {
-  const Pair pair({1, 0, 1});
+  const GroundPair pair = closeBelow({1, 0, 1});
   PairDisparities disparities(pair.model, 4);
-  BlockDisparities blocks(reduceLevel(pair.model, 1, 4));
+  BlockDisparities blocks(pair.level());
   disparities.begin(pair.left, pair.right, pair.truth, pair.rows);
   blocks.choose(pair.left, pair.truth);
   blocks.measure(pair.right, pair.truth, pair.rows);
@@ -49,9 +38,9 @@ TEST(PairDisparities, AreOfBlocksInClearImages) {
 }
 
 TEST(PairDisparities, AreOfAllTextureWhereItIsHardlyMoreThanNoise) {
-  const Pair pair({0.2, 90, 8});
+  const GroundPair pair = closeBelow({0.2, 90, 8});
   PairDisparities disparities(pair.model, 4);
-  BandDisparities bands(reduceLevel(pair.model, 1, 4));
+  BandDisparities bands(pair.level());
   disparities.begin(pair.left, pair.right, pair.truth, pair.rows);
   bands.choose(pair.left, pair.truth);
   for (int i = 0; i < 2; ++i) {

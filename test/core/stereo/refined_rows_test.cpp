@@ -1,0 +1,100 @@
+/// What the direct refinement makes of rows that are not level.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/refined_pair.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::RefinedPair;
+
+/// Between two painted lines: the camera sees one lean to the left and one to the right.
+RefinedPair betweenLines(unsigned seed, double bend_pixels) {
+  RefinedPair scene(seed, 0);
+  scene.ground.contrast = 4;
+  scene.ground.line_offset = 4;
+  scene.ground.line_width = 1;
+  scene.ground.bend.x() = bend_pixels / scene.rig.fy;
+  return scene;
+}
+
+TEST(RefinedRows, IsNotRolledByVerticalDisparitiesThatItIsTold) {
+  RefinedPair scene = betweenLines(5, 0.3);
+  scene.render();
+  const Expected<PlaneFit> untold = scene.refine(scene.truth);
+  ASSERT_TRUE(untold);
+  scene.rows.w = scene.ground.bend;
+  const Expected<PlaneFit> told = scene.refine(scene.truth);
+  ASSERT_TRUE(told);
+  EXPECT_GT(std::abs(scene.rollError(untold)), 0.1 * kDegree) << "this scene shows nothing";
+  EXPECT_LT(std::abs(scene.rollError(told)), 0.2 * std::abs(scene.rollError(untold)));
+}
+
+/// Both lines cannot be on one plane with the texture between them while rows are off.
+TEST(RefinedRows, FindsVerticalDisparitiesThatItIsNotTold) {
+  RefinedPair scene = betweenLines(5, 0.3);
+  scene.render();
+  const Expected<PlaneFit> untold = scene.refine(scene.truth);
+  scene.rows.covariance(0, 0) = scene.rows.covariance(2, 2) = std::pow(0.3 / scene.rig.fy, 2);
+  const Expected<PlaneFit> found = scene.refine(scene.truth);
+  ASSERT_TRUE(untold && found);
+  EXPECT_LT(std::abs(scene.rollError(found)), 0.2 * std::abs(scene.rollError(untold)));
+  // What the lines say of the rows is new in the next pair.
+  const GroundPlane all{found->plane.g, found->plane.covariance - untold->plane.covariance};
+  const GroundPlane lasting{found->plane.g, found->row_covariance};
+  EXPECT_LT(rollVariance(lasting.normal(), lasting.normalCovariance()),
+            0.2 * rollVariance(all.normal(), all.normalCovariance()));
+}
+
+/// Where nothing else tells the rows, one sigma of what is told rolls the plane by the share that lasts.
+TEST(RefinedRows, ClaimsWhatTheRowsToldAreWrongBy) {
+  RefinedPair scene = betweenLines(5, 0);
+  scene.render();
+  const double sigma = 0.002 / scene.rig.fy;
+  scene.rows.covariance(0, 0) = sigma * sigma;
+  const Expected<PlaneFit> claimed = scene.refine(scene.truth);
+  scene.rows.w.x() += sigma;
+  const Expected<PlaneFit> off = scene.refine(scene.truth);
+  ASSERT_TRUE(claimed && off);
+  const GroundPlane share{claimed->plane.g, claimed->row_covariance};
+  const double stddev = std::sqrt(rollVariance(share.normal(), share.normalCovariance()));
+  EXPECT_NEAR(std::abs(scene.rollError(off) - scene.rollError(claimed)), stddev, 0.3 * stddev);
+}
+
+/// A row that is off shows ground that is nearer, whether any edge leans or not: inclined rows roll it.
+TEST(RefinedRows, IsNotRolledByInclinedRows) {
+  RefinedPair scene(5, 0);
+  scene.ground.bend.z() = 0.05 * kDegree;
+  scene.render();
+  const Expected<PlaneFit> untold = scene.refine(scene.truth);
+  scene.rows.w = scene.ground.bend;
+  const Expected<PlaneFit> told = scene.refine(scene.truth);
+  ASSERT_TRUE(untold && told);
+  EXPECT_NEAR(std::abs(scene.rollError(untold)), 0.05 * kDegree, 0.02 * kDegree);
+  EXPECT_LT(std::abs(scene.rollError(told)), 0.35 * std::abs(scene.rollError(untold)));
+}
+
+/// The same where lines are seen in noise.
+TEST(RefinedRows, IsNotRolledByVerticalDisparitiesInNoise) {
+  constexpr int kPairs = 10;
+  double told = 0, untold = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    RefinedPair scene = betweenLines(500 + i, 0.3);
+    scene.render({0.5, 50, 7}, {0.45, 60, 7});
+    const Expected<PlaneFit> without = scene.refine(scene.truth);
+    scene.rows.w = scene.ground.bend;
+    const Expected<PlaneFit> with = scene.refine(scene.truth);
+    ASSERT_TRUE(without && with);
+    untold += scene.rollError(without) / kPairs;
+    told += scene.rollError(with) / kPairs;
+  }
+  EXPECT_GT(std::abs(untold), 0.1 * kDegree) << "these scenes show nothing";
+  EXPECT_LT(std::abs(told), 0.1 * std::abs(untold));
+}
+
+}  // namespace
+}  // namespace uav_landing
