@@ -24,13 +24,10 @@ struct VerticalDisparities {
 
 /// samples: matched corners with the disparity found in the level's right image. The right row of a few of
 /// them is measured to sub-pixel (gain and offset free, within 2 rows), then the rotation and the direction
-/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m. start:
-/// rotation near the one to be found, rad, from which rows are measured: noise makes steps fall short, and
-/// all of them by the same share.
+/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius,
-                                               const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
+                                               const Eigen::Vector3d& g, int window_radius);
 
 /// The rotation with nothing matched yet: looks for corners around the places that a rough plane predicts,
 /// within 3 columns and 3 rows of whole pixels first.
@@ -76,8 +73,6 @@ class RowAlignment {
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:
-  VerticalDisparities measureRows(const StereoLevel& level, const std::vector<DisparitySample>& samples,
-                                  const Eigen::Vector3d& g) const;
   bool adapt(const StereoRig& rig, const RigRotation& residual);
   void average(const RigRotation& measured);
 

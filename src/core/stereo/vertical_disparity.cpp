@@ -1,6 +1,5 @@
 #include "uav_landing/stereo/vertical_disparity.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -94,17 +93,15 @@ void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int 
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius,
-                                               const Eigen::Vector3d& start) {
+                                               const Eigen::Vector3d& g, int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
   const std::vector<DisparitySample> some = thinned(samples, kMeasured);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
   for (const DisparitySample& sample : some) {
     const double column = sample.u - sample.disparity - level.rig.principalOffset();
-    const double row = sample.v + verticalDisparityByRotation(level.rig, column, sample.v).dot(start);
-    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity, {column, row},
-           warp, window_radius, rows);
+    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
+           {column, sample.v}, warp, window_radius, rows);
   }
   VerticalDisparities measured;
   if (!some.empty()) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(some.size());
@@ -173,7 +170,7 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
                                              const std::vector<DisparitySample>& samples,
                                              const Eigen::Vector3d& g) {
   if (!enabled_) return {};
-  const VerticalDisparities found = measureRows(level, samples, g);
+  const VerticalDisparities found = measureVerticalDisparities(level, samples, g, window_radius_);
   Measured measured{{}, found.baseline, found.agreement};
   if (!found.rotation) return measured;
   measured.rotation = *found.rotation;
@@ -181,23 +178,6 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
   average(measured.rotation);
   adapt(level.rig, *found.rotation);
   return measured;
-}
-
-// From where the pairs before lead to; the first pair from where its own rows do.
-VerticalDisparities RowAlignment::measureRows(const StereoLevel& level,
-                                              const std::vector<DisparitySample>& samples,
-                                              const Eigen::Vector3d& g) const {
-  // What looks like ry is rather the residual of a lens.
-  const Eigen::Vector3d believed(1, 0, 1);
-  Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  if (measured_) {
-    start = information_.ldlt().solve(right_) - taken_out_;
-  } else {
-    const VerticalDisparities first = measureVerticalDisparities(level, samples, g, window_radius_);
-    if (!first.rotation) return first;
-    start = first.rotation->w;
-  }
-  return measureVerticalDisparities(level, samples, g, window_radius_, start.cwiseProduct(believed));
 }
 
 void RowAlignment::average(const RigRotation& measured) {

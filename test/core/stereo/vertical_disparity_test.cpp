@@ -131,27 +131,6 @@ TEST(VerticalDisparity, MeasuresPitchAndRollBetweenTheCameras) {
   }
 }
 
-/// A step of a match falls short by what its gradients owe to noise, and rows that are off by less than a
-/// step need only one.
-TEST(VerticalDisparity, IsNotShortBecauseOfNoise) {
-  constexpr int kPairs = 10;
-  const test::Exposure faint{0.3, 80, 5};
-  BentScene scene({0.04 / 554 / kDegree, 0, 0});
-  double mean = 0;
-  for (int i = 0; i < kPairs; ++i) {
-    const Eigen::Vector3d bend = scene.ground.bend;
-    scene.ground = GroundRenderer(60 + i);
-    scene.ground.grain = 0.05;
-    scene.ground.bend = bend;
-    StereoDepthStage stage(scene.model, scene.parameters);
-    const StereoDepthResult result = stage.process(1, scene.ground.left(scene.rig, scene.pose, faint),
-                                                   scene.ground.right(scene.rig, scene.pose, faint));
-    ASSERT_TRUE(result.vertical_rotation.known()) << result.failure.message();
-    mean += result.vertical_rotation.w.x() / kPairs;
-  }
-  EXPECT_NEAR(mean / scene.ground.bend.x(), 1, 0.1);
-}
-
 TEST(VerticalDisparity, APartOfTheImageWithAnErrorOfItsOwnMakesTheRotationUncertain) {
   const BentScene scene({0, 0, 0});
   const cv::Mat left = scene.ground.left(scene.rig, scene.pose);
