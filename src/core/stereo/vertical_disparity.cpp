@@ -193,16 +193,13 @@ RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) con
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
-  const double rotation = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
-  // Rows are moved by what the calibration of a lens leaves, too, that does not rotate anything.
-  const Eigen::Vector3d lens = lensVariances(rig);
-  const Eigen::Matrix3d calibrated = (lens.array() + rotation).matrix().asDiagonal();
-  RigRotation residual{Eigen::Vector3d::Zero(), calibrated};
+  const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+  RigRotation residual{Eigen::Vector3d::Zero(), calibrated * Eigen::Matrix3d::Identity()};
   if (measured_) {
-    Eigen::Matrix3d prior = calibrated.inverse();
+    Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
     const Eigen::Matrix3d alone = information_.inverse();
     const Eigen::Vector3d w = alone * right_;
-    const Eigen::Matrix3d both = alone + calibrated;
+    const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
     if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
     residual.covariance = (information_ + prior).inverse();
     residual.w = residual.covariance * right_;
