@@ -48,7 +48,7 @@ class SimulateCampaignTest(unittest.TestCase):
     def test_an_inertial_sensor_shows_in_the_estimates_and_nowhere_else(self):
         config = self.folder / "perfect.yaml"
         config.write_text("approach_angle: {imu_attitude_stddev_deg: 0.01, runway_slope_stddev_deg: 0}\n")
-        options = ("--first", 5, "--count", 1, "--heights", 30, "--noise", 2, "--config", config)
+        options = ("--first", 4, "--count", 1, "--heights", 30, "--noise", 2, "--config", config)
         without, with_imu = self.fly(*options)[0], self.fly(*options, "--imu")[0]
         self.assertEqual(with_imu["pitch_true_deg"], without["pitch_true_deg"])
         self.assertLess(float(with_imu["pitch_stddev_deg"]), 0.5 * float(without["pitch_stddev_deg"]))

@@ -206,8 +206,8 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
   // Pairs of a second see the same texture: a share of what makes them differ is alike in all of them, by
-  // the simulator's errors of one pair and of a dozen (none to a quarter, over heights and noise).
-  constexpr double kLasting = 0.2;
+  // the simulator's errors of one pair and of a dozen (none to two fifths, over heights and noise).
+  constexpr double kLasting = 1.0 / 3;
   const AttitudeFilter::Estimate estimate =
       attitude_.update(stamp, plane.normal(), own, turn, common + kLasting * own);
   average = {estimate.normal, (1 - kLasting) * estimate.covariance + estimate.commonCovariance()};

@@ -165,7 +165,8 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   const double y = draw.uniform(-0.35, 0.35) * p.runway.width;
   place(height + sink * p.path.duration, draw.uniform(0, 400), y, p.path);
-  drawLens(draw, prior, p.rig);
+  Draw lens(hashed(seed));  // of its own, so that everything else is the same with it
+  drawLens(lens, prior, p.rig);
   if (imu) drawImu(draw, prior, p.imu);
   return p;
 }
