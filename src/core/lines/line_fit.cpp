@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/multiversion.h"
 #include "base/order_statistic.h"
 #include "lines/line_refinement.h"
 
@@ -14,28 +15,113 @@ constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 constexpr float kConverged = 0.01F;    // px, a third of the floor
 constexpr double kTukey = 4.685;       // scales: 95 % as good as least squares when the errors are normal
 
-/// Of values >= 0, the upper one of two in the middle.
-float median(const Values& values) {
-  constexpr float kNothing = 1e-30F;
-  const float mean = values.mean();
-  if (!(mean > kNothing)) return mean;
-  PaddedValues<2 * kMaxStations> padded;
-  padded.count = static_cast<int>(values.size());
-  std::copy_n(values.data(), padded.count, padded.values.begin());
-  padded.pad();
-  constexpr float kUsual = 0.8F;  // of the mean: the median of the magnitudes of normal errors
-  return orderStatistic(padded, padded.count / 2, kUsual * mean);
+using PaddedPeaks = PaddedValues<2 * kMaxStations>;
+
+/// The sum of lanes and of what is left over, fewer than lanes, in the order of Eigen's sums.
+[[gnu::always_inline]] inline float total(const Lanes& lanes, const Lanes& rest, int left) {
+  constexpr int kHalf = kLanes / 2;
+  std::array<float, kHalf> half;
+  for (int k = 0; k < kHalf; ++k) half[k] = lanes[k] + lanes[k + kHalf];
+  const bool half_left = left >= kHalf;
+  for (int k = 0; half_left && k < kHalf; ++k) half[k] += rest[k];
+  float sum = (half[0] + half[2]) + (half[1] + half[3]);
+  for (int k = half_left ? kHalf : 0; k < left; ++k) sum += rest[k];
+  return sum;
 }
 
-Fit fitOnce(const Peaks& p) {
+/// Sums over the peaks. terms: function (i, std::array<Lanes, kSums>&) of what is added from peak i on.
+template <int kSums, class Terms>
+[[gnu::always_inline]] inline std::array<float, kSums> addUp(int count, const Terms& terms) {
+  std::array<Lanes, kSums> sums{}, term{};
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    terms(i, term);
+    for (int k = 0; k < kSums; ++k) sums[k] += term[k];
+  }
+  if (i < count) terms(i, term);
+  std::array<float, kSums> totals;
+  for (int k = 0; k < kSums; ++k) totals[k] = total(sums[k], term[k], count - i);
+  return totals;
+}
+
+UAV_LANDING_MULTIVERSION Fit fitOnce(const Peaks& p) {
+  const std::array<float, 3> sums = addUp<3>(p.count, [&](int i, auto& terms) {
+    Lanes weight, along, across;
+    load(&p.weight[i], weight);
+    load(&p.along[i], along);
+    load(&p.across[i], across);
+    terms = {weight, weight * along, weight * across};
+  });
   Fit f;
-  f.weight = p.weight.sum();
-  f.centre = (p.weight * p.along).sum() / f.weight;
-  f.offset = (p.weight * p.across).sum() / f.weight;
-  const Values x = p.along - f.centre, weighted = p.weight * x;
-  f.spread = (weighted * x).sum();
-  f.slope = (weighted * p.across).sum() / f.spread;
+  f.weight = sums[0];
+  f.centre = sums[1] / f.weight;
+  f.offset = sums[2] / f.weight;
+  const float centre = f.centre;
+  const std::array<float, 2> moments = addUp<2>(p.count, [&](int i, auto& terms) {
+    Lanes weight, along, across;
+    load(&p.weight[i], weight);
+    load(&p.along[i], along);
+    load(&p.across[i], across);
+    const Lanes x = along - centre, weighted = weight * x;
+    terms = {weighted * x, weighted * across};
+  });
+  f.spread = moments[0];
+  f.slope = moments[1] / f.spread;
   return f;
+}
+
+/// How far the peaks are off a line; returns their mean.
+UAV_LANDING_MULTIVERSION float measureDistances(const Peaks& p, const Fit& line, Values& distances) {
+  const float centre = line.centre, offset = line.offset, slope = line.slope;
+  const std::array<float, 1> sum = addUp<1>(p.count, [&](int i, auto& terms) {
+    Lanes along, across;
+    load(&p.along[i], along);
+    load(&p.across[i], across);
+    const Lanes off = across - offset - slope * (along - centre);
+    terms[0] = off < 0 ? -off : off;
+    store(terms[0], &distances[i]);
+  });
+  return sum[0] / static_cast<float>(p.count);
+}
+
+/// Tukey's, of distances over the one where there is none left, times a weight that a peak has anyway.
+UAV_LANDING_MULTIVERSION void weigh(const Values& base, const Values& distances, float inverse, int count,
+                                    Values& weights) {
+  const Lanes one = Lanes{} + 1;
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes own, distance;
+    load(&base[i], own);
+    load(&distances[i], distance);
+    const Lanes share = distance * inverse, within = share < one ? share : one;
+    const Lanes left = 1 - within * within;
+    store(own * (left * left), &weights[i]);
+  }
+}
+
+/// Of values >= 0 with this mean, the upper one of two in the middle.
+float median(PaddedPeaks& values, float mean) {
+  constexpr float kNothing = 1e-30F;
+  if (!(mean > kNothing)) return mean;
+  values.pad();
+  constexpr float kUsual = 0.8F;  // of the mean: the median of the magnitudes of normal errors
+  return orderStatistic(values, values.count / 2, kUsual * mean);
+}
+
+UAV_LANDING_MULTIVERSION float meanGradient(const Peaks& p) {
+  const std::array<float, 1> sum =
+      addUp<1>(p.count, [&](int i, auto& terms) { load(&p.gradient[i], terms[0]); });
+  return sum[0] / static_cast<float>(p.count);
+}
+
+/// By gradients over the one from which on they do not matter.
+UAV_LANDING_MULTIVERSION void weighByGradient(const Peaks& p, float enough, Values& weights) {
+  const Lanes one = Lanes{} + 1;
+  for (int i = 0; i < p.count; i += kLanes) {
+    Lanes gradient;
+    load(&p.gradient[i], gradient);
+    const Lanes share = gradient / enough, square = share * share;
+    store(square < one ? square : one, &weights[i]);
+  }
 }
 
 /// Between two lines, at the first and the last peak.
@@ -43,34 +129,43 @@ float largestDistance(const Fit& a, const Fit& b, const Peaks& p) {
   const auto at = [&](float along) {
     return std::abs(b.offset - a.offset + b.slope * (along - b.centre) - a.slope * (along - a.centre));
   };
-  return std::max(at(p.along[0]), at(p.along[p.size() - 1]));
+  return std::max(at(p.along[0]), at(p.along[p.count - 1]));
 }
 
-Values weightsByGradient(const Peaks& p) { return (p.gradient / median(p.gradient)).square().min(1.0F); }
+void weighByGradient(Peaks& peaks, Values& weights) {
+  peaks.pad();
+  PaddedPeaks gradients;
+  gradients.count = peaks.count;
+  std::copy_n(peaks.gradient.begin(), peaks.count, gradients.values.begin());
+  weighByGradient(peaks, median(gradients, meanGradient(peaks)), weights);
+}
 
 /// Fit with weights by how far the peaks are off a line.
 Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale) {
-  const Values off = line.residuals(peaks).abs();
-  scale = std::max(1.4826 * median(off), kMinScale);
-  const float inverse = static_cast<float>(1 / (kTukey * scale));
-  peaks.weight = base * (1 - (off * inverse).min(1.0F).square()).square();
+  PaddedPeaks off;
+  off.count = peaks.count;
+  const float mean = measureDistances(peaks, line, off.values);
+  scale = std::max(1.4826 * median(off, mean), kMinScale);
+  weigh(base, off.values, static_cast<float>(1 / (kTukey * scale)), peaks.count, peaks.weight);
   return fitOnce(peaks);
 }
 
 /// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
 /// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
 double stationVariance(const Peaks& peaks, const Fit& fit) {
-  const Values residuals = fit.residuals(peaks);
+  const auto residual = [&](int i) {
+    return double(peaks.across[i] - fit.offset - fit.slope * (peaks.along[i] - fit.centre));
+  };
   double squares = 0, products = 0, pairs = 0;
   int used = 0;
-  for (int i = 0; i < peaks.size(); ++i) {
+  for (int i = 0; i < peaks.count; ++i) {
     if (peaks.weight[i] <= 0) continue;
     ++used;
-    const double r = residuals[i];
+    const double r = residual(i);
     squares += peaks.weight[i] * r * r;
     if (i == 0 || peaks.weight[i - 1] <= 0) continue;
     const double w = std::sqrt(peaks.weight[i] * peaks.weight[i - 1]);
-    products += w * r * residuals[i - 1];
+    products += w * r * residual(i - 1);
     pairs += w;
   }
   const double variance = squares / fit.weight;
@@ -81,8 +176,9 @@ double stationVariance(const Peaks& peaks, const Fit& fit) {
 }  // namespace
 
 Fit fitRobustly(Peaks& peaks, double& scale) {
-  const Values base = weightsByGradient(peaks);
-  peaks.weight = base;
+  alignas(sizeof(Lanes)) Values base;
+  weighByGradient(peaks, base);
+  std::copy_n(base.begin(), wholeLanes(peaks.count), peaks.weight.begin());
   Fit fit = fitOnce(peaks);
   constexpr int kRounds = 3;
   for (int i = 0; i < kRounds; ++i) {
@@ -94,13 +190,14 @@ Fit fitRobustly(Peaks& peaks, double& scale) {
 }
 
 Fit refit(Peaks& peaks, double& scale) {
-  const Values base = weightsByGradient(peaks);
+  alignas(sizeof(Lanes)) Values base;
+  weighByGradient(peaks, base);
   const Fit fit = reweighted(peaks, base, Fit(), scale);
   return reweighted(peaks, base, fit, scale);
 }
 
 LineSegment segmentOf(const Axis& axis, const Peaks& peaks, const Fit& fit, int sign) {
-  int begin = 0, end = peaks.size() - 1;
+  int begin = 0, end = peaks.count - 1;
   while (peaks.weight[begin] <= 0) ++begin;
   while (peaks.weight[end] <= 0) --end;
   const double first = peaks.along[begin], last = peaks.along[end];

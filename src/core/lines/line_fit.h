@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 
+#include "base/lanes.h"
 #include "uav_landing/lines/line_segments.h"
 
 /// Straight lines through edges seen at single rows or columns of an image.
@@ -17,26 +19,31 @@ struct Peak {
   double along, across, gradient;
 };
 
-/// Of a value at each station; in the memory of the function that has it.
-using Values = Eigen::Array<float, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * kMaxStations, 1>;
+/// A value of each peak; filled up to whole lanes.
+using Values = std::array<float, 2 * kMaxStations>;
+static_assert(2 * kMaxStations % kLanes == 0, "whole lanes");
 
 /// The peaks along a line and their weights.
 struct Peaks {
   int stations = 0;  ///< that were looked at
-  Values along, across, gradient, weight;
+  int count = 0;
+  alignas(sizeof(Lanes)) Values along, across, gradient, weight;
 
-  int size() const { return static_cast<int>(along.size()); }
-  /// Keeps what is there.
-  void resize(int size) {
-    along.conservativeResize(size);
-    across.conservativeResize(size);
-    gradient.conservativeResize(size);
-    weight.resize(size);
+  void add(const Peak& peak) {
+    along[count] = static_cast<float>(peak.along);
+    across[count] = static_cast<float>(peak.across);
+    gradient[count] = static_cast<float>(peak.gradient);
+    ++count;
   }
-  void set(int i, const Peak& peak) {
-    along[i] = static_cast<float>(peak.along);
-    across[i] = static_cast<float>(peak.across);
-    gradient[i] = static_cast<float>(peak.gradient);
+  /// Fills what is known of them up to whole lanes.
+  void pad() {
+    for (int i = count; i < wholeLanes(count); ++i) along[i] = across[i] = gradient[i] = 0;
+  }
+  /// How many have a weight.
+  int used() const {
+    int used = 0;
+    for (int i = 0; i < count; ++i) used += weight[i] > 0 ? 1 : 0;
+    return used;
   }
 };
 
@@ -59,8 +66,6 @@ struct Axis {
 /// Weighted straight line across = offset + slope (along - centre).
 struct Fit {
   float centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
-
-  Values residuals(const Peaks& p) const { return p.across - offset - slope * (p.along - centre); }
 };
 
 /// Iteratively reweighted: the peak's variance falls with the gradient squared, and Tukey's biweight

@@ -135,15 +135,12 @@ void collect(const EdgeSampler& sampler, double from, double to, int most, const
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
   const int step = std::max(1, (last - first) / most);
-  peaks.stations = 0;
-  peaks.resize(2 * kMaxStations);
-  int count = 0;
+  peaks.stations = peaks.count = 0;
   Peak peak;
   for (int station = first; station <= last; station += step) {
     ++peaks.stations;
-    if (sampler.findPeak<kReach>(station, kind, peak)) peaks.set(count++, peak);
+    if (sampler.findPeak<kReach>(station, kind, peak)) peaks.add(peak);
   }
-  peaks.resize(count);
 }
 
 /// How far the edge goes on beyond `from`, in steps of this many rows or columns.
@@ -203,11 +200,11 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
   Peaks peaks;
   double scale = 0;
   const auto isLine = [&] {
-    const auto used = (peaks.weight > 0).count();
+    const int used = peaks.used();
     return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
   };
   collect<2>(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, peaks);
-  if (peaks.size() < kMinStations) return std::nullopt;
+  if (peaks.count < kMinStations) return std::nullopt;
   const Fit coarse = fitRobustly(peaks, scale);
   if (!isLine()) return std::nullopt;
 
@@ -217,7 +214,7 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
   from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
   to = grow(sampler, to - coarse.centre, kGrowStep, kind);
   collect<1>(sampler, from, to, kMaxStations, kind, peaks);
-  if (peaks.size() < kMinStations) return std::nullopt;
+  if (peaks.count < kMinStations) return std::nullopt;
   const Fit fit = refit(peaks, scale);
   if (!isLine()) return std::nullopt;
   return segmentOf(axis, peaks, fit, kind.sign);

@@ -141,11 +141,10 @@ std::optional<Station> stationOf(const Profiles& profiles, const Profile& profil
 std::optional<LineSegment> fitted(const Axis& axis, const std::vector<Peak>& seen, int sign) {
   if (static_cast<int>(seen.size()) < kMinStations) return std::nullopt;
   Peaks peaks;
-  peaks.resize(static_cast<int>(seen.size()));
-  for (int i = 0; i < peaks.size(); ++i) peaks.set(i, seen[i]);
+  for (const Peak& peak : seen) peaks.add(peak);
   double scale = 0;
   const Fit fit = fitRobustly(peaks, scale);
-  if ((peaks.weight > 0).count() < kMinStations || scale > kMaxScatter) return std::nullopt;
+  if (peaks.used() < kMinStations || scale > kMaxScatter) return std::nullopt;
   return segmentOf(axis, peaks, fit, sign);
 }
 
