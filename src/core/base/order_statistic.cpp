@@ -23,6 +23,7 @@ using IntLanes = int __attribute__((vector_size(32)));
 [[gnu::always_inline]] inline int countBelow(const float* values, int count, float limit) {
   const Lanes limits = Lanes{} + limit;
   IntLanes below{};
+  UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
@@ -34,6 +35,7 @@ using IntLanes = int __attribute__((vector_size(32)));
 [[gnu::always_inline]] inline int countUpTo(const float* values, int count, float limit) {
   const Lanes limits = Lanes{} + limit;
   IntLanes up_to{};
+  UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
@@ -46,6 +48,7 @@ using IntLanes = int __attribute__((vector_size(32)));
 [[gnu::always_inline]] inline float smallestFrom(const float* values, int count, float limit) {
   const Lanes limits = Lanes{} + limit, infinity = Lanes{} + kInfinity;
   Lanes smallest = infinity;
+  UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
@@ -54,6 +57,22 @@ using IntLanes = int __attribute__((vector_size(32)));
   }
   float result = smallest[0];
   for (int i = 1; i < kLanes; ++i) result = smallest[i] < result ? smallest[i] : result;
+  return result;
+}
+
+/// The largest of the values that are smaller than a limit, which some are.
+[[gnu::always_inline]] inline float largestBelow(const float* values, int count, float limit) {
+  const Lanes limits = Lanes{} + limit, lowest = Lanes{} - kInfinity;
+  Lanes largest = lowest;
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes v;
+    load(values + i, v);
+    const Lanes candidate = v < limits ? v : lowest;
+    largest = candidate > largest ? candidate : largest;
+  }
+  float result = largest[0];
+  for (int i = 1; i < kLanes; ++i) result = largest[i] > result ? largest[i] : result;
   return result;
 }
 
@@ -157,6 +176,7 @@ UAV_LANDING_MULTIVERSION float orderStatistic(const float* values, int count, in
   for (int i = 0; i < kTries && below_high - below_low > kFew && limit > low && limit < high; ++i) {
     const int below = countBelow(values, count, limit);
     if (below == rank) return smallestFrom(values, count, limit);
+    if (below == rank + 1) return largestBelow(values, count, limit);
     (below < rank ? low : high) = limit;
     (below < rank ? below_low : below_high) = below;
     const float share =
