@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/text.h"
+#include "runway/centre_columns.h"
 #include "runway/runway_fit.h"
 
 namespace uav_landing {
@@ -54,6 +56,7 @@ class Search {
         if (edges_[i].lateral > edges_[j].lateral && edges_[i].brighter_left != edges_[j].brighter_left)
           pairs_.push_back(mirrored(i, j));
     paint_ = std::pow(kAsymmetry * widthOfLongest(), 2);
+    for (const MirroredPair& pair : pairs_) columns_.add(pair.centre, pair.variance, pair.by_rotation);
   }
 
   std::vector<Symmetry> symmetries() const {
@@ -188,14 +191,6 @@ class Search {
     return kGate * std::sqrt(a.variance + b.variance + differ.dot(axes_.covariance * differ));
   }
 
-  /// Whether two pairs' centres are farther apart than any tolerance between them: most are, and the trace
-  /// bounds what a covariance makes of a vector.
-  bool areApart(const MirroredPair& a, const MirroredPair& b) const {
-    constexpr double kSafe = 1.001;
-    const double most = a.variance + b.variance + spread_ * (a.by_rotation - b.by_rotation).squaredNorm();
-    return std::pow(a.centre - b.centre, 2) > kSafe * kGate * kGate * most;
-  }
-
   double widthOfLongest() const {
     double longest = 0, width = 0;
     for (const MirroredPair& pair : pairs_) {
@@ -216,14 +211,22 @@ class Search {
   struct Memory {
     std::vector<std::pair<double, const MirroredPair*>> near;  // pairs by their distance, in tolerances
     std::vector<char> used;                                    // edges
+    std::vector<uchar> apart;                                  // pairs that are too far away
   };
 
   /// Every edge counts in one pair only, the one that fits best.
   Symmetry around(const MirroredPair& centre, Memory& memory) const {
-    auto& [near, used] = memory;
+    auto& [near, used, apart] = memory;
     near.clear();
-    for (const MirroredPair& pair : pairs_) {
-      if (isSharper(pair, centre) || areApart(pair, centre)) continue;
+    apart.resize(pairs_.size());
+    columns_.markApart(&centre - pairs_.data(), kGate, spread_, apart.data());
+    const auto next = [&](size_t from) {
+      const void* close = std::memchr(apart.data() + from, 0, apart.size() - from);
+      return close ? static_cast<size_t>(static_cast<const uchar*>(close) - apart.data()) : apart.size();
+    };
+    for (size_t i = next(0); i < pairs_.size(); i = next(i + 1)) {
+      const MirroredPair& pair = pairs_[i];
+      if (isSharper(pair, centre)) continue;
       const double miss = std::abs(pair.centre - centre.centre) / toleranceOf(pair, centre);
       if (miss <= 1) near.emplace_back(miss, &pair);
     }
@@ -246,7 +249,8 @@ class Search {
   const double spread_ = axes_.covariance.trace();
   std::vector<GroundEdge> edges_;
   std::vector<MirroredPair> pairs_;
-  double paint_ = 0;  // variance of a centre by how marks are painted, whose own width does not matter
+  CentreColumns columns_;  // of pairs_
+  double paint_ = 0;       // variance of a centre by how marks are painted, whose own width does not matter
 };
 
 /// The widest long pair; with a known width, the longest pair of that width.
