@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "lines/line_fit.h"
 
@@ -41,6 +42,31 @@ struct Station {
   /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
   int twiceGradient(int k) const { return grey[(k + 1) * neighbour] - grey[(k - 1) * neighbour]; }
 };
+
+/// Twice the gradients across a line at all pixels up to kRadius from this one, in turn; the last number is
+/// of nothing.
+cv::v_int16x8 gradientsAround(const uchar* pixel, std::ptrdiff_t neighbour) {
+  static_assert(2 * kRadius + 2 == cv::v_int16x8::nlanes, "fit into one register");
+  const uchar* p = pixel - (kRadius + 1) * neighbour;
+  if (neighbour == 1) {
+    const cv::v_int16x8 before = cv::v_reinterpret_as_s16(cv::v_load_expand(p));
+    return cv::v_rotate_right<1>(cv::v_reinterpret_as_s16(cv::v_load_expand(p + 1))) - before;
+  }
+  const auto at = [&](int i) { return static_cast<short>(p[i * neighbour]); };
+  const cv::v_int16x8 before(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7));
+  return (cv::v_rotate_right<2>(before) | cv::v_int16x8(0, 0, 0, 0, 0, 0, at(8), 0)) - before;
+}
+
+/// For those numbers: how far each is from the last one that is at most kEnd away, and of the others
+/// something that no gradient makes up for.
+template <int kEnd>
+cv::v_int16x8 placesUpTo() {
+  constexpr short kNever = -30000;
+  const auto of = [](int i) {
+    return std::abs(i - kRadius) <= kEnd ? static_cast<short>(kRadius + kEnd - i) : kNever;
+  };
+  return {of(0), of(1), of(2), of(3), of(4), of(5), of(6), kNever};
+}
 
 /// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
 struct EdgeKind {
@@ -85,25 +111,22 @@ class EdgeSampler {
   bool findPeak(int station, const EdgeKind& kind, Peak& peak) const {
     const Station sample = at(station);
     if (sample.grey == nullptr) return false;
-    constexpr int kEnd = kReach + 1, kPixels = 2 * kEnd + 3, kBase = 16;
+    constexpr int kEnd = kReach + 1, kBits = 4, kBase = 1 << kBits;
     static_assert(2 * kEnd < kBase && kReach < kRadius, "the place fits below");
-    const int sign = kind.sign * scale_ >= 0 ? 1 : -1;
-    std::array<int, kPixels> grey;
-    const uchar* pixel = sample.grey - (kEnd + 1) * sample.neighbour;
-    for (int& value : grey) {
-      value = sign * *pixel;
-      pixel += sample.neighbour;
-    }
-    // Of two that are as strong the first: how far it is from the last one is in the lowest bits.
-    int strongest = std::numeric_limits<int>::min();
-    for (int i = 0; i + 2 < kPixels; ++i)
-      strongest = std::max(strongest, kBase * (grey[i + 2] - grey[i]) + 2 * kEnd - i);
-    const int i = 2 * kEnd - (strongest & (kBase - 1)), twice = grey[i + 2] - grey[i];
+    // Of two that are as strong the first: its place is in the lowest bits.
+    const short base = static_cast<short>(kind.sign * scale_ >= 0 ? kBase : -kBase);
+    const cv::v_int16x8 coded =
+        cv::v_mul_wrap(gradientsAround(sample.grey, sample.neighbour), cv::v_setall_s16(base)) +
+        placesUpTo<kEnd>();
+    const int i = kRadius + kEnd - (cv::v_reduce_max(coded) & (kBase - 1)), k = i - kRadius;
+    alignas(16) std::array<short, cv::v_int16x8::nlanes> strengths;
+    cv::v_store_aligned(strengths.data(), coded >> kBits);
+    const int twice = strengths[i];
     const double gradient = std::abs(scale_) * twice;
-    if (i == 0 || i == 2 * kEnd || gradient < kind.min_gradient) return false;
-    const int before = grey[i + 1] - grey[i - 1], after = grey[i + 3] - grey[i + 1];
+    if (std::abs(k) == kEnd || gradient < kind.min_gradient) return false;
+    const int before = strengths[i - 1], after = strengths[i + 1];
     const double top = 0.5 * (before - after) / (before - 2 * twice + after);
-    const double major = station - origin_.major, minor = sample.centre + i - kEnd + top - origin_.minor;
+    const double major = station - origin_.major, minor = sample.centre + k + top - origin_.minor;
     peak = {along_.dot(major, minor), across_.dot(major, minor), gradient};
     return true;
   }
