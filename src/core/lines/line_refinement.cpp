@@ -6,6 +6,7 @@
 #include <limits>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "base/multiversion.h"
 #include "lines/line_fit.h"
 
 namespace uav_landing {
@@ -35,27 +36,19 @@ struct Parts {
 /// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
 /// interpolating between them biases the peak by up to 0.1 px.
 struct Station {
-  int centre;                ///< column or row of the pixel nearest to the line
-  const uchar* grey;         ///< of that pixel; null outside image and ground
-  std::ptrdiff_t neighbour;  ///< from pixel to pixel across the line
+  int centre;         ///< column or row of the pixel nearest to the line
+  const uchar* grey;  ///< that pixel among those across the line; null outside image and ground
 
   /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
-  int twiceGradient(int k) const { return grey[(k + 1) * neighbour] - grey[(k - 1) * neighbour]; }
-};
-
-/// Twice the gradients across a line at all pixels up to kRadius from this one, in turn; the last number is
-/// of nothing.
-cv::v_int16x8 gradientsAround(const uchar* pixel, std::ptrdiff_t neighbour) {
-  static_assert(2 * kRadius + 2 == cv::v_int16x8::nlanes, "fit into one register");
-  const uchar* p = pixel - (kRadius + 1) * neighbour;
-  if (neighbour == 1) {
-    const cv::v_int16x8 before = cv::v_reinterpret_as_s16(cv::v_load_expand(p));
-    return cv::v_rotate_right<1>(cv::v_reinterpret_as_s16(cv::v_load_expand(p + 1))) - before;
+  int twiceGradient(int k) const { return grey[k + 1] - grey[k - 1]; }
+  /// The same for all k in turn; the last number is of nothing.
+  cv::v_int16x8 twiceGradients() const {
+    static_assert(2 * kRadius + 2 == cv::v_int16x8::nlanes, "fit into one register");
+    const uchar* first = grey - (kRadius + 1);
+    return cv::v_rotate_right<1>(cv::v_reinterpret_as_s16(cv::v_load_expand(first + 1))) -
+           cv::v_reinterpret_as_s16(cv::v_load_expand(first));
   }
-  const auto at = [&](int i) { return static_cast<short>(p[i * neighbour]); };
-  const cv::v_int16x8 before(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7));
-  return (cv::v_rotate_right<2>(before) | cv::v_int16x8(0, 0, 0, 0, 0, 0, at(8), 0)) - before;
-}
+};
 
 /// For those numbers: how far each is from the last one that is at most kEnd away, and of the others
 /// something that no gradient makes up for.
@@ -68,6 +61,67 @@ cv::v_int16x8 placesUpTo() {
   return {of(0), of(1), of(2), of(3), of(4), of(5), of(6), kNever};
 }
 
+/// The strongest one of the gradients across a line at a station: twice itself and its neighbours.
+struct Edge {
+  int station, place;  ///< row and column, or the other way round
+  int twice, before, after;
+};
+
+/// Edges along a line by columns, filled up to whole lanes.
+struct EdgeColumns {
+  using Column = std::array<int, std::tuple_size<Values>::value>;
+  int count = 0;
+  Column station, place, twice, before, after;
+
+  void add(const Edge& edge) {
+    set(count, edge);
+    ++count;
+  }
+  void pad() {
+    for (int i = count; i < wholeLanes(count); ++i) set(i, {0, 0, 1, 0, 0});
+  }
+
+ private:
+  void set(int i, const Edge& edge) {
+    station[i] = edge.station;
+    place[i] = edge.place;
+    twice[i] = edge.twice;
+    before[i] = edge.before;
+    after[i] = edge.after;
+  }
+};
+
+/// A line's axes, and what gradients along rows or columns are across it.
+struct LineFrame {
+  Parts origin, along, across;
+  double scale;  ///< grey/px, positive when brighter `across`, of one grey level along a row or column
+
+  explicit LineFrame(const Axis& axis)
+      : origin(axis.origin, axis),
+        along(axis.along, axis),
+        across(axis.across, axis),
+        scale(0.5 / across.minor) {}
+
+  /// Interpolated by a parabola.
+  [[gnu::always_inline]] inline Peak peakOf(const Edge& edge) const {
+    const double top = 0.5 * (edge.before - edge.after) / (edge.before - 2 * edge.twice + edge.after);
+    const double major = edge.station - origin.major, minor = edge.place + top - origin.minor;
+    return {along.dot(major, minor), across.dot(major, minor), std::abs(scale) * edge.twice};
+  }
+};
+
+UAV_LANDING_MULTIVERSION void findPeaks(const EdgeColumns& edges, const LineFrame& frame, Peaks& peaks) {
+  const LineFrame line = frame;
+  for (int i = 0; i < wholeLanes(edges.count); ++i) {
+    const Peak peak =
+        line.peakOf({edges.station[i], edges.place[i], edges.twice[i], edges.before[i], edges.after[i]});
+    peaks.along[i] = static_cast<float>(peak.along);
+    peaks.across[i] = static_cast<float>(peak.across);
+    peaks.gradient[i] = static_cast<float>(peak.gradient);
+  }
+  peaks.count = edges.count;
+}
+
 /// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
 struct EdgeKind {
   int sign;
@@ -77,77 +131,54 @@ struct EdgeKind {
 /// Looks along one line.
 class EdgeSampler {
  public:
-  EdgeSampler(const cv::Mat& image, const cv::Mat& ground, const Axis& axis)
-      : image_(image.ptr<uchar>()),
-        ground_(ground.ptr<uchar>()),
+  EdgeSampler(const EdgePicture& picture, const Axis& axis)
+      : pixels_(axis.minor == 0 ? picture.image : picture.transposed),
+        ground_(picture.ground.ptr<uchar>()),
+        to_next_station_(axis.minor == 0 ? static_cast<std::ptrdiff_t>(picture.ground.step) : 1),
+        to_neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(picture.ground.step)),
         axis_(axis),
-        origin_(axis.origin, axis),
-        along_(axis.along, axis),
-        across_(axis.across, axis),
-        slope_(along_.minor / along_.major),
-        first_(origin_.minor - slope_ * origin_.major),
-        scale_(0.5 / across_.minor),
-        size_(axis.minor == 0 ? image.cols : image.rows),
-        stations_(axis.minor == 0 ? image.rows : image.cols),
-        image_step_(axis, image),
-        ground_step_(axis, ground) {}
+        frame_(axis),
+        slope_(frame_.along.minor / frame_.along.major),
+        first_(frame_.origin.minor - slope_ * frame_.origin.major) {}
 
   const Axis& axis() const { return axis_; }
-  /// From twice the gradient along a row or column to that across the line, grey/px, positive when brighter
-  /// `across`.
-  double scale() const { return scale_; }
+  const LineFrame& frame() const { return frame_; }
 
   Station at(int station) const {
     const int centre = cvRound(first_ + slope_ * station);
     constexpr int kReach = kRadius + 1;
-    const bool inside = centre >= kReach && centre < size_ - kReach && station >= 0 && station < stations_ &&
-                        ground_[ground_step_.to(station, centre)] != 0;
-    return {centre, inside ? image_ + image_step_.to(station, centre) : nullptr, image_step_.minor};
+    const bool inside = centre >= kReach && centre < pixels_.cols - kReach && station >= 0 &&
+                        station < pixels_.rows &&
+                        ground_[station * to_next_station_ + centre * to_neighbour_] != 0;
+    return {centre, inside ? pixels_.ptr<uchar>(station) + centre : nullptr};
   }
 
-  /// The strongest gradient within kReach px of the line, interpolated by a parabola; false when there is
-  /// none of this kind.
+  /// The strongest gradient within kReach px of the line; false when there is none of this kind.
   template <int kReach>
-  bool findPeak(int station, const EdgeKind& kind, Peak& peak) const {
+  bool findEdge(int station, const EdgeKind& kind, Edge& edge) const {
     const Station sample = at(station);
     if (sample.grey == nullptr) return false;
     constexpr int kEnd = kReach + 1, kBits = 4, kBase = 1 << kBits;
     static_assert(2 * kEnd < kBase && kReach < kRadius, "the place fits below");
     // Of two that are as strong the first: its place is in the lowest bits.
-    const short base = static_cast<short>(kind.sign * scale_ >= 0 ? kBase : -kBase);
+    const short base = static_cast<short>(kind.sign * frame_.scale >= 0 ? kBase : -kBase);
     const cv::v_int16x8 coded =
-        cv::v_mul_wrap(gradientsAround(sample.grey, sample.neighbour), cv::v_setall_s16(base)) +
-        placesUpTo<kEnd>();
+        cv::v_mul_wrap(sample.twiceGradients(), cv::v_setall_s16(base)) + placesUpTo<kEnd>();
     const int i = kRadius + kEnd - (cv::v_reduce_max(coded) & (kBase - 1)), k = i - kRadius;
     alignas(16) std::array<short, cv::v_int16x8::nlanes> strengths;
     cv::v_store_aligned(strengths.data(), coded >> kBits);
-    const int twice = strengths[i];
-    const double gradient = std::abs(scale_) * twice;
-    if (std::abs(k) == kEnd || gradient < kind.min_gradient) return false;
-    const int before = strengths[i - 1], after = strengths[i + 1];
-    const double top = 0.5 * (before - after) / (before - 2 * twice + after);
-    const double major = station - origin_.major, minor = sample.centre + k + top - origin_.minor;
-    peak = {along_.dot(major, minor), across_.dot(major, minor), gradient};
+    if (std::abs(k) == kEnd || std::abs(frame_.scale) * strengths[i] < kind.min_gradient) return false;
+    edge = {station, sample.centre + k, strengths[i], strengths[i - 1], strengths[i + 1]};
     return true;
   }
 
  private:
-  struct Steps {
-    std::ptrdiff_t major, minor;
-
-    Steps(const Axis& axis, const cv::Mat& image)
-        : major(axis.major == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
-          minor(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)) {}
-    std::ptrdiff_t to(int station, int place) const { return station * major + place * minor; }
-  };
-
-  const uchar *image_, *ground_;
+  const cv::Mat& pixels_;  // with a row for each station
+  const uchar* ground_;
+  std::ptrdiff_t to_next_station_, to_neighbour_;  // in ground_
   const Axis& axis_;
-  Parts origin_, along_, across_;
+  LineFrame frame_;
   double slope_, first_;  // of the line: px across by station, and where it crosses station 0
-  double scale_;
-  int size_, stations_;  // of the image, across and along
-  Steps image_step_, ground_step_;
 };
 
 /// Peaks at so many rows or columns, or all, between two distances along the line.
@@ -158,12 +189,15 @@ void collect(const EdgeSampler& sampler, double from, double to, int most, const
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
   const int step = std::max(1, (last - first) / most);
-  peaks.stations = peaks.count = 0;
-  Peak peak;
+  peaks.stations = 0;
+  EdgeColumns edges;
+  Edge edge;
   for (int station = first; station <= last; station += step) {
     ++peaks.stations;
-    if (sampler.findPeak<kReach>(station, kind, peak)) peaks.add(peak);
+    if (sampler.findEdge<kReach>(station, kind, edge)) edges.add(edge);
   }
+  edges.pad();
+  findPeaks(edges, sampler.frame(), peaks);
 }
 
 /// How far the edge goes on beyond `from`, in steps of this many rows or columns.
@@ -172,8 +206,10 @@ double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& k
   double end = from;
   int misses = 0;
   for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
-    Peak peak;
-    if (sampler.findPeak<1>(station, kind, peak) && std::abs(peak.across) < 1) {
+    Edge edge;
+    const bool is_edge = sampler.findEdge<1>(station, kind, edge);
+    const Peak peak = is_edge ? sampler.frame().peakOf(edge) : Peak();
+    if (is_edge && std::abs(peak.across) < 1) {
       end = peak.along;
       misses = 0;
     } else {
@@ -196,7 +232,7 @@ int edgeSign(const EdgeSampler& sampler, double half) {
         lowest = std::min(lowest, sample.twiceGradient(k));
         highest = std::max(highest, sample.twiceGradient(k));
       }
-      sum += sampler.scale() * (highest + lowest);
+      sum += sampler.frame().scale * (highest + lowest);
     }
   return sum >= 0 ? 1 : -1;
 }
@@ -209,13 +245,12 @@ LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, 
   return {a, b, {across.x(), across.y(), -across.dot(0.5 * (a + b))}, offset_stddev, angle_stddev};
 }
 
-Eigen::Vector2d brighterSide(const cv::Mat& image, const cv::Mat& ground, const Eigen::Vector2d& a,
-                             const Eigen::Vector2d& b) {
+Eigen::Vector2d brighterSide(const EdgePicture& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Axis axis(0.5 * (a + b), b - a);
-  return edgeSign(EdgeSampler(image, ground, axis), 0.5 * (b - a).norm()) * axis.across;
+  return edgeSign(EdgeSampler(picture, axis), 0.5 * (b - a).norm()) * axis.across;
 }
 
-std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& ground, const RoughSegment& rough,
+std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSegment& rough,
                                       double min_gradient) {
   Axis axis(0.5 * (rough.a + rough.b), rough.b - rough.a);
   double from = -0.5 * (rough.b - rough.a).norm(), to = -from;
@@ -226,14 +261,14 @@ std::optional<LineSegment> refineLine(const cv::Mat& image, const cv::Mat& groun
     const int used = peaks.used();
     return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
   };
-  collect<2>(EdgeSampler(image, ground, axis), from, to, kFewStations, kind, peaks);
+  collect<2>(EdgeSampler(picture, axis), from, to, kFewStations, kind, peaks);
   if (peaks.count < kMinStations) return std::nullopt;
   const Fit coarse = fitRobustly(peaks, scale);
   if (!isLine()) return std::nullopt;
 
   axis =
       Axis(axis.point(coarse.centre) + coarse.offset * axis.across, axis.along + coarse.slope * axis.across);
-  const EdgeSampler sampler(image, ground, axis);
+  const EdgeSampler sampler(picture, axis);
   from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
   to = grow(sampler, to - coarse.centre, kGrowStep, kind);
   collect<1>(sampler, from, to, kMaxStations, kind, peaks);

@@ -116,13 +116,19 @@ std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
   return segments;
 }
 
-std::vector<RoughSegment> roughSegments(const cv::Mat& image, const cv::Mat& ground, double min_length,
+/// Also transposes the image; that is good until the next call.
+std::vector<RoughSegment> roughSegments(EdgePicture& picture, double min_length,
                                         const ApproachAngleParameters& parameters) {
-  if (parameters.hough_method != HoughMethod::kScanLines)
-    return houghSegments(straightEdges(image, ground, parameters), min_length, parameters);
+  if (parameters.hough_method != HoughMethod::kScanLines) {
+    cv::transpose(picture.image, picture.transposed);
+    return houghSegments(straightEdges(picture.image, picture.ground, parameters), min_length, parameters);
+  }
   static thread_local SegmentScanner scanner;  // keeps its memory
-  return scanner.find(image, ground,
-                      {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
+  std::vector<RoughSegment> segments =
+      scanner.find(picture.image, picture.ground,
+                   {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
+  picture.transposed = scanner.transposed();
+  return segments;
 }
 
 /// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same
@@ -167,13 +173,13 @@ bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment)
   });
 }
 
-std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const cv::Mat& image,
-                                 const cv::Mat& ground, double min_length, double min_gradient) {
+std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const EdgePicture& picture,
+                                 double min_length, double min_gradient) {
   std::vector<LineSegment> lines;
   for (RoughSegment& segment : candidates) {
-    if (segment.brighter.isZero()) segment.brighter = brighterSide(image, ground, segment.a, segment.b);
+    if (segment.brighter.isZero()) segment.brighter = brighterSide(picture, segment.a, segment.b);
     if (isKnown(lines, segment)) continue;
-    const auto line = refineLine(image, ground, segment, min_gradient);
+    const auto line = refineLine(picture, segment, min_gradient);
     if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }
   return lines;
@@ -202,13 +208,13 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
   const cv::Rect part = boundsOf(ground);
   if (part.width < 8 || part.height < 8) return {};
   const double min_length = parameters.min_line_length * image.rows;
-  std::vector<RoughSegment> candidates = roughSegments(image(part), ground(part), min_length, parameters);
+  EdgePicture picture{image(part), {}, ground(part)};
+  std::vector<RoughSegment> candidates = roughSegments(picture, min_length, parameters);
   keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
 
   const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
   std::vector<LineSegment> lines =
-      parameters.refine_lines ? refined(candidates, image(part), ground(part), min_length, min_gradient)
-                              : asFound(candidates);
+      parameters.refine_lines ? refined(candidates, picture, min_length, min_gradient) : asFound(candidates);
   for (LineSegment& line : lines) shift(line, {part.x, part.y});
   keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Ends(l.a, l.b); });
   return lines;

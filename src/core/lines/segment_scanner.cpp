@@ -276,9 +276,9 @@ std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::M
       .scan(across_, along_, starts_, [&](double u0, double v0, double u1, double v1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
       });
-  cv::Mat transposed = transposed_.image({image.rows, image.cols});
-  transpose(image, transposed);
-  SteepEdges(transposed, Ground(ground, true), limits, taken_)
+  transposed_ = memory_.image({image.rows, image.cols});
+  transpose(image, transposed_);
+  SteepEdges(transposed_, Ground(ground, true), limits, taken_)
       .scan(across_, along_, starts_, [&](double v0, double u0, double v1, double u1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {0, sign}});
       });

@@ -28,9 +28,12 @@ class SegmentScanner {
  public:
   /// image: mono8. ground: mono8, edges only where it is not 0.
   std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
+  /// The last image with its columns as rows, until the next one.
+  const cv::Mat& transposed() const { return transposed_; }
 
  private:
-  ImageMemory transposed_, taken_;
+  cv::Mat transposed_;
+  ImageMemory memory_, taken_;         // of transposed_, and of the scan
   std::vector<short> across_, along_;  // of one row
   std::vector<uchar> starts_;
 };
