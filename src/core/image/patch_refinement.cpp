@@ -4,171 +4,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "image/parabolic_window.h"
-#include "uav_landing/parameters/window_radius.h"
+#include "image/window_planes.h"
 
 namespace uav_landing {
 namespace {
-
-constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
-constexpr int kPlane = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
-
-int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
-int paddedCount(int radius) { return wholeLanes((2 * radius + 1) * strideOf(radius)); }
-
-// A window of the reference a, less the grey level in its middle, with its gradient x, y. Rows are filled up
-// to a multiple of four and all of it to one of kLanes with zeros.
-struct WindowPlanes {
-  alignas(32) std::array<float, kPlane> a, x, y;
-  float middle;
-};
-
-// Sums over a window of the reference and its gradient, and of their products.
-struct ReferenceSums {
-  double a, x, y, aa, ax, ay, xx, xy, yy;
-};
-
-// Sums over a window of the products of the reference's gradient with itself and with the distance from the
-// window's centre, across and down.
-struct MomentSums {
-  double x, y, xx, xy, yy;
-};
-
-// Sums over a window of the other image b, and of its products.
-struct OtherSums {
-  double b, bb, ba, bx, by;
-};
-
-// One row of a window and its gradient.
-struct WindowRow {
-  float *a, *x, *y;
-};
-
-// row: of the image from the window's first column on; by stride to the next one.
-[[gnu::always_inline]] inline void loadLanes(const float* row, std::ptrdiff_t stride, float middle,
-                                             const WindowRow& out) {
-  Lanes value, before, after, above, below;
-  load(row, value);
-  load(row - 1, before);
-  load(row + 1, after);
-  load(row - stride, above);
-  load(row + stride, below);
-  store(value - middle, out.a);
-  store(-0.5f * (after - before), out.x);
-  store(-0.5f * (below - above), out.y);
-}
-
-[[gnu::always_inline]] inline void loadOne(const float* row, std::ptrdiff_t stride, float middle,
-                                           const WindowRow& out) {
-  *out.a = *row - middle;
-  *out.x = -0.5f * (row[1] - row[-1]);
-  *out.y = -0.5f * (row[stride] - row[-stride]);
-}
-
-UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius,
-                                         WindowPlanes& planes) {
-  const int size = 2 * radius + 1, stride = strideOf(radius);
-  const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(image.step1());
-  const float middle = planes.middle = image.at<float>(v, u);
-  const Lanes none{};
-  for (int j = 0; j < size; ++j) {
-    const float* row = image.ptr<float>(v - radius + j) + u - radius;
-    const auto at = [&](int i) {
-      return WindowRow{&planes.a[j * stride + i], &planes.x[j * stride + i], &planes.y[j * stride + i]};
-    };
-    // The last lanes of a row end where it does, so that nothing outside the image is read.
-    for (int i = 0; size >= kLanes && i < size; i += kLanes) {
-      const int first = std::min(i, size - kLanes);
-      loadLanes(row + first, step, middle, at(first));
-    }
-    for (int i = 0; size < kLanes && i < size; ++i) loadOne(row + i, step, middle, at(i));
-    // What fills the row up; where the next one begins, that comes after.
-    for (float* end : {at(size).a, at(size).x, at(size).y}) store(none, end);
-  }
-}
-
-UAV_LANDING_MULTIVERSION ReferenceSums addUp(const WindowPlanes& planes, int count) {
-  Lanes a1{}, x1{}, y1{}, aa{}, ax{}, ay{}, xx{}, xy{}, yy{};
-  for (int i = 0; i < count; i += kLanes) {
-    Lanes a, x, y;
-    load(&planes.a[i], a);
-    load(&planes.x[i], x);
-    load(&planes.y[i], y);
-    a1 += a;
-    x1 += x;
-    y1 += y;
-    aa += a * a;
-    ax += a * x;
-    ay += a * y;
-    xx += x * x;
-    xy += x * y;
-    yy += y * y;
-  }
-  return {sum(a1), sum(x1), sum(y1), sum(aa), sum(ax), sum(ay), sum(xx), sum(xy), sum(yy)};
-}
-
-// Distances from the centre of a window's places, laid out as WindowPlanes.
-struct DistancePlanes {
-  alignas(32) std::array<float, kPlane> across, down;
-
-  explicit DistancePlanes(int radius) {
-    const int stride = strideOf(radius);
-    for (int i = 0; i < kPlane; ++i) {
-      across[i] = static_cast<float>(i % stride - radius);
-      down[i] = static_cast<float>(i / stride - radius);
-    }
-  }
-};
-
-const DistancePlanes& distancesOf(int radius) {
-  static const std::vector<DistancePlanes> all = [] {
-    std::vector<DistancePlanes> planes;
-    for (int r = 0; r <= kLargestWindowRadius; ++r) planes.emplace_back(r);
-    return planes;
-  }();
-  return all[radius];
-}
-
-UAV_LANDING_MULTIVERSION MomentSums addUpBy(const float* distance, const WindowPlanes& planes, int count) {
-  Lanes x1{}, y1{}, xx{}, xy{}, yy{};
-  for (int i = 0; i < count; i += kLanes) {
-    Lanes x, y, d;
-    load(&planes.x[i], x);
-    load(&planes.y[i], y);
-    load(distance + i, d);
-    const Lanes dx = d * x, dy = d * y;
-    x1 += dx;
-    y1 += dy;
-    xx += dx * x;
-    xy += dx * y;
-    yy += dy * y;
-  }
-  return {sum(x1), sum(y1), sum(xx), sum(xy), sum(yy)};
-}
-
-// other: values of the other image, the reference's middle where they do not count.
-UAV_LANDING_MULTIVERSION OtherSums multiply(const WindowPlanes& planes, const float* other, int count) {
-  const float middle = planes.middle;
-  Lanes b1{}, bb{}, ba{}, bx{}, by{};
-  for (int i = 0; i < count; i += kLanes) {
-    Lanes a, x, y, b;
-    load(&planes.a[i], a);
-    load(&planes.x[i], x);
-    load(&planes.y[i], y);
-    load(other + i, b);
-    b -= middle;
-    b1 += b;
-    bb += b * b;
-    ba += b * a;
-    bx += b * x;
-    by += b * y;
-  }
-  return {sum(b1), sum(bb), sum(ba), sum(bx), sum(by)};
-}
 
 // Shift and gain of: reference + gradient.shift = gain other + offset, by least squares.
 struct GainShift {
@@ -183,9 +24,8 @@ struct GainShift {
 // A window of the reference with all sums of it that do not depend on the other image, about their means.
 class ReferenceWindow {
  public:
-  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : radius_(radius) {
-    loadWindow(reference, u, v, radius, planes_);
-    const ReferenceSums sums = addUp(planes_, paddedCount(radius));
+  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : planes_(reference, u, v, radius) {
+    const WindowPlanes::OwnSums sums = planes_.sums();
     mean_ = sums.a / count();
     gradient_mean_ = Eigen::Vector2d(sums.x, sums.y) / count();
     const Eigen::Vector2d& mean = gradient_mean_;
@@ -199,41 +39,32 @@ class ReferenceWindow {
   }
 
   bool usable() const { return usable_; }
-  int count() const { return (2 * radius_ + 1) * (2 * radius_ + 1); }
+  int count() const { return planes_.pixels(); }
   double energy() const { return energy_; }
 
   // Best shift when the other image is looked at from `at`. The window must be inside by two pixels and
   // paddedReach().
   GainShift compare(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
-    alignas(32) std::array<float, kPlane> values;
-    sampleParabolicWindow(other, at, warp, radius_, strideOf(radius_), values.data());
-    const int size = 2 * radius_ + 1, stride = strideOf(radius_), padded = paddedCount(radius_);
-    for (int j = 0; j < size; ++j)
-      for (int i = size; i < stride; ++i) values[j * stride + i] = planes_.middle;
-    for (int i = size * stride; i < padded; ++i) values[i] = planes_.middle;
-    return solve(multiply(planes_, values.data(), padded));
+    alignas(32) WindowPlanes::Values values;
+    sampleParabolicWindow(other, at, warp, planes_.radius(), planes_.stride(), values.data());
+    return solve(planes_.multiply(values));
   }
   PatchRefinement::Evidence evidence(const GainShift& found) const {
-    const DistancePlanes& distances = distancesOf(radius_);
-    return {G_,
-            {momentsBy(distances.across.data()), momentsBy(distances.down.data())},
-            found.projected,
-            found.left_over,
-            count()};
+    const std::array<WindowPlanes::MomentSums, 2> sums = planes_.moments();
+    return {G_, {aboutMean(sums[0]), aboutMean(sums[1])}, found.projected, found.left_over, count()};
   }
 
   // Places to the right of the centre that are looked at, those filled up included.
-  int paddedReach() const { return strideOf(radius_) - radius_ - 1; }
+  int paddedReach() const { return planes_.stride() - planes_.radius() - 1; }
 
  private:
-  Eigen::Matrix2d momentsBy(const float* distance) const {
-    const MomentSums sums = addUpBy(distance, planes_, paddedCount(radius_));
+  Eigen::Matrix2d aboutMean(const WindowPlanes::MomentSums& sums) const {
     Eigen::Matrix2d moments;
     moments << sums.xx, sums.xy, sums.xy, sums.yy;
     return moments - gradient_mean_ * Eigen::RowVector2d(sums.x, sums.y);
   }
 
-  GainShift solve(const OtherSums& sums) const {
+  GainShift solve(const WindowPlanes::OtherSums& sums) const {
     GainShift result;
     const Eigen::Vector2d gradient = Eigen::Vector2d(sums.bx, sums.by) - gradient_mean_ * sums.b;
     const double squares = sums.bb - sums.b * sums.b / count(), reference = sums.ba - mean_ * sums.b;
@@ -249,7 +80,6 @@ class ReferenceWindow {
     return result;
   }
 
-  int radius_;
   bool usable_ = false;
   WindowPlanes planes_;
   double mean_;  // less the middle

@@ -1,0 +1,190 @@
+#include "image/window_planes.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/multiversion.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr int kUsualRadius = 5;  // by default
+
+// One row of a window and its gradient.
+struct WindowRow {
+  float *a, *x, *y;
+
+  WindowRow from(int i) const { return {a + i, x + i, y + i}; }
+};
+
+// row: of the image from the window's first column on; by stride to the next one.
+[[gnu::always_inline]] inline void loadLanes(const float* row, std::ptrdiff_t stride, float middle,
+                                             const WindowRow& out) {
+  Lanes value, before, after, above, below;
+  load(row, value);
+  load(row - 1, before);
+  load(row + 1, after);
+  load(row - stride, above);
+  load(row + stride, below);
+  store(value - middle, out.a);
+  store(-0.5f * (after - before), out.x);
+  store(-0.5f * (below - above), out.y);
+}
+
+[[gnu::always_inline]] inline void loadOne(const float* row, std::ptrdiff_t stride, float middle,
+                                           const WindowRow& out) {
+  *out.a = *row - middle;
+  *out.x = -0.5f * (row[1] - row[-1]);
+  *out.y = -0.5f * (row[stride] - row[-stride]);
+}
+
+[[gnu::always_inline]] inline void loadRows(const cv::Mat& image, int u, int v, int radius, int out_stride,
+                                            WindowRow out) {
+  const int size = 2 * radius + 1;
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
+  const float* row = image.ptr<float>(v - radius) + u - radius;
+  const float middle = row[radius * stride + radius];
+  const Lanes none{};
+  for (int j = 0; j < size; ++j, row += stride) {
+    // The last lanes of a row end where it does, so that nothing outside the image is read.
+    for (int i = 0; size >= kLanes && i < size; i += kLanes) {
+      const int first = std::min(i, size - kLanes);
+      loadLanes(row + first, stride, middle, out.from(first));
+    }
+    for (int i = 0; size < kLanes && i < size; ++i) loadOne(row + i, stride, middle, out.from(i));
+    // What fills the row up; where the next one begins, that comes after.
+    const WindowRow end = out.from(size);
+    for (float* plane : {end.a, end.x, end.y}) store(none, plane);
+    out = out.from(out_stride);
+  }
+}
+
+// The usual size is known to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius,
+                                         const WindowRow& out) {
+  if (radius == kUsualRadius) {
+    loadRows(image, u, v, kUsualRadius, WindowPlanes::strideOf(kUsualRadius), out);
+  } else {
+    loadRows(image, u, v, radius, WindowPlanes::strideOf(radius), out);
+  }
+}
+
+// Sets what fills up rows and whole lanes.
+[[gnu::always_inline]] inline void fillUp(int radius, float value, float* window) {
+  const int size = 2 * radius + 1, stride = WindowPlanes::strideOf(radius);
+  for (int j = 0; j < size; ++j)
+    for (int i = size; i < stride; ++i) window[j * stride + i] = value;
+  for (int i = size * stride; i < wholeLanes(size * stride); ++i) window[i] = value;
+}
+
+// Distances from the centre of a window's places, laid out as the window.
+struct Distances {
+  alignas(sizeof(Lanes)) WindowPlanes::Values across, down;
+
+  explicit Distances(int radius) {
+    const int stride = WindowPlanes::strideOf(radius);
+    for (int i = 0; i < static_cast<int>(across.size()); ++i) {
+      across[i] = static_cast<float>(i % stride - radius);
+      down[i] = static_cast<float>(i / stride - radius);
+    }
+  }
+};
+
+const Distances& distancesOf(int radius) {
+  static const std::vector<Distances> all = [] {
+    std::vector<Distances> of_radius;
+    for (int r = 0; r <= kLargestWindowRadius; ++r) of_radius.emplace_back(r);
+    return of_radius;
+  }();
+  return all[radius];
+}
+
+// The gradient's products with a distance.
+struct MomentLanes {
+  Lanes x{}, y{}, xx{}, xy{}, yy{};
+
+  [[gnu::always_inline]] inline void add(const Lanes& own_x, const Lanes& own_y, const float* distance) {
+    Lanes d;
+    load(distance, d);
+    const Lanes dx = d * own_x, dy = d * own_y;
+    x += dx;
+    y += dy;
+    xx += dx * own_x;
+    xy += dx * own_y;
+    yy += dy * own_y;
+  }
+  [[gnu::always_inline]] inline WindowPlanes::MomentSums sums() const {
+    return {sum(x), sum(y), sum(xx), sum(xy), sum(yy)};
+  }
+};
+
+}  // namespace
+
+WindowPlanes::WindowPlanes(const cv::Mat& image, int u, int v, int radius)
+    : radius_(radius), middle_(image.at<float>(v, u)) {
+  loadWindow(image, u, v, radius, {a_.data(), x_.data(), y_.data()});
+}
+
+UAV_LANDING_MULTIVERSION WindowPlanes::OwnSums WindowPlanes::sums() const {
+  Lanes a1{}, x1{}, y1{}, aa{}, ax{}, ay{}, xx{}, xy{}, yy{};
+  const int count = filled();
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes a, x, y;
+    load(&a_[i], a);
+    load(&x_[i], x);
+    load(&y_[i], y);
+    a1 += a;
+    x1 += x;
+    y1 += y;
+    aa += a * a;
+    ax += a * x;
+    ay += a * y;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  return {sum(a1), sum(x1), sum(y1), sum(aa), sum(ax), sum(ay), sum(xx), sum(xy), sum(yy)};
+}
+
+UAV_LANDING_MULTIVERSION std::array<WindowPlanes::MomentSums, 2> WindowPlanes::moments() const {
+  const Distances& distances = distancesOf(radius_);
+  MomentLanes across, down;
+  const int count = filled();
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes x, y;
+    load(&x_[i], x);
+    load(&y_[i], y);
+    across.add(x, y, &distances.across[i]);
+    down.add(x, y, &distances.down[i]);
+  }
+  return {across.sums(), down.sums()};
+}
+
+UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(Values& other) const {
+  const float middle = middle_;
+  const int count = filled();
+  // What does not count; the usual size is known to the compiler.
+  if (radius_ == kUsualRadius) {
+    fillUp(kUsualRadius, middle, other.data());
+  } else {
+    fillUp(radius_, middle, other.data());
+  }
+  Lanes b1{}, bb{}, ba{}, bx{}, by{};
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes a, x, y, b;
+    load(&a_[i], a);
+    load(&x_[i], x);
+    load(&y_[i], y);
+    load(&other[i], b);
+    b -= middle;
+    b1 += b;
+    bb += b * b;
+    ba += b * a;
+    bx += b * x;
+    by += b * y;
+  }
+  return {sum(b1), sum(bb), sum(ba), sum(bx), sum(by)};
+}
+
+}  // namespace uav_landing

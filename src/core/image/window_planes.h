@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+
+#include "base/lanes.h"
+#include "uav_landing/parameters/window_radius.h"
+
+namespace uav_landing {
+
+/// A square window of an image, less the grey level in its middle, with its gradient. Rows are filled up to a
+/// multiple of four and all of it to one of kLanes, by zeros.
+class WindowPlanes {
+ public:
+  static constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
+  static constexpr int kLargest = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
+  /// Laid out as the window.
+  using Values = std::array<float, kLargest>;
+
+  /// Sums of the values a, the gradient x, y, and of their products.
+  struct OwnSums {
+    double a, x, y, aa, ax, ay, xx, xy, yy;
+  };
+  /// Sums of the products of the gradient with itself and with the distance from the window's centre.
+  struct MomentSums {
+    double x, y, xx, xy, yy;
+  };
+  /// Sums over a window b of another image, and of its products.
+  struct OtherSums {
+    double b, bb, ba, bx, by;
+  };
+
+  /// u, v: of the middle; the window and a pixel around it must be inside the image.
+  WindowPlanes(const cv::Mat& image, int u, int v, int radius);
+
+  /// From row to row of a window's values.
+  static constexpr int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
+
+  int radius() const { return radius_; }
+  int size() const { return 2 * radius_ + 1; }
+  int stride() const { return strideOf(radius_); }
+  int pixels() const { return size() * size(); }
+
+  OwnSums sums() const;
+  /// By the distance across and by the one down.
+  std::array<MomentSums, 2> moments() const;
+  /// other: rows of the other window, with room for all of this one's; what fills them up does not matter.
+  OtherSums multiply(Values& other) const;
+
+ private:
+  int filled() const { return wholeLanes(size() * stride()); }
+
+  int radius_;
+  float middle_;
+  alignas(sizeof(Lanes)) Values a_, x_, y_;
+};
+
+}  // namespace uav_landing
