@@ -12,7 +12,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
+constexpr int kUsualRadius = 5;  // by default
+constexpr int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
+constexpr int kLargestStride = strideOf(kLargestWindowRadius);
 constexpr int kPlane = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
 
 // A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
@@ -23,14 +25,14 @@ struct RowPlanes {
   alignas(32) std::array<float, kPlane> value, gradient;
 };
 
-UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius, RowPlanes& planes) {
-  const int size = planes.size = 2 * radius + 1, stride = planes.stride = (size + 3) / 4 * 4;
-  planes.count = wholeLanes(size * stride);
+[[gnu::always_inline]] inline void loadRows(const cv::Mat& image, int u, int v, int radius, int out_stride,
+                                            RowPlanes& planes) {
+  const int size = 2 * radius + 1;
   const float middle = planes.middle = image.at<float>(v, u);
   const Lanes none{};
   for (int j = 0; j < size; ++j) {
     const float* row = image.ptr<float>(v - radius + j) + u - radius;
-    float *a = &planes.value[j * stride], *g = &planes.gradient[j * stride];
+    float *a = &planes.value[j * out_stride], *g = &planes.gradient[j * out_stride];
     // The last lanes of a row end where it does, so that nothing outside the image is read.
     for (int i = 0; size >= kLanes && i < size; i += kLanes) {
       const int first = std::min(i, size - kLanes);
@@ -48,6 +50,18 @@ UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int
     // What fills the row up; where the next one begins, that comes after.
     store(none, a + size);
     store(none, g + size);
+  }
+}
+
+// The usual size is known to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius, RowPlanes& planes) {
+  planes.size = 2 * radius + 1;
+  planes.stride = strideOf(radius);
+  planes.count = wholeLanes(planes.size * planes.stride);
+  if (radius == kUsualRadius) {
+    loadRows(image, u, v, kUsualRadius, strideOf(kUsualRadius), planes);
+  } else {
+    loadRows(image, u, v, radius, strideOf(radius), planes);
   }
 }
 
@@ -93,15 +107,25 @@ UAV_LANDING_MULTIVERSION OtherSums multiply(const RowPlanes& planes, const float
   return {sum(b1), sum(bb), sum(ab), sum(bg)};
 }
 
+// Sets what fills up rows and whole lanes.
+[[gnu::always_inline]] inline void fillUp(int radius, float value, float* window) {
+  const int size = 2 * radius + 1, stride = strideOf(radius);
+  for (int j = 0; j < size; ++j)
+    for (int i = size; i < stride; ++i) window[j * stride + i] = value;
+  for (int i = size * stride; i < wholeLanes(size * stride); ++i) window[i] = value;
+}
+
 void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp, const RowPlanes& planes,
                 float* out) {
   const int radius = planes.size / 2;
   const double start = position - warp.shear * radius - warp.scale * radius;
   sampleParabolicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
-  // What does not count.
-  for (int j = 0; j < planes.size; ++j)
-    for (int i = planes.size; i < planes.stride; ++i) out[j * planes.stride + i] = planes.middle;
-  for (int i = planes.size * planes.stride; i < planes.count; ++i) out[i] = planes.middle;
+  // What does not count; the usual size is known to the compiler.
+  if (radius == kUsualRadius) {
+    fillUp(kUsualRadius, planes.middle, out);
+  } else {
+    fillUp(radius, planes.middle, out);
+  }
 }
 
 // The reference's window with the sums that do not depend on the other image, about the means.
