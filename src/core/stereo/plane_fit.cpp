@@ -30,19 +30,15 @@ struct NormalEquations {
   int count = 0;
 };
 
-// The least squares problem by columns, filled up to whole lanes with samples of no weight.
+// The least squares problem by columns, filled up to whole lanes with samples of no weight. Keeps its memory.
 class PlaneProblem {
  public:
-  PlaneProblem(const StereoRig& rig, const std::vector<DisparitySample>& samples)
-      : count_(samples.size()),
-        fb_(rig.fb()),
-        x_(wholeDoubleLanes(count_), 0),
-        y_(x_),
-        disparity_(x_),
-        precision_(x_),
-        expected_(x_),
-        weight_(x_) {
-    ratios_.reserve(count_);
+  void assign(const StereoRig& rig, const std::vector<DisparitySample>& samples) {
+    count_ = samples.size();
+    fb_ = rig.fb();
+    const size_t filled = wholeDoubleLanes(count_);
+    for (std::vector<double>* column : {&x_, &y_, &disparity_, &precision_, &expected_, &weight_})
+      column->resize(filled);
     for (size_t i = 0; i < count_; ++i) {
       const Eigen::Vector3d row = fb_ * rig.ray(samples[i].u, samples[i].v);
       x_[i] = row.x();
@@ -50,7 +46,11 @@ class PlaneProblem {
       disparity_[i] = samples[i].disparity;
       precision_[i] = 1 / samples[i].stddev;
     }
+    for (size_t i = count_; i < filled; ++i) x_[i] = y_[i] = disparity_[i] = precision_[i] = 0;
   }
+
+  // Derivatives of a sample's disparity by the plane vector.
+  Eigen::Vector3d row(size_t i) const { return {x_[i], y_[i], fb_}; }
 
   // The disparities that a plane gives.
   UAV_LANDING_MULTIVERSION void expect(const Eigen::Vector3d& g) {
@@ -124,8 +124,8 @@ class PlaneProblem {
   }
 
  private:
-  size_t count_;
-  double fb_;
+  size_t count_ = 0;
+  double fb_ = 0;
   std::vector<double> x_, y_;  // derivatives of the disparity by the plane vector; by its third component: fb
   std::vector<double> disparity_, precision_;  // precision: 1 / stddev
   std::vector<double> expected_, weight_, ratios_;
@@ -136,8 +136,8 @@ class PlaneProblem {
 // the image first (cluster-robust covariance: Liang, Zeger 1986). information: normal matrix already divided
 // by the squared scale of the residuals.
 double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                        const Eigen::Vector3d& g, const std::vector<char>& agrees, double scale,
-                        const Eigen::Matrix3d& information) {
+                        const PlaneProblem& problem, const Eigen::Vector3d& g,
+                        const std::vector<char>& agrees, double scale, const Eigen::Matrix3d& information) {
   constexpr int kColumns = 8, kRows = 8;
   std::array<Eigen::Vector3d, kColumns * kRows> scores;
   scores.fill(Eigen::Vector3d::Zero());
@@ -150,7 +150,7 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
   for (size_t i = 0; i < samples.size(); ++i) {
     if (!agrees[i]) continue;
     const DisparitySample& sample = samples[i];
-    const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
+    const Eigen::Vector3d row = problem.row(i);
     const double residual = sample.disparity - row.dot(g);
     const int column = std::min(kColumns - 1, static_cast<int>(kColumns * sample.u / rig.size.width));
     const int line = std::min(kRows - 1, static_cast<int>(kRows * (sample.v - top) / (bottom - top + 1)));
@@ -169,7 +169,8 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   constexpr double kConverged = 1e-5;  // of the height, and rad: far less than what pixels tell
   Eigen::Vector3d g = start;
   double scale = 1;
-  PlaneProblem problem(rig, samples);
+  static thread_local PlaneProblem problem;
+  problem.assign(rig, samples);
   NormalEquations sums;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     problem.expect(g);
@@ -194,7 +195,7 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.plane.g = g;
   const Eigen::Vector3d common = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
   const Eigen::Matrix3d information = sums.information / (scale * scale);
-  const double inflation = clusterInflation(rig, samples, g, fit.agrees, scale, information);
+  const double inflation = clusterInflation(rig, samples, problem, g, fit.agrees, scale, information);
   fit.plane.covariance = inflation * information.inverse() + common * common.transpose();
   return fit;
 }
