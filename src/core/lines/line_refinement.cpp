@@ -131,15 +131,8 @@ struct EdgeKind {
 /// Looks along one line.
 class EdgeSampler {
  public:
-  EdgeSampler(const EdgePicture& picture, const Axis& axis)
-      : pixels_(axis.minor == 0 ? picture.image : picture.transposed),
-        ground_(picture.ground.ptr<uchar>()),
-        to_next_station_(axis.minor == 0 ? static_cast<std::ptrdiff_t>(picture.ground.step) : 1),
-        to_neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(picture.ground.step)),
-        axis_(axis),
-        frame_(axis),
-        slope_(frame_.along.minor / frame_.along.major),
-        first_(frame_.origin.minor - slope_ * frame_.origin.major) {}
+  EdgeSampler(const EdgePicture& picture, const Axis& axis, const EdgeKind& kind)
+      : EdgeSampler(axis.minor == 0 ? picture.image : picture.transposed, picture.ground, axis, kind) {}
 
   const Axis& axis() const { return axis_; }
   const LineFrame& frame() const { return frame_; }
@@ -147,44 +140,61 @@ class EdgeSampler {
   Station at(int station) const {
     const int centre = cvRound(first_ + slope_ * station);
     constexpr int kReach = kRadius + 1;
-    const bool inside = centre >= kReach && centre < pixels_.cols - kReach && station >= 0 &&
-                        station < pixels_.rows &&
+    const bool inside = centre >= kReach && centre < size_ - kReach && station >= 0 && station < stations_ &&
                         ground_[station * to_next_station_ + centre * to_neighbour_] != 0;
-    return {centre, inside ? pixels_.ptr<uchar>(station) + centre : nullptr};
+    return {centre, inside ? pixels_ + station * step_ + centre : nullptr};
   }
 
   /// The strongest gradient within kReach px of the line; false when there is none of this kind.
   template <int kReach>
-  bool findEdge(int station, const EdgeKind& kind, Edge& edge) const {
+  bool findEdge(int station, Edge& edge) const {
     const Station sample = at(station);
     if (sample.grey == nullptr) return false;
-    constexpr int kEnd = kReach + 1, kBits = 4, kBase = 1 << kBits;
+    constexpr int kEnd = kReach + 1;
     static_assert(2 * kEnd < kBase && kReach < kRadius, "the place fits below");
     // Of two that are as strong the first: its place is in the lowest bits.
-    const short base = static_cast<short>(kind.sign * frame_.scale >= 0 ? kBase : -kBase);
     const cv::v_int16x8 coded =
-        cv::v_mul_wrap(sample.twiceGradients(), cv::v_setall_s16(base)) + placesUpTo<kEnd>();
+        cv::v_mul_wrap(sample.twiceGradients(), cv::v_setall_s16(factor_)) + placesUpTo<kEnd>();
     const int i = kRadius + kEnd - (cv::v_reduce_max(coded) & (kBase - 1)), k = i - kRadius;
     alignas(16) std::array<short, cv::v_int16x8::nlanes> strengths;
     cv::v_store_aligned(strengths.data(), coded >> kBits);
-    if (std::abs(k) == kEnd || std::abs(frame_.scale) * strengths[i] < kind.min_gradient) return false;
+    if (std::abs(k) == kEnd || std::abs(frame_.scale) * strengths[i] < min_gradient_) return false;
     edge = {station, sample.centre + k, strengths[i], strengths[i - 1], strengths[i + 1]};
     return true;
   }
 
  private:
-  const cv::Mat& pixels_;  // with a row for each station
-  const uchar* ground_;
-  std::ptrdiff_t to_next_station_, to_neighbour_;  // in ground_
+  static constexpr int kBits = 4, kBase = 1 << kBits;  // for the places of gradients
+
+  /// pixels: with a row for each station.
+  EdgeSampler(const cv::Mat& pixels, const cv::Mat& ground, const Axis& axis, const EdgeKind& kind)
+      : pixels_(pixels.ptr<uchar>()),
+        ground_(ground.ptr<uchar>()),
+        step_(static_cast<std::ptrdiff_t>(pixels.step)),
+        to_next_station_(axis.minor == 0 ? static_cast<std::ptrdiff_t>(ground.step) : 1),
+        to_neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(ground.step)),
+        size_(pixels.cols),
+        stations_(pixels.rows),
+        axis_(axis),
+        frame_(axis),
+        slope_(frame_.along.minor / frame_.along.major),
+        first_(frame_.origin.minor - slope_ * frame_.origin.major),
+        min_gradient_(kind.min_gradient),
+        factor_(static_cast<short>(kind.sign * frame_.scale >= 0 ? kBase : -kBase)) {}
+
+  const uchar *pixels_, *ground_;
+  std::ptrdiff_t step_, to_next_station_, to_neighbour_;  // step_: of pixels_; the others: in ground_
+  int size_, stations_;                                   // columns and rows of pixels_
   const Axis& axis_;
   LineFrame frame_;
   double slope_, first_;  // of the line: px across by station, and where it crosses station 0
+  double min_gradient_;   // grey/px
+  short factor_;          // kBase, or less than 0 for edges that are darker `across`
 };
 
 /// Peaks at so many rows or columns, or all, between two distances along the line.
 template <int kReach>
-void collect(const EdgeSampler& sampler, double from, double to, int most, const EdgeKind& kind,
-             Peaks& peaks) {
+void collect(const EdgeSampler& sampler, double from, double to, int most, Peaks& peaks) {
   const Axis& axis = sampler.axis();
   const int first = static_cast<int>(std::ceil(axis.point(from)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(to)[axis.major]));
@@ -194,20 +204,20 @@ void collect(const EdgeSampler& sampler, double from, double to, int most, const
   Edge edge;
   for (int station = first; station <= last; station += step) {
     ++peaks.stations;
-    if (sampler.findEdge<kReach>(station, kind, edge)) edges.add(edge);
+    if (sampler.findEdge<kReach>(station, edge)) edges.add(edge);
   }
   edges.pad();
   findPeaks(edges, sampler.frame(), peaks);
 }
 
 /// How far the edge goes on beyond `from`, in steps of this many rows or columns.
-double grow(const EdgeSampler& sampler, double from, int step, const EdgeKind& kind) {
+double grow(const EdgeSampler& sampler, double from, int step) {
   const Axis& axis = sampler.axis();
   double end = from;
   int misses = 0;
   for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
     Edge edge;
-    const bool is_edge = sampler.findEdge<1>(station, kind, edge);
+    const bool is_edge = sampler.findEdge<1>(station, edge);
     const Peak peak = is_edge ? sampler.frame().peakOf(edge) : Peak();
     if (is_edge && std::abs(peak.across) < 1) {
       end = peak.along;
@@ -247,7 +257,7 @@ LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, 
 
 Eigen::Vector2d brighterSide(const EdgePicture& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Axis axis(0.5 * (a + b), b - a);
-  return edgeSign(EdgeSampler(picture, axis), 0.5 * (b - a).norm()) * axis.across;
+  return edgeSign(EdgeSampler(picture, axis, {1, 0}), 0.5 * (b - a).norm()) * axis.across;
 }
 
 std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSegment& rough,
@@ -261,17 +271,17 @@ std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSeg
     const int used = peaks.used();
     return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
   };
-  collect<2>(EdgeSampler(picture, axis), from, to, kFewStations, kind, peaks);
+  collect<2>(EdgeSampler(picture, axis, kind), from, to, kFewStations, peaks);
   if (peaks.count < kMinStations) return std::nullopt;
   const Fit coarse = fitRobustly(peaks, scale);
   if (!isLine()) return std::nullopt;
 
   axis =
       Axis(axis.point(coarse.centre) + coarse.offset * axis.across, axis.along + coarse.slope * axis.across);
-  const EdgeSampler sampler(picture, axis);
-  from = grow(sampler, from - coarse.centre, -kGrowStep, kind);
-  to = grow(sampler, to - coarse.centre, kGrowStep, kind);
-  collect<1>(sampler, from, to, kMaxStations, kind, peaks);
+  const EdgeSampler sampler(picture, axis, kind);
+  from = grow(sampler, from - coarse.centre, -kGrowStep);
+  to = grow(sampler, to - coarse.centre, kGrowStep);
+  collect<1>(sampler, from, to, kMaxStations, peaks);
   if (peaks.count < kMinStations) return std::nullopt;
   const Fit fit = refit(peaks, scale);
   if (!isLine()) return std::nullopt;
