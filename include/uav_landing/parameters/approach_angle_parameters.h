@@ -34,7 +34,7 @@ struct ApproachAngleParameters {
   bool remove_rotation = true;
   AngleFormula angle_formula = AngleFormula::kGeneral;
   int corner_count = 400;
-  int window_radius = 5;
+  int window_radius = kUsualWindowRadius;
   double search_radius = 10.0;
   double min_zncc = 0.75;
   int min_matches = 15;

@@ -14,7 +14,7 @@ struct StereoDepthParameters {
   double harris_k = 0.04;
   double corner_quality = 1e-7;
   double min_corner_distance = 4.0;
-  int window_radius = 5;
+  int window_radius = kUsualWindowRadius;
   MatchingCost matching_cost = MatchingCost::kZncc;
   bool warp_window = true;
   double max_disparity = 0.75;

@@ -45,7 +45,7 @@ class ReferenceWindow {
   // Best shift when the other image is looked at from `at`. The window must be inside by two pixels and
   // paddedReach().
   GainShift compare(const cv::Mat& other, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp) const {
-    alignas(32) WindowPlanes::Values values;
+    alignas(32) WindowValues values;
     sampleParabolicWindow(other, at, warp, planes_.radius(), planes_.stride(), values.data());
     return solve(planes_.multiply(values));
   }

@@ -8,8 +8,6 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kUsualRadius = 5;  // by default
-
 // One row of a window and its gradient.
 struct WindowRow {
   float *a, *x, *y;
@@ -62,27 +60,19 @@ struct WindowRow {
 // The usual size is known to the compiler, which then needs no loop for a row.
 UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius,
                                          const WindowRow& out) {
-  if (radius == kUsualRadius) {
-    loadRows(image, u, v, kUsualRadius, WindowPlanes::strideOf(kUsualRadius), out);
+  if (radius == kUsualWindowRadius) {
+    loadRows(image, u, v, kUsualWindowRadius, windowStride(kUsualWindowRadius), out);
   } else {
-    loadRows(image, u, v, radius, WindowPlanes::strideOf(radius), out);
+    loadRows(image, u, v, radius, windowStride(radius), out);
   }
-}
-
-// Sets what fills up rows and whole lanes.
-[[gnu::always_inline]] inline void fillUp(int radius, float value, float* window) {
-  const int size = 2 * radius + 1, stride = WindowPlanes::strideOf(radius);
-  for (int j = 0; j < size; ++j)
-    for (int i = size; i < stride; ++i) window[j * stride + i] = value;
-  for (int i = size * stride; i < wholeLanes(size * stride); ++i) window[i] = value;
 }
 
 // Distances from the centre of a window's places, laid out as the window.
 struct Distances {
-  alignas(sizeof(Lanes)) WindowPlanes::Values across, down;
+  alignas(sizeof(Lanes)) WindowValues across, down;
 
   explicit Distances(int radius) {
-    const int stride = WindowPlanes::strideOf(radius);
+    const int stride = windowStride(radius);
     for (int i = 0; i < static_cast<int>(across.size()); ++i) {
       across[i] = static_cast<float>(i % stride - radius);
       down[i] = static_cast<float>(i / stride - radius);
@@ -160,15 +150,10 @@ UAV_LANDING_MULTIVERSION std::array<WindowPlanes::MomentSums, 2> WindowPlanes::m
   return {across.sums(), down.sums()};
 }
 
-UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(Values& other) const {
+UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(WindowValues& other) const {
   const float middle = middle_;
   const int count = filled();
-  // What does not count; the usual size is known to the compiler.
-  if (radius_ == kUsualRadius) {
-    fillUp(kUsualRadius, middle, other.data());
-  } else {
-    fillUp(radius_, middle, other.data());
-  }
+  fillUp(radius_, middle, other.data());  // what does not count
   Lanes b1{}, bb{}, ba{}, bx{}, by{};
   UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {

@@ -3,20 +3,14 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "base/lanes.h"
-#include "uav_landing/parameters/window_radius.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 
-/// A square window of an image, less the grey level in its middle, with its gradient. Rows are filled up to a
-/// multiple of four and all of it to one of kLanes, by zeros.
+/// A square window of an image, less the grey level in its middle, with its gradient; filled up by zeros
+/// (window_layout.h).
 class WindowPlanes {
  public:
-  static constexpr int kLargestStride = (2 * kLargestWindowRadius + 1 + 3) / 4 * 4;
-  static constexpr int kLargest = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
-  /// Laid out as the window.
-  using Values = std::array<float, kLargest>;
-
   /// Sums of the values a, the gradient x, y, and of their products.
   struct OwnSums {
     double a, x, y, aa, ax, ay, xx, xy, yy;
@@ -33,26 +27,23 @@ class WindowPlanes {
   /// u, v: of the middle; the window and a pixel around it must be inside the image.
   WindowPlanes(const cv::Mat& image, int u, int v, int radius);
 
-  /// From row to row of a window's values.
-  static constexpr int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
-
   int radius() const { return radius_; }
   int size() const { return 2 * radius_ + 1; }
-  int stride() const { return strideOf(radius_); }
+  int stride() const { return windowStride(radius_); }
   int pixels() const { return size() * size(); }
 
   OwnSums sums() const;
   /// By the distance across and by the one down.
   std::array<MomentSums, 2> moments() const;
   /// other: rows of the other window, with room for all of this one's; what fills them up does not matter.
-  OtherSums multiply(Values& other) const;
+  OtherSums multiply(WindowValues& other) const;
 
  private:
   int filled() const { return wholeLanes(size() * stride()); }
 
   int radius_;
   float middle_;
-  alignas(sizeof(Lanes)) Values a_, x_, y_;
+  alignas(sizeof(Lanes)) WindowValues a_, x_, y_;
 };
 
 }  // namespace uav_landing

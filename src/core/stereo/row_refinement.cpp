@@ -4,25 +4,19 @@
 #include <array>
 #include <cmath>
 
-#include "base/lanes.h"
 #include "base/multiversion.h"
 #include "image/parabolic_window.h"
-#include "uav_landing/parameters/window_radius.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 namespace {
 
-constexpr int kUsualRadius = 5;  // by default
-constexpr int strideOf(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
-constexpr int kLargestStride = strideOf(kLargestWindowRadius);
-constexpr int kPlane = kLargestStride * (2 * kLargestWindowRadius + 1) + kLanes;
-
-// A window of the reference, less the grey level in its middle, and its change along the row. Rows are filled
-// up to a multiple of four, and all of it to one of kLanes, with zeros.
+// A window of the reference, less the grey level in its middle, and its change along the row; filled up by
+// zeros (window_layout.h).
 struct RowPlanes {
   int size, stride, count;  // count: with all zeros
   float middle;
-  alignas(32) std::array<float, kPlane> value, gradient;
+  alignas(32) WindowValues value, gradient;
 };
 
 [[gnu::always_inline]] inline void loadRows(const cv::Mat& image, int u, int v, int radius, int out_stride,
@@ -56,12 +50,12 @@ struct RowPlanes {
 // The usual size is known to the compiler, which then needs no loop for a row.
 UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int radius, RowPlanes& planes) {
   planes.size = 2 * radius + 1;
-  planes.stride = strideOf(radius);
+  planes.stride = windowStride(radius);
   planes.count = wholeLanes(planes.size * planes.stride);
-  if (radius == kUsualRadius) {
-    loadRows(image, u, v, kUsualRadius, strideOf(kUsualRadius), planes);
+  if (radius == kUsualWindowRadius) {
+    loadRows(image, u, v, kUsualWindowRadius, windowStride(kUsualWindowRadius), planes);
   } else {
-    loadRows(image, u, v, radius, strideOf(radius), planes);
+    loadRows(image, u, v, radius, windowStride(radius), planes);
   }
 }
 
@@ -107,25 +101,12 @@ UAV_LANDING_MULTIVERSION OtherSums multiply(const RowPlanes& planes, const float
   return {sum(b1), sum(bb), sum(ab), sum(bg)};
 }
 
-// Sets what fills up rows and whole lanes.
-[[gnu::always_inline]] inline void fillUp(int radius, float value, float* window) {
-  const int size = 2 * radius + 1, stride = strideOf(radius);
-  for (int j = 0; j < size; ++j)
-    for (int i = size; i < stride; ++i) window[j * stride + i] = value;
-  for (int i = size * stride; i < wholeLanes(size * stride); ++i) window[i] = value;
-}
-
 void sampleRows(const cv::Mat& image, int v, double position, const RowWarp& warp, const RowPlanes& planes,
                 float* out) {
   const int radius = planes.size / 2;
   const double start = position - warp.shear * radius - warp.scale * radius;
   sampleParabolicRows(image, v - radius, start, warp.shear, warp.scale, planes.size, planes.stride, out);
-  // What does not count; the usual size is known to the compiler.
-  if (radius == kUsualRadius) {
-    fillUp(kUsualRadius, planes.middle, out);
-  } else {
-    fillUp(radius, planes.middle, out);
-  }
+  fillUp(radius, planes.middle, out);  // what does not count
 }
 
 // The reference's window with the sums that do not depend on the other image, about the means.
@@ -151,7 +132,7 @@ struct RowSums {
 
 RowSums compareAlongRow(const RowWindow& window, const cv::Mat& other, int v, double position,
                         const RowWarp& warp) {
-  alignas(32) std::array<float, kPlane> values;
+  alignas(32) WindowValues values;
   sampleRows(other, v, position, warp, window.planes, values.data());
   const OtherSums sums = multiply(window.planes, values.data());
   const double mean = sums.b / window.count();
