@@ -28,7 +28,8 @@ using namespace uav_landing;
 using namespace uav_landing::benchmark;
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kWarmUp = 12;  // pairs that do not count: first search, pools and buffers that grow
+// Pairs that do not count: first search, pools and buffers that grow, the frames of the window over time.
+constexpr size_t kWarmUp = 30;
 
 double milliseconds(Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); }
 
@@ -73,7 +74,7 @@ struct Measurement {
 
 struct Options {
   std::string config = UAV_LANDING_SOURCE_DIR "/config/simulator/full_scale.yaml", dataset, json;
-  int width = 640, pairs = 60;
+  int width = 640, pairs = 90;
   double rate = 20, idle = 5;
 };
 
@@ -172,7 +173,7 @@ int main(int argc, char** argv) {
   app.add_option("--dataset", options.dataset, "dataset folder instead of the simulator");
   app.add_option("--pairs", options.pairs, "of the sequence")
       ->capture_default_str()
-      ->check(CLI::Range(14, 10000));
+      ->check(CLI::Range(static_cast<int>(kWarmUp) + 2, 10000));
   app.add_option("--rate", options.rate, "of the cameras, Hz")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1000.0));

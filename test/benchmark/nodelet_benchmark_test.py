@@ -9,14 +9,14 @@ from pathlib import Path
 import rostest
 from project import rosrun
 
-WIDTH, HEIGHT = 320, 240
+WIDTH, HEIGHT = 640, 480  # so large that lists of corners are no images
 
 
 class NodeletBenchmarkTest(unittest.TestCase):
     def test_no_image_is_copied_or_allocated_between_the_nodelets(self):
         with tempfile.TemporaryDirectory() as folder:
             numbers = Path(folder) / "numbers.json"
-            result = rosrun("nodelet_benchmark", "--width", str(WIDTH), "--pairs", "32", "--idle", "1", "--json",
+            result = rosrun("nodelet_benchmark", "--width", str(WIDTH), "--pairs", "54", "--idle", "1", "--json",
                             str(numbers), timeout=180)
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             measured = json.loads(numbers.read_text(encoding="utf-8"))
