@@ -50,8 +50,8 @@ struct Pair {
 };
 Pair renderPair(const SimulatorParameters& p, const CameraPose& pose) {
   Pair pair{makeCameraRig(p).value(), {}, {}};
-  const Renderer renderer(Scene(p.runway, p.surface, 1), placeObjects(p.objects, p.runway.width, 1),
-                          p.image.supersampling, GroundProfile(p.profile));
+  const Renderer renderer(Scene(p.runway, p.surface, 1), placeObjects(p.objects, p.runway.width, 1), p.image,
+                          GroundProfile(p.profile));
   renderer.render(pair.rig.left, pose, pair.left);
   renderer.render(pair.rig.right, pose, pair.right);
   return pair;
@@ -279,13 +279,16 @@ TEST(Renderer, ACrestHidesTheGroundBehindIt) {
   EXPECT_NEAR(start - 0.5 + above, crest.y(), 0.5) << "a crest is not smoothed within the pixel";
 }
 
-/// The pose's picture by ideal lenses, the picture enlarged this many times and averaged back.
-cv::Mat averagedPicture(SimulatorParameters p, int finer) {
+/// The pose's picture by ideal lenses, the picture enlarged this many times, blurred after it is drawn and
+/// averaged back.
+cv::Mat averagedPicture(SimulatorParameters p, int finer, double blur = 0) {
   p.left_camera = p.right_camera = {};
   p.rig = {};
+  p.image.blur = 0;
   p.setPictures(320 * finer, 240 * finer, 280.0 * finer);
-  cv::Mat picture;
-  cv::resize(renderPair(p, kPose).left, picture, cv::Size(320, 240), 0, 0, cv::INTER_AREA);
+  cv::Mat picture = renderPair(p, kPose).left;
+  if (blur > 0) cv::GaussianBlur(picture, picture, {}, blur * finer);
+  cv::resize(picture, picture, cv::Size(320, 240), 0, 0, cv::INTER_AREA);
   return picture;
 }
 
@@ -308,6 +311,43 @@ TEST(Renderer, MarksAreAveragedOverThePixelDownToDashesFarSmallerThanIt) {
   EXPECT_LT(cv::norm(ground, cv::NORM_INF), 15) << "grey levels";
 }
 
+TEST(Renderer, BlurComesBeforePixelsDoAsInALens) {
+  constexpr double kBlur = 0.4;
+  SimulatorParameters p = dashedBoard();
+  p.image.supersampling = 4;
+  const cv::Mat lens = averagedPicture(p, 4, kBlur), afterwards = averagedPicture(p, 1, kBlur);
+  p.left_camera = p.right_camera = {};
+  p.rig = {};
+  p.image.blur = kBlur;
+  p.setPictures(320, 240, 280.0);
+  cv::Mat drawn = renderPair(p, kPose).left;
+  const double left = PixelFilter(p.image.supersampling, kBlur).blurLeft();
+  ASSERT_LT(left, kBlur);
+  cv::GaussianBlur(drawn, drawn, {}, left);
+  const cv::Rect ground(8, 50, 304, 182);
+  EXPECT_LT(cv::norm(drawn(ground) - lens(ground)), 0.6 * cv::norm(afterwards(ground) - lens(ground)));
+}
+
+TEST(PixelFilter, ItsVarianceAndWhatItLeavesAreThePixelsAndTheLenses) {
+  for (const int samples : {1, 2, 4}) {
+    for (const double blur : {0.0, 0.3, 0.5, 0.9}) {
+      for (const PixelFilter& filter : {PixelFilter(samples, blur), PixelFilter(samples, blur).finer()}) {
+        double sum = 0, mean = 0, variance = filter.sampleSide() * filter.sampleSide() / 12;
+        for (const PixelFilter::Sample& piece : filter.samples()) {
+          sum += piece.weight;
+          mean += piece.weight * piece.du;
+          variance += piece.weight * piece.dv * piece.dv;
+        }
+        EXPECT_NEAR(sum, 1, 1e-6);
+        EXPECT_NEAR(mean, 0, 1e-6);
+        EXPECT_NEAR(variance + filter.blurLeft() * filter.blurLeft(), 1.0 / 12 + blur * blur, 1e-6)
+            << samples << " samples, blur " << blur;
+        EXPECT_NEAR(filter.equivalentSide() * filter.equivalentSide() / 12, variance, 1e-6);
+      }
+    }
+  }
+}
+
 TEST(Renderer, TextureKeepsTheBrightnessOfEveryRegionAtEveryDistance) {
   const cv::Mat difference = averagedPicture(texturedGround(), 1) - averagedPicture(texturedGround(), 6);
   for (int v = 40; v < 240; v += 20)
@@ -317,6 +357,7 @@ TEST(Renderer, TextureKeepsTheBrightnessOfEveryRegionAtEveryDistance) {
 
 TEST(Renderer, ABoxHidesTheGroundBehindItsOutlineAndNothingElse) {
   SimulatorParameters p = plainBoard();
+  p.image.blur = 0;
   const CameraRig rig = makeCameraRig(p).value();
   StandingObject box;
   box.low = {3, 0.5, 0};
@@ -324,8 +365,8 @@ TEST(Renderer, ABoxHidesTheGroundBehindItsOutlineAndNothingElse) {
   box.brightness = 120;
   const Scene scene(p.runway, p.surface, 1);
   cv::Mat with, without, difference;
-  Renderer(scene, {box}, 2).render(rig.left, kPose, with);
-  Renderer(scene, {}, 2).render(rig.left, kPose, without);
+  Renderer(scene, {box}, p.image).render(rig.left, kPose, with);
+  Renderer(scene, {}, p.image).render(rig.left, kPose, without);
   cv::absdiff(with, without, difference);
   const cv::Rect found = cv::boundingRect(difference > 0.5);
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;

@@ -28,7 +28,7 @@ class ApproachSimulator {
   /// What falls on the two sensors of one frame: rendering it is the costly part of the frame.
   struct Light {
     int index = 0;
-    cv::Mat left, right;  ///< grey levels before lens blur, gain and noise; 32-bit float
+    cv::Mat left, right;  ///< grey levels before the rest of the lens blur, gain and noise; 32-bit float
   };
   Light light(int index) const;
   /// The frame that sensors of this noise (1 sigma, grey levels) make of it.

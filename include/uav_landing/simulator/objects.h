@@ -6,6 +6,7 @@
 
 #include "uav_landing/simulator/camera_rig.h"
 #include "uav_landing/simulator/parameters.h"
+#include "uav_landing/simulator/pixel_filter.h"
 
 namespace uav_landing {
 
@@ -20,8 +21,9 @@ std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& objec
                                          uint64_t seed);
 
 /// Draws the objects over an image of the ground (32-bit float). rotation: runway frame from rectified camera
-/// axes; centre: the camera's, in the runway frame.
+/// axes; centre: the camera's, in the runway frame; filter: what the ground was drawn with.
 void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
-                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, cv::Mat& image);
+                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
+                 cv::Mat& image);
 
 }  // namespace uav_landing

@@ -6,6 +6,8 @@
 #include "uav_landing/simulator/camera_rig.h"
 #include "uav_landing/simulator/ground_profile.h"
 #include "uav_landing/simulator/objects.h"
+#include "uav_landing/simulator/parameters.h"
+#include "uav_landing/simulator/pixel_filter.h"
 #include "uav_landing/simulator/scene.h"
 #include "uav_landing/simulator/trajectory.h"
 
@@ -15,13 +17,15 @@ namespace uav_landing {
 /// curved), and the ground is averaged over the patch that the sample covers.
 class Renderer {
  public:
-  /// supersampling: samples along each side of a pixel.
-  Renderer(Scene scene, std::vector<StandingObject> objects, int supersampling,
+  /// image: its supersampling and blur count.
+  Renderer(Scene scene, std::vector<StandingObject> objects, const SimulatedImageParameters& image,
            GroundProfile profile = GroundProfile());
 
   /// Grey levels as 32-bit floats, of the camera's size. pose: of the rectified left camera, also for the
   /// right.
   void render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const;
+  /// 1 sigma of the lens's blur that is still to be done, px.
+  double blurLeft() const { return filter_.blurLeft(); }
 
  private:
   struct View;
@@ -31,11 +35,12 @@ class Renderer {
   float pixel(const View& view, const PixelRay& ray) const;
   float mixed(const View& view, const PixelRay& ray) const;
   float ground(const View& view, const OnGround& ground) const;
-  float sky(const Sample& sample) const;
+  /// share: of the sample's sides that counts.
+  float sky(const Sample& sample, float share = 1) const;
 
   Scene scene_;
   std::vector<StandingObject> objects_;
-  int supersampling_;
+  PixelFilter filter_;
   GroundProfile profile_;
 };
 

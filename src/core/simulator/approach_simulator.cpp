@@ -37,7 +37,7 @@ ApproachSimulator::ApproachSimulator(const SimulatorParameters& parameters, Came
       renderer_(Scene(parameters.runway, parameters.surface, parameters.random.seed),
                 standOn(profile_,
                         placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed)),
-                parameters.image.supersampling, profile_),
+                parameters.image, profile_),
       frames_(1 + static_cast<int>(std::floor(parameters.path.duration * parameters.path.rate + 1e-6))) {}
 
 Failure ApproachSimulator::checkHeights() const {
@@ -76,6 +76,7 @@ cv::Mat ApproachSimulator::picture(const cv::Mat& light, const SimulatedCameraPa
   const uint64_t seed = (static_cast<uint64_t>(parameters_.random.seed) << 32) + picture_number + 1;
   SimulatedImageParameters image = parameters_.image;
   image.noise = noise;
+  image.blur = renderer_.blurLeft();
   cv::Mat grey = light.clone(), mono8;
   uav_landing::expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, grey, mono8);
   return mono8;

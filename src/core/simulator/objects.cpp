@@ -9,8 +9,6 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kSamples = 4;  ///< along each side of a pixel
-
 /// Corner with a bit for each axis that says which of the two it takes.
 Eigen::Vector3d corner(const StandingObject& object, int bits) {
   Eigen::Vector3d point;
@@ -90,18 +88,14 @@ std::optional<float> trace(const std::vector<const Visible*>& objects, const Eig
 
 /// Puts the objects into one pixel over the ground's grey level.
 float drawPixel(const std::vector<const Visible*>& objects, const PixelRay& ray,
-                const Eigen::Matrix3f& rotation, float ground) {
+                const Eigen::Matrix3f& rotation, const PixelFilter& filter, float ground) {
   float sum = 0;
-  for (int j = 0; j < kSamples; ++j) {
-    for (int i = 0; i < kSamples; ++i) {
-      const float du = (static_cast<float>(i) + 0.5f) / kSamples - 0.5f;
-      const float dv = (static_cast<float>(j) + 0.5f) / kSamples - 0.5f;
-      const Eigen::Vector3f direction(ray.x + du * ray.xu + dv * ray.xv, ray.y + du * ray.yu + dv * ray.yv,
-                                      1.0f);
-      sum += trace(objects, (rotation * direction).array()).value_or(ground);
-    }
+  for (const PixelFilter::Sample& piece : filter.samples()) {
+    const Eigen::Vector3f direction(ray.x + piece.du * ray.xu + piece.dv * ray.xv,
+                                    ray.y + piece.du * ray.yu + piece.dv * ray.yv, 1.0f);
+    sum += piece.weight * trace(objects, (rotation * direction).array()).value_or(ground);
   }
-  return sum / (kSamples * kSamples);
+  return sum;
 }
 
 }  // namespace
@@ -131,7 +125,8 @@ std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& p, do
 }
 
 void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
-                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, cv::Mat& image) {
+                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
+                 cv::Mat& image) {
   if (objects.empty()) return;
   std::vector<Visible> visible;
   for (const StandingObject& object : objects)
@@ -139,6 +134,7 @@ void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCame
                        object.high.array() - centre.cast<float>().array(), object.brightness,
                        outlineOf(object, rotation, centre)});
   const Eigen::Matrix3f axes = rotation.cast<float>();
+  const PixelFilter finer = filter.finer();  // outlines are told by samples alone
   cv::parallel_for_(cv::Range(0, image.rows), [&](const cv::Range& rows) {
     std::vector<const Visible*> here;
     for (int row = rows.start; row < rows.end; ++row) {
@@ -148,7 +144,7 @@ void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCame
         for (const Visible& object : visible)
           if (object.outline.contains(rays[column], rays[column].xu)) here.push_back(&object);
         float& grey = image.at<float>(row, column);
-        if (!here.empty()) grey = drawPixel(here, rays[column], axes, grey);
+        if (!here.empty()) grey = drawPixel(here, rays[column], axes, finer, grey);
       }
     }
   });

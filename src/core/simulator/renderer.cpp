@@ -53,10 +53,11 @@ struct Renderer::OnGround {
   float height;  ///< of the camera above that ground
 };
 
-Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, int supersampling, GroundProfile profile)
+Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, const SimulatedImageParameters& image,
+                   GroundProfile profile)
     : scene_(std::move(scene)),
       objects_(std::move(objects)),
-      supersampling_(supersampling),
+      filter_(image.supersampling, image.blur),
       profile_(std::move(profile)) {}
 
 Renderer::OnGround Renderer::onGround(const View& view, const Sample& sample) const {
@@ -78,40 +79,39 @@ float Renderer::ground(const View& view, const OnGround& on) const {
   return scene_.ground(patch, scene_.cover(patch), range * sample.direction.norm());
 }
 
-float Renderer::sky(const Sample& sample) const {
-  return scene_.sky(sample.direction.normalized(), sample.along_u.norm());
+float Renderer::sky(const Sample& sample, float share) const {
+  return scene_.sky(sample.direction.normalized(), share * sample.along_u.norm());
 }
 
 float Renderer::mixed(const View& view, const PixelRay& ray) const {
-  const float side = 1.0f / static_cast<float>(supersampling_);
   float sum = 0;
-  for (int j = 0; j < supersampling_; ++j) {
-    for (int i = 0; i < supersampling_; ++i) {
-      const Sample sample(view, ray, side, (static_cast<float>(i) + 0.5f) * side - 0.5f,
-                          (static_cast<float>(j) + 0.5f) * side - 0.5f);
-      // The horizon passes through samples: both sides count by their area.
-      const OnGround on = onGround(view, sample);
-      const float below = std::clamp(0.5f - on.sample.direction.z() / on.sample.extent, 0.0f, 1.0f);
-      if (below > 0) sum += below * ground(view, on);
-      if (below < 1) sum += (1 - below) * sky(sample);
-    }
+  for (const PixelFilter::Sample& piece : filter_.samples()) {
+    const Sample sample(view, ray, filter_.sampleSide(), piece.du, piece.dv);
+    // The horizon passes through samples: both sides count by their area.
+    const OnGround on = onGround(view, sample);
+    const float below = std::clamp(0.5f - on.sample.direction.z() / on.sample.extent, 0.0f, 1.0f);
+    if (below > 0) sum += piece.weight * below * ground(view, on);
+    if (below < 1) sum += piece.weight * (1 - below) * sky(sample);
   }
-  return sum * side * side;
+  return sum;
 }
 
 float Renderer::pixel(const View& view, const PixelRay& ray) const {
   // One sample is exact enough for sky, and for one material that lies well below the horizon: there the
-  // perspective within a pixel moves its mean by less than 1 / (12 kFar) of the pixel.
+  // perspective within its side moves its mean by less than 1 / (12 kFar) of the side.
   constexpr float kFar = 16.0f;
-  const Sample whole(view, ray, 1.0f, 0.0f, 0.0f);
+  const Sample whole(view, ray, filter_.support(), 0.0f, 0.0f);
+  const float even = filter_.equivalentSide() / filter_.support();
   const OnGround on = onGround(view, whole);
-  if (on.sample.direction.z() > on.sample.extent) return sky(whole);
+  if (on.sample.direction.z() > on.sample.extent) return sky(whole, even);
   const float fall = -on.sample.direction.z();
-  if (fall < kFar * on.sample.extent) return mixed(view, ray);
+  if (fall < kFar * even * on.sample.extent) return mixed(view, ray);
   const float range = on.height / fall;
-  const RunwaySurface::Patch patch = on.sample.patch(view.centre, range, fall);
+  RunwaySurface::Patch patch = on.sample.patch(view.centre, range, fall);
   const RunwaySurface::Cover cover = scene_.cover(patch);
   if (!cover.pure()) return mixed(view, ray);
+  patch.length *= even;
+  patch.width *= even;
   return scene_.ground(patch, cover, range * whole.direction.norm());
 }
 
@@ -127,7 +127,7 @@ void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, cv:
                      [&](const PixelRay& ray) { return pixel(view, ray); });
     }
   });
-  drawObjects(objects_, camera, rotation, centre, image);
+  drawObjects(objects_, camera, rotation, centre, filter_, image);
 }
 
 }  // namespace uav_landing

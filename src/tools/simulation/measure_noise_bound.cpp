@@ -73,11 +73,11 @@ Expected<Scenery> render(const SimulatorParameters& parameters) {
   const Eigen::Matrix3d rotation = runwayFromOptical(pose.attitude);
   scenery.truth.g = rotation.transpose() * -Eigen::Vector3d::UnitZ() / pose.position.z();
   const Renderer renderer(Scene(parameters.runway, parameters.surface, parameters.random.seed), {},
-                          parameters.image.supersampling);
+                          parameters.image);
   const auto picture = [&](const SimulatedCamera& camera, cv::Mat& image) {
     renderer.render(camera, pose, image);
-    const double blur = parameters.image.blur;
-    cv::GaussianBlur(image, image, cv::Size(), blur, blur, cv::BORDER_REPLICATE);
+    const double blur = renderer.blurLeft();
+    if (blur > 0) cv::GaussianBlur(image, image, cv::Size(), blur, blur, cv::BORDER_REPLICATE);
   };
   picture(rig->left, scenery.left);
   picture(rig->right, scenery.right);
