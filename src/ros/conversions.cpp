@@ -29,6 +29,7 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.g, message.plane);
   toArray(result.plane.covariance, message.plane_covariance);
   toArray(result.row_covariance, message.plane_row_covariance);
+  message.plane_lasting_share = result.lasting_share;
   toArray(result.below.g, message.plane_below);
   toArray(result.below.covariance, message.plane_below_covariance);
   message.surface_curvature = result.curvature;
@@ -36,6 +37,7 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   message.residual_stddev = result.residual_stddev;
   message.surface_variance = result.surface_variance;
   message.disparity_bias_stddev = result.disparity_bias_stddev;
+  message.row_bias_stddev = result.row_bias_stddev;
   toArray(result.vertical_rotation.w, message.vertical_rotation);
   toArray(result.vertical_rotation.covariance, message.vertical_rotation_covariance);
   message.vertical_rotation_count = static_cast<uint32_t>(result.vertical_rotation.count);
@@ -70,6 +72,8 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
   fromArray(message.plane_row_covariance, result.row_covariance);
+  // Who does not know the field leaves it 0.
+  result.lasting_share = message.plane_lasting_share == 0 ? kUnknown : message.plane_lasting_share;
   fromArray(message.plane_below, result.below.g);
   fromArray(message.plane_below_covariance, result.below.covariance);
   // Who does not know the field leaves it empty.
@@ -79,6 +83,7 @@ StereoDepthResult toResult(const StereoDepth& message) {
   result.residual_stddev = message.residual_stddev;
   result.surface_variance = message.surface_variance;
   result.disparity_bias_stddev = message.disparity_bias_stddev;
+  result.row_bias_stddev = message.row_bias_stddev;
   fromArray(message.vertical_rotation, result.vertical_rotation.w);
   fromArray(message.vertical_rotation_covariance, result.vertical_rotation.covariance);
   result.vertical_rotation.count = static_cast<int>(message.vertical_rotation_count);

@@ -50,6 +50,7 @@ struct ApproachMessages {
     result.corners = 80;
     result.plane.g = normalFromPitchRoll(kPitch, kRoll) / h;
     result.disparity_bias_stddev = 0.02;
+    result.row_bias_stddev = 0.03;
     result.plane.covariance = std::pow(kSmall / h, 2) * Eigen::Matrix3d::Identity();
     result.plane.covariance(2, 2) += std::pow(result.disparity_bias_stddev / rig.fb(), 2);
     for (int v = 280; v < 480; v += 40)

@@ -97,6 +97,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   fill(result.baseline_direction.t);
   fill(result.baseline_direction.covariance);
   result.disparity_bias_stddev = next();
+  result.row_bias_stddev = next();
+  result.lasting_share = next();
   result.row_agreement = next();
   result.photometric_agreement = next();
   result.right_repeated = true;
@@ -135,6 +137,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.baseline_direction.t, result.baseline_direction.t);
   EXPECT_EQ(back.baseline_direction.covariance, result.baseline_direction.covariance);
   EXPECT_EQ(back.disparity_bias_stddev, result.disparity_bias_stddev);
+  EXPECT_EQ(back.row_bias_stddev, result.row_bias_stddev);
+  EXPECT_EQ(back.lasting_share, result.lasting_share);
   EXPECT_EQ(back.row_agreement, result.row_agreement);
   EXPECT_EQ(back.photometric_agreement, result.photometric_agreement);
   EXPECT_FALSE(back.left_repeated);

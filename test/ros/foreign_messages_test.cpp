@@ -366,6 +366,20 @@ TEST_F(ForeignMessages, TheFieldThatIsWrongIsNamed) {
   EXPECT_EQ(messageOf(stereo),
             "input_invalid: disparity_bias_stddev: 1000 px is not part of plane_covariance");
   stereo = messages_.stereo;
+  for (const double wrong : {-0.1, 11.0, nan}) {
+    stereo.row_bias_stddev = wrong;
+    EXPECT_NE(messageOf(stereo).find("input_invalid: row_bias_stddev: "), std::string::npos) << wrong;
+  }
+  stereo = messages_.stereo;
+  for (const double wrong : {-0.1, 1.1}) {
+    stereo.plane_lasting_share = wrong;
+    EXPECT_NE(messageOf(stereo).find("input_invalid: plane_lasting_share: "), std::string::npos) << wrong;
+  }
+  for (const double unknown : {0.0, nan}) {
+    stereo.plane_lasting_share = unknown;
+    EXPECT_EQ(messageOf(stereo), "") << unknown;
+  }
+  stereo = messages_.stereo;
   stereo.surface_variance = 900;
   EXPECT_EQ(messageOf(stereo), "input_invalid: surface_variance: 900 m^2 at a height of 17 m");
   stereo = messages_.stereo;

@@ -62,15 +62,17 @@ TEST(RandomApproach, CalibrationErrorsAreAsLargeAsTheEstimatorIsTold) {
 }
 
 TEST(RandomApproach, LensErrorsAreAsLargeAsTheEstimatorExpects) {
+  Parameters parameters;
+  parameters.stereo_depth.row_bias_stddev = 0.05;
   std::vector<double> rows, tilt;
   for (uint64_t seed = 0; seed < 1000; ++seed) {
-    const SimulatedRigParameters rig = drawSnippet(seed, 10, 13, {}).rig;
+    const SimulatedRigParameters rig = drawSnippet(seed, 10, 13, parameters).rig;
     rows.push_back(rig.lens_rows);
     tilt.push_back(rig.lens_tilt_deg);
   }
-  EXPECT_NEAR(spread(rows), 0.03, 0.003) << "px";
+  EXPECT_NEAR(spread(rows), 0.05, 0.005) << "px";
   // Rows 0.3 focal lengths from the middle are off by as much.
-  EXPECT_NEAR(spread(tilt), 0.03 / (0.3 * 554.26) / kDegree, 0.001);
+  EXPECT_NEAR(spread(tilt), 0.05 / (0.3 * 554.26) / kDegree, 0.0017);
   EXPECT_EQ(drawApproach(3).rig.lens_rows, 0) << "an exact calibration";
 }
 

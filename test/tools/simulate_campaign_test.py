@@ -39,11 +39,12 @@ class SimulateCampaignTest(unittest.TestCase):
 
     def test_calibration_errors_follow_the_config(self):
         config = self.folder / "exact.yaml"
-        config.write_text("stereo_depth: {disparity_bias_stddev: 0}\nkalman_height: {height_model_error: 0}\n")
+        config.write_text("stereo_depth: {disparity_bias_stddev: 0, row_bias_stddev: 0}\n"
+                          "kalman_height: {height_model_error: 0}\n")
         options = ("--first", 4, "--count", 1, "--heights", 3, "--noise", 1)
-        names = ("stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg")
+        names = ("stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg", "lens_rows_px", "lens_tilt_deg")
         self.assertNotIn(0, [float(self.fly(*options)[0][name]) for name in names])
-        self.assertEqual([float(self.fly(*options, "--config", config)[0][name]) for name in names], [0, 0, 0, 0])
+        self.assertEqual([float(self.fly(*options, "--config", config)[0][name]) for name in names], [0] * 6)
 
     def test_an_inertial_sensor_shows_in_the_estimates_and_nowhere_else(self):
         config = self.folder / "perfect.yaml"

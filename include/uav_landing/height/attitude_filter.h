@@ -27,13 +27,16 @@ class AttitudeFilter {
     Eigen::Vector3d normal;
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
     Eigen::Matrix3d common_root = Eigen::Matrix3d::Zero();  ///< symmetric root of what is common to them
+    /// Of the average that the normal is, rad^2: that of fading memory is larger, as old pairs count less.
+    Eigen::Matrix3d average_covariance = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d commonCovariance() const { return common_root * common_root.transpose(); }
     double ratio = kUnknown;  ///< squared normalised difference to the pairs before
     bool agrees = true;       ///< the pair's normal is one that the pairs before and the rotation allow
   };
 
   /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair;
-  /// common: of what is the same in all but for its size. step: from the previous pair; without one the
+  /// common: of what is the same in all but for its size; fresh: share of the covariance that is new in every
+  /// pair, the rest being among the common one. step: from the previous pair; without one the
   /// filter starts anew, but not before the normal has been compared with those before by what a camera
   /// turns. A normal that contradicts the ones before (another surface was taken for the ground) is left out
   /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
@@ -42,7 +45,7 @@ class AttitudeFilter {
   /// four pairs: when a normal contradicts the one and agrees with the other, that one is taken.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step,
-                  const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero());
+                  const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero(), double fresh = 1);
   /// A pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
   /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
@@ -58,7 +61,7 @@ class AttitudeFilter {
   void guess(double T);
   void doubt(const Estimate& other, bool turn);
   Estimate start(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                 const Eigen::Matrix3d& common_root);
+                 const Eigen::Matrix3d& common_root, const Eigen::Matrix3d& fresh);
 
   std::optional<Estimate> estimate_;
   std::optional<Estimate> other_;  // without the turn or the normal that is in doubt

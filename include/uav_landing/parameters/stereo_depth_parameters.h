@@ -29,6 +29,7 @@ struct StereoDepthParameters {
   bool surface_curvature = true;
   double slope_change_deg = 0.3;
   double disparity_bias_stddev = 0.02;
+  double row_bias_stddev = 0.03;
   double max_roll_deg = 30.0;
   double max_pitch_deg = 30.0;
 
@@ -71,6 +72,10 @@ struct StereoDepthParameters {
     v.number("disparity_bias_stddev", disparity_bias_stddev, 0.0, 1.0, "px",
              "1 sigma, in the middle of the image, by which the right camera may have turned since a good "
              "calibration: an error common to all disparities of all pairs");
+    v.number(
+        "row_bias_stddev", row_bias_stddev, 0.0, 1.0, "px",
+        "1 sigma of the vertical disparities that a good calibration's lenses leave in the middle of the "
+        "image, and as much of their inclination at a third of the focal length beside it");
     v.number("max_roll_deg", max_roll_deg, 1.0, 60.0, "deg", "largest roll that is believed");
     v.number("max_pitch_deg", max_pitch_deg, 1.0, 60.0, "deg", "largest pitch, up or down, that is believed");
   }

@@ -60,6 +60,9 @@ struct StereoDepthResult {
   /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
   /// 1/m^2.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
+  /// Share of the rest of it, without the bias of disparities, that is no noise of the images, above 0 to 1:
+  /// some of that is the same in the next pairs. Unknown without direct refinement.
+  double lasting_share = kUnknown;
   /// Tangent of the surface straight below the camera, for the height: the plane is that of the surface
   /// ahead. Not known without direct refinement.
   GroundPlane below;
@@ -79,6 +82,8 @@ struct StereoDepthResult {
   double row_agreement = kUnknown;
   /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
   double disparity_bias_stddev = 0;
+  /// 1 sigma of the vertical disparities that the calibration's lenses leave, pixels.
+  double row_bias_stddev = 0;
   /// Share of the image blocks over the ground that look alike in both images and lie on one plane; unknown
   /// without direct refinement.
   double photometric_agreement = kUnknown;

@@ -26,11 +26,11 @@ Eigen::RowVector3d verticalDisparityByRotation(const StereoRig& rig, double colu
 /// right ray of a point is off by b (y tz - ty) / Z, and b / Z = d / f. disparity: of the point, pixels.
 Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disparity, double v);
 
-/// 1 sigma of the vertical disparities that a good calibration of the lenses leaves, pixels, and how far from
-/// the middle of the image, in focal lengths, they tell a roll.
-constexpr double kLensError = 0.03, kLensReach = 0.3;
-/// Variances of the w that these look like, rad^2. Nothing has turned: disparities do not show it.
-Eigen::Vector3d lensVariances(const StereoRig& rig);
+/// How far from the middle of the image, in focal lengths, vertical disparities tell a roll.
+constexpr double kLensReach = 0.3;
+/// Variances of the w, rad^2, that the vertical disparities look like which the lenses of a good calibration
+/// leave, 1 sigma of row_bias_stddev, pixels. Nothing has turned: disparities do not show it.
+Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev);
 
 /// How the plane g fitted to these points' disparities follows w: dg = A dw, with the points on the plane
 /// weighted as the fit does (plane_fit.h). 1/m per rad. Points that leave a plane undetermined give zero.

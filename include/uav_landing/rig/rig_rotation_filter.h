@@ -31,8 +31,9 @@ class RigRotationFilter {
 
   /// Time of the pair that the next measurements are of, s; must not go back.
   void advance(double stamp);
-  /// bias_stddev: 1 sigma of w at a good calibration, in pixels at the middle of the image.
-  void setPrior(double bias_stddev);
+  /// bias_stddev: 1 sigma of w at a good calibration, in pixels at the middle of the image. row_bias_stddev:
+  /// 1 sigma of what its lenses do to rows there, pixels.
+  void setPrior(double bias_stddev, double row_bias_stddev);
   void updateVertical(const RigRotation& measured);
 
   /// The plane with w taken out, and, jointly, w with what the vanishing direction says. plane: its
@@ -86,6 +87,7 @@ class RigRotationFilter {
   std::optional<double> stamp_;
   double share_ = 0;                        // that a frame's measurements count for
   double calibrated_variance_ = 0;          // of each component of w, rad^2
+  double row_bias_stddev_ = 0;              // pixels
   Vector slope_variance_ = Vector::Zero();  // of each s, rad^2; 0: no direction yet
   Vector prior_ = Vector::Ones();           // variances
   Matrix information_ = Matrix::Zero();

@@ -79,8 +79,8 @@ class KalmanHeightStage {
   /// Turns the plane by a direction that lies in the ground.
   void fuseDirection(const GroundDirection& ground, Reconstruction& reconstruction) const;
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
-  void averageAttitude(double stamp, const ApproachAngleResult& approach, Reconstruction& reconstruction,
-                       LandingResult& result);
+  void averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                       Reconstruction& reconstruction, LandingResult& result);
   static void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                           LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,

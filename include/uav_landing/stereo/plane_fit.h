@@ -20,7 +20,8 @@ struct PlaneFit {
   std::vector<char> agrees;
   int count = 0;
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();  ///< share of vertical disparities, 1/m^2
-  double residual_stddev = 0;                                ///< pixels, robust
+  double lasting_share = 0;    ///< of the covariance without bias and rows, what is no noise of the images
+  double residual_stddev = 0;  ///< pixels, robust
 };
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev);

@@ -67,9 +67,9 @@ class RowAlignment {
   Measured measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
                    const Eigen::Vector3d& g);
   /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
-  /// with what a calibration that is good to bias_stddev (pixels in the middle of the image) leads to expect,
-  /// as long as the two do not contradict each other.
-  RigRotation residual(const StereoRig& rig, double bias_stddev) const;
+  /// with what a calibration leads to expect that is good to bias_stddev, and its lenses to row_bias_stddev
+  /// (pixels in the middle of the image), as long as the two do not contradict each other.
+  RigRotation residual(const StereoRig& rig, double bias_stddev, double row_bias_stddev) const;
   void reset() { *this = RowAlignment(enabled_, window_radius_); }
 
  private:

@@ -79,12 +79,15 @@ void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motio
             AttitudeFilter::Estimate& estimate) {
   estimate.normal = R * estimate.normal;
   estimate.common_root = (R * estimate.common_root * R.transpose()).eval();
-  estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() +
-                        turnCovariance(T, estimate.normal, step);
+  const Eigen::Matrix3d by_turn = turnCovariance(T, estimate.normal, step);
+  estimate.covariance = (std::exp(T / kMemory) * R * estimate.covariance * R.transpose()).eval() + by_turn;
+  estimate.average_covariance = (R * estimate.average_covariance * R.transpose()).eval() + by_turn;
 }
 
 void addTurn(double T, AttitudeFilter::Estimate& estimate) {
-  estimate.covariance = std::exp(T / kMemory) * estimate.covariance + unknownTurn(T, estimate.normal);
+  const Eigen::Matrix3d by_turn = unknownTurn(T, estimate.normal);
+  estimate.covariance = std::exp(T / kMemory) * estimate.covariance + by_turn;
+  estimate.average_covariance += by_turn;
 }
 
 }  // namespace
@@ -144,10 +147,10 @@ void AttitudeFilter::reset() {
 AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
                                                 const Eigen::Matrix3d& covariance,
                                                 const ApproachAngleResult::Motion& step,
-                                                const Eigen::Matrix3d& common) {
+                                                const Eigen::Matrix3d& common, double fresh) {
   Prediction predicted = predict(stamp, step);
-  const Eigen::Matrix3d common_root = rootOf(common);
-  if (predicted == Prediction::kNone) return start(normal, covariance, common_root);
+  const Eigen::Matrix3d common_root = rootOf(common), of_pair = fresh * covariance;
+  if (predicted == Prediction::kNone) return start(normal, covariance, common_root, of_pair);
   Innovation innovation(*estimate_, normal, covariance);
   bool denied = false;  // the turn that was in doubt
   if (other_) {
@@ -168,7 +171,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   if (!estimate_->agrees) {
     // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
     if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience)
-      return start(normal, covariance, common_root);
+      return start(normal, covariance, common_root, of_pair);
     return *estimate_;
   }
   agreed_ = stamp;
@@ -181,6 +184,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     estimate_->normal = normal;
     estimate_->covariance = covariance;
     estimate_->common_root = common_root;
+    estimate_->average_covariance = of_pair;
     return *estimate_;
   }
   const Eigen::Matrix<double, 3, 2>& basis = innovation.basis;
@@ -188,9 +192,13 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   estimate_->normal = (estimate_->normal + basis * (gain * innovation.difference)).normalized();
   // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
   const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
-  const Eigen::Matrix2d joint =
-      kept * innovation.P * kept.transpose() + gain * innovation.measured * gain.transpose();
-  estimate_->covariance = basis * joint * basis.transpose();
+  const auto joint = [&](const Eigen::Matrix2d& before, const Eigen::Matrix2d& measured) -> Eigen::Matrix3d {
+    return basis * (kept * before * kept.transpose() + gain * measured * gain.transpose()) *
+           basis.transpose();
+  };
+  const Eigen::Matrix2d average = symmetric(basis.transpose() * estimate_->average_covariance * basis);
+  estimate_->covariance = joint(innovation.P, innovation.measured);
+  estimate_->average_covariance = joint(average, fresh * innovation.measured);
   // Roots and not covariances: what is common adds up with its sign.
   estimate_->common_root =
       basis * (kept * basis.transpose() * estimate_->common_root + gain * basis.transpose() * common_root);
@@ -199,11 +207,12 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
 
 AttitudeFilter::Estimate AttitudeFilter::start(const Eigen::Vector3d& normal,
                                                const Eigen::Matrix3d& covariance,
-                                               const Eigen::Matrix3d& common_root) {
+                                               const Eigen::Matrix3d& common_root,
+                                               const Eigen::Matrix3d& fresh) {
   other_.reset();
   agreed_ = stamp_;
   agreements_ = 1;
-  estimate_ = Estimate{normal, covariance, common_root, kUnknown, true};
+  estimate_ = Estimate{normal, covariance, common_root, fresh, kUnknown, true};
   return *estimate_;
 }
 

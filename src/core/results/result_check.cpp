@@ -137,6 +137,11 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
   if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))
     return text("disparity_bias_stddev: ", result.disparity_bias_stddev,
                 " px is not part of plane_covariance");
+  constexpr double kLargestRowBias = 10;
+  if (!(result.row_bias_stddev >= 0 && result.row_bias_stddev <= kLargestRowBias))
+    return text("row_bias_stddev: ", result.row_bias_stddev, " px, 0 to ", kLargestRowBias, " expected");
+  if (!std::isnan(result.lasting_share) && !(result.lasting_share > 0 && result.lasting_share <= 1))
+    return text("plane_lasting_share: ", result.lasting_share, ", at most 1 expected");
   // The noise of an unbiased variance makes it negative, but not by much.
   constexpr double kLeastSurface = -1e-2, kLargestSurface = 1;
   const double surface = result.surface_variance * size * size;

@@ -39,8 +39,8 @@ Eigen::RowVector2d verticalDisparityByBaseline(const StereoRig& rig, double disp
   return rig.fy / rig.fx * disparity * Eigen::RowVector2d(-1, y);
 }
 
-Eigen::Vector3d lensVariances(const StereoRig& rig) {
-  const Eigen::Vector3d pixels(kLensError, 0, kLensError / kLensReach);
+Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev) {
+  const Eigen::Vector3d pixels(row_bias_stddev, 0, row_bias_stddev / kLensReach);
   return (pixels / rig.fy).array().square();
 }
 

@@ -26,9 +26,9 @@ constexpr double kNoiseShare = 0.1;
 RigRotationFilter::RigRotationFilter(const StereoRig& rig, double memory) : rig_(rig), memory_(memory) {}
 
 void RigRotationFilter::reset() {
-  const double calibrated = calibrated_variance_;
+  const double calibrated = calibrated_variance_, row_bias = row_bias_stddev_;
   *this = RigRotationFilter(rig_, memory_);
-  if (calibrated > 0) setPrior(std::sqrt(calibrated) * rig_.fx);
+  if (calibrated > 0) setPrior(std::sqrt(calibrated) * rig_.fx, row_bias);
 }
 
 void RigRotationFilter::startAnew(const RigRotation& vertical) {
@@ -49,13 +49,14 @@ void RigRotationFilter::advance(double stamp) {
   right_ *= kept;
 }
 
-void RigRotationFilter::setPrior(double bias_stddev) {
+void RigRotationFilter::setPrior(double bias_stddev, double row_bias_stddev) {
   constexpr double kExact = 1e-7;  // rad
   const double variance = std::pow(std::max(bias_stddev / rig_.fx, kExact), 2);
-  if (variance == calibrated_variance_) return;
+  if (variance == calibrated_variance_ && row_bias_stddev == row_bias_stddev_) return;
   calibrated_variance_ = variance;
+  row_bias_stddev_ = row_bias_stddev;
   prior_.head<3>().setConstant(variance);
-  const Eigen::Vector3d lens = lensVariances(rig_);
+  const Eigen::Vector3d lens = lensVariances(rig_, row_bias_stddev).array() + kExact * kExact;
   prior_[4] = lens.x();
   prior_[5] = lens.z();
   solve();

@@ -42,6 +42,14 @@ ApproachAngleResult::Motion rotationOf(const ApproachAngleResult& approach, bool
   return turn;
 }
 
+/// Share of a pair's own error that is the same in the pairs of a second, as they see the same texture.
+double lastingShare(const StereoDepthResult& stereo) {
+  // Of what is no noise, by the simulator's errors of one pair and of a dozen.
+  constexpr double kLasting = 0.5;
+  constexpr double kOfMatches = 1.0 / 3;  // of all, where nobody knows what is noise
+  return std::isfinite(stereo.lasting_share) ? kLasting * stereo.lasting_share : kOfMatches;
+}
+
 }  // namespace
 
 const ApproachAngleResult::Motion& KalmanHeightStage::publishedMotion(const ApproachAngleResult& approach) {
@@ -196,21 +204,19 @@ void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruct
   common = (kept * common * kept.transpose()).eval() + variance * gain * gain.transpose();
 }
 
-void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult& approach,
+void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                         Reconstruction& reconstruction, LandingResult& result) {
   const GroundPlane& plane = reconstruction.plane;
   const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
-  if (!plane.valid()) return attitude_.carry(stamp, turn);
+  if (!plane.valid()) return attitude_.carry(stereo.stamp, turn);
   Reconstruction::Normal& average = reconstruction.normal;
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
-  // Pairs of a second see the same texture: a share of what makes them differ is alike in all of them, by
-  // the simulator's errors of one pair and of a dozen (none to two fifths, over heights and noise).
-  constexpr double kLasting = 1.0 / 3;
+  const double lasting = lastingShare(stereo);
   const AttitudeFilter::Estimate estimate =
-      attitude_.update(stamp, plane.normal(), own, turn, common + kLasting * own);
-  average = {estimate.normal, (1 - kLasting) * estimate.covariance + estimate.commonCovariance()};
+      attitude_.update(stereo.stamp, plane.normal(), own, turn, common + lasting * own, 1 - lasting);
+  average = {estimate.normal, estimate.average_covariance + estimate.commonCovariance()};
   const double off = std::acos(std::min(1.0, plane.normal().dot(estimate.normal)));
   if (std::isfinite(estimate.ratio))
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
@@ -224,7 +230,7 @@ void KalmanHeightStage::averageAttitude(double stamp, const ApproachAngleResult&
 void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                  Reconstruction& reconstruction) {
   rig_rotation_.advance(stereo.stamp);
-  rig_rotation_.setPrior(stereo.disparity_bias_stddev);
+  rig_rotation_.setPrior(stereo.disparity_bias_stddev, stereo.row_bias_stddev);
   if (!rig_change_.doubts(stereo.vertical_rotation)) rig_rotation_.updateVertical(stereo.vertical_rotation);
   // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
   GroundPlane without = reconstruction.plane;

@@ -50,7 +50,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     if (!stereo.left_repeated) {  // else the next motion is from the pair before
-      averageAttitude(stereo.stamp, approach, reconstruction, result);
+      averageAttitude(stereo, approach, reconstruction, result);
       followStamps(approach.step, reconstruction);
     }
     useWidth(approach.runway, reconstruction, result);

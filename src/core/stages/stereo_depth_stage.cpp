@@ -264,6 +264,7 @@ struct StereoDepthStage::Implementation {
     result.surface_variance = surfaceVariance(model.rig, samples, *plane, 2 * parameters.window_radius + 1);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
+    result.row_bias_stddev = parameters.row_bias_stddev;
   }
 
   void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
@@ -273,9 +274,12 @@ struct StereoDepthStage::Implementation {
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
-    result.row_covariance =
-        rowLeak(rows.residual(fine.rig, parameters.disparity_bias_stddev), result.plane.g);
+    result.row_covariance = rowLeak(rowResidual(), result.plane.g);
     result.plane.covariance += result.row_covariance;
+  }
+
+  RigRotation rowResidual() const {
+    return rows.residual(fine.rig, parameters.disparity_bias_stddev, parameters.row_bias_stddev);
   }
 
   // Where a row is off by dv, a slanted line seems moved along the row by dv times its slope; the two sides
@@ -302,12 +306,12 @@ struct StereoDepthStage::Implementation {
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
     const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
-                                                  limits, parameters.disparity_bias_stddev,
-                                                  rows.residual(fine.rig, parameters.disparity_bias_stddev));
+                                                  limits, parameters.disparity_bias_stddev, rowResidual());
     result.photometric_agreement = direct->agreement();
     if (!fit || !samePlane(fit->plane, result.plane)) return false;
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
+    result.lasting_share = fit->lasting_share;
     if (parameters.surface_curvature) bend(*fit, result);
     return true;
   }

@@ -25,10 +25,11 @@ constexpr double kStartStddev = 0.3;
 constexpr double kLeastShare = 0.5;
 
 /// What rows may be off by besides the rotation that matches found, 1 sigma: texture that is finer than
-/// pixels seems to stay with them, so that matches see rows move by less than they do.
-Eigen::Matrix3d priorOf(const RigRotation& rows) {
-  constexpr double kUnseen = 0.12;
-  return rows.covariance + kUnseen * kUnseen * rows.w * rows.w.transpose();
+/// pixels seems to stay with them, so that matches see rows move by less than they do, the less the more of
+/// it is noise.
+Eigen::Matrix3d priorOf(const RigRotation& rows, bool noisy) {
+  const double unseen = noisy ? 0.4 : 0.2;
+  return rows.covariance + unseen * unseen * rows.w * rows.w.transpose();
 }
 
 }  // namespace
@@ -37,6 +38,7 @@ struct DirectRefinement::Implementation {
   StereoRig rig;
   PairDisparities disparities;
   std::vector<DisparitySample> samples;  // of the disparities found, with true stddevs
+  double common_variance = 0;            // of an error that all of them have, pixels^2
   int agreeing = 0;                      // blocks that look alike and are on the plane
 
   Implementation(const RigModel& model, int margin) : rig(model.rig), disparities(model, margin) {}
@@ -44,7 +46,7 @@ struct DirectRefinement::Implementation {
   void takeSamples(const Eigen::Vector3d& g) {
     samples.clear();
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
-    makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
+    common_variance = makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
   }
 
   // Blocks and not samples: a share of them must not depend on how many speak together.
@@ -87,6 +89,21 @@ struct DirectRefinement::Implementation {
     // The prior of the next pairs is wrong by the same, not what their edges say.
     const Eigen::Matrix3d of_prior = left_over.transpose() * prior * left_over;
     fit.row_covariance = plane_by_rows * of_prior * plane_by_rows.transpose();
+  }
+
+  // Of the weighted fit's covariance, by what the samples' variances are made of; the mean of its three
+  // directions.
+  double lastingShare(const PlaneFit& fit) const {
+    constexpr double kLeast = 1e-3;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), lasting = information;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      if (!fit.agrees[i]) continue;
+      const double variance = samples[i].stddev * samples[i].stddev;
+      const Eigen::Vector3d row = rig.fb() * rig.ray(samples[i].u, samples[i].v);
+      information += row * row.transpose() / variance;
+      lasting += common_variance / (variance * variance) * row * row.transpose();
+    }
+    return std::clamp((information.inverse() * lasting).trace() / 3, kLeast, 1.0);
   }
 
   Failure tooFew(int least) const {
@@ -134,7 +151,8 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
       return tl::make_unexpected(own.tooFewOnThePlane());
     const double change = own.change(g, fit->plane.g);
     if (step + 1 == kSteps || (step > 0 && change < kConverged)) {
-      own.solveWithRows(priorOf(rows), bias_stddev, *fit);
+      fit->lasting_share = own.lastingShare(*fit);
+      own.solveWithRows(priorOf(rows, own.disparities.haveCommonErrors()), bias_stddev, *fit);
       // What has not settled is known no better than it moves.
       if (change > kConverged) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;

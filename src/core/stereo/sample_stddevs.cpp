@@ -20,8 +20,8 @@ constexpr double kMedianScatter = 2.33;
 
 }  // namespace
 
-void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
-                     std::vector<DisparitySample>& samples) {
+double makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
+                       std::vector<DisparitySample>& samples) {
   std::vector<double> residuals, stddevs, ratios, missing;
   for (std::vector<double>* values : {&residuals, &stddevs, &ratios, &missing})
     values->reserve(samples.size());
@@ -47,6 +47,7 @@ void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double leas
       missing.empty() ? 0 : std::clamp(medianOf(missing) - by_chance, 0.0, kLargestCommon * kLargestCommon);
   for (DisparitySample& sample : samples)
     sample.stddev = std::sqrt(factor * factor * sample.stddev * sample.stddev + common);
+  return common;
 }
 
 }  // namespace uav_landing

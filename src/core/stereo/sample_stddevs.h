@@ -12,9 +12,9 @@ namespace uav_landing {
 /// plane g, 1/m: a factor, as pixels of rectified images are not independent, and an error that all samples
 /// have besides, from the surface and the calibration. The factor shows in the noisier half of the samples,
 /// the error in the quietest, which it concerns most: seen through more noise it is too uncertain.
-/// least_factor: 1 where neighbours have errors in common, so that they scatter less than they are wrong,
-/// else 0. samples: at least one.
-void makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
-                     std::vector<DisparitySample>& samples);
+/// Returns that error's variance, pixels^2. least_factor: 1 where neighbours have errors in common, so that
+/// they scatter less than they are wrong, else 0. samples: at least one.
+double makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
+                       std::vector<DisparitySample>& samples);
 
 }  // namespace uav_landing

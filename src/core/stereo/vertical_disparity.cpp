@@ -189,17 +189,19 @@ void RowAlignment::average(const RigRotation& measured) {
   measured_ = true;
 }
 
-RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev) const {
+RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev, double row_bias_stddev) const {
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
-  const double calibrated = std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
-  RigRotation residual{Eigen::Vector3d::Zero(), calibrated * Eigen::Matrix3d::Identity()};
+  const Eigen::Vector3d variances =
+      lensVariances(rig, row_bias_stddev).array() + std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+  const Eigen::Matrix3d calibrated = variances.asDiagonal();
+  RigRotation residual{Eigen::Vector3d::Zero(), calibrated};
   if (measured_) {
-    Eigen::Matrix3d prior = Eigen::Matrix3d::Identity() / calibrated;
+    Eigen::Matrix3d prior = calibrated.inverse();
     const Eigen::Matrix3d alone = information_.inverse();
     const Eigen::Vector3d w = alone * right_;
-    const Eigen::Matrix3d both = alone + calibrated * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d both = alone + calibrated;
     if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
     residual.covariance = (information_ + prior).inverse();
     residual.w = residual.covariance * right_;

@@ -201,7 +201,7 @@ void measure(const Scenery& scenery, const Bounds& bounds, double noise, uint64_
              Sums& sums) {
   StereoDepthParameters with, without;
   without.direct_refinement = false;
-  with.disparity_bias_stddev = 0;
+  with.disparity_bias_stddev = with.row_bias_stddev = 0;
   StereoDepthStage direct(scenery.model, with), corners(scenery.model, without);
   for (int i = 0; i < pairs; ++i) {
     const cv::Mat left = exposed(scenery.left, noise, seed + 2 * i);

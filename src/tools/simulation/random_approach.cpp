@@ -146,8 +146,8 @@ CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_len
   // The simulator's ground is flat here: a baseline error stands for what the height may be wrong by in all.
   prior.baseline = parameters.kalman_height.height_model_error;
   prior.rx = prior.ry = prior.rz = parameters.stereo_depth.disparity_bias_stddev / focal_length;
-  prior.lens_rows = kLensError;
-  prior.lens_tilt = kLensError / (kLensReach * focal_length);
+  prior.lens_rows = parameters.stereo_depth.row_bias_stddev;
+  prior.lens_tilt = prior.lens_rows / (kLensReach * focal_length);
   const ApproachAngleParameters& imu = parameters.approach_angle;
   prior.imu_attitude = std::hypot(imu.imu_attitude_stddev_deg, imu.runway_slope_stddev_deg) * kDegree;
   prior.imu_rate_bias = imu.imu_rate_bias_deg * kDegree;

@@ -55,7 +55,7 @@ class Flight {
 
 TEST(AttitudeFilter, AveragesThroughRotationAndClaimsATrueVariance) {
   constexpr double kNormal = 0.15 * kDegree, kRotation = 0.01 * kDegree;
-  double squares = 0, ratios = 0;
+  double squares = 0, ratios = 0, of_average = 0;
   constexpr int kFlights = 200, kFrames = 60;
   for (unsigned seed = 0; seed < kFlights; ++seed) {
     Flight flight(seed, kNormal, kRotation);
@@ -66,11 +66,13 @@ TEST(AttitudeFilter, AveragesThroughRotationAndClaimsATrueVariance) {
     const double error = rollOf(estimate.normal) - rollOf(flight.truth(kFrames));
     squares += error * error / kFlights;
     ratios += error * error / rollVariance(estimate.normal, estimate.covariance) / kFlights;
+    of_average += error * error / rollVariance(estimate.normal, estimate.average_covariance) / kFlights;
   }
   // A memory of 20 frames averages 40 in the stationary state: 1 - exp(-1/20) = 1/20.5 of the variance.
   EXPECT_LT(std::sqrt(squares), 0.3 * kNormal);
   EXPECT_GT(std::sqrt(squares), 0.12 * kNormal);
   EXPECT_NEAR(std::sqrt(ratios), 0.8, 0.2) << "fading makes the claim up to 1.4 times too large";
+  EXPECT_NEAR(std::sqrt(of_average), 1, 0.15);
 }
 
 TEST(AttitudeFilter, ClaimsWhatIsCommonAsLargeAsItWasInThePairsAveraged) {
@@ -94,6 +96,29 @@ TEST(AttitudeFilter, ClaimsWhatIsCommonAsLargeAsItWasInThePairsAveraged) {
   EXPECT_NEAR(claimed, std::abs(error), 0.03 * std::abs(error));
 }
 
+TEST(AttitudeFilter, ClaimsLessForTheAverageOfPairsWhoseErrorsAreNotAllNew) {
+  constexpr double kNormal = 0.15 * kDegree, kFresh = 0.75;
+  AttitudeFilter all, some;
+  AttitudeFilter::Estimate of_all, of_some;
+  Flight flight(1, kNormal, 0);
+  for (int k = 1; k <= 40; ++k) {
+    const Eigen::Vector3d n = flight.measured(k);
+    const Eigen::Matrix3d covariance = flight.covariance(k), lasting = (1 - kFresh) * covariance;
+    const ApproachAngleResult::Motion step = flight.step(k);
+    of_all = all.update(k * kStep, n, covariance, step);
+    of_some = some.update(k * kStep, n, covariance, step, lasting, kFresh);
+  }
+  const auto roll = [](const AttitudeFilter::Estimate& estimate, const Eigen::Matrix3d& covariance) {
+    return rollVariance(estimate.normal, covariance);
+  };
+  EXPECT_EQ(of_some.normal, of_all.normal);
+  EXPECT_NEAR(roll(of_some, of_some.average_covariance), kFresh * roll(of_all, of_all.average_covariance),
+              1e-6 * kNormal * kNormal);
+  // What lasts does not average out.
+  EXPECT_NEAR(roll(of_some, of_some.commonCovariance()), (1 - kFresh) * kNormal * kNormal,
+              0.05 * kNormal * kNormal);
+}
+
 TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
   Flight flight(1, 0.1 * kDegree, 0);
   AttitudeFilter filter;
@@ -101,6 +126,7 @@ TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
   const AttitudeFilter::Estimate estimate = filter.update(1, n, flight.covariance(1), {});
   EXPECT_EQ(estimate.normal, n);
   EXPECT_EQ(estimate.covariance, flight.covariance(1));
+  EXPECT_EQ(estimate.average_covariance, flight.covariance(1));
 }
 
 TEST(AttitudeFilter, StartsAnewWithoutAStepOfTheRightDurationAndAfterAReset) {

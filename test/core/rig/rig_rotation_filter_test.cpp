@@ -14,6 +14,7 @@ using test::kDegree;
 
 constexpr double kStep = 0.05;                  // s between frames
 constexpr double kBias = 0.02;                  // px, of a good calibration
+constexpr double kRowBias = 0.03;               // px, of its lenses
 constexpr double kStraight = 0.15 * kDegree;    // 1 sigma of the runway's slope
 constexpr double kPlaneError = 0.02 * kDegree;  // 1 sigma of pitch in a frame
 
@@ -58,7 +59,7 @@ struct Approach {
   }
   RigRotationFilter::Corrected frame(RigRotationFilter& filter, int i, double height) {
     filter.advance(i * kStep);
-    filter.setPrior(kBias);
+    filter.setPrior(kBias, kRowBias);
     filter.updateVertical(vertical(0.003 * kDegree));
     return filter.correct(seen(height), A(), direction(), directionCovariance(), 3);
   }
@@ -126,7 +127,7 @@ TEST(RigRotationFilter, AnAttitudeSensorShowsAYawWhereNothingElseDoes) {
       const AttitudePrior level = levelGround(approach, error, -error);
       for (RigRotationFilter* filter : {&with, &without}) {
         filter->advance(i * kStep);
-        filter->setPrior(kBias);
+        filter->setPrior(kBias, kRowBias);
       }
       plane = with.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3, &level).plane;
       without.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3);
@@ -148,7 +149,7 @@ TEST(RigRotationFilter, DoesNotTakeTheErrorOfAnAttitudeSensorForAYaw) {
   const AttitudePrior level = levelGround(approach, 0.6 * kDegree, 0.6 * kDegree);
   for (int i = 0; i < 200; ++i) {
     filter.advance(i * kStep);
-    filter.setPrior(kBias);
+    filter.setPrior(kBias, kRowBias);
     const double height = 30 - 0.1 * i;
     const GroundPlane plane = filter
                                   .correct(approach.seen(height), approach.A(), none,
@@ -190,7 +191,7 @@ TEST(RigRotationFilter, DoesNotTakeLinesThatAreMisjudgedForSecondsForAYaw) {
 TEST(RigRotationFilter, DoesNotAverageAwayWhatAllFramesOfASecondShare) {
   Approach approach;
   RigRotationFilter once(approach.rig, 1e9), often(approach.rig, 1e9);
-  for (RigRotationFilter* filter : {&once, &often}) filter->setPrior(1.0);
+  for (RigRotationFilter* filter : {&once, &often}) filter->setPrior(1.0, kRowBias);
   const double steps = 1000;
   once.advance(0);
   often.advance(0);
@@ -208,7 +209,7 @@ TEST(RigRotationFilter, VarianceOfThePlaneHasTheRigsShareInIt) {
   Approach approach;
   RigRotationFilter filter(approach.rig, 60);
   filter.advance(0);
-  filter.setPrior(0.1);
+  filter.setPrior(0.1, kRowBias);
   const double height = 20;
   const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
   const RigRotationFilter::Corrected corrected =
@@ -228,7 +229,7 @@ TEST(RigRotationFilter, LeavesOutAVerticalRotationWithoutADefiniteCovariance) {
         Eigen::Vector3d(0, 0.01, variance), Eigen::Vector3d(variance, 0.01, kUnknown)}) {
     RigRotationFilter filter(approach.rig, 60);
     filter.advance(0);
-    filter.setPrior(kBias);
+    filter.setPrior(kBias, kRowBias);
     RigRotation measured;
     measured.w = Eigen::Vector3d::Constant(kDegree);
     measured.covariance = diagonal.asDiagonal();
@@ -237,6 +238,25 @@ TEST(RigRotationFilter, LeavesOutAVerticalRotationWithoutADefiniteCovariance) {
     approach.frame(filter, 1, 20);
     EXPECT_TRUE(filter.rotation().covariance.allFinite()) << diagonal.transpose();
   }
+}
+
+TEST(RigRotationFilter, TakesInclinedRowsForARollAsFarAsLensesAreKnownBetter) {
+  const auto rollOf = [](double row_bias) {
+    Approach approach;
+    RigRotationFilter filter(approach.rig, 30);
+    filter.advance(0);
+    filter.setPrior(0.1, row_bias);
+    RigRotation measured;
+    measured.w = {0, 0, 0.02 * kDegree};
+    measured.covariance = std::pow(1e-4 * kDegree, 2) * Eigen::Matrix3d::Identity();
+    filter.updateVertical(measured);
+    return filter.rotation();
+  };
+  const RigRotation exact = rollOf(0), usual = rollOf(kRowBias), poor = rollOf(0.3);
+  EXPECT_NEAR(exact.w.z(), 0.02 * kDegree, 1e-3 * kDegree);
+  EXPECT_LT(usual.w.z(), 0.8 * exact.w.z());
+  EXPECT_LT(poor.w.z(), 0.1 * exact.w.z());
+  EXPECT_GT(poor.covariance(2, 2), usual.covariance(2, 2));
 }
 
 TEST(RigRotationFilter, ForgetsWhatIsOldAndAllOnReset) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "support/consistency.h"
@@ -48,6 +49,28 @@ TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
   ASSERT_TRUE(plain && altered);
   EXPECT_LT(scene.error(plain->plane.g), 0.05);
   EXPECT_LT(scene.error(altered->plane.g), 0.05);
+}
+
+TEST(DirectRefinement, TellsHowMuchOfTheErrorIsNoNoise) {
+  // A lens that is off by so many pixels here and there.
+  const auto shareOf = [](double noise, double lens) {
+    RefinedPair scene;
+    scene.render({1, 0, noise}, {1, 0, noise});
+    cv::Mat columns(scene.right.size(), CV_32F), rows(scene.right.size(), CV_32F);
+    for (int v = 0; v < rows.rows; ++v) {
+      for (int u = 0; u < rows.cols; ++u) {
+        columns.at<float>(v, u) = static_cast<float>(u + lens * std::sin(u / 9.0) * std::sin(v / 7.0));
+        rows.at<float>(v, u) = static_cast<float>(v);
+      }
+    }
+    cv::remap(scene.right, scene.right, columns, rows, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    const Expected<PlaneFit> fit = scene.refine(scene.truth);
+    EXPECT_TRUE(fit);
+    return fit ? fit->lasting_share : 0;
+  };
+  EXPECT_LT(shareOf(2, 0), 0.3);
+  EXPECT_GT(shareOf(1, 0.3), 0.7);
+  EXPECT_LT(shareOf(6, 0.1), shareOf(1, 0.1));
 }
 
 TEST(DirectRefinement, IsNotPulledByWhatStandsOnTheGround) {

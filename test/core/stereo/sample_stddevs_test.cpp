@@ -17,6 +17,7 @@ constexpr double kQuiet = 0.05, kNoisy = 0.5;  // 1 sigma of the noise, pixels
 struct Outcome {
   double factor = 0;  // on the noise
   double common = 0;  // variance of the error that all have, pixels^2
+  double told = 0;    // the same as returned
 };
 
 /// noise: how many times its 1 sigma is as large as the samples say. common: 1 sigma of an error besides.
@@ -37,7 +38,7 @@ Outcome outcomeOf(double noise, double common, double least_factor = 0) {
       const double error = noise * stddev * normal(random) + common * normal(random);
       samples.push_back({u, v, stddev, rig.fb() * g.dot(rig.ray(u, v)) + error});
     }
-    makeStddevsTrue(rig, g, least_factor, samples);
+    outcome.told += makeStddevsTrue(rig, g, least_factor, samples) / kDraws;
     // Next to no error besides shows in the noisy ones.
     const double factor = samples[1].stddev / kNoisy;
     outcome.factor += factor / kDraws;
@@ -67,6 +68,7 @@ TEST(SampleStddevs, TakeInAnErrorBesidesTheNoise) {
   constexpr double kCommon = 0.2;
   const Outcome outcome = outcomeOf(1, kCommon);
   EXPECT_NEAR(std::sqrt(outcome.common), kCommon, 0.15 * kCommon);
+  EXPECT_NEAR(outcome.told, outcome.common, 0.1 * outcome.common);
 }
 
 }  // namespace
