@@ -42,6 +42,12 @@ double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w);
 /// are not moved, so that disparities keep what w does to them. right: CV_32F, of the rig's size.
 void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out);
 
+/// Covariance, 1/m^2, that vertical disparities of the residual rotation add to a plane g fitted to corners,
+/// by a rule of thumb. Where a row is off by dv, a slanted line seems moved along the row by dv times its
+/// slope; the two sides of a runway lean to opposite sides, which looks like roll; and it shows ground that
+/// is nearer or farther.
+Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g);
+
 /// Keeps the right image's rows level with the left image's from pair to pair, so that a bent rig still
 /// matches along rows, and measures what it bends by.
 class RowAlignment {

@@ -274,24 +274,12 @@ struct StereoDepthStage::Implementation {
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
-    result.row_covariance = rowLeak(rowResidual(), result.plane.g);
+    result.row_covariance = rowLeak(fine.rig, rowResidual(), result.plane.g);
     result.plane.covariance += result.row_covariance;
   }
 
   RigRotation rowResidual() const {
     return rows.residual(fine.rig, parameters.disparity_bias_stddev, parameters.row_bias_stddev);
-  }
-
-  // Where a row is off by dv, a slanted line seems moved along the row by dv times its slope; the two sides
-  // of a runway lean to opposite sides, which looks like roll; and it shows ground that is nearer or farther.
-  // For the corners' plane by a rule of thumb.
-  Eigen::Matrix3d rowLeak(const RigRotation& residual, const Eigen::Vector3d& g) const {
-    constexpr double kLean = 2.5;  // rms over simulated runways
-    const Eigen::Vector3d squares = residual.w.array().square() + residual.covariance.diagonal().array();
-    Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
-    leak(0, 0) = squares.x() * std::pow(kLean / fine.rig.baseline, 2) + squares.z() * g.y() * g.y();
-    leak(2, 2) = squares.x() * g.y() * g.y();
-    return leak;
   }
 
   // The right image as the camera saw it but with its rows made level, where they are not.

@@ -153,6 +153,15 @@ void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Ma
   }
 }
 
+Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g) {
+  constexpr double kLean = 2.5;  // rms over simulated runways
+  const Eigen::Vector3d squares = residual.w.array().square() + residual.covariance.diagonal().array();
+  Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
+  leak(0, 0) = squares.x() * std::pow(kLean / rig.baseline, 2) + squares.z() * g.y() * g.y();
+  leak(2, 2) = squares.x() * g.y() * g.y();
+  return leak;
+}
+
 cv::Mat RowAlignment::level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
   if (taken_out_.isZero()) return right;
   straightenRows(rig, taken_out_, right, buffer);
