@@ -17,13 +17,14 @@ QUANTITIES = (("height", "m", "height_valid"), ("approach_angle", "deg", "angle_
 TITLES = {"height": "height", "approach_angle": "approach angle", "pitch": "pitch", "roll": "roll", "y": "lateral"}
 OVER_FLAT = ("approach_angle", "pitch", "roll")
 IMAGE = ROOT / "docs/images/consistency.png"
-TEXT = """{count} snippets for each noise and height, of {frames} frames at 20 Hz and drawn like the approaches above, one sample each: the last
-frame. Every snippet has another scene and path, and other errors of calibration, drawn from what the estimator expects: the
-right camera's rotation and the baseline (`disparity_bias_stddev`, `height_model_error`), and a right picture whose rows lie
-0.03 px (1 sigma) too low and, 0.3 focal lengths from the middle, are off by as much again because they are inclined, as a
-lens's calibration leaves them. The table shows which share of the errors is within the claimed 95 % interval, and in brackets
-the 95 % confidence interval (Wilson) of that share; then the ratio of errors to claimed standard deviations, root mean square:
-1 when the claim is true, less when it is too cautious. Counted are the valid ones; *n* is the number of them for what follows.
+TEXT = """{count} snippets for each noise and height, of {frames} frames at 20 Hz and drawn like the approaches above, one sample
+each: the last frame. Every snippet has another scene and path, and other errors of calibration, drawn from what the
+estimator expects: the right camera's rotation and the baseline (`disparity_bias_stddev`, `height_model_error`), and a right
+picture whose rows lie `row_bias_stddev` (0.03 px, 1 sigma) too low and, 0.3 focal lengths from the middle, are off by as
+much again because they are inclined, as a lens's calibration leaves them. The table shows which share of the errors is
+within the claimed 95 % interval, and in brackets the 95 % confidence interval (Wilson) of that share; then the ratio of
+errors to claimed standard deviations, root mean square: 1 when the claim is true, less when it is too cautious. Counted are
+the valid ones; *n* is the number of them for what follows.
 
 Height is that over ground that bends by as much and as often as the estimator is told to expect: flat in 60 of 100 snippets,
 in 10 each with one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma),
@@ -31,8 +32,8 @@ somewhere from 100 m behind the aircraft to 300 m ahead. The others are over fla
 the surface ahead, which has no one direction where it bends; one column shows the height there, which must be found too
 cautious: from 30 m most of its claim is for a bend between the ground seen and the ground below.
 
-From 10 m on, roll is claimed too cautiously under noise: what matches see of the rows is known better than it claims, and less
-of a pair's error is in the next pairs. At 3 m it is claimed too small under strong noise, where single lines tell the rows.
+Roll is claimed somewhat too small at 3 m, where single lines tell the rows, and at 10 m under little noise, and too
+cautiously at 30 m.
 Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
