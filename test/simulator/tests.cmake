@@ -2,6 +2,7 @@
 uav_landing_add_gtest(trajectory_test test/simulator/trajectory_test.cpp)
 uav_landing_add_gtest(simulated_imu_test test/simulator/imu_test.cpp)
 uav_landing_add_gtest(camera_rig_test test/simulator/camera_rig_test.cpp)
+uav_landing_add_gtest(pixel_filter_test test/simulator/pixel_filter_test.cpp)
 uav_landing_add_gtest(renderer_test test/simulator/renderer_test.cpp)
 uav_landing_add_gtest(approach_simulator_test test/simulator/approach_simulator_test.cpp)
 uav_landing_add_gtest(simulator_parameters_test test/simulator/simulator_parameters_test.cpp LIBS yaml-cpp)
