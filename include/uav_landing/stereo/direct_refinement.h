@@ -33,6 +33,8 @@ class DirectRefinement {
   /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
   /// last refinement; NaN when it had fewer than 20 such blocks.
   double agreement() const;
+  /// Whether texture was hardly more than noise in the last refinement.
+  bool noisy() const;
   /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture.
   const std::vector<DisparitySample>& samples() const;
 
@@ -44,5 +46,9 @@ class DirectRefinement {
 /// Whether two planes from the same pair are the same within their covariances. Errors common to both make
 /// this lenient, which is meant: it is to find a refinement that went astray.
 bool samePlane(const GroundPlane& a, const GroundPlane& b);
+
+/// Makes a plane as uncertain as another one of the same pair that contradicts it: one of the two is wrong by
+/// what is between them, and nothing tells which.
+void doubt(GroundPlane& plane, const GroundPlane& contradicting);
 
 }  // namespace uav_landing

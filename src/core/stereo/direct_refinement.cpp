@@ -152,7 +152,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     const double change = own.change(g, fit->plane.g);
     if (step + 1 == kSteps || (step > 0 && change < kConverged)) {
       fit->lasting_share = own.lastingShare(*fit);
-      own.solveWithRows(priorOf(rows, own.disparities.haveCommonErrors()), bias_stddev, *fit);
+      own.solveWithRows(priorOf(rows, noisy()), bias_stddev, *fit);
       // What has not settled is known no better than it moves.
       if (change > kConverged) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
@@ -168,6 +168,8 @@ double DirectRefinement::agreement() const {
   return informative < kFewest ? kUnknown : static_cast<double>(own.agreeing) / informative;
 }
 
+bool DirectRefinement::noisy() const { return implementation_->disparities.haveCommonErrors(); }
+
 const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }
 
 bool samePlane(const GroundPlane& a, const GroundPlane& b) {
@@ -175,6 +177,11 @@ bool samePlane(const GroundPlane& a, const GroundPlane& b) {
   const Eigen::Vector3d difference = a.g - b.g;
   const Eigen::Matrix3d covariance = a.covariance + b.covariance;
   return difference.dot(covariance.ldlt().solve(difference)) < kSigmas * kSigmas;
+}
+
+void doubt(GroundPlane& plane, const GroundPlane& contradicting) {
+  const Eigen::Vector3d between = contradicting.g - plane.g;
+  plane.covariance += between * between.transpose();
 }
 
 }  // namespace uav_landing

@@ -241,5 +241,18 @@ TEST(SamePlane, AllowsFiveSigmasBetweenThePlanes) {
     }
 }
 
+TEST(Doubt, MakesAPlaneAsUncertainAsItIsFarFromTheOther) {
+  GroundPlane plane = test::exactPlane(makePose(10, -4, 0), 0.01, 0.001), other = plane;
+  const double own = plane.heightVariance();
+  other.g = 1.5 * plane.g;
+  ASSERT_FALSE(samePlane(plane, other));
+  doubt(plane, other);
+  // dh = h dg / g: half of 10 m; tilt is as certain as before.
+  EXPECT_NEAR(plane.heightVariance(), own + 5.0 * 5.0, 1e-6);
+  const Eigen::Vector3d n = plane.normal();
+  EXPECT_NEAR(std::sqrt(pitchVariance(n, plane.normalCovariance())), 0.001, 1e-6);
+  EXPECT_TRUE(samePlane(plane, other));
+}
+
 }  // namespace
 }  // namespace uav_landing
