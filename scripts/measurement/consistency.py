@@ -32,8 +32,8 @@ somewhere from 100 m behind the aircraft to 300 m ahead. The others are over fla
 the surface ahead, which has no one direction where it bends; one column shows the height there, which must be found too
 cautious: from 30 m most of its claim is for a bend between the ground seen and the ground below.
 
-Roll is claimed somewhat too small at 3 m, where single lines tell the rows, and at 10 m under little noise, and too
-cautiously at 30 m.
+Roll is claimed too cautiously from 10 and 30 m, as edges are never believed to tell the rows better than to a few thousandths
+of a pixel; at 3 m, where single lines tell them, flights in which they do so badly are what is left.
 Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)

@@ -65,6 +65,23 @@ TEST(RefinedRows, ClaimsWhatTheRowsToldAreWrongBy) {
   EXPECT_NEAR(std::abs(scene.rollError(off) - scene.rollError(claimed)), stddev, 0.3 * stddev);
 }
 
+/// However clear the lines are: they are drawn sharp, and those of one marking are wrong together.
+TEST(RefinedRows, AreNeverKnownBetterByEdgesThanSomeThousandthsOfAPixel) {
+  RefinedPair scene = betweenLines(5, 0);
+  scene.ground.contrast = 40;
+  scene.render();
+  const Expected<PlaneFit> known = scene.refine(scene.truth);
+  scene.rows.w.x() = 0.01 / scene.rig.fy;
+  const Expected<PlaneFit> off = scene.refine(scene.truth);
+  scene.rows.w.x() = 0;
+  scene.rows.covariance(0, 0) = 1 / (scene.rig.fy * scene.rig.fy);
+  const Expected<PlaneFit> by_edges = scene.refine(scene.truth);
+  ASSERT_TRUE(known && off && by_edges);
+  const double rolled = std::abs(scene.rollError(off) - scene.rollError(known)) / 0.01;  // by a pixel
+  const GroundPlane rows{by_edges->plane.g, by_edges->plane.covariance - known->plane.covariance};
+  EXPECT_GT(std::sqrt(rollVariance(rows.normal(), rows.normalCovariance())), 0.9 * 0.004 * rolled);
+}
+
 /// A row that is off shows ground that is nearer, whether any edge leans or not: inclined rows roll it.
 TEST(RefinedRows, IsNotRolledByInclinedRows) {
   RefinedPair scene(5, 0);
