@@ -37,6 +37,14 @@ Eigen::Matrix3d priorOf(const RigRotation& rows, bool noisy) {
   return rows.covariance + unseen * unseen * rows.w * rows.w.transpose();
 }
 
+/// What counts of the information (1/rad^2) that edges have of the rows, as a factor on its left: their
+/// covariance plus what they are wrong by together.
+Eigen::Matrix3d believedShare(const Eigen::Matrix3d& information, double fy) {
+  const Eigen::Array3d stddevs(kEdgesStddev, kEdgesSlopeStddev, kEdgesSlopeStddev);
+  const Eigen::Matrix3d together = (stddevs / fy).square().matrix().asDiagonal();
+  return (Eigen::Matrix3d::Identity() + information * together).inverse();
+}
+
 }  // namespace
 
 struct DirectRefinement::Implementation {
@@ -85,9 +93,7 @@ struct DirectRefinement::Implementation {
     const Eigen::Matrix3d own = fit.plane.covariance - bias * bias.transpose();
     const double inflation = std::max(1.0, (by_plane * own).trace() / 3);
     const Eigen::Matrix3d independent = (by_rows - mixed.transpose() * plane_by_rows) / inflation;
-    const Eigen::Array3d together(kEdgesStddev, kEdgesSlopeStddev, kEdgesSlopeStddev);
-    const Eigen::Matrix3d floor = (together / rig.fy).square().matrix().asDiagonal();
-    const Eigen::Matrix3d share = (Eigen::Matrix3d::Identity() + independent * floor).inverse();
+    const Eigen::Matrix3d share = believedShare(independent, rig.fy);
     const Eigen::Matrix3d information = share * independent;
     const Eigen::Matrix3d left_over = (Eigen::Matrix3d::Identity() + information * prior).inverse();
     const Eigen::Matrix3d covariance = prior * left_over;
