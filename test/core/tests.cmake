@@ -69,6 +69,8 @@ uav_landing_add_gtest(shift_evidence_test test/core/stereo/shift_evidence_test.c
 uav_landing_add_gtest(shift_matching_test test/core/stereo/shift_matching_test.cpp)
 uav_landing_add_gtest(surface_profile_test test/core/stereo/surface_profile_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(surface_variance_test test/core/stereo/surface_variance_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(vertical_disparity_test test/core/stereo/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # motion

@@ -11,3 +11,4 @@ uav_landing_add_gtest(approach_position_test test/simulator/approach_position_te
 uav_landing_add_gtest(skewed_pairs_test test/simulator/skewed_pairs_test.cpp)
 uav_landing_add_gtest(bent_ground_test test/simulator/bent_ground_test.cpp)
 uav_landing_add_gtest(noisy_pairs_test test/simulator/noisy_pairs_test.cpp)
+uav_landing_add_gtest(flat_surface_test test/simulator/flat_surface_test.cpp)

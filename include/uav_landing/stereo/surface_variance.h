@@ -12,6 +12,7 @@ namespace uav_landing {
 /// Patches count by how well their means are known: heights scatter the more the farther away (Paule, Mandel:
 /// Consensus values and weighting factors, Journal of Research of the National Bureau of Standards 87, 1982).
 /// Matches whose windows (squares of so many pixels) overlap have that share of their errors in common.
+/// Where rows are not level all matches along a marking aslant are off together, which looks the same.
 /// Below zero by chance on flat ground. m^2
 double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
                        int window);

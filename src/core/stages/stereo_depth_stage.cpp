@@ -61,9 +61,7 @@ struct StereoDepthStage::Implementation {
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
     coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
-    if (p.direct_refinement) {
-      direct = std::make_unique<DirectRefinement>(rig, p.window_radius + 2);
-    }
+    if (p.direct_refinement) direct = std::make_unique<DirectRefinement>(rig, p.window_radius + 2);
   }
 
   StereoDepthResult process(double stamp, const cv::Mat& left_image, const cv::Mat& right_image) {
@@ -245,9 +243,8 @@ struct StereoDepthStage::Implementation {
   }
 
   void fit(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
-    for (const DisparitySample& sample : samples) {
+    for (const DisparitySample& sample : samples)
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
-    }
     if (result.failure) return;
     const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr, true);
     if (!consensus.found) {
@@ -307,6 +304,8 @@ struct StereoDepthStage::Implementation {
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
+    // Rows that are not level move all corners of a marking, as if the ground rose; these are freed of it.
+    result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, direct->window());
     if (parameters.surface_curvature) bend(*fit, result);
     return true;
   }
