@@ -9,7 +9,8 @@ namespace uav_landing {
 namespace {
 
 /// Mean over pairs and scenes, as it is by chance less than zero in some; share of the height, squared.
-double meanSurfaceVariance(double height, double noise) {
+double meanSurfaceVariance(double height) {
+  constexpr double kNoise = 1;  // grey levels
   constexpr int kPairs = 3;
   constexpr int kScenes = 6;
   double sum = 0;
@@ -28,7 +29,7 @@ double meanSurfaceVariance(double height, double noise) {
         makeRigModel(simulator.rig().left.calibration, simulator.rig().right.calibration).value();
     StereoDepthStage stage(model, {});
     for (int pair = 0; pair < kPairs; ++pair) {
-      const ApproachSimulator::Frame frame = simulator.expose(simulator.light(pair), noise);
+      const ApproachSimulator::Frame frame = simulator.expose(simulator.light(pair), kNoise);
       const StereoDepthResult result = stage.process(0.05 * pair, frame.left, frame.right);
       EXPECT_FALSE(result.failure) << result.failure.message();
       sum += result.surface_variance / std::pow(height, 2);
@@ -39,8 +40,8 @@ double meanSurfaceVariance(double height, double noise) {
 
 // Corners of a marking are off together, as if the ground rose there by some thousandths of the height.
 TEST(FlatSurface, IsNotTakenForUnevenGround) {
-  EXPECT_NEAR(meanSurfaceVariance(10, 1), 0, std::pow(0.0007, 2));
-  EXPECT_NEAR(meanSurfaceVariance(20, 1), 0, std::pow(0.0015, 2));
+  EXPECT_NEAR(meanSurfaceVariance(10), 0, std::pow(0.0007, 2));
+  EXPECT_NEAR(meanSurfaceVariance(20), 0, std::pow(0.0015, 2));
 }
 
 }  // namespace

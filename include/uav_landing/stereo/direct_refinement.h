@@ -37,10 +37,6 @@ class DirectRefinement {
   bool noisy() const;
   /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture.
   const std::vector<DisparitySample>& samples() const;
-  /// Side of the squares around samples that have errors in common where they overlap, pixels: for
-  /// surfaceVariance. In noise, what tells it from texture is alike in neighbours; otherwise blocks share no
-  /// pixel.
-  int window() const;
 
  private:
   struct Implementation;

@@ -304,8 +304,8 @@ struct StereoDepthStage::Implementation {
     result.plane = fit->plane;
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
-    // Rows that are not level move all corners of a marking, as if the ground rose; these are freed of it.
-    result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, direct->window());
+    // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.
+    result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, 1);
     if (parameters.surface_curvature) bend(*fit, result);
     return true;
   }

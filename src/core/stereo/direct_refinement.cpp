@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "stereo/block_sums.h"
 #include "stereo/pair_disparities.h"
 #include "stereo/sample_stddevs.h"
 #include "uav_landing/results/stage_results.h"
@@ -188,8 +187,6 @@ double DirectRefinement::agreement() const {
 bool DirectRefinement::noisy() const { return implementation_->disparities.haveCommonErrors(); }
 
 const std::vector<DisparitySample>& DirectRefinement::samples() const { return implementation_->samples; }
-
-int DirectRefinement::window() const { return noisy() ? kBlockWidth : kBlockHeight; }
 
 bool samePlane(const GroundPlane& a, const GroundPlane& b) {
   constexpr double kSigmas = 5.0;

@@ -14,8 +14,8 @@ constexpr size_t kFewest = 3;  // points of a patch
 
 struct Point {
   double u, v;
-  double height;           // over the plane, m
-  double metre_per_pixel;  // of disparity
+  double height;     // over the plane, m
+  double precision;  // 1 over the claimed stddev of the height, 1/m
 };
 
 // Share of the error that two matches have in common: that of the pixels that both their windows are of.
@@ -25,33 +25,34 @@ double inCommon(const Point& a, const Point& b, int window) {
 }
 
 struct Patch {
-  double square;           // of the mean height, m^2
-  double scatter;          // sum of squares about the mean, m^2
-  double free;             // by how many variances of a point the scatter is expected to be
-  double of_mean;          // the same of the square of the mean, on level ground
-  double metre_per_pixel;  // of disparity
+  double square;   // of the mean height, m^2
+  double scatter;  // sum of squares about the mean, over the claimed variances
+  double free;     // what that is where matches scatter as they claim, on level ground
+  double of_mean;  // the variance of the mean then, m^2
 };
 
 Patch patchOf(const std::vector<Point>& points, int window) {
-  const double count = static_cast<double>(points.size());
-  double sum = 0, squares = 0, scale = 0, shared = count;  // shared: of all pairs, each with itself, too
+  double weights = 0, sum = 0, squares = 0, shared = 0;  // shared: of all pairs, each with itself, too
   for (size_t i = 0; i < points.size(); ++i) {
-    sum += points[i].height;
-    squares += points[i].height * points[i].height;
-    scale += points[i].metre_per_pixel / count;
-    for (size_t j = 0; j < i; ++j) shared += 2 * inCommon(points[i], points[j], window);
+    const double weight = points[i].precision * points[i].precision;
+    weights += weight;
+    sum += weight * points[i].height;
+    squares += weight * points[i].height * points[i].height;
+    shared += weight;
+    for (size_t j = 0; j < i; ++j)
+      shared += 2 * points[i].precision * points[j].precision * inCommon(points[i], points[j], window);
   }
-  const double mean = sum / count;
-  return {mean * mean, squares - count * mean * mean, count - shared / count, shared / (count * count),
-          scale};
+  const double mean = sum / weights;
+  return {mean * mean, squares - weights * mean * mean, static_cast<double>(points.size()) - shared / weights,
+          shared / (weights * weights)};
 }
 
-/// Variance of a match's disparity: what the scatter within all patches says together. Heights scatter the
-/// more the farther away the patch is, disparities alike. px^2
-double disparityVariance(const std::vector<Patch>& patches) {
+/// By how much variances of matches are larger than they claim: what the scatter within all patches says
+/// together.
+double inflation(const std::vector<Patch>& patches) {
   double scatter = 0, free = 0;
   for (const Patch& patch : patches) {
-    scatter += patch.scatter / (patch.metre_per_pixel * patch.metre_per_pixel);
+    scatter += patch.scatter;
     free += patch.free;
   }
   return free > 0 ? scatter / free : 0;
@@ -95,15 +96,16 @@ double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>&
     const int across = std::clamp(static_cast<int>(sample.u / side), 0, kColumns - 1);
     const int down = std::clamp(static_cast<int>(sample.v / side), 0, rows - 1);
     areas[static_cast<size_t>(across * rows + down)].push_back(
-        {sample.u, sample.v, unit * (sample.disparity - expected) / expected, unit / expected});
+        {sample.u, sample.v, unit * (sample.disparity - expected) / expected,
+         expected / (unit * sample.stddev)});
   }
   std::vector<Patch> patches;
   for (const std::vector<Point>& points : areas)
     if (points.size() >= kFewest) patches.push_back(patchOf(points, window));
 
-  const double variance = disparityVariance(patches);
-  if (!(variance > 0)) return 0;
-  for (Patch& patch : patches) patch.of_mean *= variance * patch.metre_per_pixel * patch.metre_per_pixel;
+  const double factor = inflation(patches);
+  if (!(factor > 0)) return 0;
+  for (Patch& patch : patches) patch.of_mean *= factor;
   return varianceBetween(patches);
 }
 
