@@ -18,9 +18,12 @@ struct PatchRefinement {
   struct Evidence {
     Eigen::Matrix2d gradient;                ///< sums of the products of its components, about their means
     std::array<Eigen::Matrix2d, 2> moments;  ///< the same by distance from the centre, across and down
-    Eigen::Vector2d by_gain;                 ///< shift that a unit of gain looks like
-    double contrast = 0;                     ///< that no shift explains
-    int count = 0;                           ///< pixels
+    Eigen::Matrix2d growth;           ///< of the gradient, its product with the distance, and the distance
+    Eigen::Vector2d by_gain;          ///< shift that a unit of gain looks like
+    double gain = 0;                  ///< of the other image
+    double mean = 0, mean_there = 0;  ///< grey levels of the windows
+    double contrast = 0;              ///< of the other image, that no shift explains
+    int count = 0;                    ///< pixels
   } evidence;
   Eigen::Matrix2d warp;  ///< from the reference to the other image
 
@@ -30,6 +33,11 @@ struct PatchRefinement {
   struct Claim {
     Eigen::Matrix2d covariance;
     std::array<Eigen::Matrix2d, 2> by_warp;
+    /// In a window that shrinks by 1 + w.d with the distance d from its centre (w per pixel of the
+    /// reference), as perspective has it, the place found is off by -by_perspective w.
+    Eigen::Matrix2d by_perspective;
+    /// By how much the place found is off for each unit by which the gain is.
+    Eigen::Vector2d by_gain;
   };
   /// noise_variance: of a pixel of either image; at most half of the residuals'.
   Claim claim(double noise_variance) const;

@@ -17,6 +17,7 @@ struct GainShift {
   Eigen::Vector2d shift;
   double gain = 0;
   double residual = 0;        // sum of squares
+  double mean = 0;            // of the other window, less the middle of the reference
   Eigen::Vector2d projected;  // shift that a unit of gain would look like
   double left_over = 0;       // contrast that no shift explains
 };
@@ -51,7 +52,15 @@ class ReferenceWindow {
   }
   PatchRefinement::Evidence evidence(const GainShift& found) const {
     const std::array<WindowPlanes::MomentSums, 2> sums = planes_.moments();
-    return {G_, {aboutMean(sums[0]), aboutMean(sums[1])}, found.projected, found.left_over, count()};
+    return {G_,
+            {aboutMean(sums[0]), aboutMean(sums[1])},
+            growth(),
+            found.projected,
+            found.gain,
+            planes_.middle() + mean_,
+            planes_.middle() + found.mean,
+            found.left_over,
+            count()};
   }
 
   // Places to the right of the centre that are looked at, those filled up included.
@@ -64,6 +73,13 @@ class ReferenceWindow {
     return moments - gradient_mean_ * Eigen::RowVector2d(sums.x, sums.y);
   }
 
+  Eigen::Matrix2d growth() const {
+    const WindowPlanes::GrowthSums sums = planes_.growth();
+    Eigen::Matrix2d growth;
+    growth << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
+    return growth - gradient_mean_ * Eigen::RowVector2d(sums.s_across, sums.s_down);
+  }
+
   GainShift solve(const WindowPlanes::OtherSums& sums) const {
     GainShift result;
     const Eigen::Vector2d gradient = Eigen::Vector2d(sums.bx, sums.by) - gradient_mean_ * sums.b;
@@ -74,6 +90,7 @@ class ReferenceWindow {
     result.gain = (reference - projected.dot(right_)) / left_over;
     result.shift = inverse_ * (right_ - gradient * result.gain);
     result.residual = std::max(0.0, energy_ - result.shift.dot(right_) - result.gain * reference);
+    result.mean = sums.b / count();
     result.projected = projected;
     result.left_over = left_over;
     result.solved = result.gain > 0.1;
@@ -150,8 +167,14 @@ PatchRefinement::Claim PatchRefinement::claim(double noise_variance) const {
   const Eigen::Matrix2d unit =
       inverse * evidence.gradient * inverse + coupled * coupled.transpose() / evidence.contrast;
   const Eigen::Matrix2d there = warp * inverse, back = warp.inverse();
+  // Noise grows, too: its gradient has this share in it, as it is the same all over the window.
+  const double mean_square_distance = (evidence.count - 1) / 12.0;
+  const Eigen::Matrix2d growth =
+      evidence.growth - of_noise * mean_square_distance * Eigen::Matrix2d::Identity();
   return {residual_variance / independent * warp * unit * warp.transpose(),
-          {there * evidence.moments[0] * back, there * evidence.moments[1] * back}};
+          {there * evidence.moments[0] * back, there * evidence.moments[1] * back},
+          there * growth,
+          warp * evidence.by_gain};
 }
 
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,

@@ -150,6 +150,29 @@ UAV_LANDING_MULTIVERSION std::array<WindowPlanes::MomentSums, 2> WindowPlanes::m
   return {across.sums(), down.sums()};
 }
 
+UAV_LANDING_MULTIVERSION WindowPlanes::GrowthSums WindowPlanes::growth() const {
+  const Distances& distances = distancesOf(radius_);
+  Lanes s_across{}, s_down{}, x_across{}, x_down{}, y_across{}, y_down{};
+  const int count = filled();
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes x, y, across, down;
+    load(&x_[i], x);
+    load(&y_[i], y);
+    load(&distances.across[i], across);
+    load(&distances.down[i], down);
+    const Lanes s = x * across + y * down;
+    across *= s;
+    down *= s;
+    s_across += across;
+    s_down += down;
+    x_across += x * across;
+    x_down += x * down;
+    y_across += y * across;
+    y_down += y * down;
+  }
+  return {sum(s_across), sum(s_down), sum(x_across), sum(x_down), sum(y_across), sum(y_down)};
+}
+
 UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(WindowValues& other) const {
   const float middle = middle_;
   const int count = filled();

@@ -19,6 +19,11 @@ class WindowPlanes {
   struct MomentSums {
     double x, y, xx, xy, yy;
   };
+  /// Sums of s = x across + y down, what the gradient sees of a window that grows, times its distance from
+  /// the centre (across, down): alone, and by the gradient.
+  struct GrowthSums {
+    double s_across, s_down, x_across, x_down, y_across, y_down;
+  };
   /// Sums over a window b of another image, and of its products.
   struct OtherSums {
     double b, bb, ba, bx, by;
@@ -28,6 +33,7 @@ class WindowPlanes {
   WindowPlanes(const cv::Mat& image, int u, int v, int radius);
 
   int radius() const { return radius_; }
+  float middle() const { return middle_; }
   int size() const { return 2 * radius_ + 1; }
   int stride() const { return windowStride(radius_); }
   int pixels() const { return size() * size(); }
@@ -35,6 +41,7 @@ class WindowPlanes {
   OwnSums sums() const;
   /// By the distance across and by the one down.
   std::array<MomentSums, 2> moments() const;
+  GrowthSums growth() const;
   /// other: rows of the other window, with room for all of this one's; what fills them up does not matter.
   OtherSums multiply(WindowValues& other) const;
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/order_statistic.h"
 #include "base/touch_ahead.h"
@@ -16,16 +17,24 @@ namespace {
 // Whole shifts tried at full size around a place known to about a pixel.
 constexpr int kFineSteps = 3;
 // Error of a match that its residuals do not show (interpolation, surface in the window not flat), pixels.
-constexpr double kStddevFloor = 0.04;
+constexpr double kStddevFloor = 0.03;
+// One camera has seen both windows, so the gains of all windows are alike: what is left of a gain's
+// difference from the others'. The rest, about, is real, as textures are blurred differently from near and
+// far.
+constexpr double kHeldGain = 0.6;
+// 1 sigma of a window's own gain about the common one.
+constexpr double kGainScatter = 0.1;
 // Windows that shrink or grow more than this (as areas) do not look alike any more.
 constexpr double kSmallestScale = 0.12, kLargestScale = 6.0;
 // A second peak at least this share of the best makes a match ambiguous.
 constexpr double kUniqueness = 0.92;
 
-// Affine appearance of the surroundings of a corner in the other image.
+// Appearance of the surroundings of a corner in the other image: at a distance d from it the affine one,
+// over 1 + perspective.d.
 struct LocalWarp {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d perspective = Eigen::Vector2d::Zero();
 };
 
 // Image of pixel x (full size) under the plane-induced homography now -> then; false when it lies behind.
@@ -40,6 +49,7 @@ class PointWarp {
     if (!(y.z() > 1e-6)) return false;
     local->centre = y.hnormalized();
     local->warp = (H_.topLeftCorner<2, 2>() - local->centre * H_.block<1, 2>(2, 0)) / y.z();
+    local->perspective = H_.block<1, 2>(2, 0).transpose() / y.z();
     const double scale = local->warp.determinant();
     return scale > kSmallestScale && scale < kLargestScale;
   }
@@ -144,17 +154,63 @@ class Follower {
   PatchSearch coarse_, fine_;
 };
 
+// A corner that was found, with the perspective of its window.
+struct Found {
+  PatchRefinement refinement;
+  Eigen::Vector2d perspective;
+};
+
+// Gain of the image then, by the windows' means, which neither blur nor noise changes.
+struct CommonGain {
+  double gain = 1, variance = std::numeric_limits<double>::infinity();
+};
+
+// The line through the means (now over then), less those off by more than three stddevs.
+CommonGain commonGain(const std::vector<Found>& found) {
+  constexpr int kPasses = 3;
+  constexpr double kOutlier = 3;
+  CommonGain result;
+  double offset = 0, limit = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    double count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (const Found& corner : found) {
+      const PatchRefinement::Evidence& means = corner.refinement.evidence;
+      if (std::abs(means.mean - result.gain * means.mean_there - offset) > limit) continue;
+      ++count;
+      x += means.mean_there;
+      y += means.mean;
+      xx += means.mean_there * means.mean_there;
+      xy += means.mean_there * means.mean;
+      yy += means.mean * means.mean;
+    }
+    const double spread = xx - x * x / count, covariance = xy - x * y / count;
+    if (!(count > 3 && spread > 0)) return {};
+    result.gain = covariance / spread;
+    offset = (y - result.gain * x) / count;
+    const double residual = std::max(0.0, yy - y * y / count - result.gain * covariance) / (count - 2);
+    result.variance = residual / spread;
+    limit = kOutlier * std::sqrt(residual);
+  }
+  return result;
+}
+
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
-void claim(const std::vector<PatchRefinement>& refinements, std::vector<TemporalMatch>& matches) {
+void claim(const std::vector<Found>& found, std::vector<TemporalMatch>& matches) {
   constexpr size_t kFit = 4;  // of so many, one
   if (matches.empty()) return;
   static thread_local std::vector<double> residuals;
   residuals.clear();
-  for (const PatchRefinement& refinement : refinements) residuals.push_back(refinement.residual_variance);
+  for (const Found& corner : found) residuals.push_back(corner.refinement.residual_variance);
   const double noise = 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
+  const CommonGain gain = commonGain(found);
+  const double held = kHeldGain * kGainScatter * kGainScatter / (kGainScatter * kGainScatter + gain.variance);
   for (size_t i = 0; i < matches.size(); ++i) {
-    const PatchRefinement::Claim claim = refinements[i].claim(noise);
+    const PatchRefinement::Claim claim = found[i].refinement.claim(noise);
+    // Windows are warped without perspective: over half a second near the ground it is some hundredths of a
+    // pixel, always to the same side, and thousandths of a degree of the approach angle.
+    const double off = held * (found[i].refinement.evidence.gain - gain.gain);
+    matches[i].then += claim.by_perspective * found[i].perspective - off * claim.by_gain;
     matches[i].covariance = claim.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
     matches[i].by_warp = claim.by_warp;
   }
@@ -172,8 +228,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
   matches.reserve(corners.size());
-  static thread_local std::vector<PatchRefinement> refinements;  // kept for its memory
-  refinements.clear();
+  static thread_local std::vector<Found> found;  // kept for its memory
+  found.clear();
   LocalWarp local, next;
   bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -192,9 +248,9 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     match.inverse_depth = corner.inverse_depth;
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
     matches.push_back(match);
-    refinements.push_back(refined);
+    found.push_back({refined, local.perspective});
   }
-  claim(refinements, matches);
+  claim(found, matches);
   return matches;
 }
 

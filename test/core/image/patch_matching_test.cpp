@@ -16,11 +16,12 @@ namespace {
 
 constexpr int kSize = 200, kRadius = 5;
 
-/// Two images, the reference's pixel x seen in the other one at centre + A (x - centre) + shift.
+/// Two images, the reference's pixel x = centre + d seen in the other one at
+/// centre + A d / (1 + perspective.d) + shift.
 struct Pair {
   struct Look {
     Eigen::Matrix2d A = Eigen::Matrix2d::Identity();
-    Eigen::Vector2d shift{0, 0};
+    Eigen::Vector2d shift{0, 0}, perspective{0, 0};  // the latter per pixel
     double gain = 1, offset = 0, noise = 0;
   };
   Look look;
@@ -35,7 +36,8 @@ struct Pair {
     for (int v = 0; v < kSize; ++v)
       for (int u = 0; u < kSize; ++u) {
         const Eigen::Vector2d x(u, v);
-        const Eigen::Vector2d source = centre() + look.A.inverse() * (x - look.shift - centre());
+        const Eigen::Vector2d affine = look.A.inverse() * (x - look.shift - centre());
+        const Eigen::Vector2d source = centre() + affine / (1 - look.perspective.dot(affine));
         first.at<uchar>(v, u) = cv::saturate_cast<uchar>(light(x) + look.noise * normal(random));
         second.at<uchar>(v, u) =
             cv::saturate_cast<uchar>(look.gain * light(source) + look.offset + look.noise * normal(random));
@@ -46,8 +48,15 @@ struct Pair {
 
   static Eigen::Vector2d centre() { return {kSize / 2.0, kSize / 2.0}; }
   Eigen::Vector2d place(int u, int v) const {
-    return centre() + look.A * (Eigen::Vector2d(u, v) - centre()) + look.shift;
+    return centre() + look.A * (Eigen::Vector2d(u, v) - centre()) / nearness(u, v) + look.shift;
   }
+  double nearness(int u, int v) const { return 1 + look.perspective.dot(Eigen::Vector2d(u, v) - centre()); }
+  /// Of the surroundings of a pixel: derivative of place(), and the perspective in there.
+  Eigen::Matrix2d warp(int u, int v) const {
+    const Eigen::Vector2d there = place(u, v) - look.shift - centre();
+    return (look.A - there * look.perspective.transpose()) / nearness(u, v);
+  }
+  Eigen::Vector2d perspective(int u, int v) const { return look.perspective / nearness(u, v); }
 };
 
 struct Errors {
@@ -207,6 +216,32 @@ TEST(RefinePatch, TellsHowThePlaceFollowsFromTheWarp) {
       left += (error - told).squaredNorm();
     }
   EXPECT_LT(left, 0.1 * squares);
+}
+
+TEST(RefinePatch, TellsHowThePlaceFollowsFromThePerspective) {
+  Pair::Look look;
+  look.A = turned(0.05, 0.9, 1.1);
+  look.shift = {0.4, -0.7};
+  look.perspective = {0.002, -0.006};
+  for (const double noise : {0.5, 2.0}) {
+    look.noise = noise;
+    const Pair pair(look);
+    Eigen::Vector2d error = Eigen::Vector2d::Zero(), told = error;
+    int count = 0;
+    for (int v = 40; v <= kSize - 40; v += 6)
+      for (int u = 40; u <= kSize - 40; u += 6) {
+        const Eigen::Vector2d wanted = pair.place(u, v);
+        const PatchRefinement refined =
+            refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, pair.warp(u, v), kRadius);
+        if (!refined.converged) continue;
+        error += refined.position - wanted;
+        told -= refined.claim().by_perspective * pair.perspective(u, v);
+        ++count;
+      }
+    ASSERT_GT(count, 300) << noise;
+    EXPECT_GT(error.norm() / count, 0.04) << noise;
+    EXPECT_LT((error - told).norm(), 0.1 * error.norm()) << noise;
+  }
 }
 
 TEST(PatchSearch, DoesNotTakeAPeakOnTheBorderOfTheRange) {
