@@ -18,10 +18,11 @@ struct PatchRefinement {
   struct Evidence {
     Eigen::Matrix2d gradient;                ///< sums of the products of its components, about their means
     std::array<Eigen::Matrix2d, 2> moments;  ///< the same by distance from the centre, across and down
-    Eigen::Matrix2d growth;           ///< of the gradient, its product with the distance, and the distance
+    /// Sum of grad (grad.d) d^T over the window, d the distance from the centre, about the gradient's mean.
+    Eigen::Matrix2d growth;
     Eigen::Vector2d by_gain;          ///< shift that a unit of gain looks like
-    double gain = 0;                  ///< of the other image
-    double mean = 0, mean_there = 0;  ///< grey levels of the windows
+    double gain = 0;                  ///< that the other image is multiplied by to look like the reference
+    double mean = 0, mean_there = 0;  ///< grey levels of the window in the reference and in the other image
     double contrast = 0;              ///< of the other image, that no shift explains
     int count = 0;                    ///< pixels
   } evidence;
@@ -36,7 +37,8 @@ struct PatchRefinement {
     /// In a window that shrinks by 1 + w.d with the distance d from its centre (w per pixel of the
     /// reference), as perspective has it, the place found is off by -by_perspective w.
     Eigen::Matrix2d by_perspective;
-    /// By how much the place found is off for each unit by which the gain is.
+    /// By how much the place found is off for each unit by which the gain found is too large; where texture
+    /// is hardly more than noise less than that, as it is not told well there.
     Eigen::Vector2d by_gain;
   };
   /// noise_variance: of a pixel of either image; at most half of the residuals'.

@@ -75,9 +75,9 @@ class ReferenceWindow {
 
   Eigen::Matrix2d growth() const {
     const WindowPlanes::GrowthSums sums = planes_.growth();
-    Eigen::Matrix2d growth;
-    growth << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
-    return growth - gradient_mean_ * Eigen::RowVector2d(sums.s_across, sums.s_down);
+    Eigen::Matrix2d products;
+    products << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
+    return products - gradient_mean_ * Eigen::RowVector2d(sums.s_across, sums.s_down);
   }
 
   GainShift solve(const WindowPlanes::OtherSums& sums) const {
@@ -169,8 +169,8 @@ PatchRefinement::Claim PatchRefinement::claim(double noise_variance) const {
   const Eigen::Matrix2d there = warp * inverse, back = warp.inverse();
   // Noise grows, too: its gradient has this share in it, as it is the same all over the window.
   const double mean_square_distance = (evidence.count - 1) / 12.0;
-  const Eigen::Matrix2d growth =
-      evidence.growth - of_noise * mean_square_distance * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d noise = V * (seen * (1 - share)).matrix().asDiagonal() * V.transpose();
+  const Eigen::Matrix2d growth = evidence.growth - mean_square_distance * noise;
   return {residual_variance / independent * warp * unit * warp.transpose(),
           {there * evidence.moments[0] * back, there * evidence.moments[1] * back},
           there * growth,

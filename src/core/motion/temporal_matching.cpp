@@ -18,11 +18,11 @@ namespace {
 constexpr int kFineSteps = 3;
 // Error of a match that its residuals do not show (interpolation, surface in the window not flat), pixels.
 constexpr double kStddevFloor = 0.03;
-// One camera has seen both windows, so the gains of all windows are alike: what is left of a gain's
-// difference from the others'. The rest, about, is real, as textures are blurred differently from near and
-// far.
+// Of the difference of a window's gain from the common one, what is taken out: one camera has seen both
+// windows. The rest is believed, as texture that is blurred differently from near and far really differs in
+// contrast.
 constexpr double kHeldGain = 0.6;
-// 1 sigma of a window's own gain about the common one.
+// By how much gains of windows differ from the common one, typically.
 constexpr double kGainScatter = 0.1;
 // Windows that shrink or grow more than this (as areas) do not look alike any more.
 constexpr double kSmallestScale = 0.12, kLargestScale = 6.0;
@@ -160,38 +160,69 @@ struct Found {
   Eigen::Vector2d perspective;
 };
 
-// Gain of the image then, by the windows' means, which neither blur nor noise changes.
+// By what the image then is to be multiplied to be as bright as the one now, and its variance.
 struct CommonGain {
   double gain = 1, variance = std::numeric_limits<double>::infinity();
 };
 
-// The line through the means (now over then), less those off by more than three stddevs.
+// Straight line through the windows' means, now over then.
+class MeansLine {
+ public:
+  // Least squares over the windows that are no more than limit (grey levels) off the line so far. False when
+  // they do not tell a line.
+  bool fit(const std::vector<Found>& found, double limit) {
+    Sums sums;
+    for (const Found& corner : found) {
+      const PatchRefinement::Evidence& window = corner.refinement.evidence;
+      if (std::abs(window.mean - slope_ * window.mean_there - offset_) <= limit)
+        sums.add(window.mean_there, window.mean);
+    }
+    constexpr int kFewest = 4;
+    if (sums.count < kFewest) return false;
+    const double count = sums.count;
+    spread_ = (sums.xx - sums.x * sums.x / count) / count;
+    if (!(spread_ > 0)) return false;
+    const double covariance = (sums.xy - sums.x * sums.y / count) / count;
+    slope_ = covariance / spread_;
+    offset_ = (sums.y - slope_ * sums.x) / count;
+    const double own = (sums.yy - sums.y * sums.y / count) / count;
+    residual_ = std::max(0.0, own - slope_ * covariance) * count / (count - 2);
+    return true;
+  }
+  double slope() const { return slope_; }
+  double residual() const { return residual_; }  // variance of a window's mean about the line
+  double spread() const { return spread_; }      // variance of the windows' means
+
+ private:
+  struct Sums {
+    int count = 0;
+    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+
+    void add(double then, double now) {
+      ++count;
+      x += then;
+      y += now;
+      xx += then * then;
+      xy += then * now;
+      yy += now * now;
+    }
+  };
+  double slope_ = 1, offset_ = 0, residual_ = 0, spread_ = 0;
+};
+
+// By the windows' means, which neither blur nor noise changes.
 CommonGain commonGain(const std::vector<Found>& found) {
   constexpr int kPasses = 3;
-  constexpr double kOutlier = 3;
-  CommonGain result;
-  double offset = 0, limit = std::numeric_limits<double>::infinity();
+  constexpr double kOutlier = 3, kLeastLimit = 0.1;  // stddevs; grey levels
+  MeansLine line;
+  double limit = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {
-    double count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    for (const Found& corner : found) {
-      const PatchRefinement::Evidence& means = corner.refinement.evidence;
-      if (std::abs(means.mean - result.gain * means.mean_there - offset) > limit) continue;
-      ++count;
-      x += means.mean_there;
-      y += means.mean;
-      xx += means.mean_there * means.mean_there;
-      xy += means.mean_there * means.mean;
-      yy += means.mean * means.mean;
-    }
-    const double spread = xx - x * x / count, covariance = xy - x * y / count;
-    if (!(count > 3 && spread > 0)) return {};
-    result.gain = covariance / spread;
-    offset = (y - result.gain * x) / count;
-    const double residual = std::max(0.0, yy - y * y / count - result.gain * covariance) / (count - 2);
-    result.variance = residual / spread;
-    limit = kOutlier * std::sqrt(residual);
+    if (!line.fit(found, limit)) return {};
+    limit = std::max(kLeastLimit, kOutlier * std::sqrt(line.residual()));
   }
-  return result;
+  // Means that are not on the line have a cause that many windows share, as paint brighter than the camera
+  // can see: more of them tell the line no better.
+  return {line.slope(), line.residual() / line.spread()};
 }
 
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
