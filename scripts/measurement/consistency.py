@@ -28,13 +28,14 @@ the valid ones; *n* is the number of them for what follows.
 
 Height is that over ground that bends by as much and as often as the estimator is told to expect: flat in 60 of 100 snippets,
 in 10 each with one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma),
-somewhere from 100 m behind the aircraft to 300 m ahead. The others are over flat ground, as pitch, roll and angle are against
-the surface ahead, which has no one direction where it bends; one column shows the height there, which must be found too
-cautious: from 30 m most of its claim is for a bend between the ground seen and the ground below.
+somewhere from 100 m behind the aircraft to 300 m ahead. The others are over flat ground, *n* of them, as pitch, roll and angle
+are against the surface ahead, which has no one direction where it bends; one column shows the height there, which must be
+found too cautious: from 30 m most of its claim is for a bend between the ground seen and the ground below.
 
-Roll is claimed too cautiously from 10 and 30 m, as edges are never believed to tell the rows better than to a few thousandths
-of a pixel; at 3 m, where single lines tell them, flights in which they do so badly are what is left.
-Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
+Roll is claimed too cautiously from 10 and 30 m: what single pairs claim is nearer to the truth (next section) than what their
+average over a second does. At 3 m, where single lines tell the rows, flights in which they do so badly are what is left.
+From 3 m and under strong noise the angle claims too little. Where the aircraft has been seen for 0.6 s only, most of the
+angle's claim at 30 m is for a gust that may just have begun.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
 
