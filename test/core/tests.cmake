@@ -83,6 +83,7 @@ uav_landing_add_gtest(imu_buffer_test test/core/motion/imu_buffer_test.cpp SOURC
 uav_landing_add_gtest(motion_tracker_test test/core/motion/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(path_angle_filter_test test/core/motion/path_angle_filter_test.cpp)
+uav_landing_add_gtest(common_gain_test test/core/motion/common_gain_test.cpp)
 uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 

@@ -51,10 +51,10 @@ class ReferenceWindow {
     return solve(planes_.multiply(values));
   }
   PatchRefinement::Evidence evidence(const GainShift& found) const {
-    const std::array<WindowPlanes::MomentSums, 2> sums = planes_.moments();
+    const WindowPlanes::DistanceSums sums = planes_.distanceSums();
     return {G_,
-            {aboutMean(sums[0]), aboutMean(sums[1])},
-            growth(),
+            {aboutMean(sums.moments[0]), aboutMean(sums.moments[1])},
+            aboutMean(sums.growth),
             found.projected,
             found.gain,
             planes_.middle() + mean_,
@@ -73,8 +73,7 @@ class ReferenceWindow {
     return moments - gradient_mean_ * Eigen::RowVector2d(sums.x, sums.y);
   }
 
-  Eigen::Matrix2d growth() const {
-    const WindowPlanes::GrowthSums sums = planes_.growth();
+  Eigen::Matrix2d aboutMean(const WindowPlanes::GrowthSums& sums) const {
     Eigen::Matrix2d products;
     products << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
     return products - gradient_mean_ * Eigen::RowVector2d(sums.s_across, sums.s_down);

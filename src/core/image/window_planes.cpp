@@ -108,6 +108,30 @@ struct MomentLanes {
   }
 };
 
+// What the gradient sees of a window that grows, times a distance.
+struct GrowthLanes {
+  Lanes s_across{}, s_down{}, x_across{}, x_down{}, y_across{}, y_down{};
+
+  [[gnu::always_inline]] inline void add(const Lanes& x, const Lanes& y, const float* to_right,
+                                         const float* below) {
+    Lanes across, down;
+    load(to_right, across);
+    load(below, down);
+    const Lanes s = x * across + y * down;
+    across *= s;
+    down *= s;
+    s_across += across;
+    s_down += down;
+    x_across += x * across;
+    x_down += x * down;
+    y_across += y * across;
+    y_down += y * down;
+  }
+  [[gnu::always_inline]] inline WindowPlanes::GrowthSums sums() const {
+    return {sum(s_across), sum(s_down), sum(x_across), sum(x_down), sum(y_across), sum(y_down)};
+  }
+};
+
 }  // namespace
 
 WindowPlanes::WindowPlanes(const cv::Mat& image, int u, int v, int radius)
@@ -136,9 +160,10 @@ UAV_LANDING_MULTIVERSION WindowPlanes::OwnSums WindowPlanes::sums() const {
   return {sum(a1), sum(x1), sum(y1), sum(aa), sum(ax), sum(ay), sum(xx), sum(xy), sum(yy)};
 }
 
-UAV_LANDING_MULTIVERSION std::array<WindowPlanes::MomentSums, 2> WindowPlanes::moments() const {
+UAV_LANDING_MULTIVERSION WindowPlanes::DistanceSums WindowPlanes::distanceSums() const {
   const Distances& distances = distancesOf(radius_);
   MomentLanes across, down;
+  GrowthLanes growth;
   const int count = filled();
   for (int i = 0; i < count; i += kLanes) {
     Lanes x, y;
@@ -146,31 +171,9 @@ UAV_LANDING_MULTIVERSION std::array<WindowPlanes::MomentSums, 2> WindowPlanes::m
     load(&y_[i], y);
     across.add(x, y, &distances.across[i]);
     down.add(x, y, &distances.down[i]);
+    growth.add(x, y, &distances.across[i], &distances.down[i]);
   }
-  return {across.sums(), down.sums()};
-}
-
-UAV_LANDING_MULTIVERSION WindowPlanes::GrowthSums WindowPlanes::growth() const {
-  const Distances& distances = distancesOf(radius_);
-  Lanes s_across{}, s_down{}, x_across{}, x_down{}, y_across{}, y_down{};
-  const int count = filled();
-  for (int i = 0; i < count; i += kLanes) {
-    Lanes x, y, across, down;
-    load(&x_[i], x);
-    load(&y_[i], y);
-    load(&distances.across[i], across);
-    load(&distances.down[i], down);
-    const Lanes s = x * across + y * down;
-    across *= s;
-    down *= s;
-    s_across += across;
-    s_down += down;
-    x_across += x * across;
-    x_down += x * down;
-    y_across += y * across;
-    y_down += y * down;
-  }
-  return {sum(s_across), sum(s_down), sum(x_across), sum(x_down), sum(y_across), sum(y_down)};
+  return {{across.sums(), down.sums()}, growth.sums()};
 }
 
 UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(WindowValues& other) const {

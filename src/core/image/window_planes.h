@@ -24,6 +24,10 @@ class WindowPlanes {
   struct GrowthSums {
     double s_across, s_down, x_across, x_down, y_across, y_down;
   };
+  struct DistanceSums {
+    std::array<MomentSums, 2> moments;  ///< by the distance across and by the one down
+    GrowthSums growth;
+  };
   /// Sums over a window b of another image, and of its products.
   struct OtherSums {
     double b, bb, ba, bx, by;
@@ -39,9 +43,7 @@ class WindowPlanes {
   int pixels() const { return size() * size(); }
 
   OwnSums sums() const;
-  /// By the distance across and by the one down.
-  std::array<MomentSums, 2> moments() const;
-  GrowthSums growth() const;
+  DistanceSums distanceSums() const;
   /// other: rows of the other window, with room for all of this one's; what fills them up does not matter.
   OtherSums multiply(WindowValues& other) const;
 

@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/order_statistic.h"
 #include "base/touch_ahead.h"
+#include "motion/common_gain.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
 
@@ -160,71 +160,6 @@ struct Found {
   Eigen::Vector2d perspective;
 };
 
-// By what the image then is to be multiplied to be as bright as the one now, and its variance.
-struct CommonGain {
-  double gain = 1, variance = std::numeric_limits<double>::infinity();
-};
-
-// Straight line through the windows' means, now over then.
-class MeansLine {
- public:
-  // Least squares over the windows that are no more than limit (grey levels) off the line so far. False when
-  // they do not tell a line.
-  bool fit(const std::vector<Found>& found, double limit) {
-    Sums sums;
-    for (const Found& corner : found) {
-      const PatchRefinement::Evidence& window = corner.refinement.evidence;
-      if (std::abs(window.mean - slope_ * window.mean_there - offset_) <= limit)
-        sums.add(window.mean_there, window.mean);
-    }
-    constexpr int kFewest = 4;
-    if (sums.count < kFewest) return false;
-    const double count = sums.count;
-    spread_ = (sums.xx - sums.x * sums.x / count) / count;
-    if (!(spread_ > 0)) return false;
-    const double covariance = (sums.xy - sums.x * sums.y / count) / count;
-    slope_ = covariance / spread_;
-    offset_ = (sums.y - slope_ * sums.x) / count;
-    const double own = (sums.yy - sums.y * sums.y / count) / count;
-    residual_ = std::max(0.0, own - slope_ * covariance) * count / (count - 2);
-    return true;
-  }
-  double slope() const { return slope_; }
-  double residual() const { return residual_; }  // variance of a window's mean about the line
-  double spread() const { return spread_; }      // variance of the windows' means
-
- private:
-  struct Sums {
-    int count = 0;
-    double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-
-    void add(double then, double now) {
-      ++count;
-      x += then;
-      y += now;
-      xx += then * then;
-      xy += then * now;
-      yy += now * now;
-    }
-  };
-  double slope_ = 1, offset_ = 0, residual_ = 0, spread_ = 0;
-};
-
-// By the windows' means, which neither blur nor noise changes.
-CommonGain commonGain(const std::vector<Found>& found) {
-  constexpr int kPasses = 3;
-  constexpr double kOutlier = 3, kLeastLimit = 0.1;  // stddevs; grey levels
-  MeansLine line;
-  double limit = std::numeric_limits<double>::infinity();
-  for (int pass = 0; pass < kPasses; ++pass) {
-    if (!line.fit(found, limit)) return {};
-    limit = std::max(kLeastLimit, kOutlier * std::sqrt(line.residual()));
-  }
-  // Means that are not on the line have a cause that many windows share, as paint brighter than the camera
-  // can see: more of them tell the line no better.
-  return {line.slope(), line.residual() / line.spread()};
-}
-
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
 void claim(const std::vector<Found>& found, std::vector<TemporalMatch>& matches) {
@@ -234,7 +169,11 @@ void claim(const std::vector<Found>& found, std::vector<TemporalMatch>& matches)
   residuals.clear();
   for (const Found& corner : found) residuals.push_back(corner.refinement.residual_variance);
   const double noise = 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
-  const CommonGain gain = commonGain(found);
+  static thread_local std::vector<WindowMeans> means;
+  means.clear();
+  for (const Found& corner : found)
+    means.push_back({corner.refinement.evidence.mean, corner.refinement.evidence.mean_there});
+  const CommonGain gain = commonGain(means);
   const double held = kHeldGain * kGainScatter * kGainScatter / (kGainScatter * kGainScatter + gain.variance);
   for (size_t i = 0; i < matches.size(); ++i) {
     const PatchRefinement::Claim claim = found[i].refinement.claim(noise);
