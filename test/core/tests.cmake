@@ -16,6 +16,7 @@ uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 
 # image
+uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
 uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp

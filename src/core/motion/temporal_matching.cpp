@@ -7,6 +7,7 @@
 
 #include "base/order_statistic.h"
 #include "base/touch_ahead.h"
+#include "image/clipping.h"
 #include "motion/common_gain.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
@@ -24,6 +25,9 @@ constexpr double kStddevFloor = 0.03;
 constexpr double kHeldGain = 0.6;
 // By how much gains of windows differ from the common one, typically.
 constexpr double kGainScatter = 0.1;
+// Edges of what is brighter than the camera can see stand where their blur becomes white: with e times the
+// exposure they are farther out by about the blur's width, 1 sigma, pixels.
+constexpr double kClippedShift = 1.0;
 // Windows that shrink or grow more than this (as areas) do not look alike any more.
 constexpr double kSmallestScale = 0.12, kLargestScale = 6.0;
 // A second peak at least this share of the best makes a match ambiguous.
@@ -160,9 +164,31 @@ struct Found {
   Eigen::Vector2d perspective;
 };
 
+/// What another exposure adds to the variance of a match whose window is clipped, pixels^2.
+class ClippedVariance {
+ public:
+  /// gain: of the image now over the one then.
+  ClippedVariance(const cv::Mat& now, const cv::Mat& then, int radius, double gain)
+      : now_(now), then_(then), radius_(radius), variance_(std::pow(kClippedShift * std::log(gain), 2)) {}
+
+  double of(const TemporalMatch& match) const {
+    // Less than the floor of every match by far.
+    constexpr double kLittle = 1e-4;
+    if (!(variance_ > kLittle)) return 0;
+    const bool clipped = isClipped(now_, match.now, radius_) || isClipped(then_, match.then, radius_);
+    return clipped ? variance_ : 0;
+  }
+
+ private:
+  const cv::Mat &now_, &then_;
+  int radius_;
+  double variance_;
+};
+
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
-void claim(const std::vector<Found>& found, std::vector<TemporalMatch>& matches) {
+void claim(const std::vector<Found>& found, const MatchImage& now, const MatchImage& then, int radius,
+           std::vector<TemporalMatch>& matches) {
   constexpr size_t kFit = 4;  // of so many, one
   if (matches.empty()) return;
   static thread_local std::vector<double> residuals;
@@ -175,13 +201,15 @@ void claim(const std::vector<Found>& found, std::vector<TemporalMatch>& matches)
     means.push_back({corner.refinement.evidence.mean, corner.refinement.evidence.mean_there});
   const CommonGain gain = commonGain(means);
   const double held = kHeldGain * kGainScatter * kGainScatter / (kGainScatter * kGainScatter + gain.variance);
+  const ClippedVariance by_exposure(now.fine, then.fine, radius, gain.gain);
   for (size_t i = 0; i < matches.size(); ++i) {
     const PatchRefinement::Claim claim = found[i].refinement.claim(noise);
     // Windows are warped without perspective: over half a second near the ground it is some hundredths of a
     // pixel, always to the same side, and thousandths of a degree of the approach angle.
     const double off = held * (found[i].refinement.evidence.gain - gain.gain);
     matches[i].then += claim.by_perspective * found[i].perspective - off * claim.by_gain;
-    matches[i].covariance = claim.covariance + kStddevFloor * kStddevFloor * Eigen::Matrix2d::Identity();
+    const double more = kStddevFloor * kStddevFloor + by_exposure.of(matches[i]);
+    matches[i].covariance = claim.covariance + more * Eigen::Matrix2d::Identity();
     matches[i].by_warp = claim.by_warp;
   }
 }
@@ -220,7 +248,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     matches.push_back(match);
     found.push_back({refined, local.perspective});
   }
-  claim(found, matches);
+  claim(found, now, then, options.window_radius, matches);
   return matches;
 }
 

@@ -206,21 +206,42 @@ TEST(MatchOverTime, HoldsGainsToThatOfTheImages) {
   }
 }
 
+void paintThreshold(GroundRenderer& ground) {
+  ground.contrast = 6;
+  ground.line_offset = 1.1;
+  ground.line_width = 0.3;
+  ground.bar_period = 0.6;
+  ground.bar_from = 3;
+  ground.bar_to = 6;
+  ground.bar_reach = 1;
+}
+
 // Paint that is brighter than the camera can see takes the means off the gain.
 TEST(MatchOverTime, DoesNotHoldGainsToWhatClippedPaintSays) {
   for (const double gain : {1.3, 1.5, 1.8}) {
     test::Exposure exposure;
     exposure.gain = gain;
-    const auto paint = [](GroundRenderer& ground) {
-      ground.contrast = 6;
-      ground.line_offset = 1.1;
-      ground.line_width = 0.3;
-      ground.bar_period = 0.6;
-      ground.bar_from = 3;
-      ground.bar_to = 6;
-      ground.bar_reach = 1;
-    };
-    EXPECT_GT(ownGainsOverHeld(exposure, paint), 0.98) << gain;
+    EXPECT_GT(ownGainsOverHeld(exposure, paintThreshold), 0.98) << gain;
+  }
+}
+
+// Its edges stand elsewhere with another exposure.
+TEST(MatchOverTime, ClaimsLessOfClippedPaintThatWasSeenWithAnotherExposure) {
+  Pose then, now;
+  then.position = {-0.35, 0.02, 1.56};
+  now.position = {0, 0, 1.5};
+  then.pitch = now.pitch = -6 * kDegree;
+  GroundRenderer ground{21};
+  paintThreshold(ground);
+  for (const double gain : {0.6, 1.0, 1.3, 1.6, 2.2}) {
+    test::Exposure exposure;
+    exposure.gain = gain;
+    const Frames frames(then, now, 640, ground, exposure);
+    const std::vector<TemporalMatch> matches = frames.match(frames.truth(), 0);
+    EXPECT_GT(matches.size(), 100u) << gain;
+    const Errors errors = errorsOf(frames, matches);
+    EXPECT_LT(errors.nees, 2) << gain << ": the expected value";
+    EXPECT_LT(errors.wrong, 0.1) << gain;
   }
 }
 
