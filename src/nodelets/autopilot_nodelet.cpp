@@ -62,17 +62,14 @@ class AutopilotNodelet : public StageNodelet {
     const auto enu_pose = autopilotPose(pose, parameters_);
     if (range) range_publisher_.publish(*range);
     if (enu_pose) pose_publisher_.publish(*enu_pose);
-    const std::string missing = reason(range.has_value(), enu_pose.has_value());
+    std::string missing;
+    if (!range) missing = "no range: " + whyNoRange(height, pose, parameters_);
+    if (range && !enu_pose) missing = "no pose: the place along or across the runway is not known";
     report_.served(stamp, 0, missing);
     if (range || enu_pose)
       sent_lately_ = true;
     else
       last_reason_ = missing;
-  }
-
-  static std::string reason(bool range, bool pose) {
-    if (!range) return "no range: too high, or what is estimated is a camera, not the aircraft (base_frame)";
-    return pose ? "" : "no pose: the place along or across the runway is not known";
   }
 
   AutopilotParameters parameters_;

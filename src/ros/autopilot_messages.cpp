@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace uav_landing {
 namespace {
@@ -17,6 +18,13 @@ constexpr double kMinCosTilt = 0.5;
 /// Of the up axis against the vertical.
 double cosTilt(const Eigen::Isometry3d& runway_from_aircraft) { return runway_from_aircraft.linear()(2, 2); }
 
+/// Of the pose's up axis against the vertical.
+double cosTilt(const geometry_msgs::PoseWithCovarianceStamped& pose) {
+  Eigen::Isometry3d runway_from_aircraft;
+  tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
+  return cosTilt(runway_from_aircraft);
+}
+
 bool positiveDefinite(const Covariance& covariance) {
   return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
 }
@@ -26,9 +34,7 @@ bool positiveDefinite(const Covariance& covariance) {
 std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
                                                  const geometry_msgs::PoseWithCovarianceStamped& pose,
                                                  const AutopilotParameters& parameters) {
-  Eigen::Isometry3d runway_from_aircraft;
-  tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  const double cos_tilt = cosTilt(runway_from_aircraft);
+  const double cos_tilt = cosTilt(pose);
   const double distance = height.range / cos_tilt;
   if (!(cos_tilt >= kMinCosTilt) || !(distance >= 0) || !(distance <= parameters.max_range))
     return std::nullopt;
@@ -36,6 +42,20 @@ std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& heigh
   range.max_range = static_cast<float>(parameters.max_range);
   range.range = static_cast<float>(distance);
   return range;
+}
+
+std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose,
+                       const AutopilotParameters& parameters) {
+  if (!std::isfinite(height.range)) return "no valid height";
+  std::ostringstream why;
+  const double cos_tilt = cosTilt(pose);
+  if (!(cos_tilt >= kMinCosTilt))
+    why << "what is estimated is tilted by " << std::round(std::acos(cos_tilt) * 180 / M_PI)
+        << " deg, as a camera is and no aircraft: base_frame or its static tf is missing";
+  else
+    why << "the surface is not within 0 to " << parameters.max_range << " m (max_range), at a height of "
+        << height.range << " m";
+  return why.str();
 }
 
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(

@@ -39,6 +39,10 @@ std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& heigh
                                                  const geometry_msgs::PoseWithCovarianceStamped& pose,
                                                  const AutopilotParameters& parameters);
 
+/// Why there is none.
+std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose,
+                       const AutopilotParameters& parameters);
+
 /// The pose with east, north, up for axes, covariance included. None when a number is not finite, the
 /// covariance not positive definite, the place not known well enough, or tilted by more than 60 degrees: that
 /// is no aircraft but a camera, whose z axis is forward.

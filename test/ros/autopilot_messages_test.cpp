@@ -52,6 +52,22 @@ TEST(AutopilotRange, IsTheHeightOfALevelAircraft) {
   EXPECT_EQ(range->header.frame_id, "base_link");
 }
 
+TEST(AutopilotRange, SaysWhyThereIsNone) {
+  const auto why = [](double height, double tilt) {
+    auto pose = someWhere();
+    turn(pose, 1, tilt);
+    EXPECT_FALSE(autopilotRange(heightOf(height), pose, AutopilotParameters())) << height << ' ' << tilt;
+    return whyNoRange(heightOf(height), pose, AutopilotParameters());
+  };
+  EXPECT_EQ(why(std::numeric_limits<double>::quiet_NaN(), 0), "no valid height");
+  EXPECT_EQ(why(700, 0), "the surface is not within 0 to 655 m (max_range), at a height of 700 m");
+  EXPECT_EQ(why(-1, 0), "the surface is not within 0 to 655 m (max_range), at a height of -1 m");
+  EXPECT_EQ(
+      why(10, 85 * kDegree),
+      "what is estimated is tilted by 85 deg, as a camera is and no aircraft: base_frame or its static tf "
+      "is missing");
+}
+
 TEST(AutopilotRange, IsLongerAlongTheAxisOfATiltedAircraft) {
   auto pose = someWhere();
   turn(pose, 0, 60 * kDegree - 1e-6);
