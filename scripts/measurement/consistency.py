@@ -35,7 +35,7 @@ found too cautious: from 30 m most of its claim is for a bend between the ground
 Roll is claimed too cautiously from 10 and 30 m, and with it the lateral offset under strong noise. Most of what pairs of a
 second have in common is what rows may be off by (up to 8° of roll for a pixel), and there matches are taken to see the rows'
 rotation a fifth too small, under noise two fifths: over 60 snippets a cell it was 0 to 10 %. At 3 m and under strong noise it
-is a fifth, and roll is claimed too small: corners are looked for along rows first, so that those are found which noise keeps in theirs.
+is a fifth, and roll claims too little: corners are looked for along rows first, and those are found which noise keeps in theirs.
 From 3 m and under strong noise the angle claims too little. Where the aircraft has been seen for 0.6 s only, most of the
 angle's claim at 30 m is for a gust that may just have begun.
 

@@ -164,53 +164,46 @@ struct Found {
   Eigen::Vector2d perspective;
 };
 
-/// What another exposure adds to the variance of a match whose window is clipped, pixels^2.
-class ClippedVariance {
- public:
-  /// gain: of the image now over the one then.
-  ClippedVariance(const cv::Mat& now, const cv::Mat& then, int radius, double gain)
-      : now_(now), then_(then), radius_(radius), variance_(std::pow(kClippedShift * std::log(gain), 2)) {}
-
-  double of(const TemporalMatch& match) const {
-    // Less than the floor of every match by far.
-    constexpr double kLittle = 1e-4;
-    if (!(variance_ > kLittle)) return 0;
-    const bool clipped = isClipped(now_, match.now, radius_) || isClipped(then_, match.then, radius_);
-    return clipped ? variance_ : 0;
-  }
-
- private:
-  const cv::Mat &now_, &then_;
-  int radius_;
-  double variance_;
-};
-
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
-void claim(const std::vector<Found>& found, const MatchImage& now, const MatchImage& then, int radius,
-           std::vector<TemporalMatch>& matches) {
+double noiseVariance(const std::vector<Found>& found) {
   constexpr size_t kFit = 4;  // of so many, one
-  if (matches.empty()) return;
   static thread_local std::vector<double> residuals;
   residuals.clear();
   for (const Found& corner : found) residuals.push_back(corner.refinement.residual_variance);
-  const double noise = 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
+  return 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
+}
+
+CommonGain commonGainOf(const std::vector<Found>& found) {
   static thread_local std::vector<WindowMeans> means;
   means.clear();
   for (const Found& corner : found)
     means.push_back({corner.refinement.evidence.mean, corner.refinement.evidence.mean_there});
-  const CommonGain gain = commonGain(means);
+  return commonGain(means);
+}
+
+void claim(const std::vector<Found>& found, const MatchImage& now, const MatchImage& then, int radius,
+           std::vector<TemporalMatch>& matches) {
+  // By an exposure that changes less, clipped edges move by less than a third of the floor.
+  constexpr double kLeastChange = 0.01;
+  if (matches.empty()) return;
+  const double noise = noiseVariance(found);
+  const CommonGain gain = commonGainOf(found);
   const double held = kHeldGain * kGainScatter * kGainScatter / (kGainScatter * kGainScatter + gain.variance);
-  const ClippedVariance by_exposure(now.fine, then.fine, radius, gain.gain);
+  const double change = gain.gain > 0 ? std::abs(std::log(gain.gain)) : 0;
   for (size_t i = 0; i < matches.size(); ++i) {
+    TemporalMatch& match = matches[i];
     const PatchRefinement::Claim claim = found[i].refinement.claim(noise);
     // Windows are warped without perspective: over half a second near the ground it is some hundredths of a
     // pixel, always to the same side, and thousandths of a degree of the approach angle.
     const double off = held * (found[i].refinement.evidence.gain - gain.gain);
-    matches[i].then += claim.by_perspective * found[i].perspective - off * claim.by_gain;
-    const double more = kStddevFloor * kStddevFloor + by_exposure.of(matches[i]);
-    matches[i].covariance = claim.covariance + more * Eigen::Matrix2d::Identity();
-    matches[i].by_warp = claim.by_warp;
+    match.then += claim.by_perspective * found[i].perspective - off * claim.by_gain;
+    double stddev = kStddevFloor;
+    if (change > kLeastChange &&
+        (isClipped(now.fine, match.now, radius) || isClipped(then.fine, match.then, radius)))
+      stddev = std::hypot(stddev, kClippedShift * change);
+    match.covariance = claim.covariance + stddev * stddev * Eigen::Matrix2d::Identity();
+    match.by_warp = claim.by_warp;
   }
 }
 
