@@ -129,14 +129,15 @@ std::string number(const char* format, double value, const char* unknown) {
   return buffer;
 }
 
+// Short lines: the aircraft may be near the edge of the view.
 std::string numbers(const LandingResult& estimate) {
   std::string text = std::string(toString(estimate.status)) + (estimate.valid() ? "" : ", not valid");
   text += "\nheight " + number("%.2f m", estimate.height_valid ? estimate.height : kUnknown, "-");
   text +=
-      "   sink rate " + number("%.2f m/s", estimate.height_valid ? -estimate.vertical_speed : kUnknown, "-");
+      "\nsink rate " + number("%.2f m/s", estimate.height_valid ? -estimate.vertical_speed : kUnknown, "-");
   text += "\napproach " +
           number("%.2f deg", estimate.angle_valid ? estimate.approach_angle / kDegree : kUnknown, "-");
-  text += "   protection level " + number("%.2f m", estimate.height_protection_level, "-");
+  text += "\nprotection level " + number("%.2f m", estimate.height_protection_level, "-");
   if (estimate.failure) text += "\n" + estimate.failure.message();
   return text;
 }
@@ -172,7 +173,10 @@ visualization_msgs::MarkerArray drawLanding(const std_msgs::Header& header, cons
                                  : track.empty() ? Eigen::Vector3d::Zero()
                                                  : track.back();
   text.scale.z = std::max(parameters.runway_width / 14, 0.08 * anchor.z());
-  text.pose.position = point(anchor + Eigen::Vector3d(0, 0, 3 * text.scale.z));
+  // The middle of the text, so high that its last line is above the aircraft.
+  const auto lines = 1 + std::count(text.text.begin(), text.text.end(), '\n');
+  text.pose.position =
+      point(anchor + Eigen::Vector3d(0, 0, 0.75 * static_cast<double>(lines) * text.scale.z));
   array.markers.push_back(text);
   return array;
 }
