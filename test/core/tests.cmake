@@ -111,6 +111,7 @@ uav_landing_add_gtest(solution_separation_test test/core/integrity/solution_sepa
 uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cpp)
 uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
 uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
+uav_landing_add_gtest(vanishing_memory_test test/core/integrity/vanishing_memory_test.cpp)
 uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
 
 # stages

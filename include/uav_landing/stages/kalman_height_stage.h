@@ -17,6 +17,7 @@
 #include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/integrity/speed_memory.h"
 #include "uav_landing/integrity/stamp_scatter.h"
+#include "uav_landing/integrity/vanishing_memory.h"
 #include "uav_landing/integrity/velocity_memory.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
@@ -159,6 +160,8 @@ class KalmanHeightStage {
   void doubtNormal(const Reconstruction& reconstruction, const ApproachAngleResult& approach);
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
+  /// How the camera turned since the pair before: where the images do not tell, by the imu.
+  ApproachAngleResult::Motion turnSince(const ApproachAngleResult& approach) const;
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,
   /// the unevenness that shows ahead, and what its bend leaves open.
   double modelVariance(double height) const;
@@ -203,6 +206,7 @@ class KalmanHeightStage {
   StampScatter stamps_;
   Recovery recovery_;
   NormalDoubt doubt_;
+  VanishingMemory vanishing_;
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s
   double ground_height_ = kUnknown;             // at that time, m

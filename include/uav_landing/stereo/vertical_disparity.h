@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// What the rows of matched corners show of the right camera. They do not depend on the ground: no plane or
+/// What the rows of corners show of the right camera. They do not depend on the ground: no plane or
 /// height enters.
 struct VerticalDisparities {
   /// See rig_rotation.h: rx and rz well, ry weakly. Fails when fewer than 20 corners have a row.
@@ -18,14 +18,18 @@ struct VerticalDisparities {
   /// The rotation is fitted with it once more. Its covariance has in it what lenses and focal lengths are
   /// wrong by after a calibration. Unknown with fewer corners as well.
   BaselineDirection baseline;
-  /// Share of the corners whose row was found; NaN when there are none.
+  /// Share of the matched corners whose row was found; NaN when there are none.
   double agreement = kUnknown;
 };
 
-/// samples: matched corners with the disparity found in the level's right image. The right row of a few of
-/// them is measured to sub-pixel (gain and offset free, within 2 rows), then the rotation and the direction
-/// of the baseline fitted with redescending weights. g: plane that tells how windows are sheared, 1/m.
+/// corners: all that were looked for along the rows; samples: those of them that were found, in the same
+/// order, with their disparities. The right row of a few of the corners is measured to sub-pixel (gain and
+/// offset free, within 2 rows), then the rotation and the direction of the baseline fitted with redescending
+/// weights. Those that were not found count where the plane g (1/m) has them: found are the ones that noise
+/// happens to keep in their rows, and by them alone rows seem to move by less than they do. g tells as well
+/// how windows are sheared.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<cv::Point>& corners,
                                                const std::vector<DisparitySample>& samples,
                                                const Eigen::Vector3d& g, int window_radius);
 
@@ -52,8 +56,14 @@ Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const
 /// matches along rows, and measures what it bends by.
 class RowAlignment {
  public:
-  /// enabled: false leaves the images as they are and measures nothing.
-  RowAlignment(bool enabled, int window_radius) : enabled_(enabled), window_radius_(window_radius) {}
+  /// enabled: false leaves the images as they are and measures nothing. bias_stddev, row_bias_stddev: to what
+  /// the calibration of the cameras and of their lenses is good, pixels, the latter in the middle of the
+  /// image.
+  RowAlignment(bool enabled, int window_radius, double bias_stddev, double row_bias_stddev)
+      : enabled_(enabled),
+        window_radius_(window_radius),
+        bias_stddev_(bias_stddev),
+        row_bias_stddev_(row_bias_stddev) {}
 
   /// The right image (CV_32F, at the rig's resolution) with its rows made level, in buffer, or itself when
   /// they are.
@@ -68,15 +78,14 @@ class RowAlignment {
     /// Wrong matches mostly are not. NaN when nothing was measured.
     double agreement = kUnknown;
   };
-  /// By the rows of the matched corners; adapts level() for the next pair. The level is one whose right image
-  /// is from level().
-  Measured measure(const StereoLevel& level, const std::vector<DisparitySample>& samples,
-                   const Eigen::Vector3d& g);
+  /// By the rows of the corners (see measureVerticalDisparities); adapts level() for the next pair. The level
+  /// is one whose right image is from level().
+  Measured measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                   const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g);
   /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
-  /// with what a calibration leads to expect that is good to bias_stddev, and its lenses to row_bias_stddev
-  /// (pixels in the middle of the image), as long as the two do not contradict each other.
-  RigRotation residual(const StereoRig& rig, double bias_stddev, double row_bias_stddev) const;
-  void reset() { *this = RowAlignment(enabled_, window_radius_); }
+  /// with what the calibration leads to expect, as long as the two do not contradict each other.
+  RigRotation residual(const StereoRig& rig) const;
+  void reset() { *this = RowAlignment(enabled_, window_radius_, bias_stddev_, row_bias_stddev_); }
 
  private:
   bool adapt(const StereoRig& rig, const RigRotation& residual);
@@ -84,6 +93,7 @@ class RowAlignment {
 
   bool enabled_;
   int window_radius_;
+  double bias_stddev_, row_bias_stddev_;                 // pixels
   Eigen::Vector3d taken_out_ = Eigen::Vector3d::Zero();  // w of which the rows are freed, rad
   // Of the sum of what is taken out and what is left, old pairs forgotten.
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();

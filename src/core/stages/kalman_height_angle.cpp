@@ -35,6 +35,7 @@ double KalmanHeightStage::OtherNormal::angleVariance(const Eigen::Vector3d& used
 void KalmanHeightStage::doubtNormal(const Reconstruction& reconstruction,
                                     const ApproachAngleResult& approach) {
   const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
+  if (vanishing_.leaps(approach.stamp, p, approach.vanishing_covariance, n, turnSince(approach))) return;
   if (!reconstruction.alone.valid() || !p.allFinite()) return;
   doubt_.add(approach.stamp, tests_.result(Consistency::kVanishingPoint).ratio,
              (n - n.dot(p) * p).normalized() - n, n.dot(approach.vanishing_covariance * n),

@@ -30,18 +30,6 @@ Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) 
   return {};
 }
 
-/// How the camera turned since the pair before, for the attitude: where the images do not tell, by the imu.
-ApproachAngleResult::Motion rotationOf(const ApproachAngleResult& approach, bool use_imu) {
-  const AttitudePrior& imu = approach.imu;
-  if (!use_imu || !approach.step.failure || !imu.hasRotation()) return approach.step;
-  ApproachAngleResult::Motion turn;
-  turn.duration = imu.duration;
-  turn.rotation = imu.rotation;
-  turn.covariance.setZero();
-  turn.covariance.topLeftCorner<3, 3>() = imu.rotation_covariance;
-  return turn;
-}
-
 /// Share of a pair's own error that is the same in the pairs of a second, as they see the same texture.
 double lastingShare(const StereoDepthResult& stereo) {
   // Of what is no noise, by the simulator's errors of one pair and of a dozen.
@@ -55,6 +43,17 @@ double lastingShare(const StereoDepthResult& stereo) {
 const ApproachAngleResult::Motion& KalmanHeightStage::publishedMotion(const ApproachAngleResult& approach) {
   const bool window_known = !approach.window.failure && std::isfinite(approach.window.angle);
   return window_known ? approach.window : approach.step;
+}
+
+ApproachAngleResult::Motion KalmanHeightStage::turnSince(const ApproachAngleResult& approach) const {
+  const AttitudePrior& imu = approach.imu;
+  if (!parameters_.fuse_imu || !approach.step.failure || !imu.hasRotation()) return approach.step;
+  ApproachAngleResult::Motion turn;
+  turn.duration = imu.duration;
+  turn.rotation = imu.rotation;
+  turn.covariance.setZero();
+  turn.covariance.topLeftCorner<3, 3>() = imu.rotation_covariance;
+  return turn;
 }
 
 double KalmanHeightStage::modelVariance(double height) const {
@@ -207,7 +206,7 @@ void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruct
 void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                         Reconstruction& reconstruction, LandingResult& result) {
   const GroundPlane& plane = reconstruction.plane;
-  const ApproachAngleResult::Motion turn = rotationOf(approach, parameters_.fuse_imu);
+  const ApproachAngleResult::Motion turn = turnSince(approach);
   if (!plane.valid()) return attitude_.carry(stereo.stamp, turn);
   Reconstruction::Normal& average = reconstruction.normal;
   if (!parameters_.average_attitude) return;

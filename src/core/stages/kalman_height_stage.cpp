@@ -119,6 +119,7 @@ void KalmanHeightStage::reset() {
   stamps_.reset();
   recovery_.reset();
   doubt_.reset();
+  vanishing_.reset();
   ground_.reset();
   ground_stamp_.reset();
   ground_height_ = kUnknown;

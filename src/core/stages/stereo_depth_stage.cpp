@@ -52,7 +52,9 @@ struct StereoDepthStage::Implementation {
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p)
-      : model(rig), parameters(p), rows(p.vertical_disparities, p.window_radius) {
+      : model(rig),
+        parameters(p),
+        rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
     limits.max_roll = p.max_roll_deg * kDegree;
     limits.max_pitch = p.max_pitch_deg * kDegree;
     limits.min_points = p.min_points;
@@ -228,7 +230,7 @@ struct StereoDepthStage::Implementation {
       samples = matchCorners(fine, corners, start, parameters);
     }
     fitOrSayWhyNot(samples, result);
-    measureRows(samples, result);
+    measureRows(corners, samples, result);
   }
 
   void fitOrSayWhyNot(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
@@ -266,19 +268,16 @@ struct StereoDepthStage::Implementation {
     result.row_bias_stddev = parameters.row_bias_stddev;
   }
 
-  void measureRows(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+  void measureRows(const std::vector<cv::Point>& corners, const std::vector<DisparitySample>& samples,
+                   StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     if (result.failure) return;
-    const RowAlignment::Measured measured = rows.measure(fine, samples, result.plane.g);
+    const RowAlignment::Measured measured = rows.measure(fine, corners, samples, result.plane.g);
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
-    result.row_covariance = rowLeak(fine.rig, rowResidual(), result.plane.g);
+    result.row_covariance = rowLeak(fine.rig, rows.residual(fine.rig), result.plane.g);
     result.plane.covariance += result.row_covariance;
-  }
-
-  RigRotation rowResidual() const {
-    return rows.residual(fine.rig, parameters.disparity_bias_stddev, parameters.row_bias_stddev);
   }
 
   // The right image as the camera saw it but with its rows made level, where they are not.
@@ -292,8 +291,9 @@ struct StereoDepthStage::Implementation {
   // The plane of the corners stays when the images' alignment leads elsewhere; false then.
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
-    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
-                                                  limits, parameters.disparity_bias_stddev, rowResidual());
+    const Expected<PlaneFit> fit =
+        direct->refine(left_image, withLevelRows(right_image), result.plane.g, limits,
+                       parameters.disparity_bias_stddev, rows.residual(fine.rig));
     result.photometric_agreement = direct->agreement();
     if (!fit) return false;
     if (direct->noisy()) result.plane.covariance *= kNoisyCorners * kNoisyCorners;

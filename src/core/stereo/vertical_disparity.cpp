@@ -31,11 +31,40 @@ Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
   return warp;
 }
 
-// disparity: of the corner, as known so far.
-void addRow(const StereoLevel& level, int u, int v, double disparity, const Eigen::Vector2d& start,
-            const Eigen::Matrix2d& warp, int radius, std::vector<RowShift>& rows) {
+// A corner with its disparity: as found along the row, or the plane's.
+struct PlacedCorner {
+  cv::Point corner;
+  double disparity;
+  bool matched;
+};
+
+std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Point>& corners,
+                                 const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g) {
+  std::vector<PlacedCorner> all;
+  all.reserve(corners.size());
+  auto sample = samples.begin();
+  for (const cv::Point& corner : corners) {
+    const bool matched = sample != samples.end() && sample->u == corner.x && sample->v == corner.y;
+    const double disparity = matched ? sample->disparity : rig.fb() * g.dot(rig.ray(corner.x, corner.y));
+    if (matched) ++sample;
+    all.push_back({corner, disparity, matched});
+  }
+  return all;
+}
+
+// Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
+bool isBeside(const PatchRefinement& place, double column) {
+  constexpr double kSigmas = 3, kPlane = 0.1;  // the latter pixels
+  const double off = place.position.x() - column;
+  return off * off > kSigmas * kSigmas * (place.claim().covariance(0, 0) + kPlane * kPlane);
+}
+
+// disparity: of the corner, as known so far. False when it has no row.
+bool addRow(const StereoLevel& level, int u, int v, double disparity, const Eigen::Vector2d& start,
+            const Eigen::Matrix2d& warp, int radius, bool on_plane, std::vector<RowShift>& rows) {
   const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
-  if (!place.converged || place.score < kMinScore) return;
+  if (!place.converged || place.score < kMinScore) return false;
+  if (on_plane && isBeside(place, start.x())) return false;
   const double stddev = std::hypot(std::sqrt(place.claim().covariance(1, 1)), kStddevFloor);
   RowShift row;
   row.by << verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
@@ -45,6 +74,7 @@ void addRow(const StereoLevel& level, int u, int v, double disparity, const Eige
   row.below_centre = v - level.rig.cy;
   row.cell = row_fit::imageCell(level.rig, u, v);
   rows.push_back(row);
+  return true;
 }
 
 Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
@@ -92,19 +122,24 @@ void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int 
 }  // namespace
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<cv::Point>& corners,
                                                const std::vector<DisparitySample>& samples,
                                                const Eigen::Vector3d& g, int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
-  const std::vector<DisparitySample> some = thinned(samples, kMeasured);
+  const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, samples, g), kMeasured);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
-  for (const DisparitySample& sample : some) {
-    const double column = sample.u - sample.disparity - level.rig.principalOffset();
-    addRow(level, static_cast<int>(sample.u), static_cast<int>(sample.v), sample.disparity,
-           {column, sample.v}, warp, window_radius, rows);
+  int matched = 0, again = 0;
+  for (const PlacedCorner& at : some) {
+    const double column = at.corner.x - at.disparity - level.rig.principalOffset();
+    const Eigen::Vector2d start(column, at.corner.y);
+    const bool found =
+        addRow(level, at.corner.x, at.corner.y, at.disparity, start, warp, window_radius, !at.matched, rows);
+    matched += at.matched ? 1 : 0;
+    again += at.matched && found ? 1 : 0;
   }
   VerticalDisparities measured;
-  if (!some.empty()) measured.agreement = static_cast<double>(rows.size()) / static_cast<double>(some.size());
+  if (matched > 0) measured.agreement = static_cast<double>(again) / matched;
   measured.rotation = fitRotation(rows);
   measured.baseline = fitBaseline(rows);
   return measured;
@@ -123,7 +158,8 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
     const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
     const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
     const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
-    if (best.found) addRow(level, corner.x, corner.y, disparity, best.position, warp, window_radius, rows);
+    if (best.found)
+      addRow(level, corner.x, corner.y, disparity, best.position, warp, window_radius, false, rows);
   }
   return fitRotation(rows);
 }
@@ -175,11 +211,11 @@ bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>
   return found && adapt(level.rig, *found);
 }
 
-RowAlignment::Measured RowAlignment::measure(const StereoLevel& level,
+RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
                                              const std::vector<DisparitySample>& samples,
                                              const Eigen::Vector3d& g) {
   if (!enabled_) return {};
-  const VerticalDisparities found = measureVerticalDisparities(level, samples, g, window_radius_);
+  const VerticalDisparities found = measureVerticalDisparities(level, corners, samples, g, window_radius_);
   Measured measured{{}, found.baseline, found.agreement};
   if (!found.rotation) return measured;
   measured.rotation = *found.rotation;
@@ -198,12 +234,12 @@ void RowAlignment::average(const RigRotation& measured) {
   measured_ = true;
 }
 
-RigRotation RowAlignment::residual(const StereoRig& rig, double bias_stddev, double row_bias_stddev) const {
+RigRotation RowAlignment::residual(const StereoRig& rig) const {
   // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
   const Eigen::Vector3d variances =
-      lensVariances(rig, row_bias_stddev).array() + std::pow(std::max(bias_stddev, kExact) / rig.fy, 2);
+      lensVariances(rig, row_bias_stddev_).array() + std::pow(std::max(bias_stddev_, kExact) / rig.fy, 2);
   const Eigen::Matrix3d calibrated = variances.asDiagonal();
   RigRotation residual{Eigen::Vector3d::Zero(), calibrated};
   if (measured_) {

@@ -133,14 +133,16 @@ TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatTheVanishingPointContradictsI
   ASSERT_TRUE(result.angle_valid) << result.failure.message();
   EXPECT_NEAR(std::sqrt(result.approach_angle_variance), 1e-3, 1e-4);
 
-  fly(kPitch, -kPitch - kDifference);
+  // The plane has not moved, so that it is the vanishing point of other lines, unless that goes on.
+  const double leapt = stamp;
+  while (stamp < leapt + 0.85) {
+    fly(kPitch, -kPitch - kDifference);
+    ASSERT_EQ(failedTests(result.tests), "vanishing_point");
+    EXPECT_TRUE(result.angle_valid) << stamp << ": " << result.failure.message();
+  }
+  for (int i = 0; i < 3; ++i) fly(kPitch, -kPitch - kDifference);
   ASSERT_EQ(failedTests(result.tests), "vanishing_point");
-  EXPECT_TRUE(result.angle_valid) << "once, and the pairs before are of another mind: "
-                                  << result.failure.message();
-  fly(kPitch, -kPitch - kDifference);
-  fly(kPitch, -kPitch - kDifference);
-  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
-  EXPECT_FALSE(result.angle_valid) << "three times in a row";
+  EXPECT_FALSE(result.angle_valid) << "longer than a second";
   EXPECT_NEAR(std::sqrt(result.approach_angle_variance), kDifference, 0.1 * kDegree);
 
   for (int i = 0; i < 20; ++i) fly(kPitch, -kPitch);

@@ -8,8 +8,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "support/ground_renderer.h"
+#include "uav_landing/image/match_image.h"
 #include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
+#include "uav_landing/stereo/stereo_matching.h"
 
 namespace uav_landing {
 namespace {
@@ -207,6 +209,59 @@ TEST(VerticalDisparity, IsBlindToGainOffsetAndNoise) {
   ASSERT_TRUE(result.vertical_rotation.known());
   EXPECT_NEAR(result.vertical_rotation.w.x(), 0.1 * kDegree, 0.003 * kDegree);
   EXPECT_NEAR(result.vertical_rotation.w.z(), 0.1 * kDegree, 0.015 * kDegree);
+}
+
+/// By how much rows seem to be off, pixels, of a pair that is hardly more than noise.
+struct NoisyRows {
+  double matched, all;  ///< by the corners that are found along their rows, and by all
+
+  NoisyRows(const BentScene& scene, const test::Exposure& exposure) {
+    MatchImage left, right;
+    left.assign(scene.ground.left(scene.rig, scene.pose, exposure));
+    right.assign(scene.ground.right(scene.rig, scene.pose, exposure));
+    const StereoDepthParameters& parameters = scene.parameters;
+    StereoLevel level = reduceLevel(scene.model, 1, parameters.window_radius + 2);
+    level.left = left.fine;
+    level.right = right.fine;
+    const Eigen::Vector3d g = test::exactPlane(scene.pose, 0, 0).g;
+    const std::vector<cv::Point> corners = findGroundCorners(level, g, parameters.corner_count, parameters);
+    const std::vector<DisparitySample> samples = matchCorners(level, corners, g, parameters);
+    std::vector<cv::Point> found;
+    for (const DisparitySample& sample : samples)
+      found.emplace_back(static_cast<int>(sample.u), static_cast<int>(sample.v));
+    EXPECT_LT(found.size(), 0.9 * corners.size()) << "all are found, so that noise chooses nothing";
+    const auto off = [&](const std::vector<cv::Point>& some) {
+      const Expected<RigRotation> rows =
+          measureVerticalDisparities(level, some, samples, g, parameters.window_radius).rotation;
+      return rows ? (rows->w - scene.ground.bend).x() * scene.rig.fy : kUnknown;
+    };
+    matched = off(found);
+    all = off(corners);
+  }
+};
+
+/// Over ground that shows hardly any texture, with rows half a pixel off. The horizon, which is drawn in
+/// whole pixels, is out of view.
+BentScene noisyScene(unsigned seed) {
+  BentScene scene({0.05, 0, 0});
+  scene.ground = GroundRenderer(seed);
+  scene.ground.contrast = 3;
+  scene.ground.bend.x() = 0.05 * kDegree;
+  scene.pose.position.z() = 3;
+  scene.pose.pitch = -25 * kDegree;
+  return scene;
+}
+const test::Exposure kNoisy = {1, 0, 5};
+
+TEST(VerticalDisparity, CornersThatNoiseKeepsInTheirRowsDoNotDecide) {
+  constexpr int kPairs = 24;
+  double matched = 0, all = 0;
+  for (unsigned i = 0; i < kPairs; ++i) {
+    const NoisyRows rows(noisyScene(100 + i), kNoisy);
+    matched += rows.matched / kPairs;
+    all += rows.all / kPairs;
+  }
+  EXPECT_LT(std::abs(all), 0.8 * std::abs(matched));
 }
 
 TEST(VerticalDisparity, MatchesABentRigAsWellAsAStraightOne) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "uav_landing/results/stage_results.h"
+
+namespace uav_landing {
+
+/// The vanishing direction of the runway, carried along the camera's rotation: it is the same direction on
+/// every pair, so that one which leaps is of other lines, and no witness against the plane. That a plane
+/// which leaps is wrong shows against a direction that does not.
+class VanishingMemory {
+ public:
+  /// A pair. direction: unit, camera frame, not finite where none is in view; covariance: rad^2; normal: of
+  /// the ground, unit: only what is along it counts, as it is what a plane is contradicted by. turn: since
+  /// the pair before; without its rotation, or where it is over another time, the camera may have turned by
+  /// up to 5 degrees per second. True when the direction leaps: by more than five of its sigmas from the ones
+  /// before, of which three have agreed, the last one within a second.
+  bool leaps(double stamp, const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance,
+             const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn);
+  void reset() { *this = VanishingMemory(); }
+
+ private:
+  struct Direction {
+    Eigen::Vector3d direction;   // camera frame of the last pair
+    Eigen::Matrix3d covariance;  // rad^2
+  };
+  void carry(double stamp, const ApproachAngleResult::Motion& turn);
+
+  std::optional<Direction> last_;
+  double stamp_ = 0, agreed_ = 0;  // s
+  int agreements_ = 0;             // in a row
+};
+
+}  // namespace uav_landing
