@@ -26,10 +26,14 @@ class DirectRefinement {
   /// left, right: rectified mono8. start: plane vector good to a fraction of a pixel of disparity, 1/m.
   /// bias_stddev: as for refinePlane, pixels. limits.tolerance: by how much blocks of
   /// ground may be off the plane, pixels. rows: rotation that the vertical disparities of the images have
-  /// (rig_rotation.h): along a row, slanted edges seem moved by them. Fails when the images show too little,
-  /// or when most of what they show is not on one plane.
+  /// (rig_rotation.h): along a row, slanted edges seem moved by them. levelled_by: what the right image has
+  /// been freed of before, rad, so that edges of pairs that were levelled otherwise count as well. Fails when
+  /// the images show too little, or when most of what they show is not on one plane.
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
-                            const PlaneLimits& limits, double bias_stddev, const RigRotation& rows);
+                            const PlaneLimits& limits, double bias_stddev, const RigRotation& rows,
+                            const Eigen::Vector3d& levelled_by = Eigen::Vector3d::Zero());
+  /// Forgets the edges of the pairs before.
+  void reset();
   /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
   /// last refinement; NaN when it had fewer than 20 such blocks.
   double agreement() const;

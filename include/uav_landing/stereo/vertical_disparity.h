@@ -85,6 +85,8 @@ class RowAlignment {
   /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
   /// with what the calibration leads to expect, as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig) const;
+  /// What level() has taken out of the pair measured last, rad.
+  const Eigen::Vector3d& levelledBy() const { return levelled_by_; }
   void reset() { *this = RowAlignment(enabled_, window_radius_, bias_stddev_, row_bias_stddev_); }
 
  private:

@@ -293,7 +293,7 @@ struct StereoDepthStage::Implementation {
     ScopedTimer timer(timings, "direct_refinement");
     const Expected<PlaneFit> fit =
         direct->refine(left_image, withLevelRows(right_image), result.plane.g, limits,
-                       parameters.disparity_bias_stddev, rows.residual(fine.rig));
+                       parameters.disparity_bias_stddev, rows.residual(fine.rig), rows.levelledBy());
     result.photometric_agreement = direct->agreement();
     if (!fit) return false;
     if (direct->noisy()) result.plane.covariance *= kNoisyCorners * kNoisyCorners;
@@ -339,6 +339,7 @@ void StereoDepthStage::reset() {
   implementation_->has_last = implementation_->looks_swapped = false;
   implementation_->failures = implementation_->failed_searches = 0;
   implementation_->rows.reset();
+  if (implementation_->direct) implementation_->direct->reset();
   implementation_->left_repeated.reset();
   implementation_->right_repeated.reset();
   implementation_->started = false;
