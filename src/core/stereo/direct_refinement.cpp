@@ -31,12 +31,11 @@ constexpr double kLeastShare = 0.5;
 // image.
 constexpr double kEdgesStddev = 0.004, kEdgesSlopeStddev = 0.008, kEdgesYawStddev = 0.2;
 
-/// What rows may be off by besides the rotation that matches found, 1 sigma: texture that is finer than
-/// pixels seems to stay with them, so that matches see rows move by less than they do, the less the more of
-/// it is noise. Measured over simulated approaches: 3 to 5 % where there is hardly any, 6 to 13 % under
-/// strong noise.
+/// What rows may be off by besides what matches claim of the rotation, 1 sigma: where much of the texture is
+/// noise windows keep a little to where they are looked for. By simulated approaches, as what is needed for
+/// the claims to be true.
 Eigen::Matrix3d priorOf(const RigRotation& rows, bool noisy) {
-  const double unseen = noisy ? 0.12 : 0.06;
+  const double unseen = noisy ? 0.1 : 0.04;
   return rows.covariance + unseen * unseen * rows.w * rows.w.transpose();
 }
 
