@@ -163,6 +163,11 @@ class MessagesTest(EvaluateTest):
         write_csv(self.estimates, ["stamp_s", "valid", "height_m", "approach_angle_deg"], [])
         self.assert_refused("E.csv: no estimate")
 
+    def test_a_bag_instead_of_a_table(self):
+        self.write_example()
+        self.truth.write_bytes(b"#ROSBAG V2.0\n\x96\xe3\x00")
+        self.assert_refused("frames.csv: not text, expected a CSV file")
+
     def test_no_common_stamp(self):
         self.write_example()
         write_csv(self.estimates, ["stamp_s", "valid", "height_m", "approach_angle_deg"], [[500, 1, 1, 1]])

@@ -25,7 +25,9 @@ class Table:
                 self._read(csv.reader(file))
         except OSError as error:
             raise InputError(f"{path}: cannot be read: {error.strerror}")
-        except (UnicodeDecodeError, csv.Error) as error:
+        except UnicodeDecodeError:
+            raise InputError(f"{path}: not text, expected a CSV file with a header line")
+        except csv.Error as error:
             raise InputError(f"{path}: not a CSV file: {error}")
 
     def _read(self, reader):
