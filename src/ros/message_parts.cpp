@@ -78,6 +78,8 @@ Motion toMessage(const ApproachAngleResult::Motion& motion) {
   toArray(motion.covariance, message.covariance);
   message.approach_angle = motion.angle;
   message.approach_angle_variance = motion.angle_variance;
+  toArray(motion.normal, message.normal);
+  toArray(motion.normal_covariance, message.normal_covariance);
   return message;
 }
 
@@ -89,6 +91,8 @@ ApproachAngleResult::Motion toResult(const Motion& message) {
   motion.inliers = static_cast<int>(message.inliers);
   fromArray(message.rotation, motion.rotation);
   fromArray(message.translation_over_height, motion.translation_over_height);
+  fromArray(message.normal, motion.normal);
+  fromArray(message.normal_covariance, motion.normal_covariance);
   fromArray(message.covariance, motion.covariance);
   motion.angle = message.approach_angle;
   motion.angle_variance = message.approach_angle_variance;

@@ -108,6 +108,8 @@ struct ApproachMessages {
     motion.covariance = 1e-7 * Matrix6d::Identity();
     motion.angle = angle();
     motion.angle_variance = kSmall * kSmall;
+    motion.normal = result.n;
+    motion.normal_covariance = directionCovariance(result.n);
     return motion;
   }
 };

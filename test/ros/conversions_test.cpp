@@ -52,6 +52,8 @@ ApproachAngleResult::Motion distinctMotion() {
   fill(motion.covariance);
   motion.angle = next();
   motion.angle_variance = next();
+  fill(motion.normal);
+  fill(motion.normal_covariance);
   return motion;
 }
 
@@ -65,6 +67,8 @@ void expectEqual(const ApproachAngleResult::Motion& a, const ApproachAngleResult
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.angle, b.angle);
   EXPECT_EQ(a.angle_variance, b.angle_variance);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(a.normal_covariance, b.normal_covariance);
 }
 
 std_msgs::Header header() {

@@ -310,6 +310,7 @@ TEST_F(ForeignMessages, CovariancesOfAnotherScaleAreForgottenWithinASecond) {
     test(approach.n_covariance);
     test(approach.step.covariance);
     test(approach.window.covariance);
+    test(approach.window.normal_covariance);
   }
 }
 

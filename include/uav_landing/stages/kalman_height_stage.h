@@ -158,6 +158,8 @@ class KalmanHeightStage {
                                         const ApproachAngleResult& approach) const;
   /// What the vanishing point says of the normal. After the tests of the pair.
   void doubtNormal(const Reconstruction& reconstruction, const ApproachAngleResult& approach);
+  /// What the images' motion says of it.
+  void doubtNormalByMotion(const ApproachAngleResult& approach);
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
   /// How the camera turned since the pair before: where the images do not tell, by the imu.
@@ -205,7 +207,7 @@ class KalmanHeightStage {
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
-  NormalDoubt doubt_;
+  NormalDoubt doubt_, motion_doubt_;  // by the vanishing point, and by the images' motion
   VanishingMemory vanishing_;
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s

@@ -1,6 +1,7 @@
 #include "uav_landing/motion/ego_motion.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -75,6 +76,26 @@ Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Mat
       .inverse();
 }
 
+// The prior's share taken out of the normal that was found with it. matches: information of rotation,
+// translation and normal without it.
+void findOwnNormal(const Matrix9d& matches, const Eigen::Vector3d& given, const Eigen::Matrix3d& prior,
+                   MotionEstimate& result) {
+  constexpr double kLeast = 1.0;  // 1/rad^2: a stddev of a rad says nothing
+  const Eigen::Matrix<double, 6, 3> by_motion =
+      matches.topLeftCorner<6, 6>().ldlt().solve(matches.topRightCorner<6, 3>());
+  const Eigen::Matrix3d information =
+      matches.bottomRightCorner<3, 3>() - matches.bottomLeftCorner<3, 6>() * by_motion;
+  const Eigen::Vector3d& found = result.normal;
+  const Eigen::Matrix<double, 3, 2> across = tangents(given);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(across.transpose() * information * across);
+  if (!(axes.eigenvalues()[0] >= kLeast)) return;
+  const Eigen::Matrix<double, 3, 2> directions = across * axes.eigenvectors();
+  const Eigen::Matrix3d covariance =
+      directions * axes.eigenvalues().cwiseInverse().asDiagonal() * directions.transpose();
+  result.own_normal = (found + covariance * (prior * (found - given))).normalized();
+  result.own_normal_covariance = covariance;
+}
+
 }  // namespace
 
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
@@ -126,6 +147,8 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   result.covariance = turn * covariance * turn.transpose();
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
   result.of_normal = by_normal * prior * by_normal.transpose();
+  information.bottomRightCorner<3, 3>() -= prior;
+  findOwnNormal(information, normal, prior, result);
   return result;
 }
 

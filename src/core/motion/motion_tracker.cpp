@@ -223,6 +223,8 @@ ApproachAngleResult::Motion MotionTracker::describe(
   motion.rotation = rotationVector(estimate->motion.R);
   motion.translation_over_height = estimate->motion.t;
   motion.covariance = estimate->covariance.topLeftCorner<6, 6>();
+  motion.normal = estimate->own_normal;
+  motion.normal_covariance = estimate->own_normal_covariance;
   const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
   if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
     motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};

@@ -88,6 +88,8 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
   }
   if (motion.failure || !within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
     motion.angle = motion.angle_variance = kUnknown;
+  if (!possible) motion.normal.setConstant(kUnknown);
+  keepDirection(motion.normal, motion.normal_covariance);
 }
 
 void keepImu(AttitudePrior& imu) {

@@ -1,9 +1,11 @@
 // The part of KalmanHeightStage that says how far the approach angle is to be believed.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.h"
+#include "geometry/rotation.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
@@ -34,12 +36,26 @@ double KalmanHeightStage::OtherNormal::angleVariance(const Eigen::Vector3d& used
 
 void KalmanHeightStage::doubtNormal(const Reconstruction& reconstruction,
                                     const ApproachAngleResult& approach) {
+  doubtNormalByMotion(approach);
   const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
   if (vanishing_.leaps(approach.stamp, p, approach.vanishing_covariance, n, turnSince(approach))) return;
   if (!reconstruction.alone.valid() || !p.allFinite()) return;
   doubt_.add(approach.stamp, tests_.result(Consistency::kVanishingPoint).ratio,
              (n - n.dot(p) * p).normalized() - n, n.dot(approach.vanishing_covariance * n),
              tests_.result(Consistency::kTilt).ratio > AttitudeFilter::kDoubtful);
+}
+
+void KalmanHeightStage::doubtNormalByMotion(const ApproachAngleResult& approach) {
+  const ApproachAngleResult::Motion& motion = publishedMotion(approach);
+  if (motion.failure || !motion.normal.allFinite()) return;
+  const Eigen::Vector3d turn = motion.normal - approach.n;
+  const Eigen::Matrix<double, 3, 2> across = tangents(approach.n);
+  const Eigen::Matrix2d covariance =
+      across.transpose() * (motion.normal_covariance + approach.n_covariance) * across;
+  const Eigen::Vector2d off = across.transpose() * turn;
+  motion_doubt_.add(approach.stamp, off.dot(covariance.ldlt().solve(off)), turn,
+                    along(motion.normal_covariance, motion.translation_over_height),
+                    tests_.result(Consistency::kTilt).ratio > AttitudeFilter::kDoubtful);
 }
 
 std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
@@ -62,6 +78,10 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
     normals.push_back({approach.n + doubt_.turn(), by_vanishing_point, none, doubt});
     if (reconstruction.alone.valid()) normals.push_back({reconstruction.alone.normal(), none, none, doubt});
   }
+  const double by_motion = motion_doubt_.probability(approach.stamp);
+  if (by_motion > 0)
+    normals.push_back({approach.n + motion_doubt_.turn(),
+                       motion_doubt_.variance() * Eigen::Matrix3d::Identity(), none, by_motion});
   return normals;
 }
 

@@ -30,7 +30,8 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
       speed_(parameters.max_deceleration),
       stamps_(parameters.max_deceleration),
       recovery_(parameters.recovery_time),
-      doubt_(parameters.fault_probability, parameters.reset_timeout) {}
+      doubt_(parameters.fault_probability, parameters.reset_timeout),
+      motion_doubt_(parameters.fault_probability, parameters.reset_timeout) {}
 
 LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
                                          const ApproachAngleResult& given_approach) {
@@ -119,6 +120,7 @@ void KalmanHeightStage::reset() {
   stamps_.reset();
   recovery_.reset();
   doubt_.reset();
+  motion_doubt_.reset();
   vanishing_.reset();
   ground_.reset();
   ground_stamp_.reset();

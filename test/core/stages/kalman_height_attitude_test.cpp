@@ -192,6 +192,38 @@ TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsAContradictionThatNoTestRefuses
   }
 }
 
+// Without a vanishing point only what moves in the image contradicts a plane that a turned right camera
+// tilts.
+TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsTheMotionsOwnNormalContradictsThePlane) {
+  constexpr double kPitch = -0.1, kOwn = 0.06 * kDegree, kDifference = 0.5 * kDegree;
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  const auto fly = [&](double difference) {
+    const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
+    ApproachAngleResult approach = levelFlight(stereo, 0, 1);
+    approach.vanishing_direction.setConstant(kUnknown);
+    approach.vanishing_covariance.setConstant(kUnknown);
+    approach.window.normal = normalFromPitchRoll(kPitch + difference, 0);
+    approach.window.normal_covariance =
+        kOwn * kOwn *
+        (Eigen::Matrix3d::Identity() - approach.window.normal * approach.window.normal.transpose());
+    stamp += kStep;
+    return stage.process(stereo, approach);
+  };
+  LandingResult result;
+  while (stamp < 2) result = fly(0.5 * kOwn);
+  ASSERT_TRUE(result.angle_valid) << result.failure.message();
+  const double agreeing = std::sqrt(result.approach_angle_variance);
+  EXPECT_NEAR(agreeing, 0.06 * kDegree, 0.003 * kDegree);
+  result = fly(kDifference);
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), agreeing, 0.003 * kDegree) << "a single pair";
+  for (int i = 0; i < 2; ++i) result = fly(kDifference);
+  EXPECT_TRUE(result.height_valid) << result.failure.message();
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), kDifference, 0.05 * kDegree);
+  while (stamp < 4) result = fly(0);
+  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), agreeing, 0.003 * kDegree);
+}
+
 TEST(KalmanHeightAttitude, APairWithoutAVanishingPointIsAsUncertainAsThoseBeforeThatContradicted) {
   constexpr double kPitch = -0.1, kDifference = 0.8 * kDegree;
   KalmanHeightStage stage(usualRig(), {});

@@ -1,0 +1,74 @@
+/// The ground's normal by the matches over time alone.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "support/consistency.h"
+#include "support/motion_matches.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::Matcher;
+using test::Step;
+
+/// Squared normalised error of the own normal over many draws, with a given one that is off by so much.
+double meanNees(double off_deg, double given_stddev) {
+  constexpr int kRuns = 200;
+  const Step step = Step::make();
+  Matcher matcher(step, 21);
+  const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized(), e2 = step.n.cross(e1);
+  Eigen::Matrix<double, 3, 2> B;
+  B << e1, e2;
+  double nees = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const Eigen::Vector3d given = (step.n + std::tan(off_deg * kDegree) * e1).normalized();
+    const Expected<MotionEstimate> found = test::estimate(matcher.ground(100, 0.15), given, given_stddev);
+    EXPECT_TRUE(found && found->own_normal.allFinite()) << run;
+    if (!found) return kUnknown;
+    const Eigen::Vector2d error = B.transpose() * (found->own_normal - step.n);
+    const Eigen::Matrix2d covariance = B.transpose() * found->own_normal_covariance * B;
+    nees += error.dot(covariance.ldlt().solve(error)) / kRuns;
+  }
+  return nees;
+}
+
+TEST(OwnNormal, IsAsWrongAsItClaimsWhateverNormalWasGiven) {
+  const double tolerance = test::chiSquareMeanTolerance(200, 2);
+  for (const double given_stddev : {0.0005, 0.005, 0.1}) {
+    const double nees = meanNees(0, given_stddev);
+    EXPECT_LT(nees, 2 + tolerance) << given_stddev;
+    EXPECT_GT(nees, 0.65 * 2 - tolerance) << given_stddev;
+  }
+  EXPECT_LT(meanNees(1, 1 * kDegree), 2 + tolerance);
+}
+
+TEST(OwnNormal, ContradictsOneThatWasTrustedWrongly) {
+  const Step step = Step::make();
+  const Eigen::Vector3d axis = step.n.cross(Eigen::Vector3d::UnitX()).normalized();
+  const Eigen::Vector3d wrong = (step.n + std::tan(1 * kDegree) * axis).normalized();
+  const Expected<MotionEstimate> found =
+      test::estimate(Matcher(step, 22).ground(200, 0.05), wrong, 0.02 * kDegree);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->normal.normalized() - wrong).norm(), 0.3 * kDegree) << "the matches outweigh it anyway";
+  const double off = axis.dot(found->own_normal - wrong);
+  const double stddev = std::sqrt(axis.dot(found->own_normal_covariance * axis));
+  EXPECT_GT(std::abs(off), 5 * stddev);
+  EXPECT_LT(axis.dot(step.n - found->own_normal), 0.6 * kDegree) << "and to the true side";
+}
+
+TEST(OwnNormal, IsUnknownWhereNothingMoves) {
+  Step step = Step::make();
+  step = Step(step.now, step.now);
+  const Expected<MotionEstimate> found =
+      test::estimate(Matcher(step, 23).ground(100, 0.1), step.n, 0.01 * kDegree);
+  ASSERT_TRUE(found);
+  const bool known = found->own_normal.allFinite();
+  EXPECT_FALSE(known && found->own_normal_covariance.trace() < std::pow(5 * kDegree, 2));
+}
+
+}  // namespace
+}  // namespace uav_landing
