@@ -299,6 +299,7 @@ struct StereoDepthStage::Implementation {
     if (direct->noisy()) result.plane.covariance *= kNoisyCorners * kNoisyCorners;
     if (!samePlane(fit->plane, result.plane)) {
       doubt(result.plane, fit->plane);
+      direct->forgetLast();
       return false;
     }
     result.plane = fit->plane;
@@ -336,13 +337,12 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 }
 
 void StereoDepthStage::reset() {
-  implementation_->has_last = implementation_->looks_swapped = false;
+  implementation_->has_last = implementation_->looks_swapped = implementation_->started = false;
   implementation_->failures = implementation_->failed_searches = 0;
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();
   implementation_->left_repeated.reset();
   implementation_->right_repeated.reset();
-  implementation_->started = false;
 }
 
 const Timings& StereoDepthStage::timings() const { return implementation_->timings; }

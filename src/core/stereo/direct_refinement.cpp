@@ -54,15 +54,22 @@ class RowsByEdges {
   /// information: of a pair, 1/rad^2; right: that times the rotation, from about.
   void add(const Eigen::Matrix3d& information, const Eigen::Vector3d& right, const Eigen::Vector3d& about) {
     constexpr double kKept = 0.95;  // of a pair's weight when the next comes
-    information_ = kKept * information_ + information;
-    right_ = kKept * right_ + right + information * about;
+    before_ = sums_;
+    if (!information.allFinite() || !right.allFinite() || !about.allFinite()) return;
+    sums_.information = kKept * before_.information + information;
+    sums_.right = kKept * before_.right + right + information * about;
   }
-  const Eigen::Matrix3d& information() const { return information_; }
-  Eigen::Vector3d right(const Eigen::Vector3d& about) const { return right_ - information_ * about; }
+  void forgetLast() { sums_ = before_; }
+  const Eigen::Matrix3d& information() const { return sums_.information; }
+  Eigen::Vector3d right(const Eigen::Vector3d& about) const {
+    return sums_.right - sums_.information * about;
+  }
 
  private:
-  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  struct Sums {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  } sums_, before_;
 };
 
 }  // namespace
@@ -197,6 +204,8 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     g = fit->plane.g;
   }
 }
+
+void DirectRefinement::forgetLast() { implementation_->edges.forgetLast(); }
 
 void DirectRefinement::reset() { implementation_->edges = RowsByEdges(); }
 

@@ -100,6 +100,28 @@ TEST(RefinedRows, OfPairsThatWereLevelledOtherwiseCountAsWell) {
   EXPECT_LT(std::abs(told), 0.3 * std::abs(untold));
 }
 
+/// An alignment that went astray has edges that say anything.
+TEST(RefinedRows, OfAPlaneThatIsNotTakenDoNotCount) {
+  const auto pair = [](unsigned seed, double pixels) {
+    RefinedPair scene = betweenLines(seed, pixels);
+    scene.rows.covariance(0, 0) = std::pow(0.05 / scene.rig.fy, 2);
+    scene.render();
+    return scene;
+  };
+  const RefinedPair level = pair(860, 0), astray = pair(861, 0.3);
+  const auto rollAfter = [&](bool sees, bool forgets) {
+    DirectRefinement refinement(level.model, 4);
+    const auto refine = [&](const RefinedPair& scene) {
+      return refinement.refine(scene.left, scene.right, scene.truth, test::groundLimits(), 0, scene.rows);
+    };
+    if (sees) EXPECT_TRUE(refine(astray));
+    if (forgets) refinement.forgetLast();
+    return level.rollError(refine(level));
+  };
+  EXPECT_DOUBLE_EQ(rollAfter(true, true), rollAfter(false, false));
+  EXPECT_GT(std::abs(rollAfter(true, false) - rollAfter(false, false)), 0.01 * kDegree);
+}
+
 /// Where nothing else tells the rows, one sigma of what is told rolls the plane by the share that lasts.
 TEST(RefinedRows, ClaimsWhatTheRowsToldAreWrongBy) {
   RefinedPair scene = betweenLines(5, 0);
