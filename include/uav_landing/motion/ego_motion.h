@@ -41,8 +41,9 @@ struct MotionEstimate {
   Eigen::Matrix<double, 9, 9> covariance;
   /// Share of it that comes from the error of the normal that was given.
   Eigen::Matrix<double, 9, 9> of_normal;
-  /// The ground's normal by the matches alone, and its covariance (rank 2, rad^2), independent of the one
-  /// that was given but for where it is linearised; not finite where the matches do not tell it.
+  /// The ground's normal by the matches (and the rotation known beforehand) alone, and its covariance (rank
+  /// 2, rad^2), independent of the one that was given but for where it is linearised, and of stereo but for
+  /// the depth of points off the plane; not finite where the matches do not tell it.
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   std::vector<char> inliers;

@@ -68,6 +68,8 @@ class RowAlignment {
   /// The right image (CV_32F, at the rig's resolution) with its rows made level, in buffer, or itself when
   /// they are.
   cv::Mat level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const;
+  /// The same as level() gave of the pair measured last, although that may have taught it better.
+  cv::Mat levelAgain(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const;
   bool isLevel() const { return taken_out_.isZero(); }
   /// Looks for the rows of corners with a rough plane. True when level() now gives another image.
   bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g);

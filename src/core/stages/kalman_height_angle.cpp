@@ -38,7 +38,10 @@ void KalmanHeightStage::doubtNormal(const Reconstruction& reconstruction,
                                     const ApproachAngleResult& approach) {
   doubtNormalByMotion(approach);
   const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
-  if (vanishing_.leaps(approach.stamp, p, approach.vanishing_covariance, n, turnSince(approach))) return;
+  const bool leaps =
+      vanishing_.leaps(approach.stamp, p, approach.vanishing_covariance, n, turnSince(approach));
+  // One that contradicts by less has turned the normal itself.
+  if (leaps && tests_.failed(Consistency::kVanishingPoint)) return;
   if (!reconstruction.alone.valid() || !p.allFinite()) return;
   doubt_.add(approach.stamp, tests_.result(Consistency::kVanishingPoint).ratio,
              (n - n.dot(p) * p).normalized() - n, n.dot(approach.vanishing_covariance * n),

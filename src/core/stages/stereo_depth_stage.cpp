@@ -284,7 +284,7 @@ struct StereoDepthStage::Implementation {
   cv::Mat withLevelRows(const cv::Mat& right_image) {
     if (fine.right.data == right.fine.data) return right_image;
     right_image.convertTo(right_grey, CV_32F);
-    rows.level(fine.rig, right_grey, level_grey).convertTo(level_image, CV_8U);
+    rows.levelAgain(fine.rig, right_grey, level_grey).convertTo(level_image, CV_8U);
     return level_image;
   }
 

@@ -52,6 +52,10 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
   return all;
 }
 
+bool isSet(const cv::Mat& mask, const cv::Point& place) {
+  return cv::Rect({}, mask.size()).contains(place) && mask.at<uchar>(place) != 0;
+}
+
 // Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
 bool isBeside(const PatchRefinement& place, double column) {
   constexpr double kSigmas = 3, kPlane = 0.1;  // the latter pixels
@@ -119,6 +123,12 @@ void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int 
   interpolateColumns(image.ptr<float>(whole - 1), image.step1(), row, whole, begin, end, out);
 }
 
+cv::Mat levelled(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& buffer) {
+  if (w.isZero()) return right;
+  straightenRows(rig, w, right, buffer);
+  return buffer;
+}
+
 }  // namespace
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
@@ -132,6 +142,7 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
   int matched = 0, again = 0;
   for (const PlacedCorner& at : some) {
     const double column = at.corner.x - at.disparity - level.rig.principalOffset();
+    if (!at.matched && !isSet(level.right_mask, {cvRound(column), at.corner.y})) continue;
     const Eigen::Vector2d start(column, at.corner.y);
     const bool found =
         addRow(level, at.corner.x, at.corner.y, at.disparity, start, warp, window_radius, !at.matched, rows);
@@ -199,9 +210,11 @@ Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const
 }
 
 cv::Mat RowAlignment::level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
-  if (taken_out_.isZero()) return right;
-  straightenRows(rig, taken_out_, right, buffer);
-  return buffer;
+  return levelled(rig, taken_out_, right, buffer);
+}
+
+cv::Mat RowAlignment::levelAgain(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
+  return levelled(rig, levelled_by_, right, buffer);
 }
 
 bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>& corners,
@@ -215,6 +228,7 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std
                                              const std::vector<DisparitySample>& samples,
                                              const Eigen::Vector3d& g) {
   if (!enabled_) return {};
+  levelled_by_ = taken_out_;
   const VerticalDisparities found = measureVerticalDisparities(level, corners, samples, g, window_radius_);
   Measured measured{{}, found.baseline, found.agreement};
   if (!found.rotation) return measured;
@@ -230,7 +244,6 @@ void RowAlignment::average(const RigRotation& measured) {
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
-  levelled_by_ = taken_out_;
   measured_ = true;
 }
 
@@ -251,7 +264,7 @@ RigRotation RowAlignment::residual(const StereoRig& rig) const {
     residual.covariance = (information_ + prior).inverse();
     residual.w = residual.covariance * right_;
   }
-  residual.w -= levelled_by_;
+  if (measured_) residual.w -= levelled_by_;
   return residual;
 }
 
