@@ -23,6 +23,10 @@ class AttitudeFilter {
   /// wrong turn, rad/s.
   static constexpr double kTurnRate = 5 * M_PI / 180, kUnusualTurn = 5 * kTurnRate;
 
+  /// Whether the step tells how the camera turned in the last T seconds: one that spans another time does
+  /// not.
+  static bool tellsTurn(const ApproachAngleResult::Motion& step, double T);
+
   struct Estimate {
     Eigen::Vector3d normal;
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs

@@ -26,4 +26,10 @@ class RepeatedImage {
 /// The mask without what a window of this margin (pixels) around a pixel would take from outside it.
 cv::Mat erodeMask(const cv::Mat& mask, int margin);
 
+/// Whether the mask is set at the pixel nearest to a place; never beside the image.
+inline bool isSet(const cv::Mat& mask, double u, double v) {
+  const int x = cvRound(u), y = cvRound(v);
+  return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
+}
+
 }  // namespace uav_landing

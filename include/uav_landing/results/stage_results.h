@@ -115,8 +115,8 @@ struct ApproachAngleResult {
     Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
-    /// Ground normal, unit, and its covariance (rad^2, rank 2) by what moves in the image alone: independent
-    /// of stereo. Unknown where that does not tell it.
+    /// Ground normal, unit, and its covariance (rad^2, rank 2) by what moves in the image: independent of
+    /// stereo but for the depth of points off the plane. Unknown where that does not tell it.
     Eigen::Vector3d normal = Eigen::Vector3d::Constant(kUnknown);
     Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   };

@@ -32,7 +32,8 @@ class DirectRefinement {
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
                             const PlaneLimits& limits, double bias_stddev, const RigRotation& rows,
                             const Eigen::Vector3d& levelled_by = Eigen::Vector3d::Zero());
-  /// The last plane is not taken: what its edges said of the rows does not count for the next pairs.
+  /// What the last pair's edges said of the rows does not count for the next ones, as of a plane that is not
+  /// taken.
   void forgetLast();
   /// Forgets the edges of the pairs before.
   void reset();

@@ -92,16 +92,18 @@ void addTurn(double T, AttitudeFilter::Estimate& estimate) {
 
 }  // namespace
 
+bool AttitudeFilter::tellsTurn(const ApproachAngleResult::Motion& step, double T) {
+  return !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
+         std::abs(T - step.duration) <= kStampRounding;
+}
+
 AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachAngleResult::Motion& step) {
   const double T = stamp - stamp_;
   stamp_ = stamp;
   if (!estimate_ || !(T > 0)) return Prediction::kNone;
   if (other_ && --doubts_left_ < 0) other_.reset();
   turn_doubted_ = false;
-  // A step that spans another time is not the way from the last normal to this one.
-  const bool known = !step.failure && step.rotation.allFinite() && step.covariance.allFinite() &&
-                     std::abs(T - step.duration) <= kStampRounding;
-  if (known) {
+  if (tellsTurn(step, T)) {
     turn(T, rotationMatrix(step.rotation), step);
     return Prediction::kTurned;
   }

@@ -34,9 +34,7 @@ void VanishingMemory::carry(double stamp, const ApproachAngleResult::Motion& tur
   const double T = stamp - stamp_;
   stamp_ = stamp;
   if (!last_) return;
-  const bool known = !turn.failure && turn.rotation.allFinite() && turn.covariance.allFinite() &&
-                     std::abs(T - turn.duration) <= AttitudeFilter::kStampRounding;
-  if (!known) {
+  if (!AttitudeFilter::tellsTurn(turn, T)) {
     last_->covariance += std::pow(AttitudeFilter::kTurnRate * T, 2) * Eigen::Matrix3d::Identity();
     return;
   }

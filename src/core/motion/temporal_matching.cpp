@@ -9,6 +9,7 @@
 #include "base/touch_ahead.h"
 #include "image/clipping.h"
 #include "motion/common_gain.h"
+#include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
 
@@ -61,11 +62,6 @@ class PointWarp {
  private:
   Eigen::Matrix3d H_;
 };
-
-bool visible(const cv::Mat& mask, const Eigen::Vector2d& x) {
-  const int u = cvRound(x.x()), v = cvRound(x.y());
-  return u >= 0 && v >= 0 && u < mask.cols && v < mask.rows && mask.at<uchar>(v, u) != 0;
-}
 
 // Says where corners are to be looked for, and touches the pixels there.
 class Predictions {
@@ -125,7 +121,8 @@ class Follower {
       if (!best.found || best.score < options_.min_zncc) return {};
       refined = refine(corner, best.position, local.warp);
     }
-    if (!isLike(refined) || !visible(mask_, refined.position)) refined.converged = false;
+    if (!isLike(refined) || !isSet(mask_, refined.position.x(), refined.position.y()))
+      refined.converged = false;
     return refined;
   }
 
@@ -228,7 +225,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     const bool seen = next_seen;
     local = next;
     if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
-    if (!seen || !visible(mask, local.centre)) continue;
+    if (!seen || !isSet(mask, local.centre.x(), local.centre.y())) continue;
     const PatchRefinement refined = follower.find(corner, local);
     if (!refined.converged) continue;
     TemporalMatch match;
@@ -253,7 +250,7 @@ double likenessOverTime(const StereoRig& rig, const MatchImage& now, const Match
   double likeness = 0;
   LocalWarp local;
   for (const TrackedCorner& corner : corners) {
-    if (!predictions.at(corner, &local) || !visible(mask, local.centre)) continue;
+    if (!predictions.at(corner, &local) || !isSet(mask, local.centre.x(), local.centre.y())) continue;
     likeness += std::max(0.0, there.run(corner.u, corner.v, local.centre, local.warp, 0).score);
   }
   return likeness;

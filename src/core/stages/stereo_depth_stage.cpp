@@ -44,8 +44,7 @@ struct StereoDepthStage::Implementation {
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
   std::vector<cv::Point> last_corners;  // on the ground of last_g, where they scouted
   bool has_last = false;
-  double last_stamp = 0;
-  bool started = false;
+  double last_stamp = -INFINITY;
   RepeatedImage left_repeated, right_repeated;
   int failures = 0, failed_searches = 0;
   bool looks_swapped = false;
@@ -55,10 +54,7 @@ struct StereoDepthStage::Implementation {
       : model(rig),
         parameters(p),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
-    limits.max_roll = p.max_roll_deg * kDegree;
-    limits.max_pitch = p.max_pitch_deg * kDegree;
-    limits.min_points = p.min_points;
-    limits.tolerance = p.plane_tolerance;
+    limits = {p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance};
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -70,8 +66,7 @@ struct StereoDepthStage::Implementation {
     timings.clear();
     StereoDepthResult result;
     result.stamp = stamp;
-    if (started && !(stamp > last_stamp)) has_last = false;
-    started = true;
+    if (!(stamp > last_stamp)) has_last = false;
     last_stamp = stamp;
     result.failure = checkPair(model, left_image, right_image);
     if (result.failure.reason != Reason::kInputInvalid) {
@@ -79,12 +74,11 @@ struct StereoDepthStage::Implementation {
       result.right_repeated = right_repeated.check(right_image);
     }
     if (!result.failure) estimate(left_image, right_image, result);
-    if (result.failure) {
-      // One bad pair does not make the last plane a bad guess; many do.
-      has_last = has_last && ++failures < kKeepPlaneFor;
-    } else {
+    if (!result.failure) {
       remember(result.plane.g);
       failed_searches = 0;
+    } else {  // one bad pair does not make the last plane a bad guess; many do
+      has_last = has_last && ++failures < kKeepPlaneFor;
     }
     return result;
   }
@@ -337,7 +331,8 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 }
 
 void StereoDepthStage::reset() {
-  implementation_->has_last = implementation_->looks_swapped = implementation_->started = false;
+  implementation_->has_last = implementation_->looks_swapped = false;
+  implementation_->last_stamp = -INFINITY;
   implementation_->failures = implementation_->failed_searches = 0;
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();

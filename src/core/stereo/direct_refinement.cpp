@@ -54,11 +54,12 @@ class RowsByEdges {
   /// information: of a pair, 1/rad^2; right: that times the rotation, from about.
   void add(const Eigen::Matrix3d& information, const Eigen::Vector3d& right, const Eigen::Vector3d& about) {
     constexpr double kKept = 0.95;  // of a pair's weight when the next comes
-    before_ = sums_;
     if (!information.allFinite() || !right.allFinite() || !about.allFinite()) return;
     sums_.information = kKept * before_.information + information;
     sums_.right = kKept * before_.right + right + information * about;
   }
+  /// A pair, of which there may be nothing to add.
+  void begin() { before_ = sums_; }
   void forgetLast() { sums_ = before_; }
   const Eigen::Matrix3d& information() const { return sums_.information; }
   Eigen::Vector3d right(const Eigen::Vector3d& about) const {
@@ -176,6 +177,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
                                             double bias_stddev, const RigRotation& rows,
                                             const Eigen::Vector3d& levelled_by) {
   Implementation& own = *implementation_;
+  own.edges.begin();
   own.disparities.begin(left, right, start, rows);
   own.agreeing = 0;
   Eigen::Vector3d g = start;

@@ -8,6 +8,7 @@
 #include "base/lanes.h"
 #include "base/median.h"
 #include "base/multiversion.h"
+#include "uav_landing/image/image_check.h"
 
 namespace uav_landing {
 namespace {
@@ -20,11 +21,6 @@ constexpr double kLeastDisparity = 0.3;
 constexpr float kSobelScale = 8.f;
 // Squares of grey levels in a block below which it shows nothing.
 constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
-
-bool set(const cv::Mat& mask, double u, double v) {
-  const int x = cvRound(u), y = cvRound(v);
-  return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
-}
 
 // Sum of the squares of a block of derivatives less their mean.
 UAV_LANDING_MULTIVERSION int blockEnergy(const short* first, size_t stride) {
@@ -57,7 +53,7 @@ bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, in
       const double column = x - shift.at(x, y);
       if (shift.at(x, y) - rig.principalOffset() < kLeastDisparity) return false;
       if (column < kMargin || column > right_mask_.cols - 2 - kMargin) return false;
-      if (!set(left_mask_, x, y) || !set(right_mask_, column, y)) return false;
+      if (!isSet(left_mask_, x, y) || !isSet(right_mask_, column, y)) return false;
     }
   }
   return true;

@@ -10,6 +10,7 @@
 #include "stereo/shift_model.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/image/corners.h"
+#include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/row_matching.h"
 #include "uav_landing/stereo/row_refinement.h"
@@ -23,11 +24,6 @@ constexpr int kFineSteps = 3;
 constexpr double kStddevFloor = 0.03;
 // 1 sigma of a match that is only as good as a parabola through three scores, pixels.
 constexpr double kParabolaStddev = 0.15;
-
-bool inside(const cv::Mat& mask, double u, double v) {
-  const int x = cvRound(u), y = cvRound(v);
-  return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;
-}
 
 // Matches one corner within steps of the predicted place.
 class CornerMatcher {
@@ -52,7 +48,7 @@ class CornerMatcher {
     if (best.score < parameters_.min_zncc || second > parameters_.uniqueness * best.score) return false;
     // A peak at the end of the range is not known to be a peak.
     if (std::abs(best.position - predicted) > (steps_ - 0.5) * forward_warp_.scale) return false;
-    if (!inside(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return false;
+    if (!isSet(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return false;
     return subpixel(u, v, best.position, column, stddev);
   }
 
@@ -134,7 +130,7 @@ std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Po
   std::vector<cv::Point> places;
   for (const cv::Point& corner : thinned(corners, most)) {
     const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
-    if (inside(level.left_mask, place.x, place.y)) places.push_back(place);
+    if (isSet(level.left_mask, place.x, place.y)) places.push_back(place);
   }
   return places;
 }
@@ -158,7 +154,7 @@ std::vector<DisparitySample> candidates(const StereoLevel& level, const std::vec
     for (const RowCandidate& peak : search.peaks(kMinScore, kMostPeaks)) {
       strongest = std::max(strongest, peak.score);
       if (peak.score < kShareOfBest * strongest) break;
-      if (!inside(level.right_mask, peak.position, corner.y)) continue;
+      if (!isSet(level.right_mask, peak.position, corner.y)) continue;
       disparities.push_back(corner.x - peak.position - offset);
     }
     if (disparities.empty()) continue;
@@ -187,7 +183,7 @@ Hypothesis makeHypothesis(const StereoLevel& level, const std::vector<cv::Point>
   Hypothesis hypothesis{plane, std::vector<double>(corners.size(), -1)};
   for (size_t i = 0; i < corners.size(); ++i) {
     const double column = corners[i].x - shift.at(corners[i].x, corners[i].y);
-    if (!inside(level.right_mask, column, corners[i].y)) continue;
+    if (!isSet(level.right_mask, column, corners[i].y)) continue;
     if (!search.run(corners[i].x, corners[i].y, column, kSteps, warp)) continue;
     hypothesis.correlation[i] = search.best(nullptr).score;
   }

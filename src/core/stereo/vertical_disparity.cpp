@@ -8,6 +8,7 @@
 #include "base/multiversion.h"
 #include "base/thinned.h"
 #include "stereo/row_fit.h"
+#include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
 #include "uav_landing/rig/rig_rotation.h"
@@ -50,10 +51,6 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
     all.push_back({corner, disparity, matched});
   }
   return all;
-}
-
-bool isSet(const cv::Mat& mask, const cv::Point& place) {
-  return cv::Rect({}, mask.size()).contains(place) && mask.at<uchar>(place) != 0;
 }
 
 // Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
@@ -142,7 +139,7 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
   int matched = 0, again = 0;
   for (const PlacedCorner& at : some) {
     const double column = at.corner.x - at.disparity - level.rig.principalOffset();
-    if (!at.matched && !isSet(level.right_mask, {cvRound(column), at.corner.y})) continue;
+    if (!at.matched && !isSet(level.right_mask, column, at.corner.y)) continue;
     const Eigen::Vector2d start(column, at.corner.y);
     const bool found =
         addRow(level, at.corner.x, at.corner.y, at.disparity, start, warp, window_radius, !at.matched, rows);

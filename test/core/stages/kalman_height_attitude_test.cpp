@@ -169,6 +169,14 @@ ApproachAngleResult levelFlight(const StereoDepthResult& stereo, double vanishin
   return approach;
 }
 
+/// The same without a vanishing point in view.
+ApproachAngleResult levelFlight(const StereoDepthResult& stereo) {
+  ApproachAngleResult approach = levelFlight(stereo, 0, 1);
+  approach.vanishing_direction.setConstant(kUnknown);
+  approach.vanishing_covariance.setConstant(kUnknown);
+  return approach;
+}
+
 // A right camera that has turned in yaw makes a plane that is tilted, and nothing but the vanishing point
 // contradicts it, by less than a test needs.
 TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsAContradictionThatNoTestRefusesIsLikelyToBeAFault) {
@@ -200,9 +208,7 @@ TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsTheMotionsOwnNormalContradictsT
   double stamp = 0;
   const auto fly = [&](double difference) {
     const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-    ApproachAngleResult approach = levelFlight(stereo, 0, 1);
-    approach.vanishing_direction.setConstant(kUnknown);
-    approach.vanishing_covariance.setConstant(kUnknown);
+    ApproachAngleResult approach = levelFlight(stereo);
     approach.window.normal = normalFromPitchRoll(kPitch + difference, 0);
     approach.window.normal_covariance =
         kOwn * kOwn *
@@ -236,10 +242,7 @@ TEST(KalmanHeightAttitude, APairWithoutAVanishingPointIsAsUncertainAsThoseBefore
   ASSERT_EQ(failedTests(result.tests), "vanishing_point");
   const double before = result.approach_angle_variance;
   const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-  ApproachAngleResult unseen = levelFlight(stereo, 0, 1);
-  unseen.vanishing_direction.setConstant(kUnknown);
-  unseen.vanishing_covariance.setConstant(kUnknown);
-  result = stage.process(stereo, unseen);
+  result = stage.process(stereo, levelFlight(stereo));
   EXPECT_EQ(failedTests(result.tests), "");
   EXPECT_NEAR(std::sqrt(result.approach_angle_variance), std::sqrt(before), 0.01 * kDegree);
 }
@@ -250,9 +253,7 @@ TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatHasTurnedIsAsUncertainAsTheTu
   double stamp = 0;
   const auto stddev = [&](double pitch) {
     const StereoDepthResult stereo = stereoAt(stamp, 10, pitch, 0, 0.002);
-    ApproachAngleResult approach = levelFlight(stereo, 0, 1);
-    approach.vanishing_direction.setConstant(kUnknown);
-    approach.vanishing_covariance.setConstant(kUnknown);
+    ApproachAngleResult approach = levelFlight(stereo);
     stamp += kStep;
     const LandingResult result = stage.process(stereo, approach);
     EXPECT_EQ(failedTests(result.tests), "");

@@ -284,6 +284,19 @@ TEST(VerticalDisparity, FollowsARigThatBendsMoreAndMore) {
   }
 }
 
+TEST(VerticalDisparity, ForgetsTheRigAtAReset) {
+  BentScene scene({0.15, 0, 0.05});
+  scene.ground.line_offset = 6;
+  StereoDepthStage used(scene.model, scene.parameters), fresh(scene.model, scene.parameters);
+  for (int i = 0; i < 4; ++i) scene.see(used, 1 + 0.1 * i);
+  scene.ground.bend.setZero();
+  used.reset();
+  const StereoDepthResult after = scene.see(used, 2), expected = scene.see(fresh, 2);
+  ASSERT_FALSE(after.failure || expected.failure);
+  EXPECT_EQ(after.plane.g, expected.plane.g);
+  EXPECT_EQ(after.plane.covariance, expected.plane.covariance);
+}
+
 TEST(VerticalDisparity, SaysNothingWhenSwitchedOffOrBlind) {
   BentScene scene({0.05, 0, 0});
   scene.parameters.vertical_disparities = false;
