@@ -22,6 +22,7 @@ VARIANTS = (
     ("lines as Hough gives them (`refine_lines`)", {"approach_angle": {"refine_lines": False}}),
     ("sides of narrow stripes as blur shows them (`stripe_centres`)", {"approach_angle": {"stripe_centres": False}}),
     ("plane without the vanishing point (`fuse_vanishing_point`)", {"kalman_height": {"fuse_vanishing_point": False}}),
+    ("plane without the motion's normal (`fuse_motion_normal`)", {"kalman_height": {"fuse_motion_normal": False}}),
     ("angle's normal from the vanishing points alone (`normal_source`)",
      {"approach_angle": {"normal_source": "vanishing_line"}}),
     ("focus of expansion by the paper's vote (`foe_method`)", {"approach_angle": {"foe_method": "sliding_window"}}),

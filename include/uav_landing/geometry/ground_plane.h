@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "uav_landing/geometry/calibration.h"
 
@@ -43,11 +44,22 @@ Eigen::Vector3d horizonLine(const StereoRig& rig, const Eigen::Vector3d& normal)
 GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& p,
                                const Eigen::Matrix3d& p_covariance, double max_nis, double* nis);
 
-/// A direction that lies in the ground plane.
+/// A direction that lies in the ground plane; NaN: not known.
 struct GroundDirection {
-  Eigen::Vector3d direction;   ///< unit
-  Eigen::Matrix3d covariance;  ///< rad^2
+  Eigen::Vector3d direction = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< unit
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();                                             ///< rad^2
+
+  bool known() const { return direction.allFinite() && covariance.allFinite(); }
 };
+/// A unit normal of the ground known from elsewhere; NaN: not known.
+struct GroundNormal {
+  Eigen::Vector3d n = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< rad^2
+
+  bool known() const { return n.allFinite() && covariance.allFinite(); }
+};
+/// Mean of two independent ones, weighted by their covariances.
+GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b);
 /// What a normal known from elsewhere says as two directions in the ground plane: forward (the optical axis
 /// above the ground) and to the left. covariance: of the normal, rad^2.
 std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/lines/line_segments.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -45,11 +46,8 @@ Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& 
                                                 double runway_straightness);
 
 /// The paper's vanishing line: ground normal of a rig that is level but for roll. The vanishing
-/// line runs through the vanishing point with the slope of the given roll (0: the paper's assumption).
-struct GroundNormal {
-  Eigen::Vector3d n;
-  Eigen::Matrix3d covariance;  ///< rad^2, rank 2: pitch from the vanishing point, roll from roll_stddev
-};
+/// line runs through the vanishing point with the slope of the given roll (0: the paper's assumption). Rank
+/// 2: pitch from the vanishing point, roll from roll_stddev.
 GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev);
 
 }  // namespace uav_landing

@@ -14,6 +14,7 @@ struct KalmanHeightParameters {
   bool fuse_vanishing_point = true;
   double vanishing_point_gate = 3.0;
   bool fuse_imu = true;
+  bool fuse_motion_normal = true;
   bool use_motion = true;
   bool average_attitude = true;
   double acceleration_stddev = 1.5;
@@ -52,6 +53,9 @@ struct KalmanHeightParameters {
              "a vanishing point that disagrees more with the stereo plane is left out");
     v.flag("fuse_imu", fuse_imu,
            "correct the stereo plane's pitch and roll, and watch the rig, with the attitude of an imu");
+    v.flag("fuse_motion_normal", fuse_motion_normal,
+           "correct the stereo plane's pitch and roll, and watch the rig, with the ground's normal by what "
+           "moves in the left image");
     v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
     v.flag("average_attitude", average_attitude,
            "pitch and roll of the last second's pairs along the rotation between them, and the test tilt; "

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "uav_landing/base/innovation_scatter.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"
@@ -19,8 +20,9 @@ namespace uav_landing {
 ///   vanishing direction:   h p.g = s + h p.A w,  with g the stereo plane and A its derivative by w.
 /// s and h p.A w are told apart by the change of h. An attitude sensor's normal measures in the same way by
 /// its two directions in the ground (levelDirections()), each with a slope of its own: that of the ground,
-/// and the sensor's slow error. Information form, with old measurements forgotten. Successive frames see the
-/// same texture and lines: all frames of a second count as one.
+/// and the sensor's slow error. So does the normal that the motion in the left image asks for
+/// (MotionEstimate::own_normal), whose slow errors are small. Information form, with old measurements
+/// forgotten. Successive frames see the same texture and lines: all frames of a second count as one.
 ///
 /// The prior of w is a Student t: a good calibration, seldom a bent rig. Its variance is found by expectation
 /// maximisation (Dempster, Laird, Rubin 1977) along the way.
@@ -36,20 +38,22 @@ class RigRotationFilter {
   void setPrior(double bias_stddev, double row_bias_stddev);
   void updateVertical(const RigRotation& measured);
 
-  /// The plane with w taken out, and, jointly, w with what the vanishing direction says. plane: its
-  /// covariance without any error of w. A: planeByRotation(). direction: unit, covariance rad^2; NaN: none.
-  /// gate: sigmas, beyond which a direction does not turn the plane and counts less for w. The covariance
-  /// returned has w's share, which common() alone tells.
+  /// What is known of the ground besides the stereo plane, each NaN where it is not.
+  struct Others {
+    GroundDirection vanishing;
+    /// Of level ground, by an attitude sensor; with the ground's slope in its covariance.
+    GroundNormal level;
+    GroundNormal moving;  ///< by what moves in the image
+  };
+  /// The plane with w taken out, and, jointly, w with what the others say. plane: its covariance without any
+  /// error of w. A: planeByRotation(). gate: sigmas, beyond which a direction does not turn the plane and
+  /// counts less for w. The covariance returned has w's share, which common alone tells.
   struct Corrected {
     GroundPlane plane;
     Eigen::Matrix3d common;  ///< share of the plane's covariance that is the same in every frame, 1/m^2
     Eigen::Matrix3d kept;    ///< by which errors of the plane given are in the corrected one
   };
-  /// level: normal of level ground from an attitude sensor, with the ground's slope in its covariance; null:
-  /// none.
-  Corrected correct(const GroundPlane& plane, const Eigen::Matrix3d& A, const Eigen::Vector3d& direction,
-                    const Eigen::Matrix3d& direction_covariance, double gate,
-                    const AttitudePrior* level = nullptr);
+  Corrected correct(const GroundPlane& plane, const Eigen::Matrix3d& A, const Others& others, double gate);
 
   RigRotation rotation() const;
   void reset();
@@ -58,32 +62,40 @@ class RigRotationFilter {
   void startAnew(const RigRotation& vertical);
 
  private:
-  static constexpr int kSize = 8;
-  static constexpr int kVanishing = 3, kForward = 6, kLeft = 7;  // slopes among the state
+  static constexpr int kSize = 10;
+  // Slopes among the state.
+  static constexpr int kVanishing = 3, kLevel = 6, kMoving = 8;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   /// A direction in the ground plane but for the slope that is a state of its own.
   struct Sloping {
     GroundDirection ground;
     int slope;  // index of the state
+    bool isMoving() const { return slope >= kMoving; }
   };
   /// What the errors of a plane are: by_state times those of the state, and noise of this frame.
   struct Joint {
     GroundPlane plane;  // covariance: of the noise
     Eigen::Matrix<double, 3, kSize> by_state;
-    Eigen::Matrix3d kept;  // of the errors of the plane before
+    Eigen::Matrix3d kept;     // of the errors of the plane before
+    Eigen::Matrix3d lasting;  // share of the noise that the next frames have, too
   };
   struct Equations;
-  static std::vector<Sloping> directionsOf(const Eigen::Vector3d& vanishing,
-                                           const Eigen::Matrix3d& vanishing_covariance,
-                                           const AttitudePrior* level);
+  static std::vector<Sloping> directionsOf(const Others& others);
   void learn(const Equations& all, const Eigen::Matrix3d& plane_covariance);
-  double fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const;
+  struct Innovation {
+    double value, variance;
+    Eigen::Vector3d gain;  // of the plane
+  };
+  Innovation innovationOf(const Sloping& sloping, double noise, const Joint& joint) const;
+  void fuse(const Sloping& sloping, double noise, const Innovation& innovation, Joint& joint) const;
+  double noiseOf(const Sloping& sloping, double variance, const Joint& joint);
   void solve();
   double learnSlopeVariance(int slope, double variance);
 
   StereoRig rig_;
   double memory_;
+  InnovationScatter moving_scatter_;
   std::optional<double> stamp_;
   double share_ = 0;                        // that a frame's measurements count for
   double calibrated_variance_ = 0;          // of each component of w, rad^2
@@ -92,7 +104,8 @@ class RigRotationFilter {
   Vector prior_ = Vector::Ones();           // variances
   Matrix information_ = Matrix::Zero();
   Vector right_ = Vector::Zero();  // information times value
-  Vector state_ = Vector::Zero();  // rx, ry, rz, s, c of rx, c of rz, s of level forward and left. rad
+  // rx, ry, rz, s, c of rx, c of rz, s of level forward and left, s of moving forward and left; rad.
+  Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "uav_landing/base/innovation_scatter.h"
 #include "uav_landing/base/timings.h"
 #include "uav_landing/height/attitude_filter.h"
 #include "uav_landing/height/height_filter.h"
@@ -11,7 +12,6 @@
 #include "uav_landing/integrity/consistency_tests.h"
 #include "uav_landing/integrity/ground_memory.h"
 #include "uav_landing/integrity/height_memory.h"
-#include "uav_landing/integrity/innovation_scatter.h"
 #include "uav_landing/integrity/normal_doubt.h"
 #include "uav_landing/integrity/recovery.h"
 #include "uav_landing/integrity/solution_separation.h"
@@ -86,6 +86,8 @@ class KalmanHeightStage {
                           LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
+  /// What is known of the ground besides the stereo plane.
+  RigRotationFilter::Others otherSources(const ApproachAngleResult& approach) const;
   void reportRig(LandingResult& result) const;
   void reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                    const Failure& jump, LandingResult& result) const;
@@ -154,8 +156,11 @@ class KalmanHeightStage {
     double probability;
     double angleVariance(const Eigen::Vector3d& used, const ApproachAngleResult::Motion& motion) const;
   };
+  static GroundNormal normalOfAngle(const ApproachAngleResult& approach,
+                                    const ApproachAngleResult::Motion& motion);
+  /// used: the normal that an angle is measured against.
   std::vector<OtherNormal> otherNormals(const Reconstruction& reconstruction,
-                                        const ApproachAngleResult& approach) const;
+                                        const ApproachAngleResult& approach, const GroundNormal& used) const;
   /// What the vanishing point says of the normal. After the tests of the pair.
   void doubtNormal(const Reconstruction& reconstruction, const ApproachAngleResult& approach);
   /// What the images' motion says of it.

@@ -1,7 +1,10 @@
 #include "uav_landing/geometry/ground_plane.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+
+#include "geometry/rotation.h"
 
 namespace uav_landing {
 
@@ -61,6 +64,17 @@ std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
   const Eigen::Matrix3d along = normal * normal.transpose();
   return {GroundDirection{forward, forward.dot(covariance * forward) * along},
           GroundDirection{left, left.dot(covariance * left) * along}};
+}
+
+GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b) {
+  const Eigen::Matrix<double, 3, 2> across = tangents(a.n);
+  const Eigen::Matrix2d of_a = across.transpose() * a.covariance * across;
+  const Eigen::Matrix2d of_b = across.transpose() * b.covariance * across;
+  const Eigen::Matrix2d gain = of_a * (of_a + of_b).inverse();
+  if (!gain.allFinite()) return a;
+  const Eigen::Vector3d n = (a.n + across * gain * across.transpose() * (b.n - a.n)).normalized();
+  const Eigen::Matrix3d level = Eigen::Matrix3d::Identity() - n * n.transpose();
+  return {n, level * across * (of_a - gain * of_a) * across.transpose() * level};
 }
 
 GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,

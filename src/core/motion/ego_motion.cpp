@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "geometry/rotation.h"
+#include "image/image_cells.h"
 #include "motion/motion_rows.h"
 
 namespace uav_landing {
@@ -76,24 +78,42 @@ Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Mat
       .inverse();
 }
 
-// The prior's share taken out of the normal that was found with it. matches: information of rotation,
-// translation and normal without it.
-void findOwnNormal(const Matrix9d& matches, const Eigen::Vector3d& given, const Eigen::Matrix3d& prior,
-                   MotionEstimate& result) {
+// The normal that was found with a prior, and what it is by the matches alone. across: its tangents.
+struct OwnNormal {
+  Eigen::Matrix3d covariance;         // of independent matches
+  Eigen::Matrix<double, 6, 3> by_it;  // rotation and translation by the normal, as the matches tie them
+  Eigen::Vector3d step;               // from the normal found
+};
+
+// information: of the matches of rotation, translation and normal. pull: of the prior at the normal found.
+std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::Vector3d& normal,
+                                      const Eigen::Vector3d& pull) {
   constexpr double kLeast = 1.0;  // 1/rad^2: a stddev of a rad says nothing
-  const Eigen::Matrix<double, 6, 3> by_motion =
-      matches.topLeftCorner<6, 6>().ldlt().solve(matches.topRightCorner<6, 3>());
-  const Eigen::Matrix3d information =
-      matches.bottomRightCorner<3, 3>() - matches.bottomLeftCorner<3, 6>() * by_motion;
-  const Eigen::Vector3d& found = result.normal;
-  const Eigen::Matrix<double, 3, 2> across = tangents(given);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(across.transpose() * information * across);
-  if (!(axes.eigenvalues()[0] >= kLeast)) return;
+  OwnNormal own;
+  own.by_it = -information.topLeftCorner<6, 6>().ldlt().solve(information.topRightCorner<6, 3>());
+  const Eigen::Matrix3d left =
+      information.bottomRightCorner<3, 3>() + information.bottomLeftCorner<3, 6>() * own.by_it;
+  const Eigen::Matrix<double, 3, 2> across = tangents(normal);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(across.transpose() * left * across);
+  if (!(axes.eigenvalues()[0] >= kLeast)) return std::nullopt;
   const Eigen::Matrix<double, 3, 2> directions = across * axes.eigenvectors();
-  const Eigen::Matrix3d covariance =
-      directions * axes.eigenvalues().cwiseInverse().asDiagonal() * directions.transpose();
-  result.own_normal = (found + covariance * (prior * (found - given))).normalized();
-  result.own_normal_covariance = covariance;
+  own.covariance = directions * axes.eigenvalues().cwiseInverse().asDiagonal() * directions.transpose();
+  own.step = -own.covariance * pull;
+  return own;
+}
+
+// What matches of a part of the image share, with the residuals that they have at their own normal.
+Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                               const MotionRows& rows, const std::vector<char>& inliers,
+                               const OwnNormal& own) {
+  Vector9d step;
+  step << own.by_it * own.step, own.step;
+  SharedPulls<9> pulls;
+  for (size_t i = 0; i < matches.size(); ++i)
+    if (inliers[i]) pulls.add(imageCell(rig, matches[i].now.x(), matches[i].now.y()), rows.pull(i, step));
+  Eigen::Matrix<double, 3, 9> by_pulls;
+  by_pulls << own.covariance * own.by_it.transpose(), own.covariance;
+  return pulls.variance<3>(by_pulls);
 }
 
 }  // namespace
@@ -148,7 +168,11 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
   result.of_normal = by_normal * prior * by_normal.transpose();
   information.bottomRightCorner<3, 3>() -= prior;
-  findOwnNormal(information, normal, prior, result);
+  const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
+  if (own) {
+    result.own_normal = (state.n + own->step).normalized();
+    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
+  }
   return result;
 }
 

@@ -74,6 +74,9 @@ class MotionRows {
   /// inliers: which matches have a weight. After linearise().
   MotionNormal accumulate(std::vector<char>& inliers);
 
+  /// What one match adds to the right side of the normal equations after one step more. After accumulate().
+  Vector9d pull(size_t match, const Vector9d& step) const;
+
   /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
   /// one lies behind the camera. After linearise().
   Eigen::Matrix<double, 6, 1> solveExactly() const;

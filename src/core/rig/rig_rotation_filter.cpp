@@ -20,10 +20,21 @@ constexpr double kLinesTime = 5.0;
 constexpr double kFreedom = 2.0;
 // Share of the vanishing point's smallest variance seen that is not the runway's slope.
 constexpr double kNoiseShare = 0.1;
+// 1 sigma of what a normal by the images' motion is wrong by in every frame, rad: lenses change what moves by
+// a share, and its plane is not quite that of stereo where the ground bends.
+constexpr double kMovingStddev = 0.005 * M_PI / 180;
+// Share of such a normal's noise that those of the next pairs have too: they are over half a second, of much
+// the same images.
+constexpr double kMovingLasting = 0.35;
+// Squared normalised innovation as which every larger one of such a normal counts.
+constexpr double kMovingLimit = 25;
 
 }  // namespace
 
-RigRotationFilter::RigRotationFilter(const StereoRig& rig, double memory) : rig_(rig), memory_(memory) {}
+RigRotationFilter::RigRotationFilter(const StereoRig& rig, double memory)
+    : rig_(rig), memory_(memory), moving_scatter_(kMovingLimit) {
+  prior_.tail<2>().setConstant(kMovingStddev * kMovingStddev);
+}
 
 void RigRotationFilter::reset() {
   const double calibrated = calibrated_variance_, row_bias = row_bias_stddev_;
@@ -99,41 +110,58 @@ double RigRotationFilter::learnSlopeVariance(int slope, double variance) {
   return smallest;
 }
 
-// Jointly with the state: 0 = p.g - s / h. Returns how many sigmas off the direction is.
-double RigRotationFilter::fuse(const Sloping& sloping, double noise, double gate, Joint& joint) const {
+// Of 0 = p.g - s / h, by the state, the plane and the noise of p.
+RigRotationFilter::Innovation RigRotationFilter::innovationOf(const Sloping& sloping, double noise,
+                                                              const Joint& joint) const {
   const Eigen::Vector3d& p = sloping.ground.direction;
   const double h = joint.plane.height();
-  const Eigen::Matrix<double, 3, kSize>& B = joint.by_state;
-  const Eigen::Matrix3d all = joint.plane.covariance + B * covariance_ * B.transpose();
-  const Eigen::Vector3d with_slope = B * covariance_.col(sloping.slope);
-  const double innovation = state_[sloping.slope] / h - p.dot(joint.plane.g);
-  const double variance = p.dot(all * p) - 2 * p.dot(with_slope) / h +
-                          (covariance_(sloping.slope, sloping.slope) + noise) / (h * h);
-  const double ratio = std::abs(innovation) / std::sqrt(variance);
-  if (!(ratio <= gate)) return ratio;
-  const Eigen::Vector3d gain = (all * p - with_slope / h) / variance;
-  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
-  joint.plane.g += gain * innovation;
-  joint.plane.covariance =
-      kept * joint.plane.covariance * kept.transpose() + noise / (h * h) * gain * gain.transpose();
-  joint.by_state = (kept * B).eval();
-  joint.kept = (kept * joint.kept).eval();
-  joint.by_state.col(sloping.slope) += gain / h;
-  return ratio;
+  Innovation innovation;
+  innovation.value = state_[sloping.slope] / h - p.dot(joint.plane.g);
+  const Eigen::Matrix3d all =
+      joint.plane.covariance + joint.by_state * covariance_ * joint.by_state.transpose();
+  const Eigen::Vector3d with_slope = joint.by_state * covariance_.col(sloping.slope);
+  innovation.variance = p.dot(all * p) - 2 * p.dot(with_slope) / h +
+                        (covariance_(sloping.slope, sloping.slope) + noise) / (h * h);
+  innovation.gain = (all * p - with_slope / h) / innovation.variance;
+  return innovation;
 }
 
-std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(
-    const Eigen::Vector3d& vanishing, const Eigen::Matrix3d& vanishing_covariance,
-    const AttitudePrior* level) {
+void RigRotationFilter::fuse(const Sloping& sloping, double noise, const Innovation& innovation,
+                             Joint& joint) const {
+  const Eigen::Vector3d& gain = innovation.gain;
+  const double h = joint.plane.height();
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * sloping.ground.direction.transpose();
+  const Eigen::Matrix3d by_noise = noise / (h * h) * gain * gain.transpose();
+  joint.plane.g += gain * innovation.value;
+  joint.plane.covariance = kept * joint.plane.covariance * kept.transpose() + by_noise;
+  joint.by_state = (kept * joint.by_state).eval();
+  joint.kept = (kept * joint.kept).eval();
+  joint.by_state.col(sloping.slope) += gain / h;
+  joint.lasting = (kept * joint.lasting * kept.transpose()).eval();
+  if (sloping.isMoving()) joint.lasting += kMovingLasting * by_noise;
+}
+
+std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(const Others& others) {
   std::vector<Sloping> directions;
-  if (vanishing.allFinite() && vanishing_covariance.allFinite())
-    directions.push_back({{vanishing, vanishing_covariance}, kVanishing});
-  if (level != nullptr && level->hasNormal()) {
-    const auto [forward, left] = levelDirections(level->normal, level->normal_covariance);
-    directions.push_back({forward, kForward});
-    directions.push_back({left, kLeft});
-  }
+  if (others.vanishing.known()) directions.push_back({others.vanishing, kVanishing});
+  const auto addNormal = [&](const GroundNormal& ground, int slope) {
+    if (!ground.known()) return;
+    for (const GroundDirection& direction : levelDirections(ground.n, ground.covariance))
+      directions.push_back({direction, slope++});
+  };
+  addNormal(others.level, kLevel);
+  addNormal(others.moving, kMoving);
   return directions;
+}
+
+// What is left of a direction's variance without that of its slope.
+double RigRotationFilter::noiseOf(const Sloping& sloping, double variance, const Joint& joint) {
+  if (!sloping.isMoving()) return variance - learnSlopeVariance(sloping.slope, variance);
+  // On uneven ground such normals scatter by more than the residuals of the points show, which are wrong
+  // together there.
+  const Innovation innovation = innovationOf(sloping, variance, joint);
+  moving_scatter_.add(innovation.value * innovation.value / innovation.variance);
+  return moving_scatter_.factor() * variance;
 }
 
 // All directions at once, as they share the noise of the plane.
@@ -171,21 +199,22 @@ void RigRotationFilter::learn(const Equations& all, const Eigen::Matrix3d& plane
 }
 
 RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane, const Eigen::Matrix3d& A,
-                                                        const Eigen::Vector3d& direction,
-                                                        const Eigen::Matrix3d& direction_covariance,
-                                                        double gate, const AttitudePrior* level) {
-  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity()};
+                                                        const Others& others, double gate) {
+  Joint joint{plane, Eigen::Matrix<double, 3, kSize>::Zero(), Eigen::Matrix3d::Identity(),
+              Eigen::Matrix3d::Zero()};
   joint.plane.g = plane.g - A * state_.head<3>();
   joint.by_state.leftCols<3>() = -A;
   const double h = joint.plane.height();
   Equations for_later;
-  for (const Sloping& sloping : directionsOf(direction, direction_covariance, level)) {
+  for (const Sloping& sloping : directionsOf(others)) {
     const Eigen::Vector3d n = joint.plane.normal();
     const double total = n.dot(sloping.ground.covariance * n);
     if (!(total > 0)) continue;
-    const double noise = total - learnSlopeVariance(sloping.slope, total);
-    const double ratio = fuse(sloping, noise, gate, joint);
+    const double noise = noiseOf(sloping, total, joint);
+    const Innovation innovation = innovationOf(sloping, noise, joint);
+    const double ratio = std::abs(innovation.value) / std::sqrt(innovation.variance);
     if (!(ratio >= 0)) continue;
+    if (ratio <= gate) fuse(sloping, noise, innovation, joint);
     const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
     for_later.add(h * sloping.ground.direction.transpose(), plane, A, sloping.slope, noise,
                   std::sqrt(std::max(1.0, ratio / gate) * lasting));
@@ -195,6 +224,7 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
   corrected.kept = joint.kept;
   corrected.common = joint.by_state * covariance_ * joint.by_state.transpose();
   corrected.plane.covariance += corrected.common;
+  corrected.common += joint.lasting;
   learn(for_later, plane.covariance);
   return corrected;
 }

@@ -22,6 +22,13 @@ double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
 
 }  // namespace
 
+// The normal that an angle of this motion is measured against: the one given with what the motion's own adds.
+GroundNormal KalmanHeightStage::normalOfAngle(const ApproachAngleResult& approach,
+                                              const ApproachAngleResult::Motion& motion) {
+  const GroundNormal given{approach.n, approach.n_covariance}, own{motion.normal, motion.normal_covariance};
+  return given.known() && own.known() ? weightedMean(given, own) : given;
+}
+
 // Variance of an angle that is measured against this normal, if the ground has the other one. The angle's
 // matches may have made up for the difference or not, so its part along the direction of motion counts as 1
 // sigma.
@@ -62,18 +69,19 @@ void KalmanHeightStage::doubtNormalByMotion(const ApproachAngleResult& approach)
 }
 
 std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
-    const Reconstruction& reconstruction, const ApproachAngleResult& approach) const {
+    const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+    const GroundNormal& used) const {
   std::vector<OtherNormal> normals;
   const GroundPlane& plane = reconstruction.plane;
   const Reconstruction::Normal& average = reconstruction.normal;
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero(), &used = approach.n_covariance;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
   // approach_angle knows nothing of the rig's rotation, nor of how well that is known.
   if (!reconstruction.tilted && parameters_.rig_watch && plane.valid())
-    normals.push_back({plane.normal(), plane.normalCovariance() - used, none, 1});
+    normals.push_back({plane.normal(), plane.normalCovariance() - used.covariance, none, 1});
   // Nor of the pairs before: a plane that turns against them within what a test allows is one of two.
   if (plane.valid())
-    normals.push_back(
-        {average.mean, none, reconstruction.tilted ? none : kCertain * (average.covariance + used), 1});
+    normals.push_back({average.mean, none,
+                       reconstruction.tilted ? none : kCertain * (average.covariance + used.covariance), 1});
   // Of a plane and a vanishing point that contradict each other either may be right.
   const double doubt = doubt_.probability(approach.stamp);
   if (doubt > 0) {
@@ -82,9 +90,10 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
     if (reconstruction.alone.valid()) normals.push_back({reconstruction.alone.normal(), none, none, doubt});
   }
   const double by_motion = motion_doubt_.probability(approach.stamp);
+  // Which of both the angle's matches have followed is not known: all of the difference counts.
   if (by_motion > 0)
-    normals.push_back({approach.n + motion_doubt_.turn(),
-                       motion_doubt_.variance() * Eigen::Matrix3d::Identity(), none, by_motion});
+    normals.push_back({used.n + motion_doubt_.turn(), motion_doubt_.variance() * Eigen::Matrix3d::Identity(),
+                       none, by_motion});
   return normals;
 }
 
@@ -92,11 +101,11 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
 void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                                     const Failure& jump, LandingResult& result) const {
   const ApproachAngleResult::Motion& motion = publishedMotion(approach);
-  const std::vector<OtherNormal> normals = otherNormals(reconstruction, approach);
   const auto byNormal = [&](const ApproachAngleResult::Motion& m) {
+    const GroundNormal used = normalOfAngle(approach, m);
     double variance = 0;
-    for (const OtherNormal& other : normals)
-      variance = std::max(variance, other.angleVariance(approach.n, m));
+    for (const OtherNormal& other : otherNormals(reconstruction, approach, used))
+      variance = std::max(variance, other.angleVariance(used.n, m));
     return variance;
   };
   result.raw_approach_angle = approach.step.angle;

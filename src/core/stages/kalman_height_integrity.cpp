@@ -46,6 +46,9 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   stereo_alone.common.width = 0;
   stereo_alone.common.lasting +=
       GroundPlane{alone.g, reconstruction.alone_common}.heightVariance() - rig_variance_;
+  // The plane that is left has not been turned by the motion's normal either.
+  if (parameters_.fuse_motion_normal)
+    reconstruction.without[static_cast<int>(FaultySource::kMotion)] = stereo_alone;
   leaveOutRegions(stereo, approach, reconstruction);
 }
 

@@ -177,14 +177,13 @@ void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepth
   reconstruction.alone = plane;
   reconstruction.alone_common = common;
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
-  // Only the vanishing direction and the imu are independent of the stereo plane; the fused normal of the
-  // approach angle contains the plane already.
-  if (parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
-      approach.vanishing_covariance.allFinite())
-    fuseDirection({approach.vanishing_direction, approach.vanishing_covariance}, reconstruction);
-  if (parameters_.fuse_imu && approach.imu.hasNormal())
-    for (const GroundDirection& level : levelDirections(approach.imu.normal, approach.imu.normal_covariance))
-      fuseDirection(level, reconstruction);
+  // Only these are independent of the stereo plane; the fused normal of the approach angle contains it.
+  const RigRotationFilter::Others others = otherSources(approach);
+  if (others.vanishing.known()) fuseDirection(others.vanishing, reconstruction);
+  for (const GroundNormal& normal : {others.level, others.moving})
+    if (normal.known())
+      for (const GroundDirection& level : levelDirections(normal.n, normal.covariance))
+        fuseDirection(level, reconstruction);
   rig_variance_ = GroundPlane{plane.g, common}.heightVariance();
 }
 
@@ -226,6 +225,17 @@ void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const A
              reconstruction, result);
 }
 
+RigRotationFilter::Others KalmanHeightStage::otherSources(const ApproachAngleResult& approach) const {
+  RigRotationFilter::Others others;
+  if (parameters_.fuse_vanishing_point)
+    others.vanishing = {approach.vanishing_direction, approach.vanishing_covariance};
+  if (parameters_.fuse_imu) others.level = {approach.imu.normal, approach.imu.normal_covariance};
+  const ApproachAngleResult::Motion& motion = publishedMotion(approach);
+  if (parameters_.fuse_motion_normal && !motion.failure)
+    others.moving = {motion.normal, motion.normal_covariance};
+  return others;
+}
+
 void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                  Reconstruction& reconstruction) {
   rig_rotation_.advance(stereo.stamp);
@@ -234,8 +244,6 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
   // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
   GroundPlane without = reconstruction.plane;
   without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
-  const Eigen::Vector3d direction =
-      parameters_.fuse_vanishing_point ? approach.vanishing_direction : Eigen::Vector3d::Constant(kUnknown);
   const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);
   const RigRotation rotation = rig_rotation_.rotation();
   if (rotation.known()) {
@@ -244,8 +252,7 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
     reconstruction.alone = {without.g - A * rotation.w, without.covariance + by_rotation};
   }
   const RigRotationFilter::Corrected corrected =
-      rig_rotation_.correct(without, A, direction, approach.vanishing_covariance,
-                            parameters_.vanishing_point_gate, parameters_.fuse_imu ? &approach.imu : nullptr);
+      rig_rotation_.correct(without, A, otherSources(approach), parameters_.vanishing_point_gate);
   reconstruction.plane = corrected.plane;
   reconstruction.common =
       corrected.common + corrected.kept * stereo.row_covariance * corrected.kept.transpose();

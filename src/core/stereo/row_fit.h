@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -10,21 +9,13 @@
 #include <vector>
 
 #include "base/median.h"
+#include "image/image_cells.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
 
 /// Robust fit of what moves the rows of the right image: the first N of its rotation (3) and the direction of
 /// the baseline (2).
 namespace uav_landing::row_fit {
-
-constexpr int kCellsAcross = 4, kCellsDown = 3;
-/// Part of the image, in which errors of rows are alike.
-inline int imageCell(const StereoRig& rig, double u, double v) {
-  const auto part = [](double at, int size, int parts) {
-    return std::clamp(static_cast<int>(at * parts / size), 0, parts - 1);
-  };
-  return part(v, rig.size.height, kCellsDown) * kCellsAcross + part(u, rig.size.width, kCellsAcross);
-}
 
 struct RowShift {
   Eigen::Matrix<double, 1, 5> by;  ///< derivatives, pixels per rad
@@ -65,26 +56,14 @@ double weightOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value, d
   return (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
 }
 
-/// What neighbouring rows share adds to the covariance of a fit that took them as independent: residuals of a
-/// lens, or of what stands on the ground, are the same in a part of the image, and pull at the fit as the
-/// corners come and go there. After the sandwich estimator with clusters (Liang, Zeger 1986), of which only
-/// the products of different rows count; by chance they are negative as often as positive.
+/// What neighbouring rows share adds to the covariance.
 template <int N>
 Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  std::array<Vector, kCellsAcross * kCellsDown> sums;
-  sums.fill(Vector::Zero());
-  Matrix shared = Matrix::Zero();
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const double residual = residualOf<N>(rows[i], fit.value);
-    const Vector pull = fit.weights[i] * residual * rows[i].by.head<N>().transpose();
-    sums[rows[i].cell] += pull;
-    shared -= pull * pull.transpose();
-  }
-  for (const Vector& sum : sums) shared += sum * sum.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix> axes(fit.covariance * shared * fit.covariance);
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() * axes.eigenvectors().transpose();
+  SharedPulls<N> pulls;
+  for (size_t i = 0; i < rows.size(); ++i)
+    pulls.add(rows[i].cell,
+              fit.weights[i] * residualOf<N>(rows[i], fit.value) * rows[i].by.head<N>().transpose());
+  return pulls.template variance<N>(fit.covariance);
 }
 
 /// What an error of 1 sigma (pixels) that all rows in a part of the image have adds to the covariance,
@@ -93,7 +72,7 @@ template <int N>
 Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
                                            double sigma) {
   using Vector = Eigen::Matrix<double, N, 1>;
-  std::array<Vector, kCellsAcross * kCellsDown> sums;
+  std::array<Vector, kImageCells> sums;
   sums.fill(Vector::Zero());
   for (size_t i = 0; i < rows.size(); ++i)
     sums[rows[i].cell] += fit.weights[i] * rows[i].by.head<N>().transpose();

@@ -73,7 +73,7 @@ bool addRow(const StereoLevel& level, int u, int v, double disparity, const Eige
   row.shift = place.position.y() - v;
   row.stddev = stddev;
   row.below_centre = v - level.rig.cy;
-  row.cell = row_fit::imageCell(level.rig, u, v);
+  row.cell = imageCell(level.rig, u, v);
   rows.push_back(row);
   return true;
 }

@@ -179,6 +179,26 @@ TEST(FuseNormal, LeavesThePlaneWhenOneOfItsDirectionsContradictsIt) {
   }
 }
 
+TEST(WeightedMean, IsThatOfPitchAndRollByThemselves) {
+  // Pitch known by the second, roll by the first.
+  const auto normal = [](double pitch, double roll, double pitch_stddev, double roll_stddev) {
+    const Eigen::Vector3d n = normalFromPitchRoll(pitch, roll);
+    const Eigen::Matrix3d level = n * n.transpose();
+    Eigen::Matrix3d covariance =
+        Eigen::Vector3d(std::pow(roll_stddev, 2), 0, std::pow(pitch_stddev, 2)).asDiagonal();
+    covariance = (Eigen::Matrix3d::Identity() - level) * covariance * (Eigen::Matrix3d::Identity() - level);
+    return GroundNormal{n, covariance};
+  };
+  const GroundNormal a = normal(0.010, 0.004, 0.02, 0.01), b = normal(-0.005, -0.008, 0.01, 0.03);
+  const GroundNormal mean = weightedMean(a, b);
+  EXPECT_NEAR(mean.n.norm(), 1, 1e-12);
+  EXPECT_NEAR(pitchOf(mean.n), (0.010 * 1 - 0.005 * 4) / 5, 1e-5);
+  EXPECT_NEAR(rollOf(mean.n), (0.004 * 9 - 0.008 * 1) / 10, 1e-5);
+  EXPECT_NEAR(std::sqrt(pitchVariance(mean.n, mean.covariance)), 0.02 / std::sqrt(5), 1e-5);
+  EXPECT_NEAR(std::sqrt(rollVariance(mean.n, mean.covariance)), 0.03 / std::sqrt(10), 1e-5);
+  EXPECT_NEAR(mean.n.dot(mean.covariance * mean.n), 0, 1e-12);
+}
+
 TEST(FuseVanishingPoint, LeavesThePlaneWhenThereIsNoDirection) {
   const GroundPlane plane = makePlane();
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(std::nan(""));

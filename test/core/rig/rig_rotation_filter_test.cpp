@@ -61,7 +61,9 @@ struct Approach {
     filter.advance(i * kStep);
     filter.setPrior(kBias, kRowBias);
     filter.updateVertical(vertical(0.003 * kDegree));
-    return filter.correct(seen(height), A(), direction(), directionCovariance(), 3);
+    RigRotationFilter::Others others;
+    others.vanishing = {direction(), directionCovariance()};
+    return filter.correct(seen(height), A(), others, 3);
   }
 };
 
@@ -102,18 +104,26 @@ TEST(RigRotationFilter, FindsYawAndRollAndFreesPitchAndHeightOfThem) {
   EXPECT_NEAR(plane.height(), height, 3 * std::sqrt(plane.heightVariance()));
 }
 
+GroundNormal normalWrongBy(const Approach& approach, double pitch_error, double roll_error, double stddev) {
+  const Eigen::Vector3d n = normalFromPitchRoll(approach.pitch + pitch_error, roll_error);
+  return {n, stddev * stddev * (Eigen::Matrix3d::Identity() - n * n.transpose())};
+}
+
 /// A good attitude sensor over nearly level ground, wrong by this.
-AttitudePrior levelGround(const Approach& approach, double pitch_error, double roll_error) {
-  constexpr double kLevel = 0.3 * kDegree;
-  AttitudePrior level;
-  level.normal = normalFromPitchRoll(approach.pitch + pitch_error, roll_error);
-  level.normal_covariance =
-      kLevel * kLevel * (Eigen::Matrix3d::Identity() - level.normal * level.normal.transpose());
-  return level;
+RigRotationFilter::Others levelGround(const Approach& approach, double pitch_error, double roll_error) {
+  RigRotationFilter::Others others;
+  others.level = normalWrongBy(approach, pitch_error, roll_error, 0.3 * kDegree);
+  return others;
+}
+
+/// What the images' motion says, with noise of this, and more of it than is claimed.
+RigRotationFilter::Others movingGround(Approach& approach, double noise, double claimed) {
+  RigRotationFilter::Others others;
+  others.moving = normalWrongBy(approach, approach.noise(noise), approach.noise(noise), claimed);
+  return others;
 }
 
 TEST(RigRotationFilter, AnAttitudeSensorShowsAYawWhereNothingElseDoes) {
-  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
   const double truth = 0.05 * kDegree;
   for (const double error : {-0.2 * kDegree, 0.0, 0.2 * kDegree}) {
     Approach approach;
@@ -124,13 +134,12 @@ TEST(RigRotationFilter, AnAttitudeSensorShowsAYawWhereNothingElseDoes) {
     for (int i = 0; i < 400; ++i) {
       height = 40 - 0.08 * i;
       const GroundPlane seen = approach.seen(height);
-      const AttitudePrior level = levelGround(approach, error, -error);
       for (RigRotationFilter* filter : {&with, &without}) {
         filter->advance(i * kStep);
         filter->setPrior(kBias, kRowBias);
       }
-      plane = with.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3, &level).plane;
-      without.correct(seen, approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3);
+      plane = with.correct(seen, approach.A(), levelGround(approach, error, -error), 3).plane;
+      without.correct(seen, approach.A(), {}, 3);
     }
     EXPECT_LT(std::abs(without.rotation().w.y()), 0.1 * truth);
     const RigRotation rotation = with.rotation();
@@ -142,19 +151,76 @@ TEST(RigRotationFilter, AnAttitudeSensorShowsAYawWhereNothingElseDoes) {
   }
 }
 
-TEST(RigRotationFilter, DoesNotTakeTheErrorOfAnAttitudeSensorForAYaw) {
-  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
+// Of 5 s at 40 m. A yaw of 0.05 degrees tilts the plane by 2 degrees there.
+RigRotation afterMotion(Approach& approach, double noise, double claimed, GroundPlane* plane = nullptr) {
+  constexpr double kHeight = 40;
+  RigRotationFilter filter(approach.rig, 60);
+  for (int i = 0; i < 100; ++i) {
+    filter.advance(i * kStep);
+    filter.setPrior(kBias, kRowBias);
+    const RigRotationFilter::Corrected corrected =
+        filter.correct(approach.seen(kHeight), approach.A(), movingGround(approach, noise, claimed), 3);
+    if (plane != nullptr) *plane = corrected.plane;
+  }
+  return filter.rotation();
+}
+
+TEST(RigRotationFilter, TheImagesMotionShowsAYawWhereNothingElseDoes) {
+  for (const double truth : {-0.05 * kDegree, 0.005 * kDegree, 0.05 * kDegree}) {
+    Approach approach;
+    approach.w.y() = truth;
+    GroundPlane plane;
+    const RigRotation rotation = afterMotion(approach, 0.02 * kDegree, 0.02 * kDegree, &plane);
+    const double stddev = std::sqrt(rotation.covariance(1, 1));
+    EXPECT_NEAR(rotation.w.y(), truth, 3 * stddev) << truth;
+    // At 40 m, seen five times independently against a plane, and what stays.
+    const double noise = std::hypot(0.02 * kDegree, kPlaneError);
+    EXPECT_NEAR(stddev, std::hypot(noise / std::sqrt(5), 0.005 * kDegree) / 40, 0.15 * stddev) << truth;
+    EXPECT_NEAR(pitchError(plane, approach.pitch), 0, 0.06 * kDegree) << truth;
+  }
+}
+
+TEST(RigRotationFilter, BelievesAnImagesMotionLessThatScattersMoreThanItClaims) {
+  Approach approach;
+  const double claimed = 0.02 * kDegree;
+  const RigRotation true_claims = afterMotion(approach, claimed, claimed);
+  const RigRotation rough = afterMotion(approach, 5 * claimed, claimed);
+  EXPECT_GT(std::sqrt(rough.covariance(1, 1)), 1.3 * std::sqrt(true_claims.covariance(1, 1)));
+  EXPECT_LT(std::abs(rough.w.y()), 3 * std::sqrt(rough.covariance(1, 1)));
+}
+
+TEST(RigRotationFilter, TheImagesMotionTurnsThePlaneByItsWeight) {
   Approach approach;
   RigRotationFilter filter(approach.rig, 60);
-  const AttitudePrior level = levelGround(approach, 0.6 * kDegree, 0.6 * kDegree);
+  filter.advance(0);
+  filter.setPrior(1e-9, 0);
+  const double height = 20, off = 0.02 * kDegree;
+  GroundPlane seen = approach.truth(height);
+  seen.covariance = std::pow(kPlaneError / height, 2) * Eigen::Matrix3d::Identity();
+  RigRotationFilter::Others others;
+  others.moving = normalWrongBy(approach, off, 0, kPlaneError / 2);
+  const RigRotationFilter::Corrected corrected = filter.correct(seen, approach.A(), others, 3);
+  EXPECT_NEAR(pitchError(corrected.plane, approach.pitch), 0.8 * off, 0.06 * off);
+  const double stddev =
+      std::sqrt(pitchVariance(corrected.plane.normal(), corrected.plane.normalCovariance()));
+  EXPECT_NEAR(stddev, kPlaneError / std::sqrt(5), 0.1 * stddev);
+  // Part of the motion's noise is in the next pairs, too.
+  const Eigen::Matrix3d common = GroundPlane{corrected.plane.g, corrected.common}.normalCovariance();
+  EXPECT_GT(std::sqrt(pitchVariance(corrected.plane.normal(), common)), 0.4 * stddev);
+  others.moving = normalWrongBy(approach, 0.5 * kDegree, 0, kPlaneError);
+  const GroundPlane contradicted = filter.correct(seen, approach.A(), others, 3).plane;
+  EXPECT_NEAR(pitchError(contradicted, approach.pitch), 0, 1e-3 * off);
+}
+
+TEST(RigRotationFilter, DoesNotTakeTheErrorOfAnAttitudeSensorForAYaw) {
+  Approach approach;
+  RigRotationFilter filter(approach.rig, 60);
+  const RigRotationFilter::Others level = levelGround(approach, 0.6 * kDegree, 0.6 * kDegree);
   for (int i = 0; i < 200; ++i) {
     filter.advance(i * kStep);
     filter.setPrior(kBias, kRowBias);
     const double height = 30 - 0.1 * i;
-    const GroundPlane plane = filter
-                                  .correct(approach.seen(height), approach.A(), none,
-                                           Eigen::Matrix3d::Constant(kUnknown), 3, &level)
-                                  .plane;
+    const GroundPlane plane = filter.correct(approach.seen(height), approach.A(), level, 3).plane;
     EXPECT_NEAR(pitchError(plane, approach.pitch), 0,
                 4 * std::sqrt(pitchVariance(plane.normal(), plane.normalCovariance())))
         << i;
@@ -211,9 +277,7 @@ TEST(RigRotationFilter, VarianceOfThePlaneHasTheRigsShareInIt) {
   filter.advance(0);
   filter.setPrior(0.1, kRowBias);
   const double height = 20;
-  const Eigen::Vector3d none = Eigen::Vector3d::Constant(kUnknown);
-  const RigRotationFilter::Corrected corrected =
-      filter.correct(approach.seen(height), approach.A(), none, Eigen::Matrix3d::Constant(kUnknown), 3);
+  const RigRotationFilter::Corrected corrected = filter.correct(approach.seen(height), approach.A(), {}, 3);
   // A roll by 0.1 px at the focal length turns 1 / b of g: sigma of h is h^2 cos(pitch) 0.1 / (f b).
   const double expected = height * height * std::cos(approach.pitch) * 0.1 / approach.rig.fx;
   const GroundPlane common{corrected.plane.g, corrected.common};

@@ -230,6 +230,31 @@ TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsTheMotionsOwnNormalContradictsT
   EXPECT_NEAR(std::sqrt(result.approach_angle_variance), agreeing, 0.003 * kDegree);
 }
 
+TEST(KalmanHeightAttitude, ThePlaneIsTurnedByTheMotionsOwnNormalAsWeightsSay) {
+  constexpr double kPitch = -0.1, kOff = 0.3 * kDegree, kOwn = 0.05 * kDegree;
+  // 0.02 m of 10 m is 0.11 degrees across, too.
+  const double by_stereo = 0.02 / 10, share = by_stereo * by_stereo / (by_stereo * by_stereo + kOwn * kOwn);
+  for (const bool watch : {false, true}) {
+    for (const bool fuse : {false, true}) {
+      KalmanHeightParameters parameters;
+      parameters.rig_watch = watch;
+      parameters.fuse_motion_normal = fuse;
+      KalmanHeightStage stage(usualRig(), parameters);
+      const StereoDepthResult stereo = stereoAt(0, 10, kPitch, 0, 0.02);
+      ApproachAngleResult approach = levelFlight(stereo);
+      const Eigen::Vector3d n = normalFromPitchRoll(kPitch + kOff, -kOff);
+      approach.window.normal = n;
+      approach.window.normal_covariance = kOwn * kOwn * (Eigen::Matrix3d::Identity() - n * n.transpose());
+      const LandingResult result = stage.process(stereo, approach);
+      EXPECT_NEAR(result.pitch, kPitch + (fuse ? share * kOff : 0), 0.02 * kOff) << watch << fuse;
+      EXPECT_NEAR(result.roll, fuse ? -share * kOff : 0, 0.02 * kOff) << watch << fuse;
+      EXPECT_NEAR(std::sqrt(result.pitch_variance), by_stereo * (fuse ? std::sqrt(1 - share) : 1),
+                  0.05 * by_stereo)
+          << watch << fuse;
+    }
+  }
+}
+
 TEST(KalmanHeightAttitude, APairWithoutAVanishingPointIsAsUncertainAsThoseBeforeThatContradicted) {
   constexpr double kPitch = -0.1, kDifference = 0.8 * kDegree;
   KalmanHeightStage stage(usualRig(), {});
