@@ -27,6 +27,8 @@ class AutopilotNodelet : public StageNodelet {
     reconfigure_ = std::make_unique<ReconfigureServer<AutopilotParameters>>(
         getPrivateNodeHandle(), parameters_,
         [this](const AutopilotParameters& changed) { parameters_ = changed; });
+    if (!headingKnown(parameters_))
+      NODELET_WARN("%s: sends the range alone and no pose: runway_heading_deg is not set", getName().c_str());
     pairing_ =
         std::make_unique<Inputs>(exactPairing(), resolved({"height", "pose"}),
                                  [this](const auto& height, const auto& pose) { work(*height, *pose); });
@@ -64,7 +66,8 @@ class AutopilotNodelet : public StageNodelet {
     if (enu_pose) pose_publisher_.publish(*enu_pose);
     std::string missing;
     if (!range) missing = "no range: " + whyNoRange(height, pose, parameters_);
-    if (range && !enu_pose) missing = "no pose: the place along or across the runway is not known";
+    if (range && !enu_pose && headingKnown(parameters_))
+      missing = "no pose: the place along or across the runway is not known";
     report_.served(stamp, 0, missing);
     if (range || enu_pose)
       sent_lately_ = true;

@@ -58,8 +58,11 @@ std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::Po
   return why.str();
 }
 
+bool headingKnown(const AutopilotParameters& parameters) { return parameters.runway_heading_deg >= 0; }
+
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters) {
+  if (!headingKnown(parameters)) return std::nullopt;
   const CovarianceMap in_runway(pose.pose.covariance.data());
   const double known = parameters.max_position_stddev * parameters.max_position_stddev;
   if (!(in_runway(0, 0) <= known) || !(in_runway(1, 1) <= known)) return std::nullopt;

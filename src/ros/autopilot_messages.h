@@ -14,7 +14,7 @@ struct AutopilotParameters {
   double max_range = 655.0;
   double max_rate = 50.0;
   double max_position_stddev = 20.0;
-  double runway_heading_deg = 90.0;
+  double runway_heading_deg = -1.0;
   std::string enu_frame = "map";
 
   template <class Visitor>
@@ -26,8 +26,9 @@ struct AutopilotParameters {
     v.number("max_position_stddev", max_position_stddev, 0.01, 10000.0, "m",
              "no pose while 1 sigma of x or y is more: before the runway has been found its origin is "
              "arbitrary");
-    v.number("runway_heading_deg", runway_heading_deg, 0.0, 360.0, "deg",
-             "landing direction clockwise from north, for the pose; 90 leaves the runway frame as it is");
+    v.number(
+        "runway_heading_deg", runway_heading_deg, -1.0, 360.0, "deg",
+        "landing direction clockwise from north, for the pose; below 0 it is not known, and no pose is sent");
     v.text("enu_frame", enu_frame, "frame of the pose: x east, y north, z up, origin on the threshold");
   }
 };
@@ -43,10 +44,13 @@ std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& heigh
 std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose,
                        const AutopilotParameters& parameters);
 
-/// The pose with east, north, up for axes, covariance included. None when a number is not finite, the
-/// covariance not positive definite, the place not known well enough, or tilted by more than 60 degrees: that
-/// is no aircraft but a camera, whose z axis is forward.
+/// The pose with east, north, up for axes, covariance included. None without the runway's heading, when a
+/// number is not finite, the covariance not positive definite, the place not known well enough, or tilted by
+/// more than 60 degrees: that is no aircraft but a camera, whose z axis is forward.
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
+
+/// Whether somebody said where the runway leads; else the range is all there is.
+bool headingKnown(const AutopilotParameters& parameters);
 
 }  // namespace uav_landing

@@ -124,6 +124,8 @@ uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(kalman_height_angle_test test/core/stages/kalman_height_angle_test.cpp)
 uav_landing_add_gtest(kalman_height_attitude_test test/core/stages/kalman_height_attitude_test.cpp)
+uav_landing_add_gtest(kalman_height_motion_normal_test
+  test/core/stages/kalman_height_motion_normal_test.cpp)
 uav_landing_add_gtest(kalman_height_ground_test test/core/stages/kalman_height_ground_test.cpp)
 uav_landing_add_gtest(kalman_height_integrity_test test/core/stages/kalman_height_integrity_test.cpp)
 uav_landing_add_gtest(kalman_height_reconstruction_test

@@ -15,7 +15,8 @@ namespace {
 
 class AutopilotNodeletTest : public NodeletTest {
  protected:
-  void start() {
+  void start(double heading_deg = 90) {
+    setParameter("autopilot", "runway_heading_deg", heading_deg);
     load("autopilot");
     ASSERT_TRUE(eventually([&] {
       return height_.getNumSubscribers() > 0 && pose_.getNumSubscribers() > 0 && ranges_.connected() &&
@@ -59,6 +60,16 @@ TEST_F(AutopilotNodeletTest, PassesOnOnlyPairsWithAHeight) {
   EXPECT_EQ(ranges_.messages()[1]->header.stamp, ros::Time(1000.3));
   EXPECT_FLOAT_EQ(ranges_.messages()[1]->range, 4);
   EXPECT_EQ(poses_.messages()[0]->header.frame_id, "map");
+}
+
+TEST_F(AutopilotNodeletTest, SendsTheRangeAloneOfARunwayWhoseHeadingItWasNotTold) {
+  start(-1);
+  publish(0.1, 5);
+  publish(0.2, 4);
+  publish(0.3, 3);
+  ASSERT_TRUE(ranges_.waitFor(3));
+  EXPECT_TRUE(poses_.messages().empty());
+  EXPECT_TRUE(logged("sends the range alone and no pose: runway_heading_deg is not set")) << wholeLog();
 }
 
 TEST_F(AutopilotNodeletTest, SendsNoMoreThanMaxRate) {
@@ -118,7 +129,7 @@ TEST_F(AutopilotNodeletTest, DynamicReconfigureChangesParametersInFlight) {
   EXPECT_EQ(request.response.config.doubles.at(0).value, 4.5);
   EXPECT_EQ(request.response.config.doubles.at(1).value, 20) << "not asked for";
   EXPECT_EQ(request.response.config.doubles.at(3).value, 360) << "the nearest that is in range";
-  EXPECT_TRUE(logged("runway_heading_deg: 400 is out of range, expected 0 to 360 deg; 360 is used"))
+  EXPECT_TRUE(logged("runway_heading_deg: 400 is out of range, expected -1 to 360 deg; 360 is used"))
       << wholeLog();
   publish(0, 5);
   publish(0.1, 4);

@@ -91,7 +91,9 @@ TEST(AutopilotRange, IsSilentRatherThanWrong) {
 }
 
 TEST(AutopilotPose, OfARunwayToTheEastIsAsItWas) {
-  const auto pose = autopilotPose(someWhere(), AutopilotParameters());
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 90;
+  const auto pose = autopilotPose(someWhere(), parameters);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->header.frame_id, "map");
   EXPECT_EQ(pose->header.stamp, ros::Time(12.5));
@@ -135,7 +137,10 @@ TEST(AutopilotPose, KeepsTheCorrelationsOfPositionAndRotation) {
 }
 
 TEST(AutopilotPose, IsSilentRatherThanWrong) {
-  const AutopilotParameters parameters;
+  AutopilotParameters parameters;
+  EXPECT_FALSE(autopilotPose(someWhere(), parameters)) << "of no heading";
+  parameters.runway_heading_deg = 0;
+  EXPECT_TRUE(autopilotPose(someWhere(), parameters));
   auto camera = someWhere();  // its optical frame: z is forward
   turn(camera, 1, 90 * kDegree);
   EXPECT_FALSE(autopilotPose(camera, parameters));

@@ -19,13 +19,14 @@ enum class Consistency {
   kVelocity,
   kTilt,
   kVanishingPoint,
+  kMotionNormal,
   kImu,
   kImageRegions,
   kRunwayWidth,
   kInnovation,
   kSinkRate
 };
-constexpr int kConsistencyTests = 14;
+constexpr int kConsistencyTests = 15;
 const char* toString(Consistency test);
 
 /// The tests of one pair after another.

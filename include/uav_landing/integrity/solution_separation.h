@@ -10,7 +10,8 @@
 namespace uav_landing {
 
 /// What may be wrong without anything showing it, one at a time: the runway's vanishing point (and its known
-/// width); the matches in one part of the image; the vertical speed by motion.
+/// width); the matches in one part of the image; the motion (the vertical speed, and the ground's normal, by
+/// it).
 enum class FaultySource { kVanishingPoint, kNear, kMiddle, kFar, kLeft, kRight, kMotion };
 constexpr int kFaultySources = 7;
 /// For example "vanishing_point" or "far_region".

@@ -50,7 +50,7 @@ struct KalmanHeightParameters {
     v.flag("fuse_vanishing_point", fuse_vanishing_point,
            "correct the stereo plane's pitch with the vanishing point");
     v.number("vanishing_point_gate", vanishing_point_gate, 1.0, 20.0, "sigma",
-             "a vanishing point that disagrees more with the stereo plane is left out");
+             "a vanishing point, or another normal, that disagrees more with the stereo plane is left out");
     v.flag("fuse_imu", fuse_imu,
            "correct the stereo plane's pitch and roll, and watch the rig, with the attitude of an imu");
     v.flag("fuse_motion_normal", fuse_motion_normal,

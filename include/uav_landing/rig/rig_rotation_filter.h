@@ -54,6 +54,8 @@ class RigRotationFilter {
     Eigen::Matrix3d kept;    ///< by which errors of the plane given are in the corrected one
   };
   Corrected correct(const GroundPlane& plane, const Eigen::Matrix3d& A, const Others& others, double gate);
+  /// What the pair given to correct() last says of w: learned when nothing speaks against it, else forgotten.
+  void settle(bool believed);
 
   RigRotation rotation() const;
   void reset();
@@ -80,9 +82,16 @@ class RigRotationFilter {
     Eigen::Matrix3d kept;     // of the errors of the plane before
     Eigen::Matrix3d lasting;  // share of the noise that the next frames have, too
   };
-  struct Equations;
+  /// What the directions of a pair say of the state, all at once, as they share the noise of the plane.
+  struct Equations {
+    Eigen::MatrixXd rows{0, kSize}, tips{0, 3};
+    Eigen::VectorXd values, noises, inflations;  // inflation: of the stddev, as the next frames have the same
+    Eigen::Matrix3d plane_covariance = Eigen::Matrix3d::Zero();
+
+    void add(const Eigen::RowVector3d& tip, const GroundPlane& plane, const Eigen::Matrix3d& A, int slope,
+             double noise, double inflation);
+  };
   static std::vector<Sloping> directionsOf(const Others& others);
-  void learn(const Equations& all, const Eigen::Matrix3d& plane_covariance);
   struct Innovation {
     double value, variance;
     Eigen::Vector3d gain;  // of the plane
@@ -107,6 +116,7 @@ class RigRotationFilter {
   // rx, ry, rz, s, c of rx, c of rz, s of level forward and left, s of moving forward and left; rad.
   Vector state_ = Vector::Zero();
   Matrix covariance_ = Matrix::Zero();
+  Equations of_last_pair_;
 };
 
 }  // namespace uav_landing

@@ -61,7 +61,8 @@ class KalmanHeightStage {
     Normal normal;        ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
         Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
-    GroundPlane alone;            ///< by stereo alone: without the vanishing point
+    Eigen::Matrix3d kept = Eigen::Matrix3d::Identity();  ///< by which errors of stereo are in the plane
+    GroundPlane alone;  ///< by stereo, and by what was learned of the rig, alone
     Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
     GroundPlane below;  ///< tangent of the surface straight below; the plane where not known
     double bend = 0;    ///< its height less the plane's, m
@@ -87,15 +88,14 @@ class KalmanHeightStage {
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   /// What is known of the ground besides the stereo plane.
-  RigRotationFilter::Others otherSources(const ApproachAngleResult& approach) const;
+  RigRotationFilter::Others otherSources(const StereoDepthResult& stereo,
+                                         const ApproachAngleResult& approach) const;
   void reportRig(LandingResult& result) const;
   void reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                    const Failure& jump, LandingResult& result) const;
   /// What the pair measures without each source.
-  void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                       Reconstruction& reconstruction) const;
-  void leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
-                       Reconstruction& reconstruction) const;
+  void leaveOutSources(const StereoDepthResult& stereo, Reconstruction& reconstruction) const;
+  void leaveOutRegions(const StereoDepthResult& stereo, Reconstruction& reconstruction) const;
   /// Tests of this pair's own sources. A failed one makes the pair give no height.
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);
@@ -117,8 +117,8 @@ class KalmanHeightStage {
   VerticalSpeed withStamps(VerticalSpeed speed) const;
   /// Where the right camera is by the rows of the pair, against its place and the skew.
   void testBaseline(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step);
-  /// The ground's normal by stereo alone against the imu's direction of gravity.
-  void testAttitude(const GroundPlane& plane, const AttitudePrior& imu);
+  /// The ground's normal by stereo alone against one known from elsewhere.
+  void testNormal(Consistency test, const GroundPlane& plane, const GroundNormal& normal);
   /// The first test of this pair alone that failed.
   std::optional<Consistency> failedTestOfPair() const;
   /// Leaves a pair out that a test contradicts.
@@ -167,6 +167,8 @@ class KalmanHeightStage {
   void doubtNormalByMotion(const ApproachAngleResult& approach);
   /// The angle over the window, or of the step alone where the window has none.
   static const ApproachAngleResult::Motion& publishedMotion(const ApproachAngleResult& approach);
+  /// The ground's normal by what moves in the image over the same time.
+  static GroundNormal normalByMotion(const ApproachAngleResult& approach);
   /// How the camera turned since the pair before: where the images do not tell, by the imu.
   ApproachAngleResult::Motion turnSince(const ApproachAngleResult& approach) const;
   /// By how much the surface below may differ from the plane seen ahead, m^2: its general slope and curve,

@@ -26,6 +26,8 @@ const char* toString(Consistency test) {
       return "tilt";
     case Consistency::kVanishingPoint:
       return "vanishing_point";
+    case Consistency::kMotionNormal:
+      return "motion_normal";
     case Consistency::kImu:
       return "imu";
     case Consistency::kImageRegions:

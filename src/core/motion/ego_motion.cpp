@@ -78,16 +78,17 @@ Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Mat
       .inverse();
 }
 
-// The normal that was found with a prior, and what it is by the matches alone. across: its tangents.
+// The normal that was found with a prior, and what it is by the matches alone.
 struct OwnNormal {
   Eigen::Matrix3d covariance;         // of independent matches
   Eigen::Matrix<double, 6, 3> by_it;  // rotation and translation by the normal, as the matches tie them
   Eigen::Vector3d step;               // from the normal found
 };
 
-// information: of the matches of rotation, translation and normal. pull: of the prior at the normal found.
+// information: of the matches of rotation, translation and normal. by_prior: its right side at the normal
+// found.
 std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::Vector3d& normal,
-                                      const Eigen::Vector3d& pull) {
+                                      const Eigen::Vector3d& by_prior) {
   constexpr double kLeast = 1.0;  // 1/rad^2: a stddev of a rad says nothing
   OwnNormal own;
   own.by_it = -information.topLeftCorner<6, 6>().ldlt().solve(information.topRightCorner<6, 3>());
@@ -98,7 +99,7 @@ std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::
   if (!(axes.eigenvalues()[0] >= kLeast)) return std::nullopt;
   const Eigen::Matrix<double, 3, 2> directions = across * axes.eigenvectors();
   own.covariance = directions * axes.eigenvalues().cwiseInverse().asDiagonal() * directions.transpose();
-  own.step = -own.covariance * pull;
+  own.step = -own.covariance * by_prior;
   return own;
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "uav_landing/rig/rig_rotation.h"
 
@@ -164,32 +165,27 @@ double RigRotationFilter::noiseOf(const Sloping& sloping, double variance, const
   return moving_scatter_.factor() * variance;
 }
 
-// All directions at once, as they share the noise of the plane.
-struct RigRotationFilter::Equations {
-  Eigen::MatrixXd rows{0, kSize}, tips{0, 3};
-  Eigen::VectorXd values, noises, inflations;  // inflation: of the stddev, as the next frames have the same
+void RigRotationFilter::Equations::add(const Eigen::RowVector3d& tip, const GroundPlane& plane,
+                                       const Eigen::Matrix3d& A, int slope, double noise, double inflation) {
+  const Eigen::Index i = rows.rows();
+  rows.conservativeResize(i + 1, kSize);
+  tips.conservativeResize(i + 1, 3);
+  values.conservativeResize(i + 1);
+  noises.conservativeResize(i + 1);
+  inflations.conservativeResize(i + 1);
+  tips.row(i) = tip;
+  rows.row(i).setZero();
+  rows.row(i).head<3>() = tips.row(i) * A;
+  rows(i, slope) = 1;
+  values[i] = tips.row(i) * plane.g;
+  noises[i] = noise;
+  inflations[i] = inflation;
+}
 
-  void add(const Eigen::RowVector3d& tip, const GroundPlane& plane, const Eigen::Matrix3d& A, int slope,
-           double noise, double inflation) {
-    const Eigen::Index i = rows.rows();
-    rows.conservativeResize(i + 1, kSize);
-    tips.conservativeResize(i + 1, 3);
-    values.conservativeResize(i + 1);
-    noises.conservativeResize(i + 1);
-    inflations.conservativeResize(i + 1);
-    tips.row(i) = tip;
-    rows.row(i).setZero();
-    rows.row(i).head<3>() = tips.row(i) * A;
-    rows(i, slope) = 1;
-    values[i] = tips.row(i) * plane.g;
-    noises[i] = noise;
-    inflations[i] = inflation;
-  }
-};
-
-void RigRotationFilter::learn(const Equations& all, const Eigen::Matrix3d& plane_covariance) {
-  if (all.values.size() == 0) return;
-  Eigen::MatrixXd of_frame = all.tips * plane_covariance * all.tips.transpose();
+void RigRotationFilter::settle(bool believed) {
+  const Equations all = std::exchange(of_last_pair_, {});
+  if (!believed || all.values.size() == 0) return;
+  Eigen::MatrixXd of_frame = all.tips * all.plane_covariance * all.tips.transpose();
   of_frame.diagonal() += all.noises;
   of_frame = (all.inflations.asDiagonal() * of_frame * all.inflations.asDiagonal()).eval();
   const Eigen::MatrixXd weighted = share_ * of_frame.llt().solve(all.rows);
@@ -205,7 +201,8 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
   joint.plane.g = plane.g - A * state_.head<3>();
   joint.by_state.leftCols<3>() = -A;
   const double h = joint.plane.height();
-  Equations for_later;
+  of_last_pair_ = {};
+  of_last_pair_.plane_covariance = plane.covariance;
   for (const Sloping& sloping : directionsOf(others)) {
     const Eigen::Vector3d n = joint.plane.normal();
     const double total = n.dot(sloping.ground.covariance * n);
@@ -216,8 +213,8 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
     if (!(ratio >= 0)) continue;
     if (ratio <= gate) fuse(sloping, noise, innovation, joint);
     const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
-    for_later.add(h * sloping.ground.direction.transpose(), plane, A, sloping.slope, noise,
-                  std::sqrt(std::max(1.0, ratio / gate) * lasting));
+    of_last_pair_.add(h * sloping.ground.direction.transpose(), plane, A, sloping.slope, noise,
+                      std::sqrt(std::max(1.0, ratio / gate) * lasting));
   }
   Corrected corrected;
   corrected.plane = joint.plane;
@@ -225,7 +222,6 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
   corrected.common = joint.by_state * covariance_ * joint.by_state.transpose();
   corrected.plane.covariance += corrected.common;
   corrected.common += joint.lasting;
-  learn(for_later, plane.covariance);
   return corrected;
 }
 

@@ -25,7 +25,7 @@ constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
 
 }  // namespace
 
-void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo,
                                         Reconstruction& reconstruction) const {
   if (!parameters_.integrity_monitor || reconstruction.failure) return;
   const double height = reconstruction.height;
@@ -49,22 +49,15 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const A
   // The plane that is left has not been turned by the motion's normal either.
   if (parameters_.fuse_motion_normal)
     reconstruction.without[static_cast<int>(FaultySource::kMotion)] = stereo_alone;
-  leaveOutRegions(stereo, approach, reconstruction);
+  leaveOutRegions(stereo, reconstruction);
 }
 
-void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo,
                                         Reconstruction& reconstruction) const {
   if (stereo.points.empty()) return;
   const RegionPlanes regions = planesWithoutRegions(rig_, stereo.points, stereo.plane.g);
-  const GroundPlane& alone = reconstruction.alone;
-  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
-                    approach.vanishing_covariance.allFinite();
-  const auto withVanishingPoint = [&](const GroundPlane& plane) {
-    if (!fuse) return plane;
-    return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
-                              std::pow(parameters_.vanishing_point_gate, 2), nullptr);
-  };
-  const double base = withVanishingPoint(alone).height();
+  const GroundPlane& fused = reconstruction.plane;
+  const Eigen::Matrix3d& kept = reconstruction.kept;
   for (int i = 0; i < kImageRegions; ++i) {
     SolutionSeparation::Measurement& measurement =
         reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
@@ -73,9 +66,10 @@ void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const A
       measurement = {};
       continue;
     }
-    const GroundPlane plane = withVanishingPoint(
-        {alone.g + fitted.g - regions.all.g, fitted.covariance + reconstruction.alone_common});
-    measurement.height = reconstruction.height + plane.height() - base;
+    // What the stereo plane changes by without the region, as far as it is in the fused one.
+    const GroundPlane plane{fused.g + kept * (fitted.g - regions.all.g),
+                            reconstruction.common + kept * fitted.covariance * kept.transpose()};
+    measurement.height = reconstruction.height + plane.height() - fused.height();
     measurement.variance = plane.heightVariance() + modelVariance(measurement.height);
     measurement.common = commonVariance(measurement.height);
   }
@@ -115,7 +109,9 @@ void KalmanHeightStage::testPair(double T, const StereoDepthResult& stereo,
                h * h * p.dot(plane.covariance * p) +
                    plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
-  testAttitude(reconstruction.alone, approach.imu);
+  testNormal(Consistency::kImu, reconstruction.alone, {approach.imu.normal, approach.imu.normal_covariance});
+  if (!stereo.left_repeated)
+    testNormal(Consistency::kMotionNormal, reconstruction.alone, normalByMotion(approach));
   // A picture once more has no angle of its own.
   reconstruction.refused = !stereo.left_repeated && failedTestOfPair();
   if (reconstruction.failure) return;
@@ -145,11 +141,11 @@ void KalmanHeightStage::testBaseline(const StereoDepthResult& stereo,
              measured.covariance + by_skew.covariance + calibration);
 }
 
-void KalmanHeightStage::testAttitude(const GroundPlane& plane, const AttitudePrior& imu) {
-  if (!plane.valid() || !imu.hasNormal()) return;
+void KalmanHeightStage::testNormal(Consistency test, const GroundPlane& plane, const GroundNormal& normal) {
+  if (!plane.valid() || !normal.known()) return;
   const Eigen::Matrix<double, 3, 2> basis = tangents(plane.normal());
-  tests_.add(Consistency::kImu, basis.transpose() * (imu.normal - plane.normal()),
-             basis.transpose() * (plane.normalCovariance() + imu.normal_covariance) * basis);
+  tests_.add(test, basis.transpose() * (normal.n - plane.normal()),
+             basis.transpose() * (plane.normalCovariance() + normal.covariance) * basis);
 }
 
 std::optional<Consistency> KalmanHeightStage::failedTestOfPair() const {

@@ -45,6 +45,11 @@ const ApproachAngleResult::Motion& KalmanHeightStage::publishedMotion(const Appr
   return window_known ? approach.window : approach.step;
 }
 
+GroundNormal KalmanHeightStage::normalByMotion(const ApproachAngleResult& approach) {
+  const ApproachAngleResult::Motion& motion = publishedMotion(approach);
+  return motion.failure ? GroundNormal{} : GroundNormal{motion.normal, motion.normal_covariance};
+}
+
 ApproachAngleResult::Motion KalmanHeightStage::turnSince(const ApproachAngleResult& approach) const {
   const AttitudePrior& imu = approach.imu;
   if (!parameters_.fuse_imu || !approach.step.failure || !imu.hasRotation()) return approach.step;
@@ -178,7 +183,7 @@ void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepth
   reconstruction.alone_common = common;
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
   // Only these are independent of the stereo plane; the fused normal of the approach angle contains it.
-  const RigRotationFilter::Others others = otherSources(approach);
+  const RigRotationFilter::Others others = otherSources(stereo, approach);
   if (others.vanishing.known()) fuseDirection(others.vanishing, reconstruction);
   for (const GroundNormal& normal : {others.level, others.moving})
     if (normal.known())
@@ -194,12 +199,14 @@ void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruct
   reconstruction.plane =
       fuseVanishingPoint(alone, p, ground.covariance, std::pow(parameters_.vanishing_point_gate, 2), &nis);
   if (reconstruction.plane.g == alone.g) return;
-  // What the direction is wrong by is mostly the ground's own slope: the next pairs have the same.
+  // What the direction is wrong by is mostly the ground's own slope, or of the same images: the next pairs
+  // have the same.
   const double variance = alone.g.dot(ground.covariance * alone.g);
   const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
   Eigen::Matrix3d& common = reconstruction.common;
   common = (kept * common * kept.transpose()).eval() + variance * gain * gain.transpose();
+  reconstruction.kept = (kept * reconstruction.kept).eval();
 }
 
 void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
@@ -225,14 +232,13 @@ void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const A
              reconstruction, result);
 }
 
-RigRotationFilter::Others KalmanHeightStage::otherSources(const ApproachAngleResult& approach) const {
+RigRotationFilter::Others KalmanHeightStage::otherSources(const StereoDepthResult& stereo,
+                                                          const ApproachAngleResult& approach) const {
   RigRotationFilter::Others others;
   if (parameters_.fuse_vanishing_point)
     others.vanishing = {approach.vanishing_direction, approach.vanishing_covariance};
   if (parameters_.fuse_imu) others.level = {approach.imu.normal, approach.imu.normal_covariance};
-  const ApproachAngleResult::Motion& motion = publishedMotion(approach);
-  if (parameters_.fuse_motion_normal && !motion.failure)
-    others.moving = {motion.normal, motion.normal_covariance};
+  if (parameters_.fuse_motion_normal && !stereo.left_repeated) others.moving = normalByMotion(approach);
   return others;
 }
 
@@ -252,8 +258,9 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
     reconstruction.alone = {without.g - A * rotation.w, without.covariance + by_rotation};
   }
   const RigRotationFilter::Corrected corrected =
-      rig_rotation_.correct(without, A, otherSources(approach), parameters_.vanishing_point_gate);
+      rig_rotation_.correct(without, A, otherSources(stereo, approach), parameters_.vanishing_point_gate);
   reconstruction.plane = corrected.plane;
+  reconstruction.kept = corrected.kept;
   reconstruction.common =
       corrected.common + corrected.kept * stereo.row_covariance * corrected.kept.transpose();
   rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();

@@ -55,8 +55,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
       followStamps(approach.step, reconstruction);
     }
     useWidth(approach.runway, reconstruction, result);
-    leaveOutSources(stereo, approach, reconstruction);
+    leaveOutSources(stereo, reconstruction);
     testPair(T, stereo, approach, reconstruction, result);
+    // Of images that do not belong together the rig learns nothing.
+    rig_rotation_.settle(!failedTestOfPair());
     if (!result.failure) result.failure = reconstruction.failure;
     filterHeight(stereo.stamp, reconstruction, approach.step, result);
     learnWidth(approach.runway, reconstruction, result);
@@ -240,9 +242,9 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   if (update.accepted) {
     accept(stamp);
     separation_.update(reconstruction.without);
-    // Of a plane that a vanishing point contradicts nobody knows which part of the motion was downwards.
+    // Of a plane that is contradicted nobody knows which part of the motion was downwards.
     if (parameters_.use_motion && reconstruction.plane.valid() &&
-        !tests_.failed(Consistency::kVanishingPoint))
+        !tests_.failed(Consistency::kVanishingPoint) && !tests_.failed(Consistency::kMotionNormal))
       updateSpeed(reconstruction, step);
     return;
   }
