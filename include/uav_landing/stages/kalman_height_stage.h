@@ -61,8 +61,7 @@ class KalmanHeightStage {
     Normal normal;        ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
         Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
-    Eigen::Matrix3d kept = Eigen::Matrix3d::Identity();  ///< by which errors of stereo are in the plane
-    GroundPlane alone;  ///< by stereo, and by what was learned of the rig, alone
+    GroundPlane alone;            ///< by stereo, and by what was learned of the rig, alone
     Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
     GroundPlane below;  ///< tangent of the surface straight below; the plane where not known
     double bend = 0;    ///< its height less the plane's, m
@@ -94,8 +93,10 @@ class KalmanHeightStage {
   void reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                    const Failure& jump, LandingResult& result) const;
   /// What the pair measures without each source.
-  void leaveOutSources(const StereoDepthResult& stereo, Reconstruction& reconstruction) const;
-  void leaveOutRegions(const StereoDepthResult& stereo, Reconstruction& reconstruction) const;
+  void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                       Reconstruction& reconstruction) const;
+  void leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                       Reconstruction& reconstruction) const;
   /// Tests of this pair's own sources. A failed one makes the pair give no height.
   void testPair(double T, const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction, LandingResult& result);

@@ -25,7 +25,7 @@ constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
 
 }  // namespace
 
-void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo,
+void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                         Reconstruction& reconstruction) const {
   if (!parameters_.integrity_monitor || reconstruction.failure) return;
   const double height = reconstruction.height;
@@ -49,15 +49,22 @@ void KalmanHeightStage::leaveOutSources(const StereoDepthResult& stereo,
   // The plane that is left has not been turned by the motion's normal either.
   if (parameters_.fuse_motion_normal)
     reconstruction.without[static_cast<int>(FaultySource::kMotion)] = stereo_alone;
-  leaveOutRegions(stereo, reconstruction);
+  leaveOutRegions(stereo, approach, reconstruction);
 }
 
-void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo,
+void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                         Reconstruction& reconstruction) const {
   if (stereo.points.empty()) return;
   const RegionPlanes regions = planesWithoutRegions(rig_, stereo.points, stereo.plane.g);
-  const GroundPlane& fused = reconstruction.plane;
-  const Eigen::Matrix3d& kept = reconstruction.kept;
+  const GroundPlane& alone = reconstruction.alone;
+  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
+                    approach.vanishing_covariance.allFinite();
+  const auto withVanishingPoint = [&](const GroundPlane& plane) {
+    if (!fuse) return plane;
+    return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
+                              std::pow(parameters_.vanishing_point_gate, 2), nullptr);
+  };
+  const double base = withVanishingPoint(alone).height();
   for (int i = 0; i < kImageRegions; ++i) {
     SolutionSeparation::Measurement& measurement =
         reconstruction.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
@@ -66,10 +73,9 @@ void KalmanHeightStage::leaveOutRegions(const StereoDepthResult& stereo,
       measurement = {};
       continue;
     }
-    // What the stereo plane changes by without the region, as far as it is in the fused one.
-    const GroundPlane plane{fused.g + kept * (fitted.g - regions.all.g),
-                            reconstruction.common + kept * fitted.covariance * kept.transpose()};
-    measurement.height = reconstruction.height + plane.height() - fused.height();
+    const GroundPlane plane = withVanishingPoint(
+        {alone.g + fitted.g - regions.all.g, fitted.covariance + reconstruction.alone_common});
+    measurement.height = reconstruction.height + plane.height() - base;
     measurement.variance = plane.heightVariance() + modelVariance(measurement.height);
     measurement.common = commonVariance(measurement.height);
   }

@@ -206,7 +206,6 @@ void KalmanHeightStage::fuseDirection(const GroundDirection& ground, Reconstruct
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
   Eigen::Matrix3d& common = reconstruction.common;
   common = (kept * common * kept.transpose()).eval() + variance * gain * gain.transpose();
-  reconstruction.kept = (kept * reconstruction.kept).eval();
 }
 
 void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
@@ -260,7 +259,6 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
   const RigRotationFilter::Corrected corrected =
       rig_rotation_.correct(without, A, otherSources(stereo, approach), parameters_.vanishing_point_gate);
   reconstruction.plane = corrected.plane;
-  reconstruction.kept = corrected.kept;
   reconstruction.common =
       corrected.common + corrected.kept * stereo.row_covariance * corrected.kept.transpose();
   rig_variance_ = GroundPlane{corrected.plane.g, reconstruction.common}.heightVariance();

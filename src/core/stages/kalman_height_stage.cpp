@@ -55,7 +55,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
       followStamps(approach.step, reconstruction);
     }
     useWidth(approach.runway, reconstruction, result);
-    leaveOutSources(stereo, reconstruction);
+    leaveOutSources(stereo, approach, reconstruction);
     testPair(T, stereo, approach, reconstruction, result);
     // Of images that do not belong together the rig learns nothing.
     rig_rotation_.settle(!failedTestOfPair());
