@@ -61,14 +61,12 @@ struct GroundNormal {
 /// Mean of two independent ones, weighted by their covariances.
 GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b);
 /// What a normal known from elsewhere says as two directions in the ground plane: forward (the optical axis
-/// above the ground) and to the left. covariance: of the normal, rad^2.
-std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
-                                               const Eigen::Matrix3d& covariance);
+/// above the ground) and to the left.
+std::array<GroundDirection, 2> levelDirections(const GroundNormal& ground);
 
 /// Adds a normal known independently of stereo, as an attitude sensor gives it, in the same way. nis: the
 /// larger test ratio of its two directions; beyond max_nis the plane comes back unchanged.
-GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,
-                       const Eigen::Matrix3d& covariance, double max_nis, double* nis);
+GroundPlane fuseNormal(const GroundPlane& plane, const GroundNormal& ground, double max_nis, double* nis);
 
 /// Yaw of the camera: angle of the optical axis from the landing direction p about the up axis, left
 /// positive. Radians.

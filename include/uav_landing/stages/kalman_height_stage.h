@@ -51,14 +51,10 @@ class KalmanHeightStage {
  private:
   /// What one pair alone says of height and attitude.
   struct Reconstruction {
-    struct Normal {
-      Eigen::Vector3d mean;
-      Eigen::Matrix3d covariance;  ///< rad^2
-    };
     Failure failure;  ///< set when there is no height
     GroundPlane plane;
     bool tilted = false;  ///< the plane contradicts those before: no height, speed or place by it
-    Normal normal;        ///< of the ground, averaged over the pairs; set when the plane is valid
+    GroundNormal normal;  ///< of the ground, averaged over the pairs; set when the plane is valid
     Eigen::Matrix3d common =
         Eigen::Matrix3d::Zero();  ///< share of the plane's covariance common to all pairs
     GroundPlane alone;            ///< by stereo, and by what was learned of the rig, alone

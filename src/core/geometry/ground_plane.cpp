@@ -56,8 +56,9 @@ GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& 
   return fused;
 }
 
-std::array<GroundDirection, 2> levelDirections(const Eigen::Vector3d& normal,
-                                               const Eigen::Matrix3d& covariance) {
+std::array<GroundDirection, 2> levelDirections(const GroundNormal& ground) {
+  const Eigen::Vector3d& normal = ground.n;
+  const Eigen::Matrix3d& covariance = ground.covariance;
   const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
   const Eigen::Vector3d left = forward.cross(normal);
   // Only how far they are tipped out of the plane counts.
@@ -77,11 +78,10 @@ GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b) {
   return {n, level * across * (of_a - gain * of_a) * across.transpose() * level};
 }
 
-GroundPlane fuseNormal(const GroundPlane& plane, const Eigen::Vector3d& normal,
-                       const Eigen::Matrix3d& covariance, double max_nis, double* nis) {
+GroundPlane fuseNormal(const GroundPlane& plane, const GroundNormal& ground, double max_nis, double* nis) {
   GroundPlane fused = plane;
   double worst = 0;
-  for (const GroundDirection& level : levelDirections(normal, covariance)) {
+  for (const GroundDirection& level : levelDirections(ground)) {
     double ratio = 0;
     fused = fuseVanishingPoint(fused, level.direction, level.covariance, max_nis, &ratio);
     worst = ratio > worst || std::isnan(ratio) ? ratio : worst;

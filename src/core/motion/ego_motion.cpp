@@ -109,12 +109,14 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
                                const OwnNormal& own) {
   Vector9d step;
   step << own.by_it * own.step, own.step;
-  SharedPulls<9> pulls;
-  for (size_t i = 0; i < matches.size(); ++i)
-    if (inliers[i]) pulls.add(imageCell(rig, matches[i].now.x(), matches[i].now.y()), rows.pull(i, step));
-  Eigen::Matrix<double, 3, 9> by_pulls;
-  by_pulls << own.covariance * own.by_it.transpose(), own.covariance;
-  return pulls.variance<3>(by_pulls);
+  Eigen::Matrix<double, 3, 9> by_scores;
+  by_scores << own.covariance * own.by_it.transpose(), own.covariance;
+  ClusterCovariance<3> clusters;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (!inliers[i]) continue;
+    clusters.add(imageCell(rig, matches[i].now.x(), matches[i].now.y()), by_scores * rows.score(i, step));
+  }
+  return clusters.shared();
 }
 
 }  // namespace

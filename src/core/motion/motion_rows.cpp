@@ -294,15 +294,15 @@ MotionNormal MotionRows::accumulate(std::vector<char>& inliers) {
   return normal;
 }
 
-Vector9d MotionRows::pull(size_t match, const Vector9d& step) const {
-  Vector9d pull = Vector9d::Zero();
+Vector9d MotionRows::score(size_t match, const Vector9d& step) const {
+  Vector9d score = Vector9d::Zero();
   const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
   for (const int row : {0, kRowColumns}) {
     Vector9d by;
     for (int k = 0; k < kUnknowns; ++k) by[k] = value(row + k);
-    pull += value(kWeight) * value(row + kPrecision) * (value(row + kResidual) - by.dot(step)) * by;
+    score += value(kWeight) * value(row + kPrecision) * (value(row + kResidual) - by.dot(step)) * by;
   }
-  return pull;
+  return score;
 }
 
 Eigen::Matrix<double, 6, 1> MotionRows::solveExactly() const {

@@ -75,7 +75,7 @@ class MotionRows {
   MotionNormal accumulate(std::vector<char>& inliers);
 
   /// What one match adds to the right side of the normal equations after one step more. After accumulate().
-  Vector9d pull(size_t match, const Vector9d& step) const;
+  Vector9d score(size_t match, const Vector9d& step) const;
 
   /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
   /// one lies behind the camera. After linearise().

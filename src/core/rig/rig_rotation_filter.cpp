@@ -147,7 +147,7 @@ std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(const Ot
   if (others.vanishing.known()) directions.push_back({others.vanishing, kVanishing});
   const auto addNormal = [&](const GroundNormal& ground, int slope) {
     if (!ground.known()) return;
-    for (const GroundDirection& direction : levelDirections(ground.n, ground.covariance))
+    for (const GroundDirection& direction : levelDirections(ground))
       directions.push_back({direction, slope++});
   };
   addNormal(others.level, kLevel);

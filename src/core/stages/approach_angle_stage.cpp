@@ -122,7 +122,7 @@ struct ApproachAngleStage::Implementation {
     GroundPlane fused = has_direction ? withDirection(*plane, result) : *plane;
     if (result.imu.hasNormal()) {
       double nis = 0;
-      fused = fuseNormal(fused, result.imu.normal, result.imu.normal_covariance, kMaxVanishingNis, &nis);
+      fused = fuseNormal(fused, {result.imu.normal, result.imu.normal_covariance}, kMaxVanishingNis, &nis);
       if (!(nis <= kMaxVanishingNis)) {
         const double off = std::acos(std::clamp(fused.normal().dot(result.imu.normal), -1.0, 1.0));
         result.imu.failure = {Reason::kRejected,

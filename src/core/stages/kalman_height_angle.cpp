@@ -73,14 +73,14 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
     const GroundNormal& used) const {
   std::vector<OtherNormal> normals;
   const GroundPlane& plane = reconstruction.plane;
-  const Reconstruction::Normal& average = reconstruction.normal;
+  const GroundNormal& average = reconstruction.normal;
   const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
   // approach_angle knows nothing of the rig's rotation, nor of how well that is known.
   if (!reconstruction.tilted && parameters_.rig_watch && plane.valid())
     normals.push_back({plane.normal(), plane.normalCovariance() - used.covariance, none, 1});
   // Nor of the pairs before: a plane that turns against them within what a test allows is one of two.
   if (plane.valid())
-    normals.push_back({average.mean, none,
+    normals.push_back({average.n, none,
                        reconstruction.tilted ? none : kCertain * (average.covariance + used.covariance), 1});
   // Of a plane and a vanishing point that contradict each other either may be right.
   const double doubt = doubt_.probability(approach.stamp);

@@ -55,7 +55,7 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
   const bool turn_known = knowsTurn(step, T);
   const Eigen::Matrix3d R = turn_known ? rotationMatrix(step.rotation) : Eigen::Matrix3d::Identity();
   if (believed)
-    last_normal_ = reconstruction.normal.mean;
+    last_normal_ = reconstruction.normal.n;
   else if (before)
     last_normal_ = R * *before;
 
@@ -69,14 +69,14 @@ void KalmanHeightStage::rememberGround(const StereoDepthResult& stereo,
     if (believed) ground_.settleTurn(*last_normal_, kTurnByNormals);
   }
   if (!believed || reconstruction.failure || reconstruction.by_width) return;
-  const GroundPlane plane{reconstruction.normal.mean / reconstruction.plane.height(),
+  const GroundPlane plane{reconstruction.normal.n / reconstruction.plane.height(),
                           reconstruction.plane.covariance};
   ground_.look(rig_, stereo.points, plane, stereo.plane.g);
 }
 
 Eigen::Vector3d KalmanHeightStage::knownNormal(const Reconstruction& reconstruction,
                                                const ApproachAngleResult& approach) const {
-  if (reconstruction.plane.valid()) return reconstruction.normal.mean;
+  if (reconstruction.plane.valid()) return reconstruction.normal.n;
   return approach.n.allFinite() ? approach.n : last_normal_.value_or(approach.n);
 }
 

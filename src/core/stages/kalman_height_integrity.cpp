@@ -246,7 +246,7 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
   const double scale = before ? before->height : filter_.initialised() ? filter_.state()[0] : kUnknown;
   VerticalSpeed speed;
   double velocity = kUnknown;
-  const Eigen::Vector3d normal = reconstruction.plane.valid() ? reconstruction.normal.mean : approach.n;
+  const Eigen::Vector3d normal = reconstruction.plane.valid() ? reconstruction.normal.n : approach.n;
   // While normals contradict each other nobody knows which part of the motion was downwards.
   const bool level_known = normal.allFinite() && !tests_.failed(Consistency::kTilt);
   if (!approach.step.failure && level_known && std::isfinite(scale) && scale > 0) {

@@ -187,8 +187,7 @@ void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepth
   if (others.vanishing.known()) fuseDirection(others.vanishing, reconstruction);
   for (const GroundNormal& normal : {others.level, others.moving})
     if (normal.known())
-      for (const GroundDirection& level : levelDirections(normal.n, normal.covariance))
-        fuseDirection(level, reconstruction);
+      for (const GroundDirection& level : levelDirections(normal)) fuseDirection(level, reconstruction);
   rig_variance_ = GroundPlane{plane.g, common}.heightVariance();
 }
 
@@ -213,7 +212,7 @@ void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const A
   const GroundPlane& plane = reconstruction.plane;
   const ApproachAngleResult::Motion turn = turnSince(approach);
   if (!plane.valid()) return attitude_.carry(stereo.stamp, turn);
-  Reconstruction::Normal& average = reconstruction.normal;
+  GroundNormal& average = reconstruction.normal;
   if (!parameters_.average_attitude) return;
   const Eigen::Matrix3d common = GroundPlane{plane.g, reconstruction.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;

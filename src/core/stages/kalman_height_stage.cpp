@@ -78,7 +78,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     const ScopedTimer timer(timings_, "runway_filter");
     Eigen::Vector3d n = approach.n;
     if (reconstruction.plane.valid())
-      n = reconstruction.tilted ? reconstruction.normal.mean : reconstruction.plane.normal();
+      n = reconstruction.tilted ? reconstruction.normal.n : reconstruction.plane.normal();
     position_.process(approach, n, result.height_valid ? result.height - reconstruction.bend : kUnknown,
                       result.height_variance, result);
   }
@@ -135,7 +135,7 @@ void KalmanHeightStage::reset() {
 void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                                     LandingResult& result) {
   const bool known = reconstruction.plane.valid();
-  reportAttitude(known ? reconstruction.normal.mean : approach.n,
+  reportAttitude(known ? reconstruction.normal.n : approach.n,
                  known ? reconstruction.normal.covariance : approach.n_covariance,
                  approach.vanishing_direction, approach.vanishing_covariance, result);
 }

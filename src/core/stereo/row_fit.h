@@ -59,11 +59,12 @@ double weightOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value, d
 /// What neighbouring rows share adds to the covariance.
 template <int N>
 Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit) {
-  SharedPulls<N> pulls;
-  for (size_t i = 0; i < rows.size(); ++i)
-    pulls.add(rows[i].cell,
-              fit.weights[i] * residualOf<N>(rows[i], fit.value) * rows[i].by.head<N>().transpose());
-  return pulls.template variance<N>(fit.covariance);
+  ClusterCovariance<N> clusters;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const double weighted = fit.weights[i] * residualOf<N>(rows[i], fit.value);
+    clusters.add(rows[i].cell, weighted * fit.covariance * rows[i].by.head<N>().transpose());
+  }
+  return clusters.shared();
 }
 
 /// What an error of 1 sigma (pixels) that all rows in a part of the image have adds to the covariance,

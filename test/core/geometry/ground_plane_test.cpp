@@ -156,7 +156,7 @@ TEST(FuseNormal, GivesTheWeightedLeastSquaresPlane) {
   const Eigen::Matrix3d covariance =
       stddev * stddev * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
   double nis = -1;
-  const GroundPlane fused = fuseNormal(plane, normal, covariance, 10, &nis);
+  const GroundPlane fused = fuseNormal(plane, {normal, covariance}, 10, &nis);
   // Information form: what lies in the level ground has no inverse depth, to this sigma times 1 / h.
   const double noise = std::pow(stddev * normal.dot(plane.g), 2);
   const Eigen::Matrix3d information =
@@ -172,7 +172,7 @@ TEST(FuseNormal, LeavesThePlaneWhenOneOfItsDirectionsContradictsIt) {
   for (const Eigen::Vector3d& off : {Eigen::Vector3d(0.2, 0, 0), Eigen::Vector3d(0, 0, 0.2)}) {
     const Eigen::Vector3d normal = (plane.normal() + off).normalized();
     double nis = 0;
-    const GroundPlane fused = fuseNormal(plane, normal, 1e-6 * Eigen::Matrix3d::Identity(), 10, &nis);
+    const GroundPlane fused = fuseNormal(plane, {normal, 1e-6 * Eigen::Matrix3d::Identity()}, 10, &nis);
     EXPECT_GT(nis, 10);
     EXPECT_EQ(fused.g, plane.g);
     EXPECT_EQ(fused.covariance, plane.covariance);

@@ -114,7 +114,9 @@ TEST(RefinedRows, OfAPlaneThatIsNotTakenDoNotCount) {
     const auto refine = [&](const RefinedPair& scene) {
       return refinement.refine(scene.left, scene.right, scene.truth, test::groundLimits(), 0, scene.rows);
     };
-    if (sees) EXPECT_TRUE(refine(astray));
+    if (sees) {
+      EXPECT_TRUE(refine(astray));
+    }
     if (forgets) refinement.forgetLast();
     return level.rollError(refine(level));
   };
