@@ -31,6 +31,8 @@ struct TemporalMatch {
   bool on_plane = true;      ///< depth from the ground plane, else from its own disparity
   double inverse_depth = 0;  ///< of a point off the plane, times height
   double inverse_depth_stddev = 0;
+  /// Side of the square of pixels that it was matched by; those that overlap share noise.
+  double extent = 0;
 };
 
 /// Motion with the ground normal that fits both the prior and the matches.
@@ -43,7 +45,10 @@ struct MotionEstimate {
   Eigen::Matrix<double, 9, 9> of_normal;
   /// The ground's normal by the matches (and the rotation known beforehand) alone, and its covariance (rank
   /// 2, rad^2), independent of the one that was given but for where it is linearised, and of stereo but for
-  /// the depth of points off the plane; not finite where the matches do not tell it.
+  /// the depth of points off the plane; not finite where the matches do not tell it. Unlike the motion's,
+  /// its covariance is less than the matches claim where all of them agree better (the variance factor a
+  /// posteriori of least squares), and more where their windows overlap or parts of the image are wrong
+  /// together.
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   std::vector<char> inliers;

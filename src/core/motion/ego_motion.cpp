@@ -103,6 +103,27 @@ std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::
   return own;
 }
 
+// By which the variance of what is fitted to matches is larger than if their windows shared no noise: the
+// mean over them of the shares that all windows have of one.
+double overlapFactor(const std::vector<TemporalMatch>& matches, const std::vector<char>& inliers) {
+  Eigen::ArrayXf u(matches.size()), v(matches.size());
+  Eigen::Index count = 0;
+  double shared = 0;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (!inliers[i]) continue;
+    const TemporalMatch& match = matches[i];
+    const auto inside = [&](const Eigen::ArrayXf& places, double place) {
+      return (1 - (places.head(count) - static_cast<float>(place)).abs() / static_cast<float>(match.extent))
+          .max(0.0F);
+    };
+    if (match.extent > 0) shared += 2 * (inside(u, match.now.x()) * inside(v, match.now.y())).sum();
+    u[count] = static_cast<float>(match.now.x());
+    v[count] = static_cast<float>(match.now.y());
+    ++count;
+  }
+  return 1 + shared / static_cast<double>(std::max<Eigen::Index>(count, 1));
+}
+
 // What matches of a part of the image share, with the residuals that they have at their own normal.
 Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                const MotionRows& rows, const std::vector<char>& inliers,
@@ -139,10 +160,12 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
+  double residual_scale = 1;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
     MotionNormal sums = rows.accumulate(result.inliers);
     result.inlier_count = sums.count;
+    residual_scale = sums.residual_scale;
     if (sums.count < min_matches) {
       return tl::make_unexpected(Failure{
           Reason::kMotionInconsistent, std::to_string(sums.count) + " of " + std::to_string(matches.size()) +
@@ -174,7 +197,10 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
-    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
+    const double factor =
+        std::min(1.0, residual_scale * residual_scale) * overlapFactor(matches, result.inliers);
+    result.own_normal_covariance =
+        factor * own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
   }
   return result;
 }

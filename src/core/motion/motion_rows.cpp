@@ -258,7 +258,7 @@ void MotionRows::linearise(const MotionState& state) {
   for (size_t i = count_; i < padded_; ++i) outputs_[kSquares * padded_ + i] = kBehind;
 }
 
-// Robust size of the residuals over their stddevs, at least 1.
+// Robust size of the residuals over their stddevs.
 double MotionRows::residualScale() {
   const double *squares = &outputs_[kSquares * padded_], *ratios = &outputs_[kRatio * padded_];
   ratios_.resize(count_);
@@ -270,17 +270,18 @@ double MotionRows::residualScale() {
   if (used == 0) return 1;
   ratios_.resize(used);
   // The median of chi-square with two degrees of freedom is 2 ln 2.
-  return std::max(1.0, std::sqrt(medianOf(ratios_) / (2 * std::log(2.0))));
+  return std::sqrt(medianOf(ratios_) / (2 * std::log(2.0)));
 }
 
 MotionNormal MotionRows::accumulate(std::vector<char>& inliers) {
-  const double scale = residualScale();
+  const double residual_scale = residualScale(), scale = std::max(1.0, residual_scale);
   const auto column = [&](int index) { return outputs_.data() + index * padded_; };
   weigh(column(kSquares), column(kRatio), padded_, 1 / (scale * scale), column(kWeight));
   BlockSums sums{};
   for (const int row : {0, kRowColumns})
     addUp(column(row), column(row + kPrecision), column(kWeight), padded_, sums);
   MotionNormal normal;
+  normal.residual_scale = residual_scale;
   for (int i = 0, block = 0; i < 3; ++i) {
     for (int j = 0; j <= i; ++j, ++block)
       for (int k = 0; k < 9; ++k)

@@ -29,7 +29,8 @@ struct MotionSupport {
 struct MotionNormal {
   Matrix9d information = Matrix9d::Zero();
   Vector9d right = Vector9d::Zero();
-  int count = 0;  // of the matches with a weight
+  int count = 0;              // of the matches with a weight
+  double residual_scale = 1;  // robust size of the residuals over their stddevs
 };
 
 /// The least squares problem of a camera's motion: for each match two residuals (pixels) where it was then
@@ -70,7 +71,7 @@ class MotionRows {
   /// its covariance), each with its precision.
   void linearise(const MotionState& state);
 
-  /// Sums with Tukey weights of the residuals, which are as large as their median says, at least as claimed.
+  /// Sums with Tukey weights of the residuals, taken as large as their median says, but at least as claimed.
   /// inliers: which matches have a weight. After linearise().
   MotionNormal accumulate(std::vector<char>& inliers);
 

@@ -20,6 +20,7 @@ namespace {
 constexpr int kFineSteps = 3;
 // Error of a match that its residuals do not show (interpolation, surface in the window not flat), pixels.
 constexpr double kStddevFloor = 0.03;
+constexpr int kReach = 2;  // px, of smoothing and gradients beyond a window
 // Of the difference of a window's gain from the common one, what is taken out: one camera has seen both
 // windows. The rest is believed, as texture that is blurred differently from near and far really differs in
 // contrast.
@@ -235,6 +236,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     match.on_plane = corner.on_plane;
     match.inverse_depth = corner.inverse_depth;
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
+    match.extent = 2 * (options.window_radius + kReach) + 1;
     matches.push_back(match);
     found.push_back({refined, local.perspective});
   }

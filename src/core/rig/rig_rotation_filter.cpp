@@ -23,10 +23,9 @@ constexpr double kFreedom = 2.0;
 constexpr double kNoiseShare = 0.1;
 // 1 sigma of what a normal by the images' motion is wrong by in every frame, rad: lenses change what moves by
 // a share, and its plane is not quite that of stereo where the ground bends.
-constexpr double kMovingStddev = 0.005 * M_PI / 180;
-// Share of such a normal's noise that those of the next pairs have too: they are over half a second, of much
-// the same images.
-constexpr double kMovingLasting = 0.35;
+constexpr double kMovingStddev = 0.003 * M_PI / 180;
+// Share of such a normal's noise that those of the next pairs have too: of the same ground, by other images.
+constexpr double kMovingLasting = 0.05;
 // Squared normalised innovation as which every larger one of such a normal counts.
 constexpr double kMovingLimit = 25;
 

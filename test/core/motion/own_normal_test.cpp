@@ -75,6 +75,41 @@ TEST(OwnNormal, IsLessCertainWhereMatchesOfAPartOfTheImageAreWrongTogether) {
   EXPECT_LT(nees, 8);
 }
 
+TEST(OwnNormal, IsAsCertainAsTheMatchesAgreeNotAsTheyClaim) {
+  constexpr int kRuns = 200;
+  const Step step = Step::make();
+  Matcher matcher(step, 26);
+  double nees = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<TemporalMatch> matches = matcher.ground(100, 0.05);
+    for (TemporalMatch& match : matches) match.covariance *= 4;
+    const Expected<MotionEstimate> found = test::estimate(matches, step.n, 0.1);
+    ASSERT_TRUE(found && found->own_normal.allFinite()) << run;
+    nees += neesOf(*found, step) / kRuns;
+  }
+  const double tolerance = test::chiSquareMeanTolerance(kRuns, 2);
+  EXPECT_LT(nees, 2 + tolerance);
+  EXPECT_GT(nees, 0.65 * 2 - tolerance);
+}
+
+// Three corners of one spot see the same noise.
+TEST(OwnNormal, IsLessCertainWhereWindowsOverlap) {
+  constexpr int kRuns = 200;
+  const Step step = Step::make();
+  Matcher matcher(step, 27);
+  double nees = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<TemporalMatch> matches = matcher.ground(40, 0.05);
+    for (TemporalMatch& match : matches) match.extent = 11;
+    const std::vector<TemporalMatch> once = matches;
+    for (int more = 0; more < 2; ++more) matches.insert(matches.end(), once.begin(), once.end());
+    const Expected<MotionEstimate> found = test::estimate(matches, step.n, 0.1);
+    ASSERT_TRUE(found && found->own_normal.allFinite()) << run;
+    nees += neesOf(*found, step) / kRuns;
+  }
+  EXPECT_LT(nees, 2 + test::chiSquareMeanTolerance(kRuns, 2));
+}
+
 TEST(OwnNormal, ContradictsOneThatWasTrustedWrongly) {
   const Step step = Step::make();
   const Eigen::Vector3d axis = step.n.cross(Eigen::Vector3d::UnitX()).normalized();
