@@ -46,9 +46,7 @@ struct MotionEstimate {
   /// The ground's normal by the matches (and the rotation known beforehand) alone, and its covariance (rank
   /// 2, rad^2), independent of the one that was given but for where it is linearised, and of stereo but for
   /// the depth of points off the plane; not finite where the matches do not tell it. Unlike the motion's,
-  /// its covariance is less than the matches claim where all of them agree better (the variance factor a
-  /// posteriori of least squares), and more where their windows overlap or parts of the image are wrong
-  /// together.
+  /// its covariance is larger where parts of the image are wrong together.
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   std::vector<char> inliers;
@@ -63,7 +61,9 @@ struct RotationPrior {
 
 /// Robust motion: RANSAC over triples from the start, then Gauss-Newton with redescending weights over
 /// rotation, translation and normal, the latter with its prior covariance (rank 2), and with the rotation
-/// prior when there is one. Fixed seed. Fails when fewer than min_matches agree.
+/// prior when there is one. Covariances are less than the matches claim where these agree better (the
+/// variance factor a posteriori of least squares), and more where their windows overlap. Fixed seed. Fails
+/// when fewer than min_matches agree.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,

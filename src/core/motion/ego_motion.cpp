@@ -19,6 +19,9 @@ namespace uav_landing {
 namespace {
 
 constexpr int kRansacIterations = 80;
+// What residuals may show matches to be wrong by, over what they claim: what is the same all over the image
+// they do not show.
+constexpr double kLeastScale = 0.5;
 
 // Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
 // the matches is right.
@@ -105,23 +108,22 @@ std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::
 
 // By which the variance of what is fitted to matches is larger than if their windows shared no noise: the
 // mean over them of the shares that all windows have of one.
-double overlapFactor(const std::vector<TemporalMatch>& matches, const std::vector<char>& inliers) {
-  Eigen::ArrayXf u(matches.size()), v(matches.size());
-  Eigen::Index count = 0;
+double overlapFactor(const std::vector<TemporalMatch>& matches) {
+  const Eigen::Index count = static_cast<Eigen::Index>(matches.size());
+  Eigen::ArrayXf u(count), v(count);
   double shared = 0;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    if (!inliers[i]) continue;
-    const TemporalMatch& match = matches[i];
-    const auto inside = [&](const Eigen::ArrayXf& places, double place) {
-      return (1 - (places.head(count) - static_cast<float>(place)).abs() / static_cast<float>(match.extent))
-          .max(0.0F);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const TemporalMatch& match = matches[static_cast<size_t>(i)];
+    u[i] = static_cast<float>(match.now.x());
+    v[i] = static_cast<float>(match.now.y());
+    if (!(match.extent > 0)) continue;
+    const float share = 1 / static_cast<float>(match.extent);
+    const auto inside = [&](const Eigen::ArrayXf& places) {
+      return (1 - share * (places.head(i) - places[i]).abs()).max(0.0F);
     };
-    if (match.extent > 0) shared += 2 * (inside(u, match.now.x()) * inside(v, match.now.y())).sum();
-    u[count] = static_cast<float>(match.now.x());
-    v[count] = static_cast<float>(match.now.y());
-    ++count;
+    shared += 2 * (inside(u) * inside(v)).sum();
   }
-  return 1 + shared / static_cast<double>(std::max<Eigen::Index>(count, 1));
+  return 1 + shared / static_cast<double>(count);
 }
 
 // What matches of a part of the image share, with the residuals that they have at their own normal.
@@ -160,18 +162,21 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
-  double residual_scale = 1;
+  const double overlap = overlapFactor(matches);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
     MotionNormal sums = rows.accumulate(result.inliers);
     result.inlier_count = sums.count;
-    residual_scale = sums.residual_scale;
     if (sums.count < min_matches) {
       return tl::make_unexpected(Failure{
           Reason::kMotionInconsistent, std::to_string(sums.count) + " of " + std::to_string(matches.size()) +
                                            " matches agree, at least " + std::to_string(min_matches) +
                                            " needed"});
     }
+    // Matches that agree better than they claim may be as good as that (the variance factor a posteriori).
+    const double factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
+    sums.information /= factor;
+    sums.right /= factor;
     sums.information.bottomRightCorner<3, 3>() += prior;
     sums.right.tail<3>() += prior * (normal - state.n);
     if (rotation != nullptr) addRotation(*rotation, state, sums);
@@ -197,10 +202,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
-    const double factor =
-        std::min(1.0, residual_scale * residual_scale) * overlapFactor(matches, result.inliers);
-    result.own_normal_covariance =
-        factor * own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
+    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
   }
   return result;
 }
