@@ -156,6 +156,8 @@ class KalmanHeightStage {
   static GroundNormal normalOfAngle(const ApproachAngleResult& approach,
                                     const ApproachAngleResult::Motion& motion);
   /// used: the normal that an angle is measured against.
+  double varianceByNormals(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                           const ApproachAngleResult::Motion& motion) const;
   std::vector<OtherNormal> otherNormals(const Reconstruction& reconstruction,
                                         const ApproachAngleResult& approach, const GroundNormal& used) const;
   /// What the vanishing point says of the normal. After the tests of the pair.

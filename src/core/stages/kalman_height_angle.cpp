@@ -97,22 +97,29 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
   return normals;
 }
 
+// What an angle of this motion may be wrong by because the ground has another normal than it was measured
+// against.
+double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction,
+                                            const ApproachAngleResult& approach,
+                                            const ApproachAngleResult::Motion& motion) const {
+  const GroundNormal used = normalOfAngle(approach, motion);
+  double variance = 0;
+  for (const OtherNormal& other : otherNormals(reconstruction, approach, used))
+    variance = std::max(variance, other.angleVariance(used.n, motion));
+  return variance;
+}
+
 // jump: why the stamp says nothing of the time since the pair before, if so.
 void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                                     const Failure& jump, LandingResult& result) const {
   const ApproachAngleResult::Motion& motion = publishedMotion(approach);
-  const auto byNormal = [&](const ApproachAngleResult::Motion& m) {
-    const GroundNormal used = normalOfAngle(approach, m);
-    double variance = 0;
-    for (const OtherNormal& other : otherNormals(reconstruction, approach, used))
-      variance = std::max(variance, other.angleVariance(used.n, m));
-    return variance;
-  };
   result.raw_approach_angle = approach.step.angle;
-  result.raw_approach_angle_variance = approach.step.angle_variance + byNormal(approach.step);
+  result.raw_approach_angle_variance =
+      approach.step.angle_variance + varianceByNormals(reconstruction, approach, approach.step);
   result.foe = approach.foe;
   result.approach_angle = motion.angle;
-  result.approach_angle_variance = motion.angle_variance + byNormal(motion);
+  result.approach_angle_variance =
+      motion.angle_variance + varianceByNormals(reconstruction, approach, motion);
   // The path has a step in it for as long as the window is.
   if (velocity_.sinceContradiction() < window_) result.approach_angle_variance += path_doubt_ * path_doubt_;
   if (tests_.failed(Consistency::kVelocity)) result.raw_approach_angle_variance += path_doubt_ * path_doubt_;

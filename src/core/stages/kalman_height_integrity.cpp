@@ -253,6 +253,8 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
     const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
     speed = withStamps(verticalSpeed(approach.step, plane, scale, 0, 0, parameters_.acceleration_stddev));
     velocity = approach.step.translation_over_height.norm() * scale / approach.step.duration;
+    // A normal that is doubted makes it as wrong as the angle.
+    speed.variance += velocity * velocity * varianceByNormals(reconstruction, approach, approach.step);
   }
   if (T > 0) memory_.carry(T, speed.speed, speed.variance, velocity);
   const std::optional<HeightMemory::Expected> expected = memory_.expected();
