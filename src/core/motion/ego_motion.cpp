@@ -19,8 +19,8 @@ namespace uav_landing {
 namespace {
 
 constexpr int kRansacIterations = 80;
-// What residuals may show matches to be wrong by, over what they claim: what is the same all over the image
-// they do not show.
+// Share of what matches claim that they are taken to be wrong by at least, however well they agree: what is
+// the same all over the image no residual shows.
 constexpr double kLeastScale = 0.5;
 
 // Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
@@ -126,14 +126,16 @@ double overlapFactor(const std::vector<TemporalMatch>& matches) {
   return 1 + shared / static_cast<double>(count);
 }
 
-// What matches of a part of the image share, with the residuals that they have at their own normal.
+// What matches of a part of the image share, with the residuals that they have at their own normal. factor:
+// by which own.covariance is larger than that of independent matches.
 Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                               const MotionRows& rows, const std::vector<char>& inliers,
-                               const OwnNormal& own) {
+                               const MotionRows& rows, const std::vector<char>& inliers, const OwnNormal& own,
+                               double factor) {
   Vector9d step;
   step << own.by_it * own.step, own.step;
   Eigen::Matrix<double, 3, 9> by_scores;
   by_scores << own.covariance * own.by_it.transpose(), own.covariance;
+  by_scores /= factor;
   ClusterCovariance<3> clusters;
   for (size_t i = 0; i < matches.size(); ++i) {
     if (!inliers[i]) continue;
@@ -163,6 +165,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   result.inliers.assign(matches.size(), 0);
   Matrix9d information;
   const double overlap = overlapFactor(matches);
+  double factor = 1;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
     MotionNormal sums = rows.accumulate(result.inliers);
@@ -174,7 +177,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                            " needed"});
     }
     // Matches that agree better than they claim may be as good as that (the variance factor a posteriori).
-    const double factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
+    factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
     sums.information /= factor;
     sums.right /= factor;
     sums.information.bottomRightCorner<3, 3>() += prior;
@@ -202,7 +205,8 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
-    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own);
+    result.own_normal_covariance =
+        own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor);
   }
   return result;
 }
