@@ -4,7 +4,6 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/lines/along_runway.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
@@ -22,10 +21,9 @@ struct LineSegment {
 
 /// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
 /// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:
-/// mono8, 255 where lines are looked for (already eroded). wanted: only these, or null for all.
-/// Deterministic. Returns an empty list when there are none.
+/// mono8, 255 where lines are looked for (already eroded). Deterministic. Returns an empty list when there
+/// are none.
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters,
-                                   const AlongRunway* wanted = nullptr);
+                                   const ApproachAngleParameters& parameters);
 
 }  // namespace uav_landing

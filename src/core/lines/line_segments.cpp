@@ -195,15 +195,6 @@ std::vector<LineSegment> asFound(const std::vector<RoughSegment>& candidates) {
   return lines;
 }
 
-/// corner: of the picture that they are in, px.
-void keepWanted(std::vector<RoughSegment>& candidates, const AlongRunway& wanted, Eigen::Vector2d corner) {
-  const auto unwanted = [&](const RoughSegment& s) {
-    const Eigen::Vector2d a = s.a + corner, b = s.b + corner;
-    return !wanted.has(a.homogeneous().cross(b.homogeneous()));
-  };
-  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), unwanted), candidates.end());
-}
-
 void shift(LineSegment& line, const Eigen::Vector2d& by) {
   line.a += by;
   line.b += by;
@@ -213,13 +204,12 @@ void shift(LineSegment& line, const Eigen::Vector2d& by) {
 }  // namespace
 
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters, const AlongRunway* wanted) {
+                                   const ApproachAngleParameters& parameters) {
   const cv::Rect part = boundsOf(ground);
   if (part.width < 8 || part.height < 8) return {};
   const double min_length = parameters.min_line_length * image.rows;
   EdgePicture picture{image(part), {}, ground(part)};
   std::vector<RoughSegment> candidates = roughSegments(picture, min_length, parameters);
-  if (wanted) keepWanted(candidates, *wanted, {part.x, part.y});
   keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
 
   const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;

@@ -31,18 +31,16 @@ double logBound(const std::vector<double>& chances, double evidence) {
 }  // namespace
 
 // Pairs of lines that meet along the runway times the probability that the other lines pass through. Each
-// counts with -log of its own chance; those that say nothing are left out, and those across the runway, which
-// not all callers look for: of the others more pass.
+// counts with -log of its own chance; those that say nothing are left out.
 double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& direction,
                             const std::vector<int>& used, double meetings) {
   const Eigen::Vector3d V = lines.K() * direction;
-  const double share = lines.along() ? lines.along()->share() : 1;
   std::vector<double> passing_by, others;  // chances
   for (int i = 0; i < lines.count(); ++i) {
     const double p = chance(lines, lines[i], V);
-    if (p > kLikelyChance || (lines.along() && !lines.along()->has(lines[i].line))) continue;
+    if (p > kLikelyChance) continue;
     const bool passes = std::binary_search(used.begin(), used.end(), i);
-    (passes ? passing_by : others).push_back(std::min(1.0, p / share));
+    (passes ? passing_by : others).push_back(p);
   }
   if (passing_by.size() <= 2) return meetings;
   const double count = static_cast<double>(passing_by.size() + others.size());

@@ -23,7 +23,6 @@ VanishingLines::VanishingLines(const std::vector<LineSegment>& lines, const Eige
       Kinv_(K.inverse()),
       parameters_(parameters),
       prior_normal_(prior_normal) {
-  if (prior_normal) along_.emplace(K, *prior_normal, parameters.max_yaw_deg * kDegree);
   const Eigen::Vector3d horizon =
       prior_normal ? Eigen::Vector3d(Kinv_.transpose() * *prior_normal) : Eigen::Vector3d::UnitY();
   horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "lines/vanishing_candidate.h"
-#include "uav_landing/lines/along_runway.h"
 #include "uav_landing/lines/line_segments.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -23,9 +21,6 @@ class VanishingLines {
   const VanishingCandidate& operator[](int i) const { return lines_[static_cast<size_t>(i)]; }
   const std::vector<VanishingCandidate>& all() const { return lines_; }
   const Eigen::Matrix3d& K() const { return K_; }
-  /// Those that may be along the runway by their direction alone; nothing while the ground's normal is not
-  /// known.
-  const std::optional<AlongRunway>& along() const { return along_; }
   const ApproachAngleParameters& parameters() const { return parameters_; }
 
   bool alongRunway(const Eigen::Vector3d& direction) const;
@@ -48,7 +43,6 @@ class VanishingLines {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  std::optional<AlongRunway> along_;
   Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
 };
 

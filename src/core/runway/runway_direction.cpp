@@ -13,6 +13,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+// By which a line's direction on the ground may be off before its stripe is looked at.
+constexpr double kDirectionSlack = 5 * kDegree;
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   Eigen::Matrix3d K = rig.K();
@@ -36,18 +38,35 @@ std::vector<LineSegment> linesOf(const cv::Mat& image, const cv::Mat& mask, cons
                                  const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
                                  Timings& timings) {
   ScopedTimer timer(timings, "hough_transform");
-  if (normal == nullptr) return findLines(image, mask, parameters);
-  const AlongRunway along(K, *normal, parameters.max_yaw_deg * kDegree);
-  return findLines(image, groundPart(mask, K, *normal), parameters, &along);
+  return findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
 }
 
-// The lines freed of what blur does to stripes.
-std::vector<LineSegment> straight(const cv::Mat& image, const cv::Mat& mask,
-                                  const std::vector<LineSegment>& lines,
+// Whether a line lies along the runway, if on the ground; without a normal that is not known.
+bool mayBeAlong(const LineSegment& segment, const Eigen::Matrix3d& K, const Eigen::Vector3d* normal,
+                double max_yaw) {
+  if (normal == nullptr) return true;
+  const Eigen::Vector3d along = (K.transpose() * segment.line).cross(*normal);
+  return std::abs(along.x()) <= std::tan(max_yaw + kDirectionSlack) * std::abs(along.z());
+}
+
+// The lines freed of what blur does to stripes, as far as the vanishing point depends on them: most lines of
+// texture run across.
+std::vector<LineSegment> straight(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
+                                  const Eigen::Vector3d* normal, const std::vector<LineSegment>& lines,
                                   const ApproachAngleParameters& parameters, Timings& timings) {
   if (!parameters.stripe_centres) return lines;
   ScopedTimer timer(timings, "hough_transform");
-  return withoutStripeBias(image, mask, lines);
+  std::vector<size_t> places;
+  std::vector<LineSegment> chosen;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    if (!mayBeAlong(lines[i], K, normal, parameters.max_yaw_deg * kDegree)) continue;
+    places.push_back(i);
+    chosen.push_back(lines[i]);
+  }
+  chosen = withoutStripeBias(image, mask, chosen);
+  std::vector<LineSegment> result = lines;
+  for (size_t k = 0; k < places.size(); ++k) result[places[k]] = chosen[k];
+  return result;
 }
 
 void report(const Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
@@ -76,9 +95,9 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
   result.right_lines = linesOf(right, right_mask, K_right, normal, parameters, timings);
 
   const std::vector<LineSegment> left_lines =
-      straight(left, left_mask, result.left_lines, parameters, timings);
+      straight(left, left_mask, K_left, normal, result.left_lines, parameters, timings);
   const std::vector<LineSegment> right_lines =
-      straight(right, right_mask, result.right_lines, parameters, timings);
+      straight(right, right_mask, K_right, normal, result.right_lines, parameters, timings);
 
   ScopedTimer timer(timings, "ransac");
   Expected<VanishingPoint> in_left = findVanishingPoint(left_lines, K_left, parameters, normal);

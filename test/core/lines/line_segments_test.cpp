@@ -205,48 +205,6 @@ TEST(FindLines, AreOnTheGroundOnly) {
   EXPECT_TRUE(findLines(render(runway()), cv::Mat::zeros(kSize, CV_8UC1), {}).empty());
 }
 
-TEST(FindLines, AreThoseAlongTheRunwayWhenOnlyTheseAreWanted) {
-  // The ground of a level camera that looks down by 16 degrees at a runway in the middle: its sides meet at
-  // the vanishing point (322, 95), ends and the bar's sides run across or by more than 35 degrees to the
-  // side.
-  std::vector<Polygon> polygons = runway();
-  polygons.push_back({{60, 200}, {75, 200}, {215, 300}, {200, 300}});
-  Eigen::Matrix3d K;
-  K << 500, 0, 322, 0, 500, 240, 0, 0, 1;
-  const double pitch = std::atan2(240 - 95, 500);
-  const AlongRunway along(K, {0, -std::cos(pitch), -std::sin(pitch)}, 30 * M_PI / 180);
-  const cv::Mat image = render(polygons, 2, 0.8);
-  cv::Mat ground = cv::Mat::zeros(kSize, CV_8UC1);
-  const cv::Rect part(16, 110, 600, 360);
-  ground(part) = 255;
-
-  const std::vector<LineSegment> all = findLines(image, ground, {}),
-                                 wanted = findLines(image, ground, {}, &along);
-  EXPECT_GE(all.size(), 6U);
-  ASSERT_EQ(wanted.size(), 2U);
-  for (const auto& [a, b] : {std::pair{polygons[0][1], polygons[0][2]}, {polygons[0][3], polygons[0][0]}}) {
-    EXPECT_LT(distance(*nearest(wanted, a, b), a), 0.05);
-    EXPECT_EQ(nearest(wanted, a, b)->line, nearest(all, a, b)->line);
-  }
-}
-
-TEST(AlongRunway, KnowsLinesByTheirDirectionOnTheGround) {
-  const double pitch = -3 * M_PI / 180, max_yaw = 30 * M_PI / 180;
-  Eigen::Matrix3d K;
-  K << 500, 0, 322, 0, 505, 243, 0, 0, 1;
-  const Eigen::Vector3d up(0, -std::cos(pitch), std::sin(pitch)), ahead(0, std::sin(pitch), std::cos(pitch));
-  const AlongRunway along(K, up, max_yaw);
-  EXPECT_NEAR(along.share(), 35.0 / 90, 1e-9);
-  for (const double degrees : {-89, -50, -36, -34, -10, 0, 20, 34, 36, 70, 90}) {
-    const double yaw = degrees * M_PI / 180;
-    const Eigen::Vector3d direction = std::cos(yaw) * ahead + std::sin(yaw) * Eigen::Vector3d::UnitX();
-    for (const double side : {-3.0, 0.1, 2.0}) {
-      const Eigen::Vector3d a = 4 * ahead + side * Eigen::Vector3d::UnitX() - up, b = a + 0.3 * direction;
-      EXPECT_EQ(along.has((K * a).cross(K * b)), std::abs(degrees) < 35) << degrees << " " << side;
-    }
-  }
-}
-
 TEST(FindLines, WithoutRefinementAreAsGoodAsTheirHoughCell) {
   ApproachAngleParameters parameters;
   parameters.refine_lines = false;
