@@ -155,9 +155,10 @@ class KalmanHeightStage {
   };
   static GroundNormal normalOfAngle(const ApproachAngleResult& approach,
                                     const ApproachAngleResult::Motion& motion);
-  /// used: the normal that an angle is measured against.
+  /// Of the angle by this motion, rad^2, as the ground may have another normal than it was measured against.
   double varianceByNormals(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
                            const ApproachAngleResult::Motion& motion) const;
+  /// used: the normal that an angle is measured against.
   std::vector<OtherNormal> otherNormals(const Reconstruction& reconstruction,
                                         const ApproachAngleResult& approach, const GroundNormal& used) const;
   /// What the vanishing point says of the normal. After the tests of the pair.

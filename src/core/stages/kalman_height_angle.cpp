@@ -97,8 +97,6 @@ std::vector<KalmanHeightStage::OtherNormal> KalmanHeightStage::otherNormals(
   return normals;
 }
 
-// What an angle of this motion may be wrong by because the ground has another normal than it was measured
-// against.
 double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction,
                                             const ApproachAngleResult& approach,
                                             const ApproachAngleResult::Motion& motion) const {

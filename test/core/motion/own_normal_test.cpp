@@ -28,16 +28,16 @@ double neesOf(const MotionEstimate& found, const Step& step) {
   return error.dot(covariance.ldlt().solve(error));
 }
 
-/// Mean of it over many draws, with a given normal that is off by so much.
-double meanNees(double off_deg, double given_stddev) {
-  constexpr int kRuns = 200;
-  const Step step = Step::make();
-  Matcher matcher(step, 21);
+constexpr int kRuns = 200;
+
+/// Mean of it over many draws of matches, with a given normal that is known to this (rad) and off by so much.
+template <class Draw>
+double meanNees(const Step& step, const Draw& matches, double given_stddev, double off = 0) {
   const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized();
+  const Eigen::Vector3d given = (step.n + std::tan(off) * e1).normalized();
   double nees = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const Eigen::Vector3d given = (step.n + std::tan(off_deg * kDegree) * e1).normalized();
-    const Expected<MotionEstimate> found = test::estimate(matcher.ground(100, 0.15), given, given_stddev);
+    const Expected<MotionEstimate> found = test::estimate(matches(), given, given_stddev);
     EXPECT_TRUE(found && found->own_normal.allFinite()) << run;
     if (!found) return kUnknown;
     nees += neesOf(*found, step) / kRuns;
@@ -45,69 +45,65 @@ double meanNees(double off_deg, double given_stddev) {
   return nees;
 }
 
+const double kTolerance = test::chiSquareMeanTolerance(kRuns, 2);
+constexpr double kLoose = 0.1;  // rad: as good as no normal
+
 TEST(OwnNormal, IsAsWrongAsItClaimsWhateverNormalWasGiven) {
-  const double tolerance = test::chiSquareMeanTolerance(200, 2);
-  for (const double given_stddev : {0.0005, 0.005, 0.1}) {
-    const double nees = meanNees(0, given_stddev);
-    EXPECT_LT(nees, 2 + tolerance) << given_stddev;
-    EXPECT_GT(nees, 0.65 * 2 - tolerance) << given_stddev;
+  const Step step = Step::make();
+  const auto nees = [&step](double stddev, double off) {
+    Matcher matcher(step, 21);
+    return meanNees(
+        step, [&] { return matcher.ground(100, 0.15); }, stddev, off);
+  };
+  for (const double stddev : {0.0005, 0.005, 0.1}) {
+    EXPECT_LT(nees(stddev, 0), 2 + kTolerance) << stddev;
+    EXPECT_GT(nees(stddev, 0), 0.65 * 2 - kTolerance) << stddev;
   }
-  EXPECT_LT(meanNees(1, 1 * kDegree), 2 + tolerance);
+  EXPECT_LT(nees(1 * kDegree, 1 * kDegree), 2 + kTolerance);
 }
 
 // As where a part of the ground is not the plane: taken as independent, they give a mean of 11.
 TEST(OwnNormal, IsLessCertainWhereMatchesOfAPartOfTheImageAreWrongTogether) {
-  constexpr int kRuns = 200, kPart = 80;
+  constexpr int kPart = 80;
   const Step step = Step::make();
   Matcher matcher(step, 25);
-  double nees = 0;
-  for (int run = 0; run < kRuns; ++run) {
+  const auto draw = [&] {
     std::vector<TemporalMatch> matches = matcher.ground(200, 0.05);
     std::map<std::pair<int, int>, Eigen::Vector2d> shifts;
     for (TemporalMatch& match : matches) {
       const std::pair<int, int> part(match.now.x() / kPart, match.now.y() / kPart);
       match.then += shifts.try_emplace(part, 0.1 * matcher.draw()).first->second;
     }
-    const Expected<MotionEstimate> found = test::estimate(matches, step.n, 0.1);
-    ASSERT_TRUE(found && found->own_normal.allFinite()) << run;
-    nees += neesOf(*found, step) / kRuns;
-  }
-  EXPECT_LT(nees, 8);
+    return matches;
+  };
+  EXPECT_LT(meanNees(step, draw, kLoose), 8);
 }
 
 TEST(OwnNormal, IsAsCertainAsTheMatchesAgreeNotAsTheyClaim) {
-  constexpr int kRuns = 200;
   const Step step = Step::make();
   Matcher matcher(step, 26);
-  double nees = 0;
-  for (int run = 0; run < kRuns; ++run) {
+  const auto draw = [&] {
     std::vector<TemporalMatch> matches = matcher.ground(100, 0.05);
     for (TemporalMatch& match : matches) match.covariance *= 4;
-    const Expected<MotionEstimate> found = test::estimate(matches, step.n, 0.1);
-    ASSERT_TRUE(found && found->own_normal.allFinite()) << run;
-    nees += neesOf(*found, step) / kRuns;
-  }
-  const double tolerance = test::chiSquareMeanTolerance(kRuns, 2);
-  EXPECT_LT(nees, 2 + tolerance);
-  EXPECT_GT(nees, 0.65 * 2 - tolerance);
+    return matches;
+  };
+  const double nees = meanNees(step, draw, kLoose);
+  EXPECT_LT(nees, 2 + kTolerance);
+  EXPECT_GT(nees, 0.65 * 2 - kTolerance);
 }
 
 // Three corners of one spot see the same noise.
 TEST(OwnNormal, IsLessCertainWhereWindowsOverlap) {
-  constexpr int kRuns = 200;
   const Step step = Step::make();
   Matcher matcher(step, 27);
-  double nees = 0;
-  for (int run = 0; run < kRuns; ++run) {
+  const auto draw = [&] {
     std::vector<TemporalMatch> matches = matcher.ground(40, 0.05);
     for (TemporalMatch& match : matches) match.extent = 11;
     const std::vector<TemporalMatch> once = matches;
     for (int more = 0; more < 2; ++more) matches.insert(matches.end(), once.begin(), once.end());
-    const Expected<MotionEstimate> found = test::estimate(matches, step.n, 0.1);
-    ASSERT_TRUE(found && found->own_normal.allFinite()) << run;
-    nees += neesOf(*found, step) / kRuns;
-  }
-  EXPECT_LT(nees, 2 + test::chiSquareMeanTolerance(kRuns, 2));
+    return matches;
+  };
+  EXPECT_LT(meanNees(step, draw, kLoose), 2 + kTolerance);
 }
 
 TEST(OwnNormal, ContradictsOneThatWasTrustedWrongly) {

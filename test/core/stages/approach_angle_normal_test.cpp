@@ -122,7 +122,6 @@ TEST(ApproachAngleNormal, AnInertialSensorIsGroundNormalEnough) {
 TEST(ApproachAngleNormal, FusesAnInertialSensorWithStereoUnlessItContradicts) {
   ApproachScene scene(46);
   scene.ground.line_offset = 0;
-  scene.parameters.min_line_length = 0.5;  // texture has short lines, too, and they meet somewhere
   const Pose pose = straight(attitude(-8, 0, 0), 1.8, 1.4, 10)(0);
   StereoDepthResult stereo = scene.stereo(pose, 0);
   stereo.plane = exactPlane(pose, kHeightShare, 0.7 * kDegree);
