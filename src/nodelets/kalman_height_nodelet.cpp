@@ -26,13 +26,14 @@ namespace uav_landing {
 
 /// Height by reconstruction and Kalman filter; the landing estimate and what is made of it.
 ///
-/// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, runway_width, runway_length,
-/// ellipsoid_scale, drop_frames and the common ones of NodeParameters. Subscribes stereo_depth,
-/// approach_angle and {left,right}/camera_info, without publish_tf only while somebody wants the output;
-/// /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate (LandingEstimate): one
-/// message per pair, and without a pair for max_age one with status LOST (not when drop_frames is false:
-/// recorded pairs do not grow old). height (Range): NaN while not valid. pose (PoseWithCovarianceStamped) and
-/// tf runway_frame -> child: while the height is valid. markers (MarkerArray).
+/// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, drawn_runway_width,
+/// drawn_runway_length, ellipsoid_scale, drop_frames and the common ones of NodeParameters. Subscribes
+/// stereo_depth, approach_angle and {left,right}/camera_info, without publish_tf only while somebody wants
+/// the output; /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate
+/// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
+/// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
+/// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. markers
+/// (MarkerArray).
 class KalmanHeightNodelet : public StageNodelet {
  public:
   KalmanHeightNodelet() : StageNodelet("kalman_height") {}

@@ -9,8 +9,8 @@
 namespace uav_landing {
 
 /// What concerns ROS alone and therefore is not in config/*.yaml. Every nodelet accepts all of them, so that
-/// one set serves all; each reads those that concern it. visit() as in uav_landing/parameters/parameters.h,
-/// with text() for strings.
+/// one set serves all; each reads those that concern it. No section has a key of the same name. visit() as in
+/// uav_landing/parameters/parameters.h, with text() for strings.
 struct NodeParameters {
   std::string camera = "/stereo";
   std::string image_transport = "raw";
@@ -21,8 +21,8 @@ struct NodeParameters {
   std::string base_frame;
   std::string runway_frame = "runway";
   bool publish_tf = true;
-  double runway_width = 30.0;
-  double runway_length = 600.0;
+  double drawn_runway_width = 30.0;
+  double drawn_runway_length = 600.0;
   double ellipsoid_scale = 10.0;
   double complaint_period = 5.0;
   double diagnostic_period = 1.0;
@@ -51,8 +51,9 @@ struct NodeParameters {
     v.flag("publish_tf", publish_tf,
            "broadcast runway_frame to the estimated frame; if not, the chain rests while nobody subscribes "
            "its output (kalman_height)");
-    v.number("runway_width", runway_width, 0.1, 200.0, "m", "of the runway as drawn (kalman_height markers)");
-    v.number("runway_length", runway_length, 0.1, 10000.0, "m",
+    v.number("drawn_runway_width", drawn_runway_width, 0.1, 200.0, "m",
+             "of the runway as drawn (kalman_height markers)");
+    v.number("drawn_runway_length", drawn_runway_length, 0.1, 10000.0, "m",
              "of the runway as drawn (kalman_height markers)");
     v.number(
         "ellipsoid_scale", ellipsoid_scale, 1.0, 1000.0, "",

@@ -28,7 +28,8 @@ class ArgumentsTest(unittest.TestCase):
                 self.assertEqual(lacking, [])
 
     def test_an_empty_value_is_the_default(self):
-        self.assertEqual(parameters("approximate_sync:=", "max_skew:=", "base_frame:=", "bag:="), parameters())
+        self.assertEqual(parameters("approximate_sync:=", "max_skew:=", "base_frame:=", "runway_width:=", "bag:="),
+                         parameters())
 
     def test_defaults_leave_the_config_file_and_the_clock_alone(self):
         default = parameters()
@@ -52,6 +53,13 @@ class ArgumentsTest(unittest.TestCase):
         self.assertEqual(given["/uav_landing/rectify/max_skew"], 0.02)
         self.assertEqual(given["/uav_landing/kalman_height/base_frame"], "base_link")
         self.assertEqual(given["/use_sim_time"], True)
+
+    def test_the_runways_width_reaches_edges_height_and_markers(self):
+        default, given = parameters(), parameters("runway_width:=45")
+        for name, unknown in (("approach_angle/runway_width", None), ("kalman_height/known_runway_width", None),
+                              ("kalman_height/drawn_runway_width", 30)):
+            self.assertEqual(default.get(f"/uav_landing/{name}"), unknown)
+            self.assertEqual(given[f"/uav_landing/{name}"], 45)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 namespace uav_landing {
@@ -57,9 +58,23 @@ TEST(LandingMarkers, GlidePathEndsWhereItMeetsTheGround) {
   EXPECT_EQ(path.points[1].z, 0);
 }
 
+TEST(LandingMarkers, WhatIsRemovedIsWhatWasDrawn) {
+  const auto drawn = draw({}, {0.3, 0.05, 0.02});
+  const auto lost = drawLanding({}, {}, estimate(), std::nullopt, {1, 0}, {});
+  for (const char* name : {"aircraft", "glide_path", "uncertainty"}) {
+    EXPECT_EQ(named(drawn, name).action, visualization_msgs::Marker::ADD) << name;
+    EXPECT_EQ(named(lost, name).action, visualization_msgs::Marker::DELETE) << name;
+    EXPECT_EQ(named(lost, name).id, named(drawn, name).id) << name;
+  }
+}
+
 TEST(LandingMarkers, WithoutAnAircraftRunwayPathAndNumbersAreLeft) {
   const auto array = drawLanding({}, {}, estimate(), std::nullopt, {1, 0}, {{0, 0, 3}, {1, 0, 2}});
-  EXPECT_EQ(array.markers.size(), 5u);
+  std::multiset<std::string> shown, removed;
+  for (const auto& marker : array.markers)
+    (marker.action == visualization_msgs::Marker::ADD ? shown : removed).insert(marker.ns);
+  EXPECT_EQ(shown, (std::multiset<std::string>{"numbers", "path", "runway", "runway", "runway"}));
+  EXPECT_EQ(removed, (std::multiset<std::string>{"aircraft", "glide_path", "uncertainty"}));
   EXPECT_EQ(named(array, "path").points.size(), 2u);
   EXPECT_NE(named(array, "numbers").text.find("height 20.00 m"), std::string::npos);
 }

@@ -154,16 +154,19 @@ TEST(StereoDepthStage, DoesNotLockOnePeriodOffOnZebraBars) {
   Scene scene(7);
   // Bars all over the near ground, which fit on each other at every period, and texture between them. At 0.7
   // m half of what the left camera sees of them is outside the right view, and its places one bar off are
-  // not.
+  // not. The other heights are such that ranges of slopes that the search goes through hold the planes one
+  // bar off besides the right one, or each alone.
   scene.ground.contrast = 5;
-  scene.ground.bar_period = 0.24;
   scene.ground.bar_from = 1;
   scene.ground.bar_to = 9;
   scene.ground.bar_reach = 3;
-  for (const double height : {1.6, 1.2, 0.9, 0.7}) {
-    const Pose pose = makePose(height, -9, 0);
-    expectPose(scene.first(scene.render(pose)), pose, "zebra");
-  }
+  for (const double period : {0.24, 0.4})
+    for (const double height : {2.5, 1.7, 1.6, 1.2, 0.9, 0.88, 0.7}) {
+      scene.ground.bar_period = period;
+      const Pose pose = makePose(height, -9, 0);
+      expectPose(scene.first(scene.render(pose)), pose,
+                 std::to_string(period) + " " + std::to_string(height));
+    }
 }
 
 TEST(StereoDepthStage, FollowsAnApproachAndRollAtFullSize) {
