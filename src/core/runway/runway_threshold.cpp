@@ -39,7 +39,8 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   if (view.distance(bars->end) - begin < kShortestBars * runway.width)
     return noThreshold("bars of the threshold are too short");
   // The line before them must be in the picture if there is one: without it the bars tell nothing.
-  const double farthest = kFarthestBars * bars->pitch / TopView::kColumns * TopView::kAcross * runway.width;
+  const double pitch = bars->pitch / TopView::kColumns * TopView::kAcross * runway.width;
+  const double farthest = kFarthestBars * pitch;
   const double search = begin - std::max(kLineSearch * runway.width, kSearched * farthest);
   int first = 0;
   while (first < view.size() && view.distance(first) < search) ++first;
@@ -50,7 +51,7 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
     seen = line.station;
   } else {
     while (view.distance(first) < begin - kSearched * farthest) ++first;
-    seen = findPavement(view, *bars, first);
+    seen = findPavement(view, *bars, pitch, first);
   }
   if (!seen && line.isSomething())
     return noThreshold("a mark before the bars takes ", line.spanning, " of the width");

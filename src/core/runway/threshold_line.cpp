@@ -16,6 +16,9 @@ constexpr int kStretches = 8;           // across the runway, in which the pavem
 constexpr double kLeastStep = 8;        // grey levels where the pavement begins
 constexpr double kClearStep = 5;        // the same, in standard errors over the stretches
 constexpr double kFirstStep = 0.5;      // of the clearest step: a nearer one that is taken instead
+// On bright ground the line's near edge is no clear step, but its far one is.
+constexpr double kWidestLine = 1.1;  // pitches of the bars
+constexpr double kPaint = 0.5;       // of the bars' contrast
 
 /// Share of the width on which it gets brighter towards the far side around a station by at least this much.
 /// The line may lie slightly aslant.
@@ -64,6 +67,36 @@ Step stepAt(const TopView& view, int k) {
   return step;
 }
 
+/// Top of the parabola through a step and its neighbours; nothing when one of them is steeper.
+std::optional<double> topOf(const std::vector<Step>& steps, size_t i) {
+  const double here = std::abs(steps[i].mean), sign = steps[i].mean > 0 ? 1 : -1;
+  const double before = sign * steps[i - 1].mean, after = sign * steps[i + 1].mean;
+  if (before > here || after > here) return std::nullopt;
+  const double curve = before - 2 * here + after;
+  return static_cast<double>(i) + (curve < 0 ? 0.5 * (before - after) / curve : 0.0);
+}
+
+/// Where it gets brighter all across, the most of the steps from `first` to before `end`.
+std::optional<double> clearestRise(const std::vector<Step>& steps, size_t first, size_t end) {
+  std::optional<double> found;
+  double largest = 0;
+  for (size_t i = std::max<size_t>(1, first); i < end; ++i) {
+    if (!steps[i].clear || steps[i].mean <= largest) continue;
+    if (const std::optional<double> top = topOf(steps, i)) {
+      found = top;
+      largest = steps[i].mean;
+    }
+  }
+  return found;
+}
+
+/// Whether it is as bright before a station where it gets darker as the bars are.
+bool isPaint(const TopView& view, int k, const ThresholdBars& bars) {
+  const double before = 0.5 * (meanOf(view.row(k - 1)) + meanOf(view.row(k - 2)));
+  const double after = 0.5 * (meanOf(view.row(k + 1)) + meanOf(view.row(k + 2)));
+  return before - after >= kPaint * bars.contrast;
+}
+
 }  // namespace
 
 bool ThresholdLine::spans() const { return spanning >= kSpanning; }
@@ -88,7 +121,7 @@ ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, 
   return line;
 }
 
-std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, int first) {
+std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, double pitch, int first) {
   const int begin = std::max(2, first), end = static_cast<int>(bars.begin) - 2;  // free of the bars
   std::vector<Step> steps;
   double clearest = 0;
@@ -97,13 +130,20 @@ std::optional<double> findPavement(const TopView& view, const ThresholdBars& bar
     if (steps.back().clear) clearest = std::max(clearest, std::abs(steps.back().mean));
   }
   for (size_t i = 1; i + 1 < steps.size(); ++i) {
-    const double here = std::abs(steps[i].mean);
-    if (!steps[i].clear || here < kFirstStep * clearest) continue;
-    const double sign = steps[i].mean > 0 ? 1 : -1;
-    const double before = sign * steps[i - 1].mean, after = sign * steps[i + 1].mean;
-    if (before > here || after > here) continue;
-    const double curve = before - 2 * here + after;
-    return begin + static_cast<double>(i) + (curve < 0 ? 0.5 * (before - after) / curve : 0.0);
+    if (!steps[i].clear || std::abs(steps[i].mean) < kFirstStep * clearest) continue;
+    std::optional<double> top = topOf(steps, i);
+    if (!top) continue;
+    if (steps[i].mean < 0) {
+      const int far = begin + static_cast<int>(i);
+      int near = far;
+      while (near > begin && view.distance(far) - view.distance(near) < kWidestLine * pitch) --near;
+      if (const std::optional<double> rise = clearestRise(steps, near - begin, i)) {
+        top = rise;
+      } else if (isPaint(view, far, bars)) {
+        return std::nullopt;
+      }
+    }
+    return begin + *top;
   }
   return std::nullopt;
 }

@@ -127,7 +127,7 @@ struct Bars {
   Pose pose;
   double line_from = 5.6, line_to = 5.7;
   double pavement_from = 6;  // m; as bright as what lies before it when it is the same
-  uchar pavement = 70, before = 70;
+  uchar pavement = 70, before = 70, line = 200;
   bool sparse = false;
   bool aiming_point = false;  // instead of the bars: its two marks, the centre line and the edge lines
 
@@ -149,7 +149,7 @@ struct Bars {
   Expected<Threshold> find() const {
     cv::Mat image(rig.size, CV_8U, cv::Scalar(before));
     if (pavement != before) fill(image, pavement_from, 30, -1.2, 1.2, pavement);
-    if (line_to > line_from) fill(image, line_from, line_to, -1, 1);
+    if (line_to > line_from) fill(image, line_from, line_to, -1, 1, line);
     if (aiming_point) {
       for (const double y : {-0.52, 0.52}) fill(image, 6, 7.5, y - 0.12, y + 0.12);
       for (const double y : {-0.9, 0.9}) fill(image, 2, 30, y - 0.06, y + 0.06);
@@ -200,6 +200,26 @@ TEST(RunwayThreshold, IsWhereThePavementBeginsWhenThereIsNoLine) {
     EXPECT_NEAR(found->distance * 1.5, 5.75 - 1.5, 0.03) << before;
     EXPECT_EQ(found->systematic_variance, 0);
   }
+}
+
+TEST(RunwayThreshold, IsTheNearEdgeOfALineThatBrightGroundHides) {
+  // Lines of 1.2 and 3 m on a runway of the standard.
+  for (const double width : {0.055, 0.137})
+    for (const int before : {130, 150, 160}) {
+      Bars bars;
+      bars.line = 165;
+      bars.before = static_cast<uchar>(before);
+      bars.line_from = bars.pavement_from = 6 - 6 / 3.5 * 0.16;
+      bars.line_to = bars.line_from + width;
+      const auto found = bars.find();
+      ASSERT_TRUE(found) << found.error().message();
+      EXPECT_LT(std::abs(found->distance * 1.5 - (bars.line_from - 1.5)),
+                2.5 * 1.5 * std::sqrt(found->variance))
+          << width << " " << before;
+      // The far edge of the wide one is next to the bars: nothing but these is seen.
+      const bool told = width < 0.1 && before < 160;
+      EXPECT_TRUE(found->systematic_variance == 0 || !told) << width << " " << before;
+    }
 }
 
 TEST(RunwayThreshold, PavementThatBeginsFarBeforeTheBarsIsNotItsPlace) {
