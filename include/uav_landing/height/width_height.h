@@ -20,10 +20,11 @@ class WidthHeight {
 
   /// Of one pair. ratio, variance: width over height as seen. Nothing before a width is known.
   std::optional<Estimate> height(double ratio, double variance) const;
-  /// Whether the edges seen are those that the width was learned from, rather than, for instance, the other
-  /// sides of the lines along the runway: by the height (m, m^2) that is expected without this pair. Of a
-  /// known width always.
-  bool isSame(double ratio, double variance, double height, double height_variance) const;
+  /// Whether the edges seen are those that the width was learned from or is known of, rather than, for
+  /// instance, the other sides of the lines along the runway: by the height (m, m^2) that is expected without
+  /// this pair. by_stereo: that height is still measured. Without it less and less is known, and edges that
+  /// were others remain so as long as they are off by more than the sides of lines are.
+  bool isSame(double ratio, double variance, double height, double height_variance, bool by_stereo);
   /// A pair with a height by stereo (m, m^2) that is believed. Other edges take the place of those before
   /// when some pairs in a row saw them.
   void learn(double ratio, double variance, double height, double height_variance);
@@ -43,6 +44,7 @@ class WidthHeight {
   bool known_;
   double known_width_;
   std::optional<Width> width_, other_;  // other_: seen by the last pairs in the place of the edges of width_
+  bool changed_ = false;                // the edges: were not those of width_, nor have they been since
 };
 
 }  // namespace uav_landing

@@ -18,6 +18,7 @@ WidthHeight::WidthHeight(double known_width) : known_(known_width > 0), known_wi
 void WidthHeight::reset() {
   width_.reset();
   other_.reset();
+  changed_ = false;
   if (known_) width_ = Width{known_width_, std::pow(kKnownStddev * known_width_, 2), kAgreeing};
 }
 
@@ -46,8 +47,16 @@ void WidthHeight::merge(const Width& seen, Width& width) {
   width.pairs = std::min(width.pairs + 1, kAgreeing);
 }
 
-bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance) const {
-  return known_ || !width_ || agree(seen(ratio, variance, height, height_variance), *width_);
+bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance,
+                         bool by_stereo) {
+  if (!width_) return true;
+  const Width now = seen(ratio, variance, height, height_variance);
+  if (!agree(now, *width_)) {
+    changed_ = true;
+  } else if (by_stereo || std::abs(now.mean - width_->mean) <= kSame * width_->mean) {
+    changed_ = false;
+  }
+  return !changed_;
 }
 
 void WidthHeight::learn(double ratio, double variance, double height, double height_variance) {

@@ -80,19 +80,21 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   std::optional<WidthHeight::Estimate> seen = width_.height(runway.width, runway.width_variance);
   // What the width itself is wrong by does not tell whether it is that of the same edges.
   const CommonVariance common = filter_.commonVariance();
-  if (filter_.initialised() && confirmations_ >= kConfirmations &&
-      !width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
-                     filter_.ownCovariance()(0, 0) + common.lasting + common.bend))
-    seen.reset();
+  const bool by_stereo = !reconstruction.failure;
+  const bool same =
+      !filter_.initialised() || confirmations_ < kConfirmations ||
+      width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
+                    filter_.ownCovariance()(0, 0) + common.lasting + common.bend, by_stereo);
+  // A known one is reported nevertheless: the fault may as well be the heights'.
+  if (!same && !width_.independent()) seen.reset();
   if (seen) {
     result.width_height = seen->height + reconstruction.bend;
     result.width_height_variance = seen->variance + modelVariance(seen->height);
   }
-  const bool by_stereo = !reconstruction.failure;
   reconstruction.teaches_width = by_stereo && confirmations_ >= kConfirmations;
   if (seen && parameters_.fuse_width_height) {
     // What was refused for its tilt is the ground that the width was seen on, too.
-    if (!by_stereo && !reconstruction.tilted && confirmations_ >= kConfirmations) {
+    if (!by_stereo && same && !reconstruction.tilted && confirmations_ >= kConfirmations) {
       reconstruction.failure = {};
       reconstruction.height = seen->height;
       reconstruction.variance = result.width_height_variance;

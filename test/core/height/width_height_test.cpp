@@ -44,10 +44,20 @@ TEST(WidthHeight, EdgesThatWereNotLearnedFromAreTold) {
   WidthHeight width(0);
   for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
   // Lines 1.2 m inside of both edges of 45 m: 5 %.
-  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4));
-  EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4));
-  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16)) << "as far as the height is known";
-  EXPECT_TRUE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4)) << "a known width is not doubted";
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, true));
+  EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4, true));
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16, true)) << "as far as the height is known";
+  EXPECT_FALSE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4, true)) << "nor are they a known width's";
+}
+
+TEST(WidthHeight, OtherEdgesRemainOthersHoweverLittleIsKnownOfTheHeight) {
+  WidthHeight width(kWidth);
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1, false)) << "nothing told that they are others";
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, false));
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1, false));
+  EXPECT_TRUE(width.isSame(44.9 / 15, 1e-8, 15, 1, false)) << "one pair that saw others is no more than that";
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, true));
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1, true)) << "by a new height";
 }
 
 TEST(WidthHeight, AnotherEdgeInBetweenDoesNotMakeForgetTheOnesBefore) {

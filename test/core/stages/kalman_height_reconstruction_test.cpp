@@ -228,6 +228,20 @@ TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
   EXPECT_NEAR(result.raw_height, 20, 1e-6);
 }
 
+TEST(KalmanHeightReconstruction, DoesNotCarryOnByEdgesOfAnotherWidthThanTheKnownOne) {
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = 45;
+  KalmanHeightStage stage(usualRig(), parameters);
+  double stamp = 0;
+  for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+  // Lines 1.2 m inside of both edges: 5 % narrower, as from 21.1 m.
+  for (int i = 0; i < 100; ++i, stamp += kStep) {
+    const LandingResult result = stage.process(noStereo(stamp), runwayFrom(stamp, 21.1));
+    EXPECT_NEAR(result.width_height, 21.1, 0.01) << "is reported";
+    ASSERT_FALSE(result.height_valid && std::abs(result.height - 20) > 0.5) << i;
+  }
+}
+
 TEST(KalmanHeightReconstruction, HeightsThatAreRefusedDoNotTeachTheWidth) {
   KalmanHeightStage stage(usualRig(), {});
   double stamp = 0;
