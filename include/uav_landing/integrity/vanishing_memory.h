@@ -12,20 +12,22 @@ namespace uav_landing {
 /// which leaps is wrong shows against a direction that does not.
 class VanishingMemory {
  public:
-  /// A pair. direction: unit, camera frame, not finite where none is in view; covariance: rad^2; normal: of
-  /// the ground, unit: only what is along it counts, as it is what a plane is contradicted by. turn: since
-  /// the pair before; without its rotation, or where it is over another time, the camera may have turned by
-  /// up to 5 degrees per second. True when the direction leaps: by more than five of its sigmas from the ones
-  /// before, of which three have agreed, the last one within a second.
-  bool leaps(double stamp, const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance,
-             const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn);
+  struct Direction {
+    Eigen::Vector3d direction;   ///< unit, camera frame
+    Eigen::Matrix3d covariance;  ///< rad^2
+  };
+  /// A pair. seen: not finite where none is in view. axis: unit, only what is along it counts: the ground's
+  /// normal, as it is what a plane is contradicted by, or across for the yaw. turn: since the pair before;
+  /// without its rotation, or where it is over another time, the camera may have turned by up to 5 degrees
+  /// per second. True when the direction leaps: by more than five of its sigmas from the ones before, of
+  /// which three have agreed, the last one within a second.
+  bool leaps(double stamp, const Direction& seen, const Eigen::Vector3d& axis,
+             const ApproachAngleResult::Motion& turn);
+  /// The one of the pairs before that the last pair's was compared with, where the camera looks now.
+  const std::optional<Direction>& remembered() const { return last_; }
   void reset() { *this = VanishingMemory(); }
 
  private:
-  struct Direction {
-    Eigen::Vector3d direction;   // camera frame of the last pair
-    Eigen::Matrix3d covariance;  // rad^2
-  };
   void carry(double stamp, const ApproachAngleResult::Motion& turn);
 
   std::optional<Direction> last_;

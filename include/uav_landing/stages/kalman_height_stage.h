@@ -78,8 +78,9 @@ class KalmanHeightStage {
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
   void averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction, LandingResult& result);
-  static void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                          LandingResult& result);
+  /// repeated: the left image is the pair before's.
+  void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach, bool repeated,
+                   LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   /// What is known of the ground besides the stereo plane.
@@ -214,8 +215,8 @@ class KalmanHeightStage {
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
-  NormalDoubt doubt_, motion_doubt_;  // by the vanishing point, and by the images' motion
-  VanishingMemory vanishing_;
+  NormalDoubt doubt_, motion_doubt_;     // by the vanishing point, and by the images' motion
+  VanishingMemory vanishing_, heading_;  // of its pitch, and of its yaw
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s
   double ground_height_ = kUnknown;             // at that time, m

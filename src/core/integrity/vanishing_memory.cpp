@@ -14,18 +14,18 @@ constexpr double kGate = 25.0;     // squared sigmas
 
 }  // namespace
 
-bool VanishingMemory::leaps(double stamp, const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance,
-                            const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn) {
+bool VanishingMemory::leaps(double stamp, const Direction& seen, const Eigen::Vector3d& axis,
+                            const ApproachAngleResult::Motion& turn) {
   carry(stamp, turn);
-  if (!direction.allFinite() || !covariance.allFinite() || !normal.allFinite()) return false;
+  if (!seen.direction.allFinite() || !seen.covariance.allFinite() || !axis.allFinite()) return false;
   if (last_) {
-    const double off = normal.dot(direction - last_->direction);
-    const double variance = normal.dot((covariance + last_->covariance) * normal);
+    const double off = axis.dot(seen.direction - last_->direction);
+    const double variance = axis.dot((seen.covariance + last_->covariance) * axis);
     const bool agrees = off * off <= kGate * variance;
     if (!agrees && agreements_ >= kConfirmed && stamp - agreed_ <= kPatience) return true;
     agreements_ = agrees ? agreements_ + 1 : 0;
   }
-  last_ = Direction{direction, covariance};
+  last_ = seen;
   agreed_ = stamp;
   return false;
 }

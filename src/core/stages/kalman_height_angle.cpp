@@ -46,7 +46,7 @@ void KalmanHeightStage::doubtNormal(const Reconstruction& reconstruction,
   doubtNormalByMotion(approach);
   const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
   const bool leaps =
-      vanishing_.leaps(approach.stamp, p, approach.vanishing_covariance, n, turnSince(approach));
+      vanishing_.leaps(approach.stamp, {p, approach.vanishing_covariance}, n, turnSince(approach));
   // One that contradicts by less has turned the normal itself.
   if (leaps && tests_.failed(Consistency::kVanishingPoint)) return;
   if (!reconstruction.alone.valid() || !p.allFinite()) return;

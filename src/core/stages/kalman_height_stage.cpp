@@ -1,5 +1,6 @@
 #include "uav_landing/stages/kalman_height_stage.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -70,7 +71,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   }
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
-  reportPlane(reconstruction, approach, result);
+  reportPlane(reconstruction, approach, stereo.left_repeated, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
                       approach.step.duration;
@@ -124,6 +125,7 @@ void KalmanHeightStage::reset() {
   doubt_.reset();
   motion_doubt_.reset();
   vanishing_.reset();
+  heading_.reset();
   ground_.reset();
   ground_stamp_.reset();
   ground_height_ = kUnknown;
@@ -133,11 +135,15 @@ void KalmanHeightStage::reset() {
 }
 
 void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                                    LandingResult& result) {
+                                    bool repeated, LandingResult& result) {
   const bool known = reconstruction.plane.valid();
-  reportAttitude(known ? reconstruction.normal.n : approach.n,
-                 known ? reconstruction.normal.covariance : approach.n_covariance,
-                 approach.vanishing_direction, approach.vanishing_covariance, result);
+  const GroundNormal normal = known ? reconstruction.normal : GroundNormal{approach.n, approach.n_covariance};
+  VanishingMemory::Direction runway{approach.vanishing_direction, approach.vanishing_covariance};
+  // One that leaps is of other lines, as of the edge of a shadow.
+  if (!repeated && heading_.leaps(approach.stamp, runway, normal.n.cross(runway.direction).normalized(),
+                                  turnSince(approach)))
+    runway = *heading_.remembered();
+  reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
 }
 
 void KalmanHeightStage::reportRig(LandingResult& result) const {

@@ -39,7 +39,8 @@ struct Flight {
     const Eigen::Matrix3d R = turnOf(pitch);
     const Eigen::Vector3d direction = R * turnOf(above_deg) * Eigen::Vector3d::UnitZ();
     stamp += kStep;
-    return memory.leaps(stamp, direction, kStddev * kStddev * Eigen::Matrix3d::Identity(), R * kDown, motion);
+    return memory.leaps(stamp, {direction, kStddev * kStddev * Eigen::Matrix3d::Identity()}, R * kDown,
+                        motion);
   }
   bool see(double above_deg, double pitch_by = 0) {
     pitch += pitch_by;
@@ -48,8 +49,8 @@ struct Flight {
   void skip() {
     stamp += kStep;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_FALSE(
-        memory.leaps(stamp, Eigen::Vector3d::Constant(nan), Eigen::Matrix3d::Constant(nan), kDown, turn(0)));
+    EXPECT_FALSE(memory.leaps(stamp, {Eigen::Vector3d::Constant(nan), Eigen::Matrix3d::Constant(nan)}, kDown,
+                              turn(0)));
   }
 };
 
@@ -99,12 +100,24 @@ TEST(VanishingMemory, IsCarriedOverPairsWithoutADirectionForASecond) {
   EXPECT_TRUE(flight.see(0));
 }
 
-TEST(VanishingMemory, CountsOnlyWhatIsAlongTheNormal) {
+TEST(VanishingMemory, CountsOnlyWhatIsAlongTheAxis) {
+  const VanishingMemory::Direction aside{Eigen::AngleAxisd(4 * kDegree, kDown) * Eigen::Vector3d::UnitZ(),
+                                         kStddev * kStddev * Eigen::Matrix3d::Identity()};
+  for (const bool across : {false, true}) {
+    Flight flight = knownRunway();
+    flight.stamp += kStep;
+    const Eigen::Vector3d axis = across ? Eigen::Vector3d::UnitX() : kDown;
+    EXPECT_EQ(flight.memory.leaps(flight.stamp, aside, axis, flight.turn(0)), across);
+  }
+}
+
+TEST(VanishingMemory, TellsWhereTheRunwayIsWhileOtherLinesAreSeen) {
   Flight flight = knownRunway();
-  const Eigen::Vector3d aside = Eigen::AngleAxisd(4 * kDegree, kDown) * Eigen::Vector3d::UnitZ();
-  flight.stamp += kStep;
-  EXPECT_FALSE(flight.memory.leaps(flight.stamp, aside, kStddev * kStddev * Eigen::Matrix3d::Identity(),
-                                   kDown, flight.turn(0)));
+  ASSERT_TRUE(flight.see(-4, 1.5));
+  ASSERT_TRUE(flight.memory.remembered());
+  EXPECT_LT((flight.memory.remembered()->direction - turnOf(1.5) * Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  const double variance = flight.memory.remembered()->covariance(1, 1);
+  EXPECT_NEAR(variance, std::pow(kStddev, 2) + std::pow(0.01 * kDegree, 2), 1e-3 * variance);
 }
 
 TEST(VanishingMemory, ForgetsAtAReset) {

@@ -46,6 +46,31 @@ TEST(KalmanHeightAttitude, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDire
   EXPECT_NEAR(std::sqrt(result.yaw_variance), 0.2 * kDegree, 0.05 * kDegree);
 }
 
+TEST(KalmanHeightAttitude, AVanishingDirectionThatLeapsTurnsNoYaw) {
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  const auto fly = [&](double yaw_deg, bool repeated = false) {
+    StereoDepthResult stereo = stereoAt(stamp, 10, 0, 0);
+    stereo.left_repeated = repeated;
+    ApproachAngleResult approach = withoutTurning(stamp);
+    approach.vanishing_direction = {std::sin(yaw_deg * kDegree), 0, std::cos(yaw_deg * kDegree)};
+    approach.vanishing_covariance = std::pow(0.03 * kDegree, 2) * Eigen::Matrix3d::Identity();
+    stamp += kStep;
+    return stage.process(stereo, approach);
+  };
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(fly(0.02 * (i % 2)).yaw, 0.02 * (i % 2) * kDegree, 1e-9) << i;
+  const LandingResult leapt = fly(0.7);
+  EXPECT_NEAR(leapt.yaw, 0.02 * kDegree, 1e-9);
+  // As certain as the pair before with a rotation known to 0.05 degrees.
+  EXPECT_NEAR(std::sqrt(leapt.yaw_variance), std::hypot(0.03, 0.05) * kDegree, 0.02 * kDegree);
+  EXPECT_NEAR(fly(0).yaw, 0, 1e-9);
+  EXPECT_NEAR(fly(0, true).yaw, 0, 1e-9) << "a repeated image has turned by nothing";
+  // What stays is the runway.
+  LandingResult later;
+  for (int i = 0; i < 15; ++i) later = fly(0.7);
+  EXPECT_NEAR(later.yaw, 0.7 * kDegree, 1e-9);
+}
+
 TEST(KalmanHeightAttitude, CorrectsThePitchWithTheVanishingPointButNotWithTheFusedNormal) {
   // Stereo that knows the pitch badly; the vanishing point says level, exactly.
   StereoDepthResult stereo = stereoAt(0, 10, -0.02, 0);
