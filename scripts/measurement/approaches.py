@@ -10,14 +10,17 @@ from .markdown import number as cell
 NOISE = 2
 SETTLING_TIME = 1.0  # s
 HEADER = ("approach", "frames", "coverage", "height in max(5 cm, 0.5 %), below 30 m", "height in 1 %, 30 to 60 m",
-          "angle, °: 95 %", "pitch, °: 95 %", "roll, °: 95 %", "lateral in max(0.15 m, 1 % of distance)",
+          "angle, °: 95 %", "its lag, s", "pitch, °: 95 %", "roll, °: 95 %", "lateral in max(0.15 m, 1 % of distance)",
           "lateral known")
-TARGET = ("asked", "", "", "95 %", "95 %", "0.2", "0.1", "0.1", "95 %", "")
+TARGET = ("asked", "", "", "95 %", "95 %", "0.2", "0.25", "0.1", "0.1", "95 %", "")
 TEXT = """Approaches of `simulate_campaign approaches`: baseline 1 m, 640×480, noise of 2 grey levels, lens blur 0.4–0.9 px, gain and
 offset differing between the cameras, runways 18–60 m wide with all or few markings, glide 2.2–6° from 60 m to the flare,
 15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, a flare of 3 s, a gust on half of them; the calibration is exact.
-Scored are valid frames later than 1 s after the first; *lateral known* is the share of them on
-which the lateral offset is known. The last rows are all frames together, and what is asked.
+Scored are valid frames later than 1 s after the first; *lag* is the time by which the true angle has to be later to be
+most like the published one, over flare, gust and what the path bends besides; *lateral known* is the share of frames on
+which the lateral offset is known. The last rows are all frames together, and what is asked. Approach 13 is slow (16 m/s) and
+has its angle swing by half a degree all the way down: above 30 m a step of the camera tells it to half a degree, and what is
+averaged over a second is late for it; its errors are within what is claimed on 96 % of the frames.
 """
 
 
@@ -28,6 +31,25 @@ def share(good):
 def percentile(error):
     error = error[np.isfinite(error)]
     return float(np.percentile(np.abs(error), 95)) if error.size else None
+
+
+def lag(time, angle, truth):
+    """Time by which the true angle has to be later to be most like the published one, s; None of less than 2 s."""
+    known = np.isfinite(angle)
+    if np.count_nonzero(known) == 0 or np.ptp(time[known]) < 2:
+        return None
+    shifts = np.arange(-0.2, 0.6, 0.01)
+    # The same frames for all of them: whose truth is known for each.
+    inside = known & (time >= time[0] + shifts[-1]) & (time <= time[-1] + shifts[0])
+    errors = [np.mean((angle[inside] - np.interp(time[inside] - shift, time, truth)) ** 2) for shift in shifts]
+    return float(shifts[np.argmin(errors)])
+
+
+def lag_of(rows):
+    time, angle, truth = (np.array([number(row, name) for row in rows])
+                          for name in ("time_s", "approach_angle_deg", "approach_angle_true_deg"))
+    used = np.array([row["angle_valid"] == "1" for row in rows]) & (time > SETTLING_TIME)
+    return lag(time, np.where(used, angle, np.nan), truth)
 
 
 def score(rows):
@@ -54,14 +76,17 @@ def score(rows):
 def measure(options):
     rows = fly("approaches", 1, options.approaches, 1, options.jobs, "--noise", NOISE)
     seeds = sorted({int(row["seed"]) for row in rows})
-    results = [[str(seed), score([row for row in rows if int(row["seed"]) == seed])] for seed in seeds]
-    results.append(["all", score(rows)])
+    flights = [[row for row in rows if int(row["seed"]) == seed] for seed in seeds]
+    results = [[str(seed), {**score(flight), "lag": lag_of(flight)}] for seed, flight in zip(seeds, flights)]
+    lags = [scores["lag"] for _, scores in results if scores["lag"] is not None]
+    results.append(["all", {**score(rows), "lag": max(lags) if lags else None}])
     kept.keep("approaches", results)
 
 
 def line(name, scores):
     return [name, scores["frames"], cell(scores["coverage"], ".1%"), cell(scores["low"], ".1%"), cell(scores["high"], ".1%"),
-            *(cell(scores[key], ".3f") for key in ("approach_angle", "pitch", "roll")),
+            cell(scores["approach_angle"], ".3f"), cell(scores["lag"], ".2f"),
+            *(cell(scores[key], ".3f") for key in ("pitch", "roll")),
             cell(scores["lateral"], ".1%"), cell(scores["lateral_known"], ".0%")]
 
 

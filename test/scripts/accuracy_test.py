@@ -1,10 +1,13 @@
 """scripts/accuracy: the tables of its sections, by numbers worked out here, and what it keeps."""
 
+import math
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
+
+import numpy as np
 
 from project import SOURCE_DIR
 
@@ -83,8 +86,17 @@ class ApproachesTest(unittest.TestCase):
         scores = approaches.score(rows)
         self.assertEqual((scores["low"], scores["coverage"], scores["frames"]), (1.0, 0.5, 3))
 
+    def test_lag_is_the_time_by_which_the_angle_comes_late(self):
+        def flight(late, duration=20):
+            return [approach_row(t, 20, 0, angle_valid=int(t > 3), approach_angle_deg=3 + math.sin(t - late),
+                                 approach_angle_true_deg=3 + math.sin(t)) for t in np.arange(0, duration, 0.05)]
+        self.assertAlmostEqual(approaches.lag_of(flight(0)), 0, 6)
+        self.assertAlmostEqual(approaches.lag_of(flight(0.15)), 0.15, 2)
+        self.assertIsNone(approaches.lag_of(flight(0.15, 4)))
+
     def test_row_fits_the_header(self):
-        self.assertEqual(len(approaches.line("1", approaches.score([approach_row(2, 5, 0)]))), len(approaches.HEADER))
+        scores = {**approaches.score([approach_row(2, 5, 0)]), "lag": None}
+        self.assertEqual(len(approaches.line("1", scores)), len(approaches.HEADER))
         self.assertEqual(len(approaches.TARGET), len(approaches.HEADER))
 
 

@@ -29,7 +29,7 @@ TEST_P(ShippedConfigTest, LoadsAndCanBeFlown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, ShippedConfigTest,
-                         testing::Values("lab.yaml", "full_scale.yaml", "demo.yaml"));
+                         testing::Values("lab.yaml", "full_scale.yaml", "bent_rig.yaml", "demo.yaml"));
 
 /// Compares a section of the YAML file with the defaults, key by key.
 struct DefaultsCheck {
