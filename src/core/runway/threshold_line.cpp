@@ -133,15 +133,12 @@ std::optional<double> findPavement(const TopView& view, const ThresholdBars& bar
     if (!steps[i].clear || std::abs(steps[i].mean) < kFirstStep * clearest) continue;
     std::optional<double> top = topOf(steps, i);
     if (!top) continue;
-    if (steps[i].mean < 0) {
-      const int far = begin + static_cast<int>(i);
+    const int far = begin + static_cast<int>(i);
+    if (steps[i].mean < 0 && isPaint(view, far, bars)) {
       int near = far;
       while (near > begin && view.distance(far) - view.distance(near) < kWidestLine * pitch) --near;
-      if (const std::optional<double> rise = clearestRise(steps, near - begin, i)) {
-        top = rise;
-      } else if (isPaint(view, far, bars)) {
-        return std::nullopt;
-      }
+      top = clearestRise(steps, near - begin, i);
+      if (!top) return std::nullopt;
     }
     return begin + *top;
   }

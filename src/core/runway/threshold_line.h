@@ -20,8 +20,9 @@ struct ThresholdLine {
 ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, int first);
 
 /// Station at which the pavement of the bars begins: a step of the brightness, either way, right across.
-/// Where it gets darker behind something narrow and brighter, that is a line before which the ground is
-/// almost as bright, and its near edge is told. pitch: from bar to bar, in heights.
+/// Where it gets darker behind what is as bright as paint, that may be the far side of a line which the
+/// ground before it is almost as bright as: its near edge is told, or nothing. pitch: from bar to bar, in
+/// heights.
 std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, double pitch, int first);
 
 }  // namespace uav_landing

@@ -222,6 +222,19 @@ TEST(RunwayThreshold, IsTheNearEdgeOfALineThatBrightGroundHides) {
     }
 }
 
+TEST(RunwayThreshold, IsWhereThePavementBeginsBehindAStripThatIsNoPaint) {
+  Bars bars;
+  bars.pavement = 60;
+  bars.before = 100;
+  bars.line = 115;
+  bars.line_from = 5.69;
+  bars.line_to = bars.pavement_from = 5.75;
+  const auto found = bars.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->distance * 1.5, 5.75 - 1.5, 0.03);
+  EXPECT_EQ(found->systematic_variance, 0);
+}
+
 TEST(RunwayThreshold, PavementThatBeginsFarBeforeTheBarsIsNotItsPlace) {
   Bars bars;
   bars.line_to = bars.line_from;
