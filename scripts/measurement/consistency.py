@@ -133,7 +133,7 @@ def plot(cells):
     axes[0][0].set_ylabel("within claimed 95 %, %")
     axes[1][0].set_ylabel("rms error / claimed σ")
     axes[1][0].set_yscale("log")  # a single wrong lateral offset is a hundred sigma
-    axes[1][0].yaxis.set_major_locator(FixedLocator((0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 5, 10, 50, 100)))
+    axes[1][0].yaxis.set_major_locator(FixedLocator((0.2, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 5, 10, 50, 100)))
     axes[1][0].yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes[1][0].yaxis.set_minor_locator(NullLocator())
     axes[1][len(QUANTITIES) // 2].set_xlabel("height, noise in grey levels")
