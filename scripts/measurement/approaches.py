@@ -18,9 +18,9 @@ offset differing between the cameras, runways 18–60 m wide with all or few mar
 15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, a flare of 3 s, a gust on half of them; the calibration is exact.
 Scored are valid frames later than 1 s after the first; *lag* is the time by which the true angle has to be later to be
 most like the published one, over flare, gust and what the path bends besides; *lateral known* is the share of frames on
-which the lateral offset is known. The last rows are all frames together, and what is asked. Approach 13 is slow (16 m/s) and
-has its angle swing by half a degree all the way down: above 30 m a step of the camera tells it to half a degree, and what is
-averaged over a second is late for it; its errors are within what is claimed on 96 % of the frames.
+which the lateral offset is known. The last rows are all frames together, with the largest lag, and what is asked. Approach 13
+is slow (16 m/s), and its angle swings by half a degree all the way down: above 30 m a single step of the camera tells it to
+half a degree only; its errors are within what is claimed on 96 % of the frames.
 """
 
 
