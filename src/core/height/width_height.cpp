@@ -7,7 +7,7 @@ namespace uav_landing {
 namespace {
 
 constexpr double kKnownStddev = 0.002;  // of a known width
-constexpr double kSame = 0.02;          // of the width: beyond this (and 4 sigma) other edges are seen
+constexpr double kSame = 0.005;         // of the width: beyond this (and 4 sigma) other edges are seen
 constexpr double kGate = 4;             // sigma
 constexpr int kAgreeing = 5;            // pairs in a row before a width is learned
 

@@ -45,6 +45,7 @@ TEST(WidthHeight, EdgesThatWereNotLearnedFromAreTold) {
   for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
   // Lines 1.2 m inside of both edges of 45 m: 5 %.
   EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, true));
+  EXPECT_FALSE(width.isSame(44.1 / 15, 1e-8, 15, 1e-4, true)) << "the lines' edges within the surface's";
   EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4, true));
   EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16, true)) << "as far as the height is known";
   EXPECT_FALSE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4, true)) << "nor are they a known width's";
