@@ -34,15 +34,19 @@ def percentile(error):
 
 
 def lag(time, angle, truth):
-    """Time by which the true angle has to be later to be most like the published one, s; None of less than 2 s."""
+    """Time by which the true angle has to be later to be most like the published one, but for a constant, s.
+
+    None of less than 2 s, and where none of the times looked at is better than those beside it.
+    """
     known = np.isfinite(angle)
     if np.count_nonzero(known) == 0 or np.ptp(time[known]) < 2:
         return None
     shifts = np.arange(-0.2, 0.6, 0.01)
     # The same frames for all of them: whose truth is known for each.
     inside = known & (time >= time[0] + shifts[-1]) & (time <= time[-1] + shifts[0])
-    errors = [np.mean((angle[inside] - np.interp(time[inside] - shift, time, truth)) ** 2) for shift in shifts]
-    return float(shifts[np.argmin(errors)])
+    errors = [np.var(angle[inside] - np.interp(time[inside] - shift, time, truth)) for shift in shifts]
+    best = int(np.argmin(errors))
+    return float(shifts[best]) if 0 < best < len(shifts) - 1 else None
 
 
 def lag_of(rows):

@@ -26,8 +26,8 @@ was measured; it is not a benchmark.
 for the first two, and good to the suspension's ±2 cm for the others. The angle of `kitti_road` is scored against the road's
 0°, although the car itself moves up and down on its springs: what it does beyond the claim is mostly real. The street of
 `kitti_raw` is patched and uneven, the car pitches by 2° within 0.6 s there, and its height is then not 1.65 m to 2 cm.
-`simulator/*` are approaches of `simulate_approach` with the configurations in `config/simulator/`; the cameras of `bent_rig`
-have turned by twenty times what a good calibration leaves. The paper reports for its
+`simulator/*` are approaches of `simulate_approach` with the configurations in `config/simulator/`; the right camera of
+`bent_rig` has turned by ten (pitch) to twenty (yaw) times what a good calibration leaves. The paper reports for its
 own laboratory: height mean 1.57 cm, worst 5.97 cm; approach angle mean 0.66°.
 """
 

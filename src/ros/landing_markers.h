@@ -21,7 +21,8 @@ struct DrawnAircraft {
 /// What rviz shows besides tf: the runway's outline and centre line (of the size in the parameters), the path
 /// flown, the aircraft with the ellipsoid of three sigma (ellipsoid_scale times larger), the straight path
 /// ahead down to the ground, and the numbers as text. header: stamp of the image, runway frame. aircraft: or
-/// none; then only runway, path and text are drawn, and what was drawn of it is taken away. direction: of flight over the ground.
+/// none; then only runway, path and text are drawn, and the others taken away. direction: of flight over the
+/// ground.
 visualization_msgs::MarkerArray drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
                                             const LandingResult& estimate,
                                             const std::optional<DrawnAircraft>& aircraft,

@@ -1,5 +1,6 @@
 """What the launch files make of their arguments; no master is needed."""
 
+import tempfile
 import unittest
 
 import roslaunch.config
@@ -12,9 +13,9 @@ from project import SOURCE_DIR, run
 LAUNCH = SOURCE_DIR / "launch"
 
 
-def parameters(*arguments):
+def parameters(*arguments, launch=LAUNCH / "stereo.launch"):
     """Parameters that stereo.launch would set."""
-    result = run(["roslaunch", "--dump-params", LAUNCH / "stereo.launch", *arguments])
+    result = run(["roslaunch", "--dump-params", launch, *arguments])
     assert result.returncode == 0, result.stderr
     return yaml.safe_load(result.stdout)
 
@@ -28,8 +29,13 @@ class ArgumentsTest(unittest.TestCase):
                 self.assertEqual(lacking, [])
 
     def test_an_empty_value_is_the_default(self):
-        self.assertEqual(parameters("approximate_sync:=", "max_skew:=", "base_frame:=", "runway_width:=", "bag:="),
-                         parameters())
+        # From another launch file: on the command line roslaunch itself takes an empty value for the default.
+        names = ("approximate_sync", "max_skew", "base_frame", "runway_width", "bag")
+        with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
+            empty = "".join(f'<arg name="{name}" value=""/>' for name in names)
+            file.write(f'<launch><include file="{LAUNCH}/stereo.launch">{empty}</include></launch>')
+            file.flush()
+            self.assertEqual(parameters(launch=file.name), parameters())
 
     def test_defaults_leave_the_config_file_and_the_clock_alone(self):
         default = parameters()
@@ -60,6 +66,11 @@ class ArgumentsTest(unittest.TestCase):
                               ("kalman_height/drawn_runway_width", 30)):
             self.assertEqual(default.get(f"/uav_landing/{name}"), unknown)
             self.assertEqual(given[f"/uav_landing/{name}"], 45)
+        self.assertEqual(parameters("runway_width:=0")["/uav_landing/kalman_height/drawn_runway_width"], 30)
+
+    def test_no_inertial_sensor_can_be_asked_for(self):
+        self.assertEqual(parameters("imu:=none")["/uav_landing/approach_angle/imu"], "")
+        self.assertEqual(parameters("imu:=/my/imu")["/uav_landing/approach_angle/imu"], "/my/imu")
 
 
 if __name__ == "__main__":

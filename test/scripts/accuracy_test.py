@@ -87,11 +87,13 @@ class ApproachesTest(unittest.TestCase):
         self.assertEqual((scores["low"], scores["coverage"], scores["frames"]), (1.0, 0.5, 3))
 
     def test_lag_is_the_time_by_which_the_angle_comes_late(self):
-        def flight(late, duration=20):
-            return [approach_row(t, 20, 0, angle_valid=int(t > 3), approach_angle_deg=3 + math.sin(t - late),
+        def flight(late, duration=20, off=0):
+            return [approach_row(t, 20, 0, angle_valid=int(t > 3), approach_angle_deg=3 + off + math.sin(t - late),
                                  approach_angle_true_deg=3 + math.sin(t)) for t in np.arange(0, duration, 0.05)]
         self.assertAlmostEqual(approaches.lag_of(flight(0)), 0, 6)
         self.assertAlmostEqual(approaches.lag_of(flight(0.15)), 0.15, 2)
+        self.assertAlmostEqual(approaches.lag_of(flight(0.15, off=0.3)), 0.15, 2)
+        self.assertIsNone(approaches.lag_of(flight(2)))
         self.assertIsNone(approaches.lag_of(flight(0.15, 4)))
 
     def test_row_fits_the_header(self):

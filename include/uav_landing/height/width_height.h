@@ -22,9 +22,10 @@ class WidthHeight {
   std::optional<Estimate> height(double ratio, double variance) const;
   /// Whether the edges seen are those that the width was learned from or is known of, rather than, for
   /// instance, the other sides of the lines along the runway: by the height (m, m^2) that is expected without
-  /// this pair. by_stereo: that height is still measured. Without it less and less is known, and edges that
-  /// were others remain so as long as they are off by more than the sides of lines are.
-  bool isSame(double ratio, double variance, double height, double height_variance, bool by_stereo);
+  /// this pair. Once they were others they remain so until they differ by no more than what is uncertain
+  /// besides the height, of which less and less is known while stereo is out. ratio and variance as height()
+  /// takes them.
+  bool isSame(double ratio, double variance, double height, double height_variance);
   /// A pair with a height by stereo (m, m^2) that is believed. Other edges take the place of those before
   /// when some pairs in a row saw them.
   void learn(double ratio, double variance, double height, double height_variance);

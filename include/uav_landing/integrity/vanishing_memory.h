@@ -23,7 +23,7 @@ class VanishingMemory {
   /// which three have agreed, the last one within a second.
   bool leaps(double stamp, const Direction& seen, const Eigen::Vector3d& axis,
              const ApproachAngleResult::Motion& turn);
-  /// The one of the pairs before that the last pair's was compared with, where the camera looks now.
+  /// After a leap: the one of the pairs before, where the camera looks now.
   const std::optional<Direction>& remembered() const { return last_; }
   void reset() { *this = VanishingMemory(); }
 

@@ -215,7 +215,8 @@ class KalmanHeightStage {
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
-  NormalDoubt doubt_, motion_doubt_;     // by the vanishing point, and by the images' motion
+  NormalDoubt doubt_, motion_doubt_;  // by the vanishing point, and by the images' motion
+  bool heading_leapt_ = false;
   VanishingMemory vanishing_, heading_;  // of its pitch, and of its yaw
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s

@@ -47,13 +47,13 @@ void WidthHeight::merge(const Width& seen, Width& width) {
   width.pairs = std::min(width.pairs + 1, kAgreeing);
 }
 
-bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance,
-                         bool by_stereo) {
+bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance) {
   if (!width_) return true;
   const Width now = seen(ratio, variance, height, height_variance);
+  const double without_height = kGate * std::sqrt(width_->variance + height * height * variance);
   if (!agree(now, *width_)) {
     changed_ = true;
-  } else if (by_stereo || std::abs(now.mean - width_->mean) <= kSame * width_->mean) {
+  } else if (std::abs(now.mean - width_->mean) <= std::max(kSame * width_->mean, without_height)) {
     changed_ = false;
   }
   return !changed_;
@@ -75,6 +75,7 @@ void WidthHeight::learn(double ratio, double variance, double height, double hei
   if (width_ && width_->pairs >= kAgreeing && other_->pairs < kAgreeing) return;
   width_ = other_;
   other_.reset();
+  changed_ = false;
 }
 
 }  // namespace uav_landing

@@ -18,7 +18,7 @@ constexpr double kClearStep = 5;        // the same, in standard errors over the
 constexpr double kFirstStep = 0.5;      // of the clearest step: a nearer one that is taken instead
 // On bright ground the line's near edge is no clear step, but its far one is.
 constexpr double kWidestLine = 1.1;  // pitches of the bars
-constexpr double kPaint = 0.5;       // of the bars' contrast
+constexpr double kPaint = 0.5;       // of the bars' contrast: least fall behind a line
 
 /// Share of the width on which it gets brighter towards the far side around a station by at least this much.
 /// The line may lie slightly aslant.
@@ -90,11 +90,13 @@ std::optional<double> clearestRise(const std::vector<Step>& steps, size_t first,
   return found;
 }
 
-/// Whether it is as bright before a station where it gets darker as the bars are.
-bool isPaint(const TopView& view, int k, const ThresholdBars& bars) {
-  const double before = 0.5 * (meanOf(view.row(k - 1)) + meanOf(view.row(k - 2)));
-  const double after = 0.5 * (meanOf(view.row(k + 1)) + meanOf(view.row(k + 2)));
-  return before - after >= kPaint * bars.contrast;
+/// Near edge of the line of which the i-th step is the far one, first: station of the first step.
+std::optional<double> nearEdge(const TopView& view, const std::vector<Step>& steps, int first, size_t i,
+                               double pitch) {
+  const double far = view.distance(first + static_cast<double>(i));
+  size_t near = i;
+  while (near > 0 && far - view.distance(first + static_cast<double>(near)) < kWidestLine * pitch) --near;
+  return clearestRise(steps, near, i);
 }
 
 }  // namespace
@@ -133,11 +135,8 @@ std::optional<double> findPavement(const TopView& view, const ThresholdBars& bar
     if (!steps[i].clear || std::abs(steps[i].mean) < kFirstStep * clearest) continue;
     std::optional<double> top = topOf(steps, i);
     if (!top) continue;
-    const int far = begin + static_cast<int>(i);
-    if (steps[i].mean < 0 && isPaint(view, far, bars)) {
-      int near = far;
-      while (near > begin && view.distance(far) - view.distance(near) < kWidestLine * pitch) --near;
-      top = clearestRise(steps, near - begin, i);
+    if (steps[i].mean <= -kPaint * bars.contrast) {
+      top = nearEdge(view, steps, begin, i, pitch);
       if (!top) return std::nullopt;
     }
     return begin + *top;

@@ -20,9 +20,8 @@ struct ThresholdLine {
 ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, int first);
 
 /// Station at which the pavement of the bars begins: a step of the brightness, either way, right across.
-/// Where it gets darker behind what is as bright as paint, that may be the far side of a line which the
-/// ground before it is almost as bright as: its near edge is told, or nothing. pitch: from bar to bar, in
-/// heights.
+/// Where it falls by as much as behind a line, the ground before may be almost as bright as a line that is
+/// there: its near edge is told, or nothing. pitch: from bar to bar, in heights.
 std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, double pitch, int first);
 
 }  // namespace uav_landing

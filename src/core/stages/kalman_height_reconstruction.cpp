@@ -82,9 +82,9 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
   const CommonVariance common = filter_.commonVariance();
   const bool by_stereo = !reconstruction.failure;
   const bool same =
-      !filter_.initialised() || confirmations_ < kConfirmations ||
+      !seen || !filter_.initialised() || confirmations_ < kConfirmations ||
       width_.isSame(runway.width, runway.width_variance, filter_.state()[0] - reconstruction.bend,
-                    filter_.ownCovariance()(0, 0) + common.lasting + common.bend, by_stereo);
+                    filter_.ownCovariance()(0, 0) + common.lasting + common.bend);
   // A known one is reported nevertheless: the fault may as well be the heights'.
   if (!same && !width_.independent()) seen.reset();
   if (seen) {
@@ -100,7 +100,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
       reconstruction.variance = result.width_height_variance;
       width_variance_ = seen->common;
       reconstruction.by_width = true;
-    } else if (by_stereo && width_.independent()) {
+    } else if (by_stereo && same && width_.independent()) {
       const double difference = result.width_height - reconstruction.height;
       const double sum = seen->variance + reconstruction.variance;
       if (difference * difference <= kAgreement * kAgreement * sum) {

@@ -126,6 +126,7 @@ void KalmanHeightStage::reset() {
   motion_doubt_.reset();
   vanishing_.reset();
   heading_.reset();
+  heading_leapt_ = false;
   ground_.reset();
   ground_stamp_.reset();
   ground_height_ = kUnknown;
@@ -139,10 +140,11 @@ void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const 
   const bool known = reconstruction.plane.valid();
   const GroundNormal normal = known ? reconstruction.normal : GroundNormal{approach.n, approach.n_covariance};
   VanishingMemory::Direction runway{approach.vanishing_direction, approach.vanishing_covariance};
-  // One that leaps is of other lines, as of the edge of a shadow.
-  if (!repeated && heading_.leaps(approach.stamp, runway, normal.n.cross(runway.direction).normalized(),
-                                  turnSince(approach)))
-    runway = *heading_.remembered();
+  // One that leaps is of other lines, as of the edge of a shadow. What a repeated image shows is known.
+  if (!repeated)
+    heading_leapt_ = heading_.leaps(approach.stamp, runway, normal.n.cross(runway.direction).normalized(),
+                                    turnSince(approach));
+  if (heading_leapt_) runway = *heading_.remembered();
   reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
 }
 

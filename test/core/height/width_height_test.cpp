@@ -44,21 +44,29 @@ TEST(WidthHeight, EdgesThatWereNotLearnedFromAreTold) {
   WidthHeight width(0);
   for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
   // Lines 1.2 m inside of both edges of 45 m: 5 %.
-  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, true));
-  EXPECT_FALSE(width.isSame(44.1 / 15, 1e-8, 15, 1e-4, true)) << "the lines' edges within the surface's";
-  EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4, true));
-  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16, true)) << "as far as the height is known";
-  EXPECT_FALSE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4, true)) << "nor are they a known width's";
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4));
+  EXPECT_FALSE(width.isSame(44.1 / 15, 1e-8, 15, 1e-4)) << "the lines' edges within the surface's";
+  EXPECT_TRUE(width.isSame(44.9 / 14, 1e-8, 14, 1e-4));
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 0.16)) << "as far as the height is known";
+  EXPECT_FALSE(WidthHeight(kWidth).isSame(42.6 / 15, 1e-8, 15, 1e-4)) << "nor are they a known width's";
 }
 
 TEST(WidthHeight, OtherEdgesRemainOthersHoweverLittleIsKnownOfTheHeight) {
   WidthHeight width(kWidth);
-  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1, false)) << "nothing told that they are others";
-  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, false));
-  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1, false));
-  EXPECT_TRUE(width.isSame(44.9 / 15, 1e-8, 15, 1, false)) << "one pair that saw others is no more than that";
-  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4, true));
-  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1, true)) << "by a new height";
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1)) << "nothing told that they are others";
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1e-4));
+  EXPECT_FALSE(width.isSame(42.6 / 15, 1e-8, 15, 1));
+  EXPECT_FALSE(width.isSame(44.5 / 15, 1e-8, 15, 1)) << "1.1 %, with the width known to 0.2 %";
+  EXPECT_TRUE(width.isSame(44.7 / 15, 1e-8, 15, 1)) << "0.7 %: one pair that saw others is no more than that";
+  EXPECT_TRUE(width.isSame(42.6 / 15, 1e-8, 15, 1));
+}
+
+TEST(WidthHeight, ALearnedWidthThatTookAnothersPlaceIsThatOfItsOwnEdges) {
+  WidthHeight width(0);
+  for (int i = 0; i < 8; ++i) width.learn(3, 1e-8, 15, 1e-4);
+  EXPECT_FALSE(width.isSame(3.3, 1e-8, 15, 1e-4));
+  for (int i = 0; i < 5; ++i) width.learn(3.3, 1e-8, 15, 1e-4);
+  EXPECT_TRUE(width.isSame(3.3 * 1.05, 1e-8, 15, 1));
 }
 
 TEST(WidthHeight, AnotherEdgeInBetweenDoesNotMakeForgetTheOnesBefore) {

@@ -222,6 +222,16 @@ TEST(RunwayThreshold, IsTheNearEdgeOfALineThatBrightGroundHides) {
     }
 }
 
+TEST(RunwayThreshold, BrightGroundMayHideALine) {
+  Bars bars;
+  bars.line_to = bars.line_from;
+  bars.before = 150;
+  bars.pavement_from = 5.75;
+  const auto found = bars.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_GT(found->systematic_variance, 0);
+}
+
 TEST(RunwayThreshold, IsWhereThePavementBeginsBehindAStripThatIsNoPaint) {
   Bars bars;
   bars.pavement = 60;
