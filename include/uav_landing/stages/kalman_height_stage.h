@@ -78,9 +78,11 @@ class KalmanHeightStage {
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
   void averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction, LandingResult& result);
-  /// repeated: the left image is the pair before's.
-  void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach, bool repeated,
-                   LandingResult& result);
+  /// A direction of the runway that leaps is of other lines, as of the edge of a shadow: the one before takes
+  /// its place. repeated: the left image is the pair before's. n: of the ground.
+  void holdHeading(bool repeated, const Eigen::Vector3d& n, ApproachAngleResult& approach);
+  static void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                          LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   /// What is known of the ground besides the stereo plane.

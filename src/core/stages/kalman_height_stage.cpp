@@ -71,7 +71,8 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   }
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
-  reportPlane(reconstruction, approach, stereo.left_repeated, result);
+  holdHeading(stereo.left_repeated, knownNormal(reconstruction, approach), approach);
+  reportPlane(reconstruction, approach, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
                       approach.step.duration;
@@ -135,17 +136,23 @@ void KalmanHeightStage::reset() {
   lost_ = false;
 }
 
-void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                                    bool repeated, LandingResult& result) {
-  const bool known = reconstruction.plane.valid();
-  const GroundNormal normal = known ? reconstruction.normal : GroundNormal{approach.n, approach.n_covariance};
-  VanishingMemory::Direction runway{approach.vanishing_direction, approach.vanishing_covariance};
-  // One that leaps is of other lines, as of the edge of a shadow. What a repeated image shows is known.
+void KalmanHeightStage::holdHeading(bool repeated, const Eigen::Vector3d& n, ApproachAngleResult& approach) {
+  // What a repeated image shows is known.
   if (!repeated)
-    heading_leapt_ = heading_.leaps(approach.stamp, runway, normal.n.cross(runway.direction).normalized(),
-                                    turnSince(approach));
-  if (heading_leapt_) runway = *heading_.remembered();
-  reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
+    heading_leapt_ =
+        heading_.leaps(approach.stamp, {approach.vanishing_direction, approach.vanishing_covariance},
+                       n.cross(approach.vanishing_direction).normalized(), turnSince(approach));
+  if (!heading_leapt_) return;
+  approach.vanishing_direction = heading_.remembered()->direction;
+  approach.vanishing_covariance = heading_.remembered()->covariance;
+}
+
+void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
+                                    LandingResult& result) {
+  const bool known = reconstruction.plane.valid();
+  reportAttitude(known ? reconstruction.normal.n : approach.n,
+                 known ? reconstruction.normal.covariance : approach.n_covariance,
+                 approach.vanishing_direction, approach.vanishing_covariance, result);
 }
 
 void KalmanHeightStage::reportRig(LandingResult& result) const {
