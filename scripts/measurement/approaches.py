@@ -17,10 +17,10 @@ TEXT = """Approaches of `simulate_campaign approaches`: baseline 1 m, 640×480, 
 offset differing between the cameras, runways 18–60 m wide with all or few markings, glide 2.2–6° from 60 m to the flare,
 15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, a flare of 3 s, a gust on half of them; the calibration is exact.
 Scored are valid frames later than 1 s after the first; *lag* is the time by which the true angle has to be later to be
-most like the published one, over flare, gust and what the path bends besides; *lateral known* is the share of frames on
-which the lateral offset is known. The last rows are all frames together, with the largest lag, and what is asked. Approach 13
-is slow (16 m/s), and its angle swings by half a degree all the way down: above 30 m a single step of the camera tells it to
-half a degree only; its errors are within what is claimed on 96 % of the frames.
+most like the published one, but for a constant, over flare, gust and what the path bends besides; *lateral known* is the
+share of frames on which the lateral offset is known. The last rows are all frames together, with the largest lag, and what is
+asked. Approach 13 is slow (16 m/s), and its angle swings by half a degree all the way down: above 30 m a single step of the
+camera tells it to half a degree only; its errors are within what is claimed on 96 % of the frames.
 """
 
 
