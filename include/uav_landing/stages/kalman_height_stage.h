@@ -78,11 +78,13 @@ class KalmanHeightStage {
   /// Averages the ground normal over the pairs. A plane that contradicts those before gives no height.
   void averageAttitude(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction, LandingResult& result);
-  /// A direction of the runway that leaps is of other lines, as of the edge of a shadow: the one before takes
-  /// its place. repeated: the left image is the pair before's. n: of the ground.
-  void holdHeading(bool repeated, const Eigen::Vector3d& n, ApproachAngleResult& approach);
-  static void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                          LandingResult& result);
+  /// That the pair sees, n being the ground's normal. One that leaps is of other lines, as of the edge of a
+  /// shadow, and the one before takes its place; but for two pairs at most, as the turn that it is compared
+  /// by may have been wrong. repeated: the left image is the pair before's.
+  VanishingMemory::Direction runwayDirection(bool repeated, const Eigen::Vector3d& n,
+                                             const ApproachAngleResult& approach);
+  void reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach, bool repeated,
+                   LandingResult& result);
   void watchRig(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                 Reconstruction& reconstruction);
   /// What is known of the ground besides the stereo plane.
@@ -217,8 +219,8 @@ class KalmanHeightStage {
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;
-  NormalDoubt doubt_, motion_doubt_;  // by the vanishing point, and by the images' motion
-  bool heading_leapt_ = false;
+  NormalDoubt doubt_, motion_doubt_;     // by the vanishing point, and by the images' motion
+  int headings_held_ = 0;                // pairs in a row
   VanishingMemory vanishing_, heading_;  // of its pitch, and of its yaw
   GroundMemory ground_;
   std::optional<double> ground_stamp_;          // up to which the ground has been carried on, s

@@ -71,8 +71,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   }
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
-  holdHeading(stereo.left_repeated, knownNormal(reconstruction, approach), approach);
-  reportPlane(reconstruction, approach, result);
+  reportPlane(reconstruction, approach, stereo.left_repeated, result);
   if (!approach.step.failure)
     result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
                       approach.step.duration;
@@ -127,7 +126,7 @@ void KalmanHeightStage::reset() {
   motion_doubt_.reset();
   vanishing_.reset();
   heading_.reset();
-  heading_leapt_ = false;
+  headings_held_ = 0;
   ground_.reset();
   ground_stamp_.reset();
   ground_height_ = kUnknown;
@@ -136,23 +135,28 @@ void KalmanHeightStage::reset() {
   lost_ = false;
 }
 
-void KalmanHeightStage::holdHeading(bool repeated, const Eigen::Vector3d& n, ApproachAngleResult& approach) {
-  // What a repeated image shows is known.
-  if (!repeated)
-    heading_leapt_ =
-        heading_.leaps(approach.stamp, {approach.vanishing_direction, approach.vanishing_covariance},
-                       n.cross(approach.vanishing_direction).normalized(), turnSince(approach));
-  if (!heading_leapt_) return;
-  approach.vanishing_direction = heading_.remembered()->direction;
-  approach.vanishing_covariance = heading_.remembered()->covariance;
+VanishingMemory::Direction KalmanHeightStage::runwayDirection(bool repeated, const Eigen::Vector3d& n,
+                                                              const ApproachAngleResult& approach) {
+  constexpr int kMostHeld = 2;
+  const VanishingMemory::Direction seen{approach.vanishing_direction, approach.vanishing_covariance};
+  if (!repeated) {  // else it is as it was
+    const Eigen::Vector3d across = n.cross(seen.direction).normalized();
+    headings_held_ =
+        heading_.leaps(approach.stamp, seen, across, turnSince(approach)) ? headings_held_ + 1 : 0;
+    if (headings_held_ > kMostHeld) {
+      heading_.reset();
+      headings_held_ = 0;
+    }
+  }
+  return headings_held_ > 0 ? *heading_.remembered() : seen;
 }
 
 void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const ApproachAngleResult& approach,
-                                    LandingResult& result) {
-  const bool known = reconstruction.plane.valid();
-  reportAttitude(known ? reconstruction.normal.n : approach.n,
-                 known ? reconstruction.normal.covariance : approach.n_covariance,
-                 approach.vanishing_direction, approach.vanishing_covariance, result);
+                                    bool repeated, LandingResult& result) {
+  const GroundNormal normal =
+      reconstruction.plane.valid() ? reconstruction.normal : GroundNormal{approach.n, approach.n_covariance};
+  const VanishingMemory::Direction runway = runwayDirection(repeated, normal.n, approach);
+  reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
 }
 
 void KalmanHeightStage::reportRig(LandingResult& result) const {
