@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "autopilot_messages.h"
+#include "parameter_names.h"
 #include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
@@ -30,27 +31,6 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   }
 }
 
-/// Collects the names of a struct's parameters.
-struct NameCollector {
-  std::vector<std::string>& names;
-  template <class... Rest>
-  void number(const char* name, Rest&&...) {
-    names.emplace_back(name);
-  }
-  template <class... Rest>
-  void flag(const char* name, Rest&&...) {
-    names.emplace_back(name);
-  }
-  template <class... Rest>
-  void text(const char* name, Rest&&...) {
-    names.emplace_back(name);
-  }
-  template <class Enum>
-  void choice(const char* name, Enum&, std::initializer_list<const char*>, const char*) {
-    names.emplace_back(name);
-  }
-};
-
 /// Somebody else's: image_transport's plugins write theirs below the nodelet's name as well, as maps under
 /// the topic's name or their own, and they outlive the nodelet. No parameter of ours is a map.
 bool isForeign(const std::string& name, XmlRpc::XmlRpcValue& value, const std::vector<std::string>& own) {
@@ -60,10 +40,8 @@ bool isForeign(const std::string& name, XmlRpc::XmlRpcValue& value, const std::v
 
 /// Takes the keys of NodeParameters out of the map of all private parameters.
 YAML::Node takeNodeKeys(YAML::Node& all) {
-  std::vector<std::string> names;
-  NodeParameters().visit(NameCollector{names});
   YAML::Node taken(YAML::NodeType::Map);
-  for (const std::string& name : names) {
+  for (const std::string& name : parameterNames<NodeParameters>()) {
     if (!all[name]) continue;
     taken[name] = all[name];
     all.remove(name);
@@ -81,9 +59,7 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
   if (ros::param::get(private_handle.getNamespace(), given)) {
     if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
       return {Reason::kInputInvalid, section + ": expected a map of names and values"};
-    std::vector<std::string> names;
-    NodeParameters().visit(NameCollector{names});
-    Section().visit(NameCollector{names});
+    const std::vector<std::string> names = parameterNames<NodeParameters, Section>();
     for (auto& member : given)
       if (!isForeign(member.first, member.second, names)) all[member.first] = toYaml(member.second);
   }

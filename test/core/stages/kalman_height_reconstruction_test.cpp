@@ -228,12 +228,18 @@ TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
   EXPECT_NEAR(result.raw_height, 20, 1e-6);
 }
 
-TEST(KalmanHeightReconstruction, DoesNotCarryOnByEdgesOfAnotherWidthThanTheKnownOne) {
+/// Knows the width of 45 m and has seen it from 20 m; stamp: of the next pair.
+KalmanHeightStage overKnownRunway(double& stamp, int pairs = 20) {
   KalmanHeightParameters parameters;
   parameters.known_runway_width = 45;
   KalmanHeightStage stage(usualRig(), parameters);
+  for (stamp = 0; pairs-- > 0; stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+  return stage;
+}
+
+TEST(KalmanHeightReconstruction, DoesNotCarryOnByEdgesOfAnotherWidthThanTheKnownOne) {
   double stamp = 0;
-  for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+  KalmanHeightStage stage = overKnownRunway(stamp);
   // Lines 1.2 m inside of both edges: 5 % narrower, as from 21.1 m.
   for (int i = 0; i < 9; ++i, stamp += kStep) {
     const LandingResult result = stage.process(noStereo(stamp), runwayFrom(stamp, 21.1));
@@ -256,11 +262,8 @@ TEST(KalmanHeightReconstruction, APairWithoutAWidthSaysNothingOfTheEdges) {
 }
 
 TEST(KalmanHeightReconstruction, DoesNotMeanHeightsWithEdgesOfAnotherWidthThanTheKnownOne) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = 45;
-  KalmanHeightStage stage(usualRig(), parameters);
   double stamp = 0;
-  for (int i = 0; i < 50; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
+  KalmanHeightStage stage = overKnownRunway(stamp, 50);
   // Edges 2 % narrower, while stereo of a single pair is good to 1 % only.
   const LandingResult result = stage.process(stereoAt(stamp, 20, -0.1, 0.05, 0.2), runwayFrom(stamp, 20.4));
   EXPECT_NEAR(result.raw_height, 20, 1e-6);
