@@ -11,4 +11,8 @@ namespace uav_landing {
 std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
                                    double min_distance, double harris_k);
 
+/// How many corners, most at most, are looked for in an image where each has so many pixels of it at least:
+/// where windows overlap much, more corners cost time and tell little more. Twenty in any case.
+int cornerBudget(const cv::Size& image, int most, int pixels_per_corner);
+
 }  // namespace uav_landing

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "uav_landing/parameters/pixels_per_corner.h"
 #include "uav_landing/parameters/window_radius.h"
 
 namespace uav_landing {
@@ -34,6 +35,7 @@ struct ApproachAngleParameters {
   bool remove_rotation = true;
   AngleFormula angle_formula = AngleFormula::kGeneral;
   int corner_count = 400;
+  int pixels_per_corner = kUsualPixelsPerCorner;
   int window_radius = kUsualWindowRadius;
   double search_radius = 10.0;
   double min_zncc = 0.75;
@@ -91,6 +93,9 @@ struct ApproachAngleParameters {
            "take the rotation between the frames out of the image velocities first (sliding_window only)");
     v.choice("angle_formula", angle_formula, {"general", "eq1"}, "asin(n.t) or the paper's eq (1)");
     v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners followed between frames");
+    v.number(
+        "pixels_per_corner", pixels_per_corner, 1, 10000, "px",
+        "of the image, for each corner at least: where windows overlap much, more corners tell little more");
     v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px",
              "matching window is (2 r + 1) squared");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",

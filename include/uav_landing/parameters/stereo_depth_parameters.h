@@ -1,5 +1,6 @@
 #pragma once
 
+#include "uav_landing/parameters/pixels_per_corner.h"
 #include "uav_landing/parameters/window_radius.h"
 
 namespace uav_landing {
@@ -11,6 +12,7 @@ enum class MatchingCost { kZncc, kSsd };
 /// Sparse stereo and the ground plane (nodelet stereo_depth; paper 3.1, eq 3).
 struct StereoDepthParameters {
   int corner_count = 500;
+  int pixels_per_corner = kUsualPixelsPerCorner;
   double harris_k = 0.04;
   double corner_quality = 1e-7;
   double min_corner_distance = 4.0;
@@ -36,6 +38,9 @@ struct StereoDepthParameters {
   template <class Visitor>
   void visit(Visitor&& v) {
     v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners kept in the left image");
+    v.number(
+        "pixels_per_corner", pixels_per_corner, 1, 10000, "px",
+        "of the image, for each corner at least: where windows overlap much, more corners tell little more");
     v.number("harris_k", harris_k, 0.01, 0.2, "", "k of the Harris response");
     v.number("corner_quality", corner_quality, 1e-9, 0.5, "",
              "weakest corner kept, as a share of the strongest response");

@@ -160,4 +160,9 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
   return corners;
 }
 
+int cornerBudget(const cv::Size& image, int most, int pixels_per_corner) {
+  constexpr int kFewest = 20;  // as of the parameters for their count
+  return std::min(most, std::max(kFewest, image.area() / pixels_per_corner));
+}
+
 }  // namespace uav_landing

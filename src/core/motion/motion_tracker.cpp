@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "base/thinned.h"
 #include "geometry/rotation.h"
+#include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/motion/approach_angle.h"
 
@@ -125,7 +126,9 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
                                              const AttitudePrior& imu) {
   Result result;
   step_matches_.clear();
-  const Corners corners = thinned(all_corners, static_cast<size_t>(parameters_.corner_count));
+  const Corners corners = thinned(
+      all_corners,
+      static_cast<size_t>(cornerBudget(rig_.size, parameters_.corner_count, parameters_.pixels_per_corner)));
   Frame now;
   {
     ScopedTimer timer(timings, "match_images_motion");

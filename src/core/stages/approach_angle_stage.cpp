@@ -198,8 +198,8 @@ struct ApproachAngleStage::Implementation {
     cv::Mat mask;
     keepHalfPlane(left_mask, slope.x(), slope.y(), slope.z() - kLeastSlope, mask);
     std::vector<TrackedCorner> corners;
-    for (const cv::Point& point :
-         findCorners(left, mask, parameters.corner_count, kQuality, kDistance, kHarris)) {
+    const int count = cornerBudget(left.size(), parameters.corner_count, parameters.pixels_per_corner);
+    for (const cv::Point& point : findCorners(left, mask, count, kQuality, kDistance, kHarris)) {
       corners.push_back({point.x, point.y, true, 0, 0});
     }
     return corners;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/direct_refinement.h"
@@ -35,6 +36,7 @@ struct StereoDepthStage::Implementation {
   RigModel model;
   StereoDepthParameters parameters;
   PlaneLimits limits;
+  int corner_count;
   StereoLevel fine, coarse;
   MatchImage left, right;
   RowAlignment rows;
@@ -53,6 +55,7 @@ struct StereoDepthStage::Implementation {
   Implementation(const RigModel& rig, const StereoDepthParameters& p)
       : model(rig),
         parameters(p),
+        corner_count(cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
     limits = {p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance};
     fine.rig = rig.rig;
@@ -166,7 +169,7 @@ struct StereoDepthStage::Implementation {
   std::optional<Eigen::Vector3d> scoutedPlane() {
     {
       ScopedTimer timer(timings, "harris_corners");
-      last_corners = findGroundCorners(fine, last_g, parameters.corner_count, parameters);
+      last_corners = findGroundCorners(fine, last_g, corner_count, parameters);
     }
     ScopedTimer timer(timings, "feature_matching_coarse");
     const Consensus scouted =
@@ -206,7 +209,7 @@ struct StereoDepthStage::Implementation {
       std::vector<cv::Point> corners = cornersOnGround(fine, last_corners, g);
       if (corners.size() >= kKept * last_corners.size()) return corners;
     }
-    return findGroundCorners(fine, g, parameters.corner_count, parameters);
+    return findGroundCorners(fine, g, corner_count, parameters);
   }
 
   void refine(const Eigen::Vector3d& start, StereoDepthResult& result) {

@@ -146,5 +146,17 @@ TEST(Corners, AreNotFoundAlongAStraightEdge) {
   EXPECT_TRUE(find(image, inner, 100).empty());
 }
 
+TEST(CornerBudget, IsWhatAnImageHasRoomFor) {
+  EXPECT_EQ(cornerBudget({640, 480}, 500, 300), 500);
+  EXPECT_EQ(cornerBudget({320, 240}, 500, 300), 256);
+  EXPECT_EQ(cornerBudget({320, 240}, 200, 300), 200);
+  EXPECT_EQ(cornerBudget({320, 240}, 500, 1), 500);
+}
+
+TEST(CornerBudget, IsNeverNothing) {
+  EXPECT_EQ(cornerBudget({64, 48}, 500, 10000), 20);
+  EXPECT_EQ(cornerBudget({64, 48}, 10, 10000), 10);
+}
+
 }  // namespace
 }  // namespace uav_landing
