@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/lanes.h"
 #include "base/multiversion.h"
 
 namespace uav_landing {
@@ -39,23 +40,24 @@ UAV_LANDING_MULTIVERSION void project(const LineView& line, const Places& y, Pla
 
 /// What greys at some places are interpolated from.
 struct Pixels {
-  std::array<int, kColumns> column, row;             // of the one to the upper left; any outside
+  std::array<int, kColumns> in_image, in_mask;       // where the one to the upper left is; any outside
   std::array<float, kColumns> right, below;          // how far the place is from there, px
   std::array<int, kColumns> inside;                  // 1 where they are all in the picture
   std::array<std::uint16_t, kColumns> upper, lower;  // the left one in the lower byte
 };
 
-/// width, height: of the picture. Beside the camera places are farther out than an int can say.
-UAV_LANDING_MULTIVERSION void findPixels(const Places& u, const Places& v, int width, int height,
-                                         Pixels& pixels) {
-  const double right_end = width - 1, lower_end = height - 1;
+/// Beside the camera places are farther out than an int can say.
+UAV_LANDING_MULTIVERSION void findPixels(const Places& u, const Places& v, const cv::Mat& image,
+                                         const cv::Mat& mask, Pixels& pixels) {
+  const double right_end = image.cols - 1, lower_end = image.rows - 1;
+  const int image_step = static_cast<int>(image.step), mask_step = static_cast<int>(mask.step);
   const double last_column = std::nextafter(right_end, 0), last_row = std::nextafter(lower_end, 0);
   for (int c = 0; c < kColumns; ++c) {
     const double x = u[c] > 0 ? u[c] : 0, y = v[c] > 0 ? v[c] : 0;
     const double in_x = x < right_end ? x : last_column, in_y = y < lower_end ? y : last_row;
     const int column = static_cast<int>(in_x), row = static_cast<int>(in_y);
-    pixels.column[c] = column;
-    pixels.row[c] = row;
+    pixels.in_image[c] = row * image_step + column;
+    pixels.in_mask[c] = row * mask_step + column;
     pixels.right[c] = static_cast<float>(in_x - column);
     pixels.below[c] = static_cast<float>(in_y - row);
     pixels.inside[c] = (in_x == u[c] ? 1 : 0) & (in_y == v[c] ? 1 : 0);
@@ -63,12 +65,12 @@ UAV_LANDING_MULTIVERSION void findPixels(const Places& u, const Places& v, int w
 }
 
 void loadPixels(const cv::Mat& image, const cv::Mat& mask, Pixels& pixels) {
+  const uchar *above = image.data, *below = above + image.step, *kept = mask.data;
   for (int c = 0; c < kColumns; ++c) {
-    const uchar* above =
-        image.data + static_cast<std::ptrdiff_t>(image.step) * pixels.row[c] + pixels.column[c];
-    std::memcpy(&pixels.upper[c], above, sizeof(std::uint16_t));
-    std::memcpy(&pixels.lower[c], above + image.step, sizeof(std::uint16_t));
-    pixels.inside[c] &= mask.data[static_cast<std::ptrdiff_t>(mask.step) * pixels.row[c] + pixels.column[c]];
+    const int place = pixels.in_image[c];
+    std::memcpy(&pixels.upper[c], above + place, sizeof(std::uint16_t));
+    std::memcpy(&pixels.lower[c], below + place, sizeof(std::uint16_t));
+    pixels.inside[c] &= kept[pixels.in_mask[c]];
   }
 }
 
@@ -87,6 +89,20 @@ UAV_LANDING_MULTIVERSION int interpolate(const Pixels& pixels, TopView::Across& 
     count += pixels.inside[c];
   }
   return count;
+}
+
+/// Of the stations of a block.
+UAV_LANDING_MULTIVERSION void average(const TopView::Across* rows, TopView::Across& mean) {
+  constexpr int kRows = 2 * TopView::kBlock + 1;
+  for (int c = 0; c < kColumns; c += kLanes) {
+    Lanes sum, more;
+    load(&rows[0][c], sum);
+    for (int i = 1; i < kRows; ++i) {
+      load(&rows[i][c], more);
+      sum += more;
+    }
+    store(sum / static_cast<float>(kRows), &mean[c]);
+  }
 }
 
 }  // namespace
@@ -132,17 +148,15 @@ bool TopView::sample(double x, Across& row) const {
           lines);
   if (image_.cols < 2 || image_.rows < 2) return false;
   Pixels pixels;
-  findPixels(columns, lines, image_.cols, image_.rows, pixels);
+  findPixels(columns, lines, image_, mask_, pixels);
   loadPixels(image_, mask_, pixels);
   const int inside = interpolate(pixels, row);
   return inside >= kLeastPicture * kColumns;
 }
 
 TopView::Across TopView::blockAround(int k) const {
-  Across block = row(k - kBlock);
-  for (int i = k - kBlock + 1; i <= k + kBlock; ++i)
-    for (int c = 0; c < kColumns; ++c) block[c] += row(i)[c];
-  for (float& value : block) value /= 2 * kBlock + 1;
+  Across block;
+  average(&row(k - kBlock), block);
   return block;
 }
 
