@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/interpolation.h"
 #include "base/lanes.h"
@@ -21,20 +22,27 @@ class RowPixels {
   static bool possible(float step) { return std::abs(step - 1) * (kWidth - 1) < 0.99f; }
 
   // starts: the first places of the rows.
-  [[gnu::always_inline]] inline void load(const cv::Mat& rows, const std::array<float, kHeight>& starts,
-                                          float step) {
+  [[gnu::always_inline]] inline void read(const cv::Mat& right, int top,
+                                          const std::array<float, kHeight>& starts, float step) {
+    using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
+    static_assert(kHeight == kLanes, "a number for each row");
     drift_ = step - 1;
-    std::array<int, kHeight> first;
-    for (int y = 0; y < kHeight; ++y) {
-      const float x = starts[y], last = x + step * static_cast<float>(kWidth - 1);
-      first[y] = static_cast<int>(std::min(x, last - static_cast<float>(kWidth - 1)));
-      const float begin = x - static_cast<float>(first[y]);
-      for (int k = 0; k < kParts; ++k) begin_[k][y] = begin + drift_ * static_cast<float>(k * kLanes);
-      none_further_[y] = begin + std::max(drift_, 0.f) * kWidth < 0.999f;
+    const float most = std::max(drift_, 0.f) * kLanes;
+    Lanes x;
+    load(starts.data(), x);
+    const Lanes last = x + step * static_cast<float>(kWidth - 1) - static_cast<float>(kWidth - 1);
+    const IntLanes first = __builtin_convertvector(x < last ? x : last, IntLanes);
+    const Lanes begin = x - __builtin_convertvector(first, Lanes);
+    for (int k = 0; k < kParts; ++k) {
+      const Lanes here = begin + drift_ * static_cast<float>(k * kLanes);
+      const IntLanes none_further = here + most < 0.999f;
+      store(here, begin_[k].data());
+      std::memcpy(none_further_[k].data(), &none_further, sizeof none_further);
     }
-    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(rows.step1());
+    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(right.step);
+    const uchar* above = right.ptr<uchar>(top) - 1;
     for (int y = 0; y < kHeight; ++y) {
-      const uchar* row = rows.ptr<uchar>() + y * stride + first[y] - 1;
+      const uchar* row = above + y * stride + first[y];
       for (int i = 0; i < kRead; i += kLanes) {
         Lanes pixels;
         convert(row + i, pixels);
@@ -48,7 +56,7 @@ class RowPixels {
     const float* p = &pixel_[y][k * kLanes];
     Lanes t;
     progress(begin_[k][y], drift_, t);
-    if (none_further_[y]) {
+    if (none_further_[k][y] != 0) {
       parabolicBetween({p, p + 1, p + 2, p + 3}, t, values);
     } else {
       parabolicBetween({p, p + 1, p + 2, p + 3, p + 4}, t, values);
@@ -60,7 +68,7 @@ class RowPixels {
   static constexpr int kParts = kWidth / kLanes;
   std::array<std::array<float, kRead>, kHeight> pixel_;
   std::array<std::array<float, kHeight>, kParts> begin_;
-  std::array<int, kHeight> none_further_;
+  std::array<std::array<int, kHeight>, kParts> none_further_;  // whether of these values
   float drift_;
 };
 
@@ -112,18 +120,18 @@ float sumOf(const BlockRow& row) {
   return total;
 }
 
-UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& rows, double first, double down, float step,
+UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& right, int row, double first, double down, float step,
                                          float reference, const float* grey, const float* slope) {
   std::array<float, kHeight> starts;
   for (int y = 0; y < kHeight; ++y) starts[y] = static_cast<float>(first + down * y);
   ColumnSums sums;
   if (RowPixels::possible(step)) {
     RowPixels pixels;
-    pixels.load(rows, starts, step);
+    pixels.read(right, row, starts, step);
     sums.addUp([&](int y, int k, Lanes& value) { pixels.interpolate(y, k, value); }, reference, grey, slope);
   } else {
     std::array<BlockRow, kHeight> sampled;
-    for (int y = 0; y < kHeight; ++y) sampleRow(rows.ptr<uchar>(y), starts[y], step, sampled[y]);
+    for (int y = 0; y < kHeight; ++y) sampleRow(right.ptr<uchar>(row + y), starts[y], step, sampled[y]);
     sums.addUp([&](int y, int k, Lanes& value) { load(&sampled[y][k * kLanes], value); }, reference, grey,
                slope);
   }

@@ -18,11 +18,11 @@ struct BlockSums {
   float r, squares, greys, slopes;
 };
 
-/// rows: of the right image (mono8), as many as a block has. first: place of the block's first pixel in the
-/// first of them, which moves by down from row to row; step: from pixel to pixel. All that is interpolated
-/// from, two pixels to each side, must be inside. Counted from the grey level reference, so that floats are
-/// exact enough for the differences of sums. grey, slope: the block's values, row by row.
-BlockSums addUp(const cv::Mat& rows, double first, double down, float step, float reference,
+/// right: the right image (mono8); row: of the block's first pixel. first: its place there, which moves by
+/// down from row to row; step: from pixel to pixel. All that is interpolated from, two pixels to each side,
+/// must be inside. Counted from the grey level reference, so that floats are exact enough for the differences
+/// of sums. grey, slope: the block's values, row by row.
+BlockSums addUp(const cv::Mat& right, int row, double first, double down, float step, float reference,
                 const float* grey, const float* slope);
 
 }  // namespace uav_landing

@@ -53,8 +53,8 @@ void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) 
       continue;
     }
     const float reference = right.at<uchar>(block.v, static_cast<int>(begin));
-    const BlockSums sums = addUp(right.rowRange(block.v, block.v + kHeight), begin, -shift.b, step, reference,
-                                 block.grey.data(), block.slope.data());
+    const BlockSums sums =
+        addUp(right, block.v, begin, -shift.b, step, reference, block.grey.data(), block.slope.data());
     const double total = sums.r, grey = sums.greys;
     const double explained = total * total / kPixels + grey * grey / block.grey_energy;
     products_.push_back({&block, grey, sums.slopes, (sums.squares - explained) / (kPixels - 2)});
