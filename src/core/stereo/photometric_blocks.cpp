@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <opencv2/imgproc.hpp>
 
 #include "base/lanes.h"
 #include "base/median.h"
 #include "base/multiversion.h"
-#include "uav_landing/image/image_check.h"
 
 namespace uav_landing {
 namespace {
@@ -22,23 +20,24 @@ constexpr float kSobelScale = 8.f;
 // Squares of grey levels in a block below which it shows nothing.
 constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
 
-// Sum of the squares of a block of derivatives less their mean.
-UAV_LANDING_MULTIVERSION int blockEnergy(const short* first, size_t stride) {
-  using Row = short __attribute__((vector_size(kWidth * sizeof(short))));
-  alignas(Row) std::array<short, kPixels>
-      all;  // one after the other: the compiler knows instructions for that
-  alignas(Row) std::array<short, kWidth> columns;
-  Row sums{};  // of eight derivatives of up to 4 * 255
-  for (int y = 0; y < kHeight; ++y, first += stride) {
-    Row row;
-    std::memcpy(&row, first, sizeof row);
-    std::memcpy(&all[y * kWidth], &row, sizeof row);
-    sums += row;
-  }
-  std::memcpy(columns.data(), &sums, sizeof sums);
+// Sum of the squares of a block's derivatives along the row, by Sobel's kernel, less their mean. first: its
+// first pixel.
+UAV_LANDING_MULTIVERSION int blockEnergy(const uchar* first, std::ptrdiff_t stride) {
+  std::array<short, kPixels + 2 * kWidth> differences;  // of neighbours, also of the rows above and below
+  std::array<short, kPixels> slopes;    // one after the other: the compiler knows instructions for that
+  std::array<short, kWidth> columns{};  // sums of eight of up to 4 * 255
+  const uchar* row = first - stride;
+  for (int y = 0; y < kHeight + 2; ++y, row += stride)
+    for (int x = 0; x < kWidth; ++x)
+      differences[y * kWidth + x] = static_cast<short>(row[x + 1] - row[x - 1]);
+  for (int i = 0; i < kPixels; ++i)
+    slopes[i] =
+        static_cast<short>(differences[i] + 2 * differences[i + kWidth] + differences[i + 2 * kWidth]);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) columns[x] = static_cast<short>(columns[x] + slopes[y * kWidth + x]);
   int total = 0, energy = 0;
   for (const short value : columns) total += value;
-  for (const short value : all) energy += value * value;
+  for (const short value : slopes) energy += value * value;
   return energy - static_cast<int>(static_cast<int64_t>(total) * total / kPixels);
 }
 
@@ -50,10 +49,10 @@ PhotometricBlocks::PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask)
 bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, int u, int v) const {
   for (const int y : {v, v + kHeight - 1}) {
     for (const int x : {u, u + kWidth - 1}) {
-      const double column = x - shift.at(x, y);
-      if (shift.at(x, y) - rig.principalOffset() < kLeastDisparity) return false;
+      const double moved = shift.at(x, y), column = x - moved;
+      if (moved - rig.principalOffset() < kLeastDisparity) return false;
       if (column < kMargin || column > right_mask_.cols - 2 - kMargin) return false;
-      if (!isSet(left_mask_, x, y) || !isSet(right_mask_, column, y)) return false;
+      if (left_mask_.at<uchar>(y, x) == 0 || right_mask_.at<uchar>(y, cvRound(column)) == 0) return false;
     }
   }
   return true;
@@ -67,14 +66,11 @@ void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig
   const double highest = shift.b > 0 ? std::min(horizon(0), horizon(left.cols - 1)) : 0;
   first_row_ = static_cast<int>(std::clamp<double>(std::ceil(highest), kMargin, left.rows - 1));
   if (left.rows - first_row_ < kHeight + kMargin) return;
-  gradient_.create(left.size(), CV_16S);
-  cv::Mat ground = gradient_.rowRange(first_row_, left.rows);
-  cv::Sobel(left.rowRange(first_row_, left.rows), ground, CV_16S, 1, 0);
+  const auto stride = static_cast<std::ptrdiff_t>(left.step);
   for (int v = first_row_; v + kHeight + kMargin <= left.rows; v += kHeight) {
     for (int u = kMargin; u + kWidth + kMargin <= left.cols; u += kWidth) {
       if (!usable(rig, shift, u, v)) continue;
-      const int energy = blockEnergy(gradient_.ptr<short>(v) + u, gradient_.step1());
-      candidates_.push_back({u, v, energy, false});
+      candidates_.push_back({u, v, blockEnergy(left.ptr<uchar>(v) + u, stride), false});
     }
   }
 }
@@ -116,7 +112,7 @@ void PhotometricBlocks::pick(int count) {
 }
 
 UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate,
-                                                           Block& block) const {
+                                                           Block& block) {
   constexpr int kAround = 2;  // pixels read to all sides
   block.u = candidate.u;
   block.v = candidate.v;
@@ -129,20 +125,31 @@ UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, 
       store(greys, &pixels[y][x]);
     }
   }
-  BlockRow grey_sum{}, slope_sum{};
-  for (int y = 0; y < kHeight; ++y) {
-    const float* grey = &pixels[y + kAround][kAround];
-    const short* gradient = gradient_.ptr<short>(candidate.v + y) + candidate.u;
-    float* slope = &block.slope[y * kWidth];
-    for (int x = 0; x < kWidth; x += kLanes) {
-      Lanes slopes;
-      convert(gradient + x, slopes);
-      store(slopes / kSobelScale, slope + x);
+  BlockRow grey_sum, slope_sum;
+  for (int x = 0; x < kWidth; x += kLanes) {
+    const auto difference = [&](int y, Lanes& out) {
+      const float* p = &pixels[y + kAround][x + kAround];
+      Lanes before, after;
+      load(p - 1, before);
+      load(p + 1, after);
+      out = after - before;
+    };
+    Lanes greys{}, slopes{}, above, here, below;
+    difference(-1, above);
+    difference(0, here);
+    for (int y = 0; y < kHeight; ++y) {
+      difference(y + 1, below);
+      const Lanes slope = (above + 2.f * here + below) / kSobelScale;
+      store(slope, &block.slope[y * kWidth + x]);
+      Lanes grey;
+      load(&pixels[y + kAround][x + kAround], grey);
+      greys += grey;
+      slopes += slope;
+      above = here;
+      here = below;
     }
-    for (int x = 0; x < kWidth; ++x) {
-      grey_sum[x] += grey[x];
-      slope_sum[x] += slope[x];
-    }
+    store(greys, &grey_sum[x]);
+    store(slopes, &slope_sum[x]);
   }
   const float grey_mean = sumOf(grey_sum) / kPixels, slope_mean = sumOf(slope_sum) / kPixels;
   // Of the columns.
@@ -207,13 +214,13 @@ void PhotometricBlocks::choose(const cv::Mat& left, const StereoRig& rig, const 
   findCandidates(left, rig, shift);
   usual_energy_ = usualEnergy();
   pick(count);
-  blocks_.clear();
-  blocks_.reserve(count);
+  size_t made = 0;  // in the memory of the blocks before
   for (const Candidate& candidate : candidates_) {
     if (!candidate.chosen) continue;
-    blocks_.emplace_back();
-    if (!makeBlock(left, candidate, blocks_.back())) blocks_.pop_back();
+    if (made == blocks_.size()) blocks_.emplace_back();
+    if (makeBlock(left, candidate, blocks_[made])) ++made;
   }
+  blocks_.resize(made);
 }
 
 }  // namespace uav_landing

@@ -69,7 +69,7 @@ class PhotometricBlocks {
   void findCandidates(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift);
   double usualEnergy() const;
   void pick(int count);
-  bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block) const;
+  static bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block);
   void multiply(const cv::Mat& right, const ShiftModel& shift);
   std::optional<Photometry> photometry() const;
   // None where the left image shows nothing but noise.
@@ -78,7 +78,6 @@ class PhotometricBlocks {
   static bool looksAlike(const Products& products, const Photometry& photometry, double variance);
 
   cv::Mat left_mask_, right_mask_;
-  cv::Mat gradient_;  // CV_16S, Sobel along the row, where there may be ground
   int first_row_ = 0;
   double usual_energy_ = 0;  // of the candidates, the median: sum of slope^2, with its noise
   std::vector<Candidate> candidates_;
