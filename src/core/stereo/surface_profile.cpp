@@ -6,7 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "base/median.h"
+#include "base/order_statistic.h"
+#include "stereo/profile_samples.h"
 
 namespace uav_landing {
 namespace {
@@ -31,16 +32,12 @@ using Waves = Eigen::Matrix<double, kWaves, 1>;
 constexpr double kCorrelation = 100;
 // Pixels; for a rig that is said to have no errors.
 constexpr double kLeastBias = 1e-4;
-// Farther away distances are not told, pixels.
-constexpr double kLeastDisparity = 0.3;
-// Bins of samples at about the same distance.
-constexpr int kBins = 40;
 
 /// Ground with a curvature that wanders at random, by kinks: two for each stretch, where their changes of
 /// slope are worth as much as its curvature (Gauss' quadrature of degree 3).
 struct Kinked {
-  Kinks at;               // distance from below the camera, m
-  KinkMatrix covariance;  // of the changes of slope where the curvature has a variance of 1 1/m^2
+  Kinks at;         // distance from below the camera, m
+  KinkMatrix root;  // of their changes' covariance where the curvature has a variance of 1 1/m^2
   double farthest;
 
   Kinked(double nearest, double end) : farthest(end) {
@@ -55,16 +52,12 @@ struct Kinked {
       from = to;
       to *= factor;
     }
+    KinkMatrix covariance;
     for (int i = 0; i < kKinks; ++i)
       for (int j = 0; j < kKinks; ++j)
         covariance(i, j) = lengths[i] * lengths[j] * std::exp(-std::abs(at[i] - at[j]) / kCorrelation);
+    root = covariance.llt().matrixL();
   }
-};
-
-/// Sums over samples at about the same distance, by their information.
-struct Bin {
-  double information = 0, expected = 0, reach = 0, v = 0, y = 0;
-  Eigen::Vector3d a = Eigen::Vector3d::Zero();  // disparity by plane
 };
 
 struct Bend {
@@ -72,11 +65,37 @@ struct Bend {
   KinkMatrix covariance = KinkMatrix::Zero();
 };
 
+/// What may be there besides a plane: a surface with some variance of its curvature.
+struct Alternative {
+  double log = 0;  // of its likelihood ratio
+  Bend bend;
+};
+using Alternatives = std::array<Alternative, kBendShares.size()>;
+
+/// prior: of each alternative.
+Bend mixture(const Alternatives& alternatives, double prior) {
+  double largest = 0;
+  for (const Alternative& one : alternatives) largest = std::max(largest, one.log);
+  std::array<double, kBendShares.size()> weights;
+  double sum = (1 - prior * kBendShares.size()) * std::exp(-largest);
+  for (size_t i = 0; i < weights.size(); ++i)
+    sum += weights[i] = prior * std::exp(alternatives[i].log - largest);
+  Bend result;
+  KinkMatrix squares = KinkMatrix::Zero();
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const Bend& one = alternatives[i].bend;
+    result.mean += weights[i] / sum * one.mean;
+    squares += weights[i] / sum * (one.covariance + one.mean * one.mean.transpose());
+  }
+  result.covariance = squares - result.mean * result.mean.transpose();
+  return result;
+}
+
 class ProfileFit {
  public:
   ProfileFit(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& flat,
              double bias_stddev)
-      : rig_(rig), given_(samples), flattened_(samples), plane_(flat) {
+      : rig_(rig), samples_(rig, samples), plane_(flat) {
     findDistances();
     wave_information_.setZero();
     for (int i = 0; i < kWaves; ++i)
@@ -88,21 +107,21 @@ class ProfileFit {
   /// noise: by which the samples' errors count more than as independent ones of their stddevs, as a factor on
   /// variances.
   void accumulate(double noise) {
-    to_plane_.setZero();
+    const ProfileSums sums = samples_.sums(plane_, noise);
+    to_plane_ = sums.information;
     Eigen::Matrix<double, 3, kKinks> mixed = Eigen::Matrix<double, 3, kKinks>::Zero();
     KinkMatrix to_kinks = KinkMatrix::Zero();
     Waves right_waves = Waves::Zero();
     Eigen::Matrix<double, kWaves, 3> waves_plane = Eigen::Matrix<double, kWaves, 3>::Zero();
     Eigen::Matrix<double, kWaves, kKinks> waves_kinks = Eigen::Matrix<double, kWaves, kKinks>::Zero();
     Eigen::Matrix<double, kWaves, kWaves> to_waves = wave_information_;
-    Eigen::Vector3d right_plane = Eigen::Vector3d::Zero();
     Kinks right_kinks = Kinks::Zero();
-    for (const Bin& bin : fillBins(noise, right_plane)) {
+    for (const ProfileBin& bin : sums.bins) {
       if (bin.information == 0) continue;
       const Kinks b = byKinks(bin.expected / bin.information, bin.reach / bin.information);
       const Waves c = waves(bin.v / bin.information);
       mixed += bin.a * b.transpose();
-      to_kinks.selfadjointView<Eigen::Lower>().rankUpdate(b, bin.information);
+      to_kinks += b * (bin.information * b).transpose();
       right_kinks += b * bin.y;
       to_waves += bin.information * c * c.transpose();
       waves_plane += c * bin.a.transpose();
@@ -112,82 +131,55 @@ class ProfileFit {
     plane_by_kinks_ = -to_plane_.ldlt().solve(mixed);
     // Without what the waves explain, and then without what the plane does.
     const Eigen::LDLT<Eigen::Matrix<double, kWaves, kWaves>> by_waves(to_waves);
+    const Eigen::Matrix<double, kWaves, kKinks> waves_by_kinks = by_waves.solve(waves_kinks);
+    const Waves waves_by_right = by_waves.solve(right_waves);
     const Eigen::Matrix3d plane_left = to_plane_ - waves_plane.transpose() * by_waves.solve(waves_plane);
-    const Eigen::Matrix<double, 3, kKinks> mixed_left =
-        mixed - waves_plane.transpose() * by_waves.solve(waves_kinks);
-    right_plane -= waves_plane.transpose() * by_waves.solve(right_waves);
-    right_kinks -= waves_kinks.transpose() * by_waves.solve(right_waves);
-    KinkMatrix information = to_kinks.selfadjointView<Eigen::Lower>();
-    information -= waves_kinks.transpose() * by_waves.solve(waves_kinks);
+    const Eigen::Matrix<double, 3, kKinks> mixed_left = mixed - waves_plane.transpose() * waves_by_kinks;
+    const Eigen::Vector3d right_plane = sums.right - waves_plane.transpose() * waves_by_right;
+    right_kinks -= waves_kinks.transpose() * waves_by_right;
     const Eigen::LDLT<Eigen::Matrix3d> by_plane(plane_left);
+    KinkMatrix information = to_kinks.selfadjointView<Eigen::Lower>();
+    information -= waves_kinks.transpose() * waves_by_kinks;
     information -= mixed_left.transpose() * by_plane.solve(mixed_left);
     const Kinks right = right_kinks - mixed_left.transpose() * by_plane.solve(right_plane);
     // In coordinates of which nothing is known but that they have a stddev of the curvature's, each by
     // itself.
-    const KinkMatrix root = kinks_->covariance.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(root.transpose() * information * root);
+    const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(kinks_->root.transpose() * information *
+                                                         kinks_->root);
     values_ = axes.eigenvalues().cwiseMax(0.0);
-    axes_ = root * axes.eigenvectors();
+    axes_ = kinks_->root * axes.eigenvectors();
     right_ = axes_.transpose() * right;
   }
 
-  /// variance: of the curvature, 1/m^2.
-  Bend bend(double variance) const {
-    Bend result;
-    const Kinks kept = (1 / variance + values_.array()).inverse();
-    result.mean = axes_ * kept.cwiseProduct(right_);
-    result.covariance = axes_ * kept.asDiagonal() * axes_.transpose();
-    return result;
-  }
+  /// The mean of the bend alone. variance: of the curvature, 1/m^2.
+  Kinks meanBend(double variance) const { return axes_ * kept(variance).cwiseProduct(right_); }
 
-  /// Log of the likelihood ratio of a surface with that variance against a flat one.
-  double evidence(double variance) const {
-    const Eigen::Array<double, kKinks, 1> gain = 1 + variance * values_.array();
-    return 0.5 * (variance * right_.array().square() / gain - gain.log()).sum();
-  }
-
-  Bend mixture(double variance, double prior) const {
-    std::array<double, kBendShares.size()> logs;
-    double largest = 0;
-    for (size_t i = 0; i < kBendShares.size(); ++i) {
-      logs[i] = evidence(kBendShares[i] * kBendShares[i] * variance);
-      largest = std::max(largest, logs[i]);
+  /// per_metre: variance of the curvature, 1/m^2, of which the alternatives have their shares.
+  Alternatives alternatives(double per_metre) const {
+    Alternatives all;
+    for (size_t i = 0; i < all.size(); ++i) {
+      const double variance = kBendShares[i] * kBendShares[i] * per_metre;
+      all[i].log = evidence(variance);
+      all[i].bend.mean = meanBend(variance);
+      all[i].bend.covariance = axes_ * kept(variance).asDiagonal() * axes_.transpose();
     }
-    double sum = (1 - prior * kBendShares.size()) * std::exp(-largest);
-    for (double& value : logs) sum += value = prior * std::exp(value - largest);
-    Bend result;
-    KinkMatrix squares = KinkMatrix::Zero();
-    for (size_t i = 0; i < kBendShares.size(); ++i) {
-      const Bend one = bend(kBendShares[i] * kBendShares[i] * variance);
-      result.mean += logs[i] / sum * one.mean;
-      squares += logs[i] / sum * (one.covariance + one.mean * one.mean.transpose());
-    }
-    result.covariance = squares - result.mean * result.mean.transpose();
-    return result;
+    return all;
   }
 
   /// Takes the bend off the disparities and fits the plane to what is left.
-  bool flatten(const Bend& bend, const PlaneLimits& limits, double bias_stddev) {
-    for (size_t i = 0; i < given_.size(); ++i)
-      flattened_[i].disparity = given_[i].disparity - byKinks(expected_[i], reaches_[i]).dot(bend.mean);
-    const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend.mean;
-    Expected<PlaneFit> fit = refinePlane(rig_, flattened_, start, limits, bias_stddev);
-    if (!fit) return false;
-    plane_ = *fit;
-    findPlaces();
-    return true;
+  bool flatten(const Kinks& bend, const PlaneLimits& limits, double bias_stddev) {
+    for (size_t i = 0; i < samples_.size(); ++i)
+      samples_.takeOff(i, byKinks(samples_.expected(i), samples_.reach(i)).dot(bend));
+    const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend;
+    Expected<PlaneFit> fit = refinePlane(rig_, samples_.flattened(), start, limits, bias_stddev);
+    if (fit) plane_ = std::move(*fit);
+    return fit.has_value();
   }
 
-  /// Stddevs of the samples that take a bend for noise are made smaller.
-  void calmDown() {
-    std::vector<double> ratios;
-    ratios.reserve(given_.size());
-    for (size_t i = 0; i < given_.size(); ++i)
-      if (plane_.agrees[i])
-        ratios.push_back(std::abs(flattened_[i].disparity - disparity(i)) / flattened_[i].stddev);
-    if (ratios.empty()) return;
-    const double factor = std::min(1.0, robustStddev(ratios));
-    for (DisparitySample& sample : flattened_) sample.stddev *= factor;
+  /// Takes the bend for what is there: the samples are where it says, and are off by what it leaves.
+  void settle() {
+    samples_.findPlaces(plane_.plane);
+    samples_.calmDown(plane_);
   }
 
   /// By how much the covariance of the plane is larger than independent errors would make it.
@@ -207,56 +199,31 @@ class ProfileFit {
   }
 
  private:
-  /// Of the plane without the bend.
-  double disparity(size_t i) const {
-    return rig_.fb() * plane_.plane.g.dot(rig_.ray(given_[i].u, given_[i].v));
+  Kinks kept(double variance) const { return (1 / variance + values_.array()).inverse(); }
+
+  /// Log of the likelihood ratio of a surface with that variance against a flat one.
+  double evidence(double variance) const {
+    const Eigen::Array<double, kKinks, 1> gain = 1 + variance * values_.array();
+    return 0.5 * (variance * right_.array().square() / gain - gain.log()).sum();
   }
 
   /// By the plane through all of them.
   void findDistances() {
-    findPlaces();
+    samples_.findPlaces(plane_.plane);
     std::vector<double> seen;
-    seen.reserve(given_.size());
-    for (size_t i = 0; i < given_.size(); ++i)
-      if (plane_.agrees[i]) seen.push_back(reaches_[i] / expected_[i]);
-    top_ = rig_.size.height;
-    for (const DisparitySample& sample : given_) top_ = std::min(top_, sample.v);
+    seen.reserve(samples_.size());
+    for (size_t i = 0; i < samples_.size(); ++i)
+      if (plane_.agrees[i]) seen.push_back(samples_.reach(i) / samples_.expected(i));
     if (seen.size() < static_cast<size_t>(2 * kKinks)) return;
-    std::sort(seen.begin(), seen.end());
-    const double nearest = seen[seen.size() / 50], farthest = seen[seen.size() - 1 - seen.size() / 50];
+    const auto ranked = [&](size_t rank) { return orderStatistic(seen.data(), seen.size(), rank); };
+    const double nearest = ranked(seen.size() / 50), farthest = ranked(seen.size() - 1 - seen.size() / 50);
     if (nearest > 0 && farthest > 1.5 * nearest) kinks_.emplace(nearest, farthest);
-  }
-
-  /// The samples that agree, and the sums of the plane alone. What kinks do is linear in the disparity, but
-  /// at the kinks, so that the middle of a bin stands for all of it; the bins are narrower far away, where
-  /// the kinks are close in disparity.
-  std::array<Bin, kBins> fillBins(double noise, Eigen::Vector3d& right_plane) {
-    std::array<Bin, kBins> bins;
-    const double largest = *std::max_element(expected_.begin(), expected_.end());
-    for (size_t i = 0; i < given_.size(); ++i) {
-      if (!plane_.agrees[i]) continue;
-      const DisparitySample& sample = flattened_[i];
-      const double information = 1 / (sample.stddev * sample.stddev * noise);
-      const Eigen::Vector3d a = rig_.fb() * rig_.ray(sample.u, sample.v);
-      const double y = (given_[i].disparity - disparity(i)) * information;
-      to_plane_ += information * a * a.transpose();
-      right_plane += a * y;
-      const int place = static_cast<int>(kBins * std::sqrt(expected_[i] / largest));
-      Bin& bin = bins[std::min(place, kBins - 1)];
-      bin.information += information;
-      bin.expected += information * expected_[i];
-      bin.reach += information * reaches_[i];
-      bin.v += information * sample.v;
-      bin.y += y;
-      bin.a += information * a;
-    }
-    return bins;
   }
 
   /// Chebyshev's polynomials of degree 2 and more over the rows from the horizon to the bottom.
   Waves waves(double v) const {
     Waves values;
-    const double x = 2 * (v - top_) / (rig_.size.height - top_) - 1;
+    const double top = samples_.top(), x = 2 * (v - top) / (rig_.size.height - top) - 1;
     double before = 1, now = x;
     for (int i = 0; i < kWaves; ++i) {
       const double next = 2 * x * now - before;
@@ -266,19 +233,6 @@ class ProfileFit {
     return values;
   }
 
-  /// Where the samples are on the surface.
-  void findPlaces() {
-    expected_.resize(given_.size());
-    reaches_.resize(given_.size());
-    const Eigen::Vector3d n = plane_.plane.normal();
-    const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
-    for (size_t i = 0; i < given_.size(); ++i) {
-      const double bent = given_[i].disparity - flattened_[i].disparity;
-      expected_[i] = std::max(disparity(i) + bent, kLeastDisparity);
-      reaches_[i] = rig_.fb() * forward.dot(rig_.ray(given_[i].u, given_[i].v));
-    }
-  }
-
   /// What changes of slope at the kinks do to a disparity. Ground that is higher by z is at the inverse depth
   /// 1/Z = g.r + z |g| / Z; behind a kink, z is the distance from it.
   Kinks byKinks(double expected, double reach) const {
@@ -286,13 +240,9 @@ class ProfileFit {
   }
 
   const StereoRig& rig_;
-  const std::vector<DisparitySample>& given_;
-  std::vector<DisparitySample> flattened_;
+  ProfileSamples samples_;
   PlaneFit plane_;
-  // Disparity of the surface, and that times the distance along the tangent straight below.
-  std::vector<double> expected_, reaches_;
   std::optional<Kinked> kinks_;
-  double top_ = 0;  // highest row of the samples
 
   Eigen::Matrix3d to_plane_;
   Eigen::Matrix<double, 3, kKinks> plane_by_kinks_;
@@ -314,15 +264,16 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   // First as bent as may be, for the distances and to see the noise; then as bent as it is.
   for (int step = 0; step < kSteps; ++step) {
     fit.accumulate(1);
-    if (!fit.flatten(fit.bend(most), limits, bias_stddev)) return std::nullopt;
-    fit.calmDown();
+    if (!fit.flatten(fit.meanBend(most), limits, bias_stddev)) return std::nullopt;
+    fit.settle();
   }
   fit.accumulate(fit.noise(bias_stddev));
-  Bend bend = fit.mixture(per_metre, kBelieved);
-  const Bend possible = fit.mixture(per_metre, kBendChance);
+  const Alternatives alternatives = fit.alternatives(per_metre);
+  Bend bend = mixture(alternatives, kBelieved);
+  const Bend possible = mixture(alternatives, kBendChance);
   const Kinks missed = possible.mean - bend.mean;
   bend.covariance = possible.covariance + missed * missed.transpose();
-  if (!fit.flatten(bend, limits, bias_stddev)) return std::nullopt;
+  if (!fit.flatten(bend.mean, limits, bias_stddev)) return std::nullopt;
   return fit.profile(bend);
 }
 
