@@ -7,7 +7,8 @@
 
 namespace uav_landing {
 
-/// Centres of pairs of edges and how well they are known, by columns, as all are compared with all.
+/// Centres of pairs of edges and how well they are known, by columns, as all are compared with all. Floats
+/// are exact enough to say which are certainly apart, and twice as many at once.
 class CentreColumns {
  public:
   /// variance: of the centre; by_rotation: its derivatives by rotations that are common to all.
@@ -19,8 +20,8 @@ class CentreColumns {
   void markApart(std::ptrdiff_t one, double sigmas, double spread, uchar* apart) const;
 
  private:
-  std::vector<double> centres_, variances_;
-  std::array<std::vector<double>, 3> by_rotation_;
+  std::vector<float> centres_, variances_;
+  std::array<std::vector<float>, 3> by_rotation_;
 };
 
 }  // namespace uav_landing
