@@ -20,8 +20,8 @@ struct Point {
 
 // Share of the error that two matches have in common: that of the pixels that both their windows are of.
 double inCommon(const Point& a, const Point& b, int window) {
-  const double across = 1 - std::abs(a.u - b.u) / window, down = 1 - std::abs(a.v - b.v) / window;
-  return across > 0 && down > 0 ? across * down : 0;
+  const double across = std::abs(a.u - b.u), down = std::abs(a.v - b.v);
+  return across < window && down < window ? (1 - across / window) * (1 - down / window) : 0;
 }
 
 struct Patch {
@@ -82,22 +82,26 @@ double varianceBetween(const std::vector<Patch>& patches) {
 double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
                        int window) {
   const Eigen::Vector3d row = rig.fb() * fit.plane.g;
+  std::vector<double> expected;
+  expected.reserve(samples.size());
   double largest = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (fit.agrees[i]) largest = std::max(largest, row.dot(rig.ray(samples[i].u, samples[i].v)));
+    expected.push_back(row.dot(rig.ray(samples[i].u, samples[i].v)));
+    if (fit.agrees[i]) largest = std::max(largest, expected[i]);
   }
   const double side = static_cast<double>(rig.size.width) / kColumns, unit = 1 / fit.plane.g.norm();
   const int rows = static_cast<int>(rig.size.height / side) + 1;
-  std::vector<std::vector<Point>> areas(static_cast<size_t>(kColumns * rows));
+  static thread_local std::vector<std::vector<Point>> areas;  // keep their memory
+  areas.resize(static_cast<size_t>(kColumns * rows));
+  for (std::vector<Point>& points : areas) points.clear();
   for (size_t i = 0; i < samples.size(); ++i) {
     const DisparitySample& sample = samples[i];
-    const double expected = row.dot(rig.ray(sample.u, sample.v));
-    if (!fit.agrees[i] || expected < kNear * largest) continue;
+    if (!fit.agrees[i] || expected[i] < kNear * largest) continue;
     const int across = std::clamp(static_cast<int>(sample.u / side), 0, kColumns - 1);
     const int down = std::clamp(static_cast<int>(sample.v / side), 0, rows - 1);
     areas[static_cast<size_t>(across * rows + down)].push_back(
-        {sample.u, sample.v, unit * (sample.disparity - expected) / expected,
-         expected / (unit * sample.stddev)});
+        {sample.u, sample.v, unit * (sample.disparity - expected[i]) / expected[i],
+         expected[i] / (unit * sample.stddev)});
   }
   std::vector<Patch> patches;
   for (const std::vector<Point>& points : areas)
