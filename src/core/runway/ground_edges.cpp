@@ -19,10 +19,11 @@ constexpr double kStraight = 0.5;  // px, 1 sigma by which an edge in the pictur
 
 double distanceOf(double lateral) { return std::sqrt(1 + lateral * lateral); }
 
-bool isSame(const GroundEdge& a, const GroundEdge& b, double more_variance) {
+bool isSame(const GroundAxes& axes, const GroundEdge& a, const GroundEdge& b) {
   if (a.brighter_left != b.brighter_left) return false;
-  const double tolerance = kSameEdge * std::sqrt(a.variance + b.variance + more_variance) +
-                           kLeastTolerance * distanceOf(a.lateral);
+  const Eigen::Vector3d differ = a.by_rotation - b.by_rotation;
+  const double variance = a.variance + b.variance + differ.dot(axes.covariance * differ);
+  const double tolerance = kSameEdge * std::sqrt(variance) + kLeastTolerance * distanceOf(a.lateral);
   return std::abs(a.lateral - b.lateral) <= tolerance;
 }
 
@@ -120,8 +121,7 @@ std::vector<std::pair<size_t, size_t>> sameEdges(const GroundAxes& axes, const s
     std::optional<size_t> nearest;
     const auto distance = [&](size_t r) { return std::abs(right[r].lateral - left[l].lateral); };
     for (size_t r = 0; r < right.size(); ++r) {
-      const Eigen::Vector3d differ = left[l].by_rotation - right[r].by_rotation;
-      if (taken[r] != 0 || !isSame(left[l], right[r], differ.dot(axes.covariance * differ))) continue;
+      if (taken[r] != 0 || !isSame(axes, left[l], right[r])) continue;
       if (!nearest || distance(r) < distance(*nearest)) nearest = r;
     }
     if (!nearest) continue;
@@ -132,10 +132,8 @@ std::vector<std::pair<size_t, size_t>> sameEdges(const GroundAxes& axes, const s
 }
 
 void addPiece(const GroundAxes& axes, std::vector<GroundEdge>& edges, const GroundEdge& piece) {
-  const auto same = std::find_if(edges.begin(), edges.end(), [&](const GroundEdge& edge) {
-    const Eigen::Vector3d differ = edge.by_rotation - piece.by_rotation;
-    return isSame(edge, piece, differ.dot(axes.covariance * differ));
-  });
+  const auto same = std::find_if(edges.begin(), edges.end(),
+                                 [&](const GroundEdge& edge) { return isSame(axes, edge, piece); });
   if (same == edges.end()) {
     edges.push_back(piece);
     return;

@@ -24,6 +24,8 @@ double quantile(const std::vector<double>& values, double share) {
 
 Borders findBorders(const std::vector<StereoDepthResult::Point>& points) {
   std::vector<double> columns, disparities;
+  columns.reserve(points.size());
+  disparities.reserve(points.size());
   for (const StereoDepthResult::Point& point : points) {
     if (!point.on_plane) continue;
     columns.push_back(point.u);
@@ -67,13 +69,17 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   const Expected<PlaneFit> all = refinePlane(rig, samples, plane, limits, 0);
   if (!all) return planes;
   planes.all = all->plane;
+  // By where the plane says that a point lies: what stands on the ground is sorted as the ground behind it.
+  std::vector<double> expected;
+  expected.reserve(samples.size());
+  for (const DisparitySample& sample : samples)
+    expected.push_back(rig.fb() * plane.dot(rig.ray(sample.u, sample.v)));
+  std::vector<DisparitySample> rest;
+  rest.reserve(samples.size());
   for (int i = 0; i < kImageRegions; ++i) {
-    // By where the plane says that a point lies: what stands on the ground is sorted as the ground behind it.
-    std::vector<DisparitySample> rest;
-    for (const DisparitySample& sample : samples) {
-      const double expected = rig.fb() * plane.dot(rig.ray(sample.u, sample.v));
-      if (!isIn(static_cast<ImageRegion>(i), borders, sample.u, expected)) rest.push_back(sample);
-    }
+    rest.clear();
+    for (size_t k = 0; k < samples.size(); ++k)
+      if (!isIn(static_cast<ImageRegion>(i), borders, samples[k].u, expected[k])) rest.push_back(samples[k]);
     const Expected<PlaneFit> fit = refinePlane(rig, rest, plane, limits, 0);
     if (!fit) continue;
     planes.without[i] = fit->plane;
