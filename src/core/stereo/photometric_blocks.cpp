@@ -41,6 +41,74 @@ UAV_LANDING_MULTIVERSION int blockEnergy(const uchar* first, std::ptrdiff_t stri
   return energy - static_cast<int>(static_cast<int64_t>(total) * total / kPixels);
 }
 
+// The grey levels of a block with two more pixels to all sides.
+class Surroundings {
+ public:
+  [[gnu::always_inline]] inline void read(const cv::Mat& left, int u, int v) {
+    for (int y = 0; y < kRows; ++y) {
+      const uchar* row = left.ptr<uchar>(v + y - kAround) + u - kAround;
+      for (const int x : {0, kLanes, kWidth + 2 * kAround - kLanes}) {
+        Lanes greys;
+        convert(row + x, greys);
+        store(greys, &pixels_[y][x]);
+      }
+    }
+  }
+
+  // Of the block's pixels from (x, y) on.
+  [[gnu::always_inline]] inline void greys(int x, int y, Lanes& out) const { load(at(x, y), out); }
+
+  // The difference of the pixels to the right and to the left.
+  [[gnu::always_inline]] inline void difference(int x, int y, Lanes& out) const {
+    Lanes before, after;
+    load(at(x - 1, y), before);
+    load(at(x + 1, y), after);
+    out = after - before;
+  }
+
+  // Of fourth order: the difference of two neighbours would see too little of a sharp edge.
+  [[gnu::always_inline]] inline void derivative(int x, int y, int dx, int dy, Lanes& out) const {
+    Lanes before2, before, after, after2;
+    const float* place = at(x, y);
+    const std::ptrdiff_t step = dy * kStride + dx;
+    load(place - 2 * step, before2);
+    load(place - step, before);
+    load(place + step, after);
+    load(place + 2 * step, after2);
+    out = (8.f * (after - before) - (after2 - before2)) / 12.f;
+  }
+
+ private:
+  static constexpr int kAround = 2, kRows = kHeight + 2 * kAround, kStride = kWidth + kLanes;
+  [[gnu::always_inline]] inline const float* at(int x, int y) const {
+    return &pixels_[y + kAround][x + kAround];
+  }
+  std::array<std::array<float, kStride>, kRows> pixels_;
+};
+
+// Derivatives of a block along the row, by Sobel's kernel, and the sums over the columns of these and of the
+// grey levels.
+[[gnu::always_inline]] inline void findSlopes(const Surroundings& pixels, float* slopes, BlockRow& grey_sum,
+                                              BlockRow& slope_sum) {
+  for (int x = 0; x < kWidth; x += kLanes) {
+    Lanes total_grey{}, total{}, above, here, below, grey;
+    pixels.difference(x, -1, above);
+    pixels.difference(x, 0, here);
+    for (int y = 0; y < kHeight; ++y) {
+      pixels.difference(x, y + 1, below);
+      pixels.greys(x, y, grey);
+      const Lanes slope = (above + 2.f * here + below) / kSobelScale;
+      store(slope, &slopes[y * kWidth + x]);
+      total_grey += grey;
+      total += slope;
+      above = here;
+      here = below;
+    }
+    store(total_grey, &grey_sum[x]);
+    store(total, &slope_sum[x]);
+  }
+}
+
 }  // namespace
 
 PhotometricBlocks::PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask)
@@ -113,65 +181,22 @@ void PhotometricBlocks::pick(int count) {
 
 UAV_LANDING_MULTIVERSION bool PhotometricBlocks::makeBlock(const cv::Mat& left, const Candidate& candidate,
                                                            Block& block) {
-  constexpr int kAround = 2;  // pixels read to all sides
   block.u = candidate.u;
   block.v = candidate.v;
-  std::array<std::array<float, kWidth + kLanes>, kHeight + 2 * kAround> pixels;
-  for (int y = 0; y < kHeight + 2 * kAround; ++y) {
-    const uchar* row = left.ptr<uchar>(candidate.v + y - kAround) + candidate.u - kAround;
-    for (const int x : {0, kLanes, kWidth + 2 * kAround - kLanes}) {
-      Lanes greys;
-      convert(row + x, greys);
-      store(greys, &pixels[y][x]);
-    }
-  }
+  Surroundings pixels;
+  pixels.read(left, block.u, block.v);
   BlockRow grey_sum, slope_sum;
-  for (int x = 0; x < kWidth; x += kLanes) {
-    const auto difference = [&](int y, Lanes& out) {
-      const float* p = &pixels[y + kAround][x + kAround];
-      Lanes before, after;
-      load(p - 1, before);
-      load(p + 1, after);
-      out = after - before;
-    };
-    Lanes greys{}, slopes{}, above, here, below;
-    difference(-1, above);
-    difference(0, here);
-    for (int y = 0; y < kHeight; ++y) {
-      difference(y + 1, below);
-      const Lanes slope = (above + 2.f * here + below) / kSobelScale;
-      store(slope, &block.slope[y * kWidth + x]);
-      Lanes grey;
-      load(&pixels[y + kAround][x + kAround], grey);
-      greys += grey;
-      slopes += slope;
-      above = here;
-      here = below;
-    }
-    store(greys, &grey_sum[x]);
-    store(slopes, &slope_sum[x]);
-  }
+  findSlopes(pixels, block.slope.data(), grey_sum, slope_sum);
   const float grey_mean = sumOf(grey_sum) / kPixels, slope_mean = sumOf(slope_sum) / kPixels;
   // Of the columns.
   BlockRow grey_squares, squares, products, downs, down_greys, down_slopes, along_greys, along_slopes;
   for (int x = 0; x < kWidth; x += kLanes) {
     Lanes gg{}, ss{}, gs{}, ss_y{}, dg{}, ds{}, ag{}, as{};
     for (int y = 0; y < kHeight; ++y) {
-      // Of fourth order: the difference of two neighbours would see too little of a sharp edge.
-      const auto derivative = [&](int dx, int dy, Lanes& out) {
-        const float* p = &pixels[y + kAround][x + kAround];
-        constexpr int kStride = kWidth + kLanes;
-        Lanes before2, before, after, after2;
-        load(p - 2 * (dy * kStride + dx), before2);
-        load(p - (dy * kStride + dx), before);
-        load(p + (dy * kStride + dx), after);
-        load(p + 2 * (dy * kStride + dx), after2);
-        out = (8.f * (after - before) - (after2 - before2)) / 12.f;
-      };
       Lanes down, along, grey, slope;
-      derivative(0, 1, down);
-      derivative(1, 0, along);
-      load(&pixels[y + kAround][x + kAround], grey);
+      pixels.derivative(x, y, 0, 1, down);
+      pixels.derivative(x, y, 1, 0, along);
+      pixels.greys(x, y, grey);
       load(&block.slope[y * kWidth + x], slope);
       grey -= grey_mean;
       slope -= slope_mean;
