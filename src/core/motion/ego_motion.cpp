@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 #include <string>
@@ -106,24 +107,56 @@ std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::
   return own;
 }
 
+// The places of matches, from the top of the image down as corners mostly come: those far above one are all
+// at the front, so that they need not be looked at.
+class Places {
+ public:
+  explicit Places(const std::vector<TemporalMatch>& matches)
+      : u_(static_cast<Eigen::Index>(matches.size())), v_(u_.size()) {
+    lowest_.reserve(matches.size());
+    float lowest = -std::numeric_limits<float>::infinity();
+    for (const TemporalMatch& match : matches) {
+      const auto i = static_cast<Eigen::Index>(lowest_.size());
+      u_[i] = static_cast<float>(match.now.x());
+      v_[i] = static_cast<float>(match.now.y());
+      lowest = std::max(lowest, v_[i]);
+      lowest_.push_back(lowest);
+    }
+  }
+
+  // Sum of the shares that the windows before have of this one.
+  float shared(Eigen::Index i, float extent) const {
+    const float share = 1 / extent;
+    const Eigen::Index first = firstNear(i, extent), count = i - first;
+    const auto inside = [&](const Eigen::ArrayXf& places) {
+      return (1 - share * (places.segment(first, count) - places[i]).abs()).max(0.0F);
+    };
+    return (inside(u_) * inside(v_)).sum();
+  }
+
+ private:
+  // All before it are too far above. Whole blocks, so that sums are rounded as those over all.
+  Eigen::Index firstNear(Eigen::Index i, float extent) const {
+    constexpr Eigen::Index kBlock = 8;
+    const float far = v_[i] - extent - 1;
+    const auto end = lowest_.begin() + i;
+    return (std::lower_bound(lowest_.begin(), end, far) - lowest_.begin()) / kBlock * kBlock;
+  }
+
+  Eigen::ArrayXf u_, v_;
+  std::vector<float> lowest_;  // of the places up to each
+};
+
 // By which the variance of what is fitted to matches is larger than if their windows shared no noise: the
 // mean over them of the shares that all windows have of one.
 double overlapFactor(const std::vector<TemporalMatch>& matches) {
-  const Eigen::Index count = static_cast<Eigen::Index>(matches.size());
-  Eigen::ArrayXf u(count), v(count);
+  const Places places(matches);
   double shared = 0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const TemporalMatch& match = matches[static_cast<size_t>(i)];
-    u[i] = static_cast<float>(match.now.x());
-    v[i] = static_cast<float>(match.now.y());
-    if (!(match.extent > 0)) continue;
-    const float share = 1 / static_cast<float>(match.extent);
-    const auto inside = [&](const Eigen::ArrayXf& places) {
-      return (1 - share * (places.head(i) - places[i]).abs()).max(0.0F);
-    };
-    shared += 2 * (inside(u) * inside(v)).sum();
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const auto extent = static_cast<float>(matches[i].extent);
+    if (extent > 0) shared += 2 * places.shared(static_cast<Eigen::Index>(i), extent);
   }
-  return 1 + shared / static_cast<double>(count);
+  return 1 + shared / static_cast<double>(matches.size());
 }
 
 // What matches of a part of the image share, with the residuals that they have at their own normal. factor:
