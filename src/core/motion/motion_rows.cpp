@@ -197,12 +197,15 @@ MotionState MotionState::apply(const Vector9d& step) const {
   return {rotationMatrix(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
 }
 
+// Larger memory is kept and only what fills the columns up is set: the rest is written by all that follows.
 void MotionRows::resize(size_t count) {
   count_ = count;
   padded_ = wholeDoubleLanes(count);
-  inputs_.assign(kInputs * padded_, 0.0);
-  outputs_.resize(kOutputs * padded_);
-  for (size_t i = count_; i < padded_; ++i) inputs_[kXX * padded_ + i] = inputs_[kYY * padded_ + i] = 1;
+  inputs_.resize(std::max(inputs_.size(), kInputs * padded_));
+  outputs_.resize(std::max(outputs_.size(), kOutputs * padded_));
+  for (size_t column = 0; column < kInputs; ++column)
+    for (size_t i = count_; i < padded_; ++i)
+      inputs_[column * padded_ + i] = column == kXX || column == kYY ? 1 : 0;
 }
 
 void MotionRows::assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches) {
