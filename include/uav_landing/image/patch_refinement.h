@@ -46,8 +46,28 @@ struct PatchRefinement {
   Claim claim() const { return claim(0.5 * residual_variance); }
 };
 
-/// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient.
+/// What a window of the reference is by itself, whatever it is compared with: found by the first comparison,
+/// for those with other images that may follow. Sums are about their means.
+struct OwnTexture {
+  bool known = false, usable = false;
+  double mean = 0;                         ///< grey level, less the one in the middle
+  Eigen::Vector2d gradient_mean;           ///< of the gradient
+  Eigen::Matrix2d gradient, inverse;       ///< sums of the products of its components; their inverse
+  Eigen::Vector2d right;                   ///< of its products with the grey levels
+  double energy = 0;                       ///< of the squares of the grey levels
+  bool distances_known = false;            ///< what follows is found when a comparison succeeds
+  std::array<Eigen::Matrix2d, 2> moments;  ///< as PatchRefinement::Evidence has them
+  Eigen::Matrix2d growth;
+};
+
+/// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient. own: of this very window.
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius);
+                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius,
+                            OwnTexture& own);
+inline PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
+                                   const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
+  OwnTexture own;
+  return refinePatch(reference, other, u, v, position, warp, radius, own);
+}
 
 }  // namespace uav_landing

@@ -14,9 +14,10 @@ namespace uav_landing {
 struct StepImages {
   const MatchImage &now, &then;
   const std::vector<TrackedCorner>& corners;  ///< of the image now
-  Eigen::Vector3d normal;                     ///< of the ground, unit, now
-  Eigen::Matrix3d normal_covariance;          ///< rank 2
-  const RotationPrior* rotation = nullptr;    ///< of an inertial sensor; may be none
+  CornerTextures& textures;
+  Eigen::Vector3d normal;                   ///< of the ground, unit, now
+  Eigen::Matrix3d normal_covariance;        ///< rank 2
+  const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
 };
 
 /// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.

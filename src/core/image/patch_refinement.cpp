@@ -22,26 +22,52 @@ struct GainShift {
   double left_over = 0;       // contrast that no shift explains
 };
 
-// A window of the reference with all sums of it that do not depend on the other image, about their means.
+Eigen::Matrix2d aboutMean(const WindowPlanes::MomentSums& sums, const Eigen::Vector2d& gradient_mean) {
+  Eigen::Matrix2d moments;
+  moments << sums.xx, sums.xy, sums.xy, sums.yy;
+  return moments - gradient_mean * Eigen::RowVector2d(sums.x, sums.y);
+}
+
+Eigen::Matrix2d aboutMean(const WindowPlanes::GrowthSums& sums, const Eigen::Vector2d& gradient_mean) {
+  Eigen::Matrix2d products;
+  products << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
+  return products - gradient_mean * Eigen::RowVector2d(sums.s_across, sums.s_down);
+}
+
+void findOwn(const WindowPlanes& planes, OwnTexture& own) {
+  const WindowPlanes::OwnSums sums = planes.sums();
+  own.known = true;
+  own.mean = sums.a / planes.pixels();
+  own.gradient_mean = Eigen::Vector2d(sums.x, sums.y) / planes.pixels();
+  const Eigen::Vector2d& mean = own.gradient_mean;
+  own.gradient << sums.xx - mean.x() * sums.x, sums.xy - mean.x() * sums.y,  //
+      sums.xy - mean.x() * sums.y, sums.yy - mean.y() * sums.y;
+  own.right << sums.ax - mean.x() * sums.a, sums.ay - mean.y() * sums.a;
+  own.energy = sums.aa - own.mean * sums.a;
+  const double determinant = own.gradient.determinant();
+  own.usable = determinant > 1e-9 * own.gradient.trace() * own.gradient.trace();
+  if (own.usable) own.inverse = own.gradient.inverse();
+}
+
+void findDistances(const WindowPlanes& planes, OwnTexture& own) {
+  const WindowPlanes::DistanceSums sums = planes.distanceSums();
+  own.distances_known = true;
+  own.moments = {aboutMean(sums.moments[0], own.gradient_mean),
+                 aboutMean(sums.moments[1], own.gradient_mean)};
+  own.growth = aboutMean(sums.growth, own.gradient_mean);
+}
+
+// A window of the reference.
 class ReferenceWindow {
  public:
-  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius) : planes_(reference, u, v, radius) {
-    const WindowPlanes::OwnSums sums = planes_.sums();
-    mean_ = sums.a / count();
-    gradient_mean_ = Eigen::Vector2d(sums.x, sums.y) / count();
-    const Eigen::Vector2d& mean = gradient_mean_;
-    G_ << sums.xx - mean.x() * sums.x, sums.xy - mean.x() * sums.y,  //
-        sums.xy - mean.x() * sums.y, sums.yy - mean.y() * sums.y;
-    right_ << sums.ax - mean.x() * sums.a, sums.ay - mean.y() * sums.a;
-    energy_ = sums.aa - mean_ * sums.a;
-    const double determinant = G_.determinant();
-    usable_ = determinant > 1e-9 * G_.trace() * G_.trace();
-    if (usable_) inverse_ = G_.inverse();
+  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius, OwnTexture& own)
+      : planes_(reference, u, v, radius), own_(own) {
+    if (!own.known) findOwn(planes_, own);
   }
 
-  bool usable() const { return usable_; }
+  bool usable() const { return own_.usable; }
   int count() const { return planes_.pixels(); }
-  double energy() const { return energy_; }
+  double energy() const { return own_.energy; }
 
   // Best shift when the other image is looked at from `at`. The window must be inside by two pixels and
   // paddedReach().
@@ -51,13 +77,13 @@ class ReferenceWindow {
     return solve(planes_.multiply(values));
   }
   PatchRefinement::Evidence evidence(const GainShift& found) const {
-    const WindowPlanes::DistanceSums sums = planes_.distanceSums();
-    return {G_,
-            {aboutMean(sums.moments[0]), aboutMean(sums.moments[1])},
-            aboutMean(sums.growth),
+    if (!own_.distances_known) findDistances(planes_, own_);
+    return {own_.gradient,
+            own_.moments,
+            own_.growth,
             found.projected,
             found.gain,
-            planes_.middle() + mean_,
+            planes_.middle() + own_.mean,
             planes_.middle() + found.mean,
             found.left_over,
             count()};
@@ -67,28 +93,16 @@ class ReferenceWindow {
   int paddedReach() const { return planes_.stride() - planes_.radius() - 1; }
 
  private:
-  Eigen::Matrix2d aboutMean(const WindowPlanes::MomentSums& sums) const {
-    Eigen::Matrix2d moments;
-    moments << sums.xx, sums.xy, sums.xy, sums.yy;
-    return moments - gradient_mean_ * Eigen::RowVector2d(sums.x, sums.y);
-  }
-
-  Eigen::Matrix2d aboutMean(const WindowPlanes::GrowthSums& sums) const {
-    Eigen::Matrix2d products;
-    products << sums.x_across, sums.x_down, sums.y_across, sums.y_down;
-    return products - gradient_mean_ * Eigen::RowVector2d(sums.s_across, sums.s_down);
-  }
-
   GainShift solve(const WindowPlanes::OtherSums& sums) const {
     GainShift result;
-    const Eigen::Vector2d gradient = Eigen::Vector2d(sums.bx, sums.by) - gradient_mean_ * sums.b;
-    const double squares = sums.bb - sums.b * sums.b / count(), reference = sums.ba - mean_ * sums.b;
-    const Eigen::Vector2d projected = inverse_ * gradient;
+    const Eigen::Vector2d gradient = Eigen::Vector2d(sums.bx, sums.by) - own_.gradient_mean * sums.b;
+    const double squares = sums.bb - sums.b * sums.b / count(), reference = sums.ba - own_.mean * sums.b;
+    const Eigen::Vector2d projected = own_.inverse * gradient;
     const double left_over = squares - gradient.dot(projected);
     if (!(left_over > 1e-9 * squares)) return result;
-    result.gain = (reference - projected.dot(right_)) / left_over;
-    result.shift = inverse_ * (right_ - gradient * result.gain);
-    result.residual = std::max(0.0, energy_ - result.shift.dot(right_) - result.gain * reference);
+    result.gain = (reference - projected.dot(own_.right)) / left_over;
+    result.shift = own_.inverse * (own_.right - gradient * result.gain);
+    result.residual = std::max(0.0, own_.energy - result.shift.dot(own_.right) - result.gain * reference);
     result.mean = sums.b / count();
     result.projected = projected;
     result.left_over = left_over;
@@ -96,13 +110,8 @@ class ReferenceWindow {
     return result;
   }
 
-  bool usable_ = false;
   WindowPlanes planes_;
-  double mean_;  // less the middle
-  Eigen::Vector2d gradient_mean_;
-  Eigen::Matrix2d G_, inverse_;
-  Eigen::Vector2d right_;
-  double energy_ = 0;
+  OwnTexture& own_;
 };
 
 // Gauss-Newton steps, which all fall short by about the same share: how far one moves the place is seen by
@@ -177,12 +186,13 @@ PatchRefinement::Claim PatchRefinement::claim(double noise_variance) const {
 }
 
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
+                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius,
+                            OwnTexture& own) {
   constexpr int kIterations = 12;
   constexpr double kMaxDrift = 2.0;
   PatchRefinement result;
   if (!windowInside(reference, u, v, radius + 1)) return result;
-  const ReferenceWindow window(reference, u, v, radius);
+  const ReferenceWindow window(reference, u, v, radius, own);
   if (!window.usable()) return result;
   const double reach_x = std::abs(warp(0, 0)) * window.paddedReach() + std::abs(warp(0, 1)) * radius;
   const double reach_y = std::abs(warp(1, 0)) * window.paddedReach() + std::abs(warp(1, 1)) * radius;

@@ -126,6 +126,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
                                              const AttitudePrior& imu) {
   Result result;
   step_matches_.clear();
+  textures_.clear();
   const Corners corners = thinned(
       all_corners,
       static_cast<size_t>(cornerBudget(rig_.size, parameters_.corner_count, parameters_.pixels_per_corner)));
@@ -152,7 +153,7 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const Eigen::Matrix3d& covariance, const Corners& corners,
                                  const RotationPrior* rotation, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
-  const StepImages step{now.image, past_.back().image, corners, normal, covariance, rotation};
+  const StepImages step{now.image, past_.back().image, corners, textures_, normal, covariance, rotation};
   const Expected<MotionEstimate> estimate =
       search_.find(step, predictions(duration, rotation), step_matches_);
   result.step = describe(estimate, duration, step_matches_.size(), result.step_angle);
@@ -200,9 +201,9 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     // Lengths change from units of the previous height to those of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    window_matches_ =
-        matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
-                      {parameters_.window_radius, parameters_.min_zncc, 0}, std::move(window_matches_));
+    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
+                                    {parameters_.window_radius, parameters_.min_zncc, 0}, textures_,
+                                    std::move(window_matches_));
     const Expected<MotionEstimate> estimate =
         estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
     if (!estimate) continue;

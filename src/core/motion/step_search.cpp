@@ -54,7 +54,7 @@ std::vector<TemporalMatch> StepSearch::match(const StepImages& step,
                                              const CameraMotion& predicted, int coarse_steps,
                                              std::vector<TemporalMatch> memory) const {
   return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
-                       options(coarse_steps), std::move(memory));
+                       options(coarse_steps), step.textures, std::move(memory));
 }
 
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,

@@ -11,7 +11,6 @@
 #include "motion/common_gain.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"
-#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 namespace {
@@ -112,15 +111,15 @@ class Follower {
         fine_(now.fine, then.fine, options.window_radius) {}
 
   // Not converged when it is not found.
-  PatchRefinement find(const TrackedCorner& corner, const LocalWarp& predicted) {
+  PatchRefinement find(const TrackedCorner& corner, const LocalWarp& predicted, OwnTexture& own) {
     LocalWarp local = predicted;
     if (options_.coarse_steps > 0 && !searchCoarsely(corner, local)) return {};
-    PatchRefinement refined = refine(corner, local.centre, local.warp);
+    PatchRefinement refined = refine(corner, local.centre, local.warp, own);
     if (!isLike(refined)) {
       // The prediction was not good enough for that after all.
       const PatchSearch::Best best = fine_.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
       if (!best.found || best.score < options_.min_zncc) return {};
-      refined = refine(corner, best.position, local.warp);
+      refined = refine(corner, best.position, local.warp, own);
     }
     if (!isLike(refined) || !isSet(mask_, refined.position.x(), refined.position.y()))
       refined.converged = false;
@@ -142,9 +141,9 @@ class Follower {
     return true;
   }
 
-  PatchRefinement refine(const TrackedCorner& corner, const Eigen::Vector2d& at,
-                         const Eigen::Matrix2d& warp) const {
-    return refinePatch(now_.fine, then_.fine, corner.u, corner.v, at, warp, options_.window_radius);
+  PatchRefinement refine(const TrackedCorner& corner, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
+                         OwnTexture& own) const {
+    return refinePatch(now_.fine, then_.fine, corner.u, corner.v, at, warp, options_.window_radius, own);
   }
   bool isLike(const PatchRefinement& refined) const {
     return refined.converged && refined.score >= options_.min_zncc;
@@ -210,7 +209,7 @@ void claim(const std::vector<Found>& found, const MatchImage& now, const MatchIm
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
-                                         const TemporalMatchOptions& options,
+                                         const TemporalMatchOptions& options, CornerTextures& textures,
                                          std::vector<TemporalMatch> memory) {
   const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius);
   Follower follower(now, then, mask, options);
@@ -227,7 +226,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     local = next;
     if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
     if (!seen || !isSet(mask, local.centre.x(), local.centre.y())) continue;
-    const PatchRefinement refined = follower.find(corner, local);
+    const PatchRefinement refined = follower.find(corner, local, textures.of(i, corner));
     if (!refined.converged) continue;
     TemporalMatch match;
     match.now = {corner.u, corner.v};

@@ -56,7 +56,8 @@ struct Frames {
   std::vector<TemporalMatch> match(const CameraMotion& predicted, int coarse_steps) const {
     TemporalMatchOptions options;
     options.coarse_steps = coarse_steps;
-    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options);
+    CornerTextures textures;
+    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options, textures);
   }
 
   /// Where the point of the world that is seen at a pixel now, at this depth, was then.
@@ -158,8 +159,9 @@ TEST(MatchOverTime, HasNoBiasByPerspective) {
   const cv::Mat mask(rig.size, CV_8UC1, cv::Scalar(255));
   TemporalMatchOptions options;
   options.coarse_steps = 0;
+  CornerTextures textures;
   const std::vector<TemporalMatch> matches =
-      matchOverTime(rig, match_now, match_then, mask, corners, normal, truth, options);
+      matchOverTime(rig, match_now, match_then, mask, corners, normal, truth, options, textures);
   ASSERT_GT(matches.size(), 500u);
   double sum = 0;
   for (const TemporalMatch& match : matches)
