@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
@@ -95,16 +96,17 @@ class AlongRows {
   // start: of each row, columns. rows: of the arrays, filled up to whole lanes.
   [[gnu::always_inline]] inline void find(const std::array<float, kMostLines>& starts, int rows, float step,
                                           int count) {
+    using Integers = int __attribute__((vector_size(sizeof(Lanes))));
     drift_ = step - 1;
-    alignas(32) std::array<float, kMostLines> start = starts;
-    for (int i = 0; i < count; i += kLanes) {
-      Begin& begin = begins_[i / kLanes];
-      for (int j = 0; j < wholeLanes(rows); ++j) {
-        const float last = start[j] + drift_ * (kLanes - 1);
-        const int first = static_cast<int>(last < start[j] ? last : start[j]);
-        begin.first[j] = first;
-        begin.behind[j] = start[j] - static_cast<float>(first);
-        start[j] += step * kLanes;
+    for (int j = 0; j < wholeLanes(rows); j += kLanes) {
+      Lanes start;
+      load(&starts[j], start);
+      for (int i = 0; i < count; i += kLanes, start += step * kLanes) {
+        Begin& begin = begins_[i / kLanes];
+        const Lanes last = start + drift_ * (kLanes - 1);
+        const Integers first = __builtin_convertvector(last < start ? last : start, Integers);
+        std::memcpy(&begin.first[j], &first, sizeof(first));
+        store(start - __builtin_convertvector(first, Lanes), &begin.behind[j]);
       }
     }
   }
