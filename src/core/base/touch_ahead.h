@@ -16,11 +16,13 @@ inline void touchWindow(const cv::Mat& image, double u, double v, int across, in
   if (!(u >= 0 && v >= 0 && u < image.cols && v < image.rows)) return;
   const int first = std::max(static_cast<int>(u) - across, 0);
   const int last = std::min(static_cast<int>(u) + across, image.cols - 1);
+  const int top = std::max(static_cast<int>(v) - down, 0);
   const int end = std::min(static_cast<int>(v) + down, image.rows - 1);
-  for (int row = std::max(static_cast<int>(v) - down, 0); row <= end; ++row) {
-    const volatile float* pixels = image.ptr<float>(row);
-    for (int column = first; column < last; column += kStep) static_cast<void>(pixels[column]);
-    static_cast<void>(pixels[last]);
+  const size_t stride = image.step[0] / sizeof(float);
+  for (int column = first;; column = std::min(column + kStep, last)) {
+    const volatile float* pixel = image.ptr<float>(top) + column;
+    for (int row = top; row <= end; ++row, pixel += stride) static_cast<void>(*pixel);
+    if (column == last) break;
   }
 }
 
