@@ -170,11 +170,11 @@ UAV_LANDING_MULTIVERSION bool sampleNeighbours(const cv::Mat& image, int v, doub
   AlongRows along;
   if (count == kUsual) {
     along.find(starts, rows, static_cast<float>(step), kUsual);
-    for (int j = 0; j < rows; ++j, out += stride, row += image.step1())
+    for (int j = 0; j < rows; ++j, out += stride, row += rowStride(image))
       along.interpolate(row + columns[j], j, kUsual, out);
   } else {
     along.find(starts, rows, static_cast<float>(step), count);
-    for (int j = 0; j < rows; ++j, out += stride, row += image.step1())
+    for (int j = 0; j < rows; ++j, out += stride, row += rowStride(image))
       along.interpolate(row + columns[j], j, count, out);
   }
   return true;
@@ -189,7 +189,7 @@ struct LineValues {
 // yet there to be read.
 [[gnu::always_inline]] inline void interpolateDown(const cv::Mat& image, const Crossings& lines, float slope,
                                                    int rows, int columns, LineValues& values) {
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
+  const std::ptrdiff_t stride = rowStride(image);
   const float* origin = image.ptr<float>();
   for (int j = 0; j < rows; ++j) {
     float* row = values.row(j);

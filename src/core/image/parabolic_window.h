@@ -7,6 +7,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "base/interpolation.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 
@@ -44,7 +45,7 @@ inline void sampleParabolicLine(const cv::Mat& image, std::int32_t x, std::int32
                                 std::int32_t step_y, int count, float* out) {
   using cv::v_float32x4;
   const ParabolicTable& table = ParabolicTable::get();
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
+  const std::ptrdiff_t stride = rowStride(image);
   const float* origin = image.ptr<float>() - stride - 1;
   const auto products = [&] {
     const float* p = origin + (y >> ParabolicTable::kFixedBits) * stride + (x >> ParabolicTable::kFixedBits);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <opencv2/core.hpp>
 
 #include "base/lanes.h"
 #include "uav_landing/parameters/window_radius.h"
@@ -9,7 +11,12 @@
 /// one of kLanes.
 namespace uav_landing {
 
-/// From row to row.
+/// From row to row of a float image. cv::Mat::step1() is a call.
+inline std::ptrdiff_t rowStride(const cv::Mat& image) {
+  return static_cast<std::ptrdiff_t>(image.step[0] / sizeof(float));
+}
+
+/// From row to row of a window.
 constexpr int windowStride(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
 
 /// Of the largest window; the last row's lanes may be written beyond it.

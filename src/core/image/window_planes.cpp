@@ -39,7 +39,7 @@ struct WindowRow {
 [[gnu::always_inline]] inline void loadRows(const cv::Mat& image, int u, int v, int radius, int out_stride,
                                             WindowRow out) {
   const int size = 2 * radius + 1;
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step1());
+  const std::ptrdiff_t stride = rowStride(image);
   const float* row = image.ptr<float>(v - radius) + u - radius;
   const float middle = row[radius * stride + radius];
   const Lanes none{};
