@@ -4,6 +4,7 @@
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 namespace {
@@ -21,8 +22,8 @@ UAV_LANDING_MULTIVERSION double sumOf(const float* values, int count) {
   return total;
 }
 
-// The window's rows one after the other. The last lanes of a row end where it does.
-UAV_LANDING_MULTIVERSION void copyRows(const float* image, size_t stride, int size, float* out) {
+[[gnu::always_inline]] inline void copyRowsAny(const float* image, std::ptrdiff_t stride, int size,
+                                               float* out) {
   for (int y = 0; y < size; ++y, image += stride, out += size) {
     for (int x = 0; size >= kLanes && x < size; x += kLanes) {
       const int first = std::min(x, size - kLanes);
@@ -31,6 +32,17 @@ UAV_LANDING_MULTIVERSION void copyRows(const float* image, size_t stride, int si
       store(values, out + first);
     }
     for (int x = 0; size < kLanes && x < size; ++x) out[x] = image[x];
+  }
+}
+
+// The window's rows one after the other. The last lanes of a row end where it does. The usual size is known
+// to the compiler, which then needs no loop for a row.
+UAV_LANDING_MULTIVERSION void copyRows(const float* image, std::ptrdiff_t stride, int size, float* out) {
+  constexpr int kUsualSize = 2 * kUsualWindowRadius + 1;
+  if (size == kUsualSize) {
+    copyRowsAny(image, stride, kUsualSize, out);
+  } else {
+    copyRowsAny(image, stride, size, out);
   }
 }
 
@@ -60,7 +72,7 @@ bool WindowTemplate::load(const cv::Mat& image, int u, int v, int radius) {
   if (u < radius || v < radius || u + radius >= image.cols || v + radius >= image.rows) return false;
   const int size = 2 * radius + 1;
   values.resize(static_cast<size_t>(size) * size);
-  copyRows(image.ptr<float>(v - radius) + u - radius, image.step1(), size, values.data());
+  copyRows(image.ptr<float>(v - radius) + u - radius, rowStride(image), size, values.data());
   const int count = size * size;
   mean = sumOf(values.data(), count) / count;
   energy = centre(values.data(), count, static_cast<float>(mean));
