@@ -67,14 +67,15 @@ class PointWarp {
 class Predictions {
  public:
   Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
-              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius)
+              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius, int coarse_steps)
       : rig_(rig),
         now_(now),
         then_(then),
         mask_(mask),
         motion_(motion),
         plane_(rig, motion, plane),
-        radius_(radius) {}
+        radius_(radius),
+        coarse_steps_(coarse_steps) {}
 
   // False when there is none.
   bool at(const TrackedCorner& corner, LocalWarp* local) const {
@@ -86,16 +87,24 @@ class Predictions {
     touchPixel(mask_, local->centre.x(), local->centre.y());
     touchWindow(now_.fine, corner.u, corner.v, radius_ + 1, radius_ + 1);
     touchWindow(then_.fine, local->centre.x(), local->centre.y(), radius_ + kAround, radius_ + kAround);
+    if (coarse_steps_ > 0) touchCoarsely(x, local->centre);
     return true;
   }
 
  private:
+  void touchCoarsely(const Eigen::Vector2d& corner, const Eigen::Vector2d& there) const {
+    constexpr int kAround = 2;  // for interpolation
+    const int factor = now_.factor, reach = radius_ + coarse_steps_ + kAround;
+    touchWindow(now_.coarse, toCoarse(corner.x(), factor), toCoarse(corner.y(), factor), radius_, radius_);
+    touchWindow(then_.coarse, toCoarse(there.x(), factor), toCoarse(there.y(), factor), reach, reach);
+  }
+
   const StereoRig& rig_;
   const MatchImage &now_, &then_;
   const cv::Mat& mask_;
   const CameraMotion& motion_;
   PointWarp plane_;
-  int radius_;
+  int radius_, coarse_steps_;
 };
 
 // Looks for corners where they are predicted.
@@ -211,7 +220,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
                                          const TemporalMatchOptions& options, CornerTextures& textures,
                                          std::vector<TemporalMatch> memory) {
-  const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius);
+  const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius,
+                                options.coarse_steps);
   Follower follower(now, then, mask, options);
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
@@ -246,7 +256,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
 double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                         const Eigen::Vector3d& normal, const CameraMotion& motion, int window_radius) {
-  const Predictions predictions(rig, now, then, mask, motion, normal, window_radius);
+  const Predictions predictions(rig, now, then, mask, motion, normal, window_radius, 0);
   PatchSearch there(now.fine, then.fine, window_radius);
   double likeness = 0;
   LocalWarp local;
