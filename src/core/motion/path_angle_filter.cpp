@@ -40,23 +40,33 @@ Eigen::MatrixXd pathCovariance(const std::vector<double>& middles, double rate_s
 
 struct Posterior {
   double log_evidence = 0, mean = 0, variance = 0;
+  double log_evidence_before = 0;  // of the earlier measurements alone
 };
 
-// Gaussian posterior of the last angle given measurements y = H angles + noise.
+// Of the first so many measurements, by the Cholesky factor of the covariance of all: it begins with theirs.
+double logEvidence(const Eigen::MatrixXd& factor, const Eigen::VectorXd& y, Eigen::Index count) {
+  const auto L = factor.topLeftCorner(count, count);
+  Eigen::VectorXd solved = y.head(count);
+  L.triangularView<Eigen::Lower>().solveInPlace(solved);
+  L.triangularView<Eigen::Lower>().transpose().solveInPlace(solved);
+  return -0.5 * y.head(count).dot(solved) - L.diagonal().array().log().sum();
+}
+
+// Gaussian posterior of the last angle given measurements y = H angles + noise, of which so many are earlier
+// ones.
 Posterior condition(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& H, const Eigen::VectorXd& y,
-                    const Eigen::MatrixXd& noise) {
+                    const Eigen::MatrixXd& noise, Eigen::Index earlier) {
   Posterior posterior;
   const int last = static_cast<int>(prior.rows()) - 1;
   posterior.variance = prior(last, last);
-  if (y.size() == 0) return posterior;
   Eigen::MatrixXd S = H * prior * H.transpose();
   S += noise;
   const Eigen::LLT<Eigen::MatrixXd> llt(S);
-  const Eigen::VectorXd gain = llt.solve(H * prior.col(last));
+  const Eigen::VectorXd by_last = H * prior.col(last), gain = llt.solve(by_last);
   posterior.mean = gain.dot(y);
-  posterior.variance -= gain.dot(H * prior.col(last));
-  const Eigen::MatrixXd L = llt.matrixL();
-  posterior.log_evidence = -0.5 * y.dot(llt.solve(y)) - L.diagonal().array().log().sum();
+  posterior.variance -= gain.dot(by_last);
+  posterior.log_evidence = logEvidence(llt.matrixLLT(), y, y.size());
+  if (earlier > 0) posterior.log_evidence_before = logEvidence(llt.matrixLLT(), y, earlier);
   return posterior;
 }
 
@@ -94,8 +104,9 @@ struct PathAngleFilter::Equations {
   bool has_chord = false;  // one that is a measurement of its own
 
   /// By the first so many rows.
-  Posterior condition(const Eigen::MatrixXd& prior, Eigen::Index rows) const {
-    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.topLeftCorner(rows, rows));
+  Posterior condition(const Eigen::MatrixXd& prior, Eigen::Index rows, Eigen::Index earlier) const {
+    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.topLeftCorner(rows, rows),
+                                  earlier);
   }
 };
 
@@ -160,9 +171,9 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
   std::array<Posterior, kModels> posteriors;
   for (int m = 0; m < kModels; ++m) {
     const Eigen::MatrixXd prior = pathCovariance(all.middles, kRates[m]);
-    posteriors[m] = all.condition(prior, rows);
-    const double before = all.condition(prior, steps - 1).log_evidence;
-    log_weights_[m] = forget * log_weights_[m] + posteriors[m].log_evidence - before;
+    posteriors[m] = all.condition(prior, rows, steps - 1);
+    log_weights_[m] =
+        forget * log_weights_[m] + posteriors[m].log_evidence - posteriors[m].log_evidence_before;
   }
   const double largest = *std::max_element(log_weights_.begin(), log_weights_.end());
   for (double& weight : log_weights_) weight -= largest;
