@@ -33,7 +33,10 @@ template <typename Number>
 }
 
 [[gnu::always_inline]] inline float sum(const Lanes& lanes) {
-  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+  using Half = float __attribute__((vector_size(16)));
+  const Half halves =
+      Half{lanes[0], lanes[1], lanes[2], lanes[3]} + Half{lanes[4], lanes[5], lanes[6], lanes[7]};
+  return (halves[0] + halves[2]) + (halves[1] + halves[3]);
 }
 
 /// Four doubles, likewise.
