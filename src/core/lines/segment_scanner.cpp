@@ -1,7 +1,6 @@
 #include "lines/segment_scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -197,14 +196,15 @@ class SteepEdges {
     const cv::v_int16x8 sums = cv::v_reinterpret_as_s16(here + here + cv::v_load_expand(row - stride) +
                                                         cv::v_load_expand(row + stride));
     const cv::v_int16x8 steps = cv::v_rotate_right<2>(sums) - sums;  // i: across pixel middle - 2 + i
-    // Of steps that are as strong the one in the middle, then the one before: that is in the lowest bits.
-    constexpr int kBase = 4;
-    static constexpr std::array<int, kBase> kPlaces = {1, -1, 0, 0};  // by those bits, from the middle
-    const int strongest =
-        std::max({kBase * sign * cv::v_extract_n<2>(steps) + 2, kBase * sign * cv::v_extract_n<1>(steps) + 1,
-                  kBase * sign * cv::v_extract_n<3>(steps)});
+    // Of steps that are as strong the one in the middle, then the one before: that is in the lowest bits, of
+    // which the lower two are the place from middle - 1.
+    constexpr short kBase = 8, kPlace = 3, kBefore = 4 + 0, kMiddle = 4 + 1, kAfter = 2;
+    const cv::v_int16x8 coded = cv::v_mul_wrap(steps, cv::v_setall_s16(static_cast<short>(kBase * sign))) +
+                                cv::v_int16x8(0, kBefore, kMiddle, kAfter, 0, 0, 0, 0);
+    const int strongest = cv::v_extract_n<1>(
+        cv::v_max(coded, cv::v_max(cv::v_rotate_right<1>(coded), cv::v_rotate_right<2>(coded))));
     if (strongest < kBase * least_) return -1;
-    const int best = middle + kPlaces[strongest & (kBase - 1)];
+    const int best = middle - 1 + (strongest & kPlace);
     return ground_.has(best, v) ? best : -1;
   }
 
