@@ -1,0 +1,119 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <opencv2/core.hpp>
+
+#include "lines/line_fit.h"
+#include "lines/line_refinement.h"
+
+namespace uav_landing::line_fit {
+
+/// A vector's parts along the image axis that a line runs along, and along the other one.
+struct Parts {
+  double major, minor;
+
+  Parts(const Eigen::Vector2d& v, const Axis& axis) : major(v[axis.major]), minor(v[axis.minor]) {}
+  double dot(double other_major, double other_minor) const {
+    return major * other_major + minor * other_minor;
+  }
+};
+
+/// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
+/// interpolating between them biases the peak by up to 0.1 px.
+struct Station {
+  static constexpr int kRadius = 3;  ///< px to both sides at which there are gradients
+
+  int centre;         ///< column or row of the pixel nearest to the line
+  const uchar* grey;  ///< that pixel among those across the line; null outside image and ground
+
+  /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
+  int twiceGradient(int k) const { return grey[k + 1] - grey[k - 1]; }
+};
+
+/// Equally spaced rows or columns.
+struct Stations {
+  int first, step, count;
+
+  int at(int i) const { return first + i * step; }
+};
+
+/// The strongest one of the gradients across a line at a station: twice itself and its neighbours.
+struct Edge {
+  int station, place;  ///< row and column, or the other way round
+  int twice, before, after;
+};
+
+/// A line's axes, and what gradients along rows or columns are across it.
+struct LineFrame {
+  Parts origin, along, across;
+  double scale;  ///< grey/px, positive when brighter `across`, of one grey level along a row or column
+
+  explicit LineFrame(const Axis& axis)
+      : origin(axis.origin, axis),
+        along(axis.along, axis),
+        across(axis.across, axis),
+        scale(0.5 / across.minor) {}
+
+  /// Interpolated by a parabola.
+  [[gnu::always_inline]] inline Peak peakOf(const Edge& edge) const {
+    const double top = 0.5 * (edge.before - edge.after) / (edge.before - 2 * edge.twice + edge.after);
+    const double major = edge.station - origin.major, minor = edge.place + top - origin.minor;
+    return {along.dot(major, minor), across.dot(major, minor), std::abs(scale) * edge.twice};
+  }
+};
+
+/// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
+struct EdgeKind {
+  int sign;
+  double min_gradient;
+};
+
+/// Looks along one line. Refers to the picture's pixels and to the axis.
+class EdgeSampler {
+ public:
+  EdgeSampler(const EdgePicture& picture, const Axis& axis, const EdgeKind& kind)
+      : EdgeSampler(axis.minor == 0 ? picture.image : picture.transposed, picture.ground, axis, kind) {}
+
+  const Axis& axis() const { return axis_; }
+  const LineFrame& frame() const { return frame_; }
+
+  Station at(int station) const {
+    const int centre = cvRound(first_ + slope_ * station);
+    if (!isInside(station, centre) || !isGround(station, centre)) return {centre, nullptr};
+    return {centre, pixels_ + station * step_ + centre};
+  }
+
+  /// The strongest gradient within a pixel of the line; false when there is none of this kind.
+  bool findEdge(int station, Edge& edge) const;
+
+  /// The same within kReach px (1 or 2), at so many rows or columns, or all, between two distances along the
+  /// line.
+  template <int kReach>
+  void collect(double from, double to, int most, Peaks& peaks) const;
+
+ private:
+  /// pixels: with a row for each station.
+  EdgeSampler(const cv::Mat& pixels, const cv::Mat& ground, const Axis& axis, const EdgeKind& kind);
+
+  bool isInside(int station, int centre) const {
+    constexpr int kReach = Station::kRadius + 1;
+    return centre >= kReach && centre < size_ - kReach && station >= 0 && station < stations_;
+  }
+  bool isGround(int station, int centre) const {
+    return ground_[station * to_next_station_ + centre * to_neighbour_] != 0;
+  }
+  Stations inside(Stations stations) const;
+
+  const uchar *pixels_, *ground_;
+  std::ptrdiff_t step_, to_next_station_, to_neighbour_;  // step_: of pixels_; the others: in ground_
+  int size_, stations_;                                   // columns and rows of pixels_
+  const Axis& axis_;
+  LineFrame frame_;
+  double slope_, first_;  // of the line: px across by station, and where it crosses station 0
+  short least_;           // twice the weakest gradient along a row or column
+  short sign_;            // that such gradients have
+};
+
+}  // namespace uav_landing::line_fit
