@@ -1,6 +1,8 @@
 #include "lines/line_fit.h"
 
 #include <algorithm>
+#include <opencv2/core/hal/intrin.hpp>
+#include <tuple>
 
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
@@ -150,26 +152,54 @@ Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale)
   return fitOnce(peaks);
 }
 
+/// The weighted scatter of peaks about a line, and what neighbours have in common.
+struct Scatter {
+  double squares;          ///< of the distances
+  double products, pairs;  ///< of neighbours' distances, and their weights
+};
+
+Scatter scatterOf(const Peaks& p, const Fit& line) {
+  // With something of no weight before the first peak and after the last.
+  alignas(sizeof(Lanes)) std::array<float, std::tuple_size<Values>::value + 2 * kLanes> weight, off;
+  for (int i = 0; i < p.count; ++i)
+    off[kLanes + i] = p.across[i] - line.offset - line.slope * (p.along[i] - line.centre);
+  std::copy_n(p.weight.begin(), p.count, weight.begin() + kLanes);
+  weight[kLanes - 1] = off[kLanes - 1] = 0;
+  std::fill_n(weight.begin() + kLanes + p.count, kLanes, 0.0F);
+  std::fill_n(off.begin() + kLanes + p.count, kLanes, 0.0F);
+  Scatter scatter{0, 0, 0};
+  // In the peaks' order, so that the sums do not depend on how many are worked on at once.
+  const auto add = [](const cv::v_float64x2& terms, double& sum) {
+    alignas(sizeof(terms)) std::array<double, cv::v_float64x2::nlanes> term;
+    cv::v_store_aligned(term.data(), terms);
+    for (const double t : term) sum += t;
+  };
+  const auto addAll = [&](const cv::v_float64x2& w, const cv::v_float64x2& shared,
+                          const cv::v_float64x2& here, const cv::v_float64x2& before) {
+    add(w * here * here, scatter.squares);
+    add(shared * here * before, scatter.products);
+    add(shared, scatter.pairs);
+  };
+  for (int i = kLanes; i < kLanes + p.count; i += cv::v_float32x4::nlanes) {
+    const cv::v_float32x4 w = cv::v_load(&weight[i]), here = cv::v_load(&off[i]),
+                          before = cv::v_load(&off[i - 1]);
+    const cv::v_float32x4 shared = cv::v_sqrt(w * cv::v_load(&weight[i - 1]));
+    addAll(cv::v_cvt_f64(w), cv::v_cvt_f64(shared), cv::v_cvt_f64(here), cv::v_cvt_f64(before));
+    addAll(cv::v_cvt_f64_high(w), cv::v_cvt_f64_high(shared), cv::v_cvt_f64_high(here),
+           cv::v_cvt_f64_high(before));
+  }
+  return scatter;
+}
+
 /// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
 /// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
 double stationVariance(const Peaks& peaks, const Fit& fit) {
-  const auto residual = [&](int i) {
-    return double(peaks.across[i] - fit.offset - fit.slope * (peaks.along[i] - fit.centre));
-  };
-  double squares = 0, products = 0, pairs = 0;
-  int used = 0;
-  for (int i = 0; i < peaks.count; ++i) {
-    if (peaks.weight[i] <= 0) continue;
-    ++used;
-    const double r = residual(i);
-    squares += peaks.weight[i] * r * r;
-    if (i == 0 || peaks.weight[i - 1] <= 0) continue;
-    const double w = std::sqrt(peaks.weight[i] * peaks.weight[i - 1]);
-    products += w * r * residual(i - 1);
-    pairs += w;
-  }
-  const double variance = squares / fit.weight;
-  const double rho = pairs > 0 && variance > 0 ? std::clamp(products / pairs / variance, 0.0, 0.9) : 0;
+  const Scatter scatter = scatterOf(peaks, fit);
+  const int used = peaks.used();
+  const double variance = scatter.squares / fit.weight;
+  const double rho = scatter.pairs > 0 && variance > 0
+                         ? std::clamp(scatter.products / scatter.pairs / variance, 0.0, 0.9)
+                         : 0;
   return variance * used / std::max(used - 2, 1) * (1 + rho) / (1 - rho);
 }
 
