@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <opencv2/core/hal/intrin.hpp>
 #include <optional>
 
+#include "base/multiversion.h"
 #include "lines/line_fit.h"
 
 namespace uav_landing {
@@ -28,15 +28,16 @@ constexpr double kMaxScatter = 0.6;  // px
 
 /// What is seen across the line at one station.
 struct Profile {
-  static constexpr int kHalf = kReach + 1;
-  static constexpr int kPixels = 2 * kHalf + 3, kPadded = 32;  // across; filled up to whole vectors
+  static constexpr int kMargin = kReach + 2;  // pixels to each side
 
-  std::array<short, kPadded + 2> gradient;
+  const uchar* grey;    // of the middle, among the pixels across
   int station, centre;  // row and column of the middle, or the other way round
+  int sign;
+  std::array<uchar, 2 * kMargin + 1> column;  // for pixels that are not next to each other in the image
 
   /// Twice the gradient along the row or column, k pixels from the middle, positive towards the line's
   /// brighter side.
-  int at(int k) const { return gradient[k + kHalf]; }
+  int at(int k) const { return sign * (grey[k + 1] - grey[k - 1]); }
   /// Extremum at pixel k and its neighbours, px from the middle.
   double peak(int k) const {
     const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
@@ -44,20 +45,23 @@ struct Profile {
   }
   /// Where the gradient has a minimum of at most -least: bit k + kReach for pixel k, |k| <= kReach.
   unsigned minima(int least) const {
-    alignas(16) std::array<schar, kPadded> is_minimum;
-    const short highest = static_cast<short>(-least);
-    for (int i = 0; i < kPadded; ++i) {
-      const short before = gradient[i], here = gradient[i + 1], after = gradient[i + 2];
-      is_minimum[i] = static_cast<schar>((here <= highest) & (here <= before) & (here <= after) ? -1 : 0);
+    constexpr int kAtOnce = cv::v_int16x8::nlanes;
+    const cv::v_int16x8 signs = cv::v_setall_s16(static_cast<short>(sign));
+    const cv::v_int16x8 highest = cv::v_setall_s16(static_cast<short>(-least));
+    const auto pixels = [&](int k) { return cv::v_reinterpret_as_s16(cv::v_load_expand(grey + k)); };
+    unsigned found = 0;
+    for (int k = -kReach; k <= kReach; k += kAtOnce) {
+      const int first = std::min(k, kReach + 1 - kAtOnce);
+      const cv::v_int16x8 middle = pixels(first);
+      const cv::v_int16x8 before = cv::v_mul_wrap(signs, middle - pixels(first - 2));
+      const cv::v_int16x8 here = cv::v_mul_wrap(signs, pixels(first + 1) - pixels(first - 1));
+      const cv::v_int16x8 after = cv::v_mul_wrap(signs, pixels(first + 2) - middle);
+      const cv::v_int16x8 is_minimum = here <= cv::v_min(highest, cv::v_min(before, after));
+      found |= static_cast<unsigned>(cv::v_signmask(is_minimum)) << (first + kReach);
     }
-    constexpr unsigned kWithinReach = (1U << (2 * kReach + 1)) - 1;
-    return (static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data()))) |
-            static_cast<unsigned>(cv::v_signmask(cv::v_load_aligned(is_minimum.data() + kPadded / 2)))
-                << (kPadded / 2)) &
-           kWithinReach;
+    return found;
   }
 };
-static_assert(Profile::kPixels <= Profile::kPadded, "all of a profile is in it");
 
 /// Looks at the pixels across one line.
 class Profiles {
@@ -76,21 +80,22 @@ class Profiles {
   /// False where the line is not on the ground, or too near the border.
   bool look(int station, Profile& profile) const {
     const int centre = cvRound(axis_.origin[axis_.minor] + slope_ * (station - axis_.origin[axis_.major]));
-    constexpr int kMargin = Profile::kPixels / 2;
+    constexpr int kMargin = Profile::kMargin;
     if (centre < kMargin || centre >= size_ - kMargin || station < 0 || station >= length_) return false;
     const cv::Point pixel = axis_.major == 1 ? cv::Point(centre, station) : cv::Point(station, centre);
     if (ground_.at<uchar>(pixel) == 0) return false;
-    std::array<uchar, Profile::kPadded + 4> grey{};
-    const uchar* first = image_.ptr<uchar>(pixel.y) + pixel.x - neighbour_ * kMargin;
-    if (neighbour_ == 1)
-      std::memcpy(grey.data(), first, Profile::kPixels);
-    else
-      for (int i = 0; i < Profile::kPixels; ++i) grey[i] = first[i * neighbour_];
-    const short sign = static_cast<short>(sign_);
-    for (int i = 0; i < Profile::kPadded + 2; ++i)
-      profile.gradient[i] = static_cast<short>(sign * (grey[i + 2] - grey[i]));
+    profile.grey = image_.ptr<uchar>(pixel.y) + pixel.x;
     profile.station = station;
     profile.centre = centre;
+    profile.sign = sign_;
+    if (neighbour_ == 1) return true;
+    const uchar* grey = profile.grey - kMargin * neighbour_;
+    UAV_LANDING_UNROLL
+    for (uchar& to : profile.column) {
+      to = *grey;
+      grey += neighbour_;
+    }
+    profile.grey = &profile.column[kMargin];
     return true;
   }
   /// Of a place this many pixels from the profile's middle: distances along and across the line.
@@ -151,13 +156,10 @@ std::optional<LineSegment> fitted(const Axis& axis, const std::vector<Peak>& see
 /// Which side the stripe is on; nothing when there is none that is narrow enough to disturb the edge.
 /// Between two neighbours at the same distance an edge is pushed both ways alike.
 std::optional<int> narrowSide(const std::vector<Station>& stations) {
-  std::array<int, 2> seen{}, close{};
+  std::array<int, 2> close{};
   for (const Station& station : stations)
-    for (const int side : {0, 1}) {
-      const double width = std::abs(station.other[side] - station.edge);
-      seen[side] += std::isfinite(width) ? 1 : 0;
-      close[side] += width < kApart ? 1 : 0;
-    }
+    for (const int side : {0, 1})
+      close[side] += std::abs(station.other[side] - station.edge) < kApart ? 1 : 0;
   if (std::max(close[0], close[1]) < kMinStations / 2) return std::nullopt;
   return close[0] >= close[1] ? 0 : 1;
 }
@@ -169,10 +171,12 @@ std::vector<Station> stationsAlong(const Profiles& profiles, const Axis& axis, d
   const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
   const int step = std::max(1, (last - first) / kStations);
   stations.reserve(2 * kStations);
-  Profile profile;
-  for (int at = first; at <= last; at += step)
-    if (profiles.look(at, profile))
-      if (const auto station = stationOf(profiles, profile)) stations.push_back(*station);
+  // All are looked for first: so the memory they are in is waited for at the same time.
+  std::array<Profile, 2 * kStations> seen;
+  size_t count = 0;
+  for (int at = first; at <= last; at += step) count += profiles.look(at, seen[count]) ? 1 : 0;
+  for (size_t i = 0; i < count; ++i)
+    if (const auto station = stationOf(profiles, seen[i])) stations.push_back(*station);
   return stations;
 }
 
