@@ -83,20 +83,23 @@ UAV_LANDING_MULTIVERSION void markStarts(const short* __restrict across, const s
 
 /// The image's columns as rows, 16 x 16 pixels at a time: interleaving the upper half of the rows with the
 /// lower one four times turns rows into columns.
-void transpose(const cv::Mat& image, cv::Mat& transposed) {
+UAV_LANDING_MULTIVERSION void transpose(const cv::Mat& image, cv::Mat& transposed) {
   constexpr int kBlock = 16;
   const int rows = image.rows - image.rows % kBlock, columns = image.cols - image.cols % kBlock;
+  const size_t step = image.step, transposed_step = transposed.step;
   for (int v = 0; v < rows; v += kBlock)
     for (int u = 0; u < columns; u += kBlock) {
       cv::v_uint8x16 block[kBlock], mixed[kBlock];
-      for (int i = 0; i < kBlock; ++i) block[i] = cv::v_load(image.ptr<uchar>(v + i) + u);
+      const uchar* from = image.ptr<uchar>(v) + u;
+      for (int i = 0; i < kBlock; ++i, from += step) block[i] = cv::v_load(from);
       for (int round = 0; round < 2; ++round) {
         for (int i = 0; i < kBlock / 2; ++i)
           cv::v_zip(block[i], block[i + kBlock / 2], mixed[2 * i], mixed[2 * i + 1]);
         for (int i = 0; i < kBlock / 2; ++i)
           cv::v_zip(mixed[i], mixed[i + kBlock / 2], block[2 * i], block[2 * i + 1]);
       }
-      for (int i = 0; i < kBlock; ++i) cv::v_store(transposed.ptr<uchar>(u + i) + v, block[i]);
+      uchar* to = transposed.ptr<uchar>(u) + v;
+      for (int i = 0; i < kBlock; ++i, to += transposed_step) cv::v_store(to, block[i]);
     }
   for (int v = 0; v < image.rows; ++v)
     for (int u = v < rows ? columns : 0; u < image.cols; ++u)
