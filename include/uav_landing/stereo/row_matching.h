@@ -36,7 +36,6 @@ class RowSearch {
   /// any behind the width.
   void resample(int v, int width, const RowWarp& warp);
   void scoreAll();
-  double similarity(double cross, double sum, double squares) const;
   RowCandidate interpolated(int index) const;
 
   const cv::Mat& reference_;

@@ -13,7 +13,8 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
-constexpr int kUsualSize = 11;  // of windows, by default
+constexpr int kUsualSize = 11;    // of windows, by default
+constexpr int kUsualStride = 24;  // of what these are looked for in, where the plane is known
 
 // Rows of places of which each is in the column after that of the one before or, from one of them on, in the
 // one after that or still the same: row j at start + j by_row, and on by step.
@@ -30,6 +31,32 @@ struct PlaceRows {
   }
 };
 
+// A row's values, less the mean, at count places: the first this far behind the row's first pixel, and each
+// one column and the drift behind the one before.
+[[gnu::always_inline]] inline void interpolateRow(const float* row, float start, float drift, int count,
+                                                  float mean, float* out) {
+  // Up to this no place is in the next column but one, whatever is lost in rounding.
+  constexpr float kSurelyBefore = 0.999F;
+  const bool before = start < kSurelyBefore && start + drift * static_cast<float>(count) < kSurelyBefore;
+  Lanes behind;
+  progress(start, drift, behind);
+  for (int i = 0; before && i < count; i += kLanes, behind += kLanes * drift) {
+    Lanes a, b;
+    load(row + i, a);
+    load(row + i + 1, b);
+    store(a + behind * (b - a) - mean, out + i);
+  }
+  for (int i = 0; !before && i < count; i += kLanes, behind += kLanes * drift) {
+    Lanes a, b, c;
+    load(row + i, a);
+    load(row + i + 1, b);
+    load(row + i + 2, c);
+    const auto next = behind >= 1;
+    const Lanes left = next ? b : a, right = next ? c : b, t = next ? behind - 1 : behind;
+    store(left + t * (right - left) - mean, out + i);
+  }
+}
+
 // Values at the places in the image's rows from v on, less the mean, by linear interpolation.
 UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
                                           float mean, float* out) {
@@ -38,25 +65,19 @@ UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const Pla
   for (int j = 0; j < rows; ++j, out += count) {
     const double place = places.at(j);
     const int first = static_cast<int>(places.least(place));
-    const float start = static_cast<float>(place - first);
     const float* row = image.ptr<float>(v + j) + first;
-    Lanes behind;
-    progress(start, drift, behind);
-    for (int i = 0; i < count; i += kLanes, behind += kLanes * drift) {
-      Lanes a, b, c;
-      load(row + i, a);
-      load(row + i + 1, b);
-      load(row + i + 2, c);
-      const auto next = behind >= 1;
-      const Lanes before = next ? b : a, after = next ? c : b, t = next ? behind - 1 : behind;
-      store(before + t * (after - before) - mean, out + i);
+    const float start = static_cast<float>(place - first);
+    if (count == kUsualStride) {
+      interpolateRow(row, start, drift, kUsualStride, mean, out);
+    } else {
+      interpolateRow(row, start, drift, count, mean, out);
     }
   }
 }
 
 // Sums and sums of squares of the columns of a strip of rows. stride: of whole lanes.
-UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* sums,
-                                         float* squares) {
+[[gnu::always_inline]] inline void addColumnsOfAny(const float* strip, int rows, int stride, float* sums,
+                                                   float* squares) {
   for (int i = 0; i < stride; i += kLanes) {
     const float* column = strip + i;
     Lanes sum{}, square{};
@@ -68,6 +89,16 @@ UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int strid
     }
     store(sum, sums + i);
     store(square, squares + i);
+  }
+}
+
+// The usual size is known to the compiler, which then needs no loop for a column.
+UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* sums,
+                                         float* squares) {
+  if (rows == kUsualSize && stride == kUsualStride) {
+    addColumnsOfAny(strip, kUsualSize, kUsualStride, sums, squares);
+  } else {
+    addColumnsOfAny(strip, rows, stride, sums, squares);
   }
 }
 
@@ -110,6 +141,20 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, con
   } else {
     addUpAny(window, strip, column_sums, column_squares, size, stride, block);
   }
+}
+
+// Correlation of a window of this energy with what the sums at position k are of. Nowhere without contrast,
+// nor outside the image, where the sums are no numbers.
+double correlation(const BlockSums& block, int k, double count, double energy) {
+  const double cross = block.cross[k], sum = block.sums[k], squares = block.squares[k];
+  const double other = squares - sum * sum / count;
+  return other >= 1e-3 * energy ? cross / std::sqrt(other * energy) : kNoScore;
+}
+
+// Sum of squared differences over twice the window's own energy: 1 when equal, 0 when unrelated.
+double likeness(const BlockSums& block, int k, double energy) {
+  const double cross = block.cross[k], squares = block.squares[k];
+  return std::isnan(block.sums[k]) ? kNoScore : 1.0 - (energy - 2.0 * cross + squares) / (2.0 * energy);
 }
 
 }  // namespace
@@ -159,24 +204,15 @@ void RowSearch::scoreAll() {
   column_squares_.resize(stride_);
   addColumns(strip_.data(), size, stride_, column_sums_.data(), column_squares_.data());
   scores_.resize(count);
+  const double pixels = static_cast<double>(template_.values.size()), energy = template_.energy;
   BlockSums block;
   for (int first = 0; first < count; first += kLanes) {
     addUp(template_.values.data(), strip_.data() + first, column_sums_.data() + first,
           column_squares_.data() + first, size, stride_, block);
     for (int k = 0; k < std::min(kLanes, count - first); ++k)
-      scores_[first + k] = static_cast<float>(similarity(block.cross[k], block.sums[k], block.squares[k]));
+      scores_[first + k] = static_cast<float>(
+          cost_ == MatchingCost::kSsd ? likeness(block, k, energy) : correlation(block, k, pixels, energy));
   }
-}
-
-double RowSearch::similarity(double cross, double sum, double squares) const {
-  if (std::isnan(sum)) return kNoScore;
-  if (cost_ == MatchingCost::kSsd) {
-    // Sum of squared differences over twice the template's own energy: 1 when equal, 0 when unrelated.
-    return 1.0 - (template_.energy - 2.0 * cross + squares) / (2.0 * template_.energy);
-  }
-  const double energy = squares - sum * sum / static_cast<double>(template_.values.size());
-  if (energy < 1e-3 * template_.energy) return kNoScore;
-  return cross / std::sqrt(energy * template_.energy);
 }
 
 RowCandidate RowSearch::interpolated(int index) const {
