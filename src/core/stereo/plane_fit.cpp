@@ -5,23 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "base/lanes.h"
 #include "base/median.h"
 #include "base/multiversion.h"
+#include "base/order_statistic.h"
 
 namespace uav_landing {
 namespace {
-
-// Robust size of the residuals as a multiple of the claimed stddevs, at least 1.
-double scaleOf(const std::vector<double>& ratios) {
-  if (ratios.empty()) return 1;
-  const auto small =
-      std::count_if(ratios.begin(), ratios.end(), [](double r) { return kPerMedian * r <= 1; });
-  if (static_cast<size_t>(small) > ratios.size() / 2) return 1;  // the median is among them
-  return std::max(1.0, robustStddev(ratios));
-}
 
 struct NormalEquations {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -37,7 +30,7 @@ class PlaneProblem {
     count_ = samples.size();
     fb_ = rig.fb();
     const size_t filled = wholeDoubleLanes(count_);
-    for (std::vector<double>* column : {&x_, &y_, &disparity_, &precision_, &expected_, &weight_})
+    for (std::vector<double>* column : {&x_, &y_, &disparity_, &precision_, &expected_, &weight_, &ratios_})
       column->resize(filled);
     for (size_t i = 0; i < count_; ++i) {
       const Eigen::Vector3d row = fb_ * rig.ray(samples[i].u, samples[i].v);
@@ -60,19 +53,13 @@ class PlaneProblem {
     for (size_t i = 0; i < x_.size(); ++i) expected[i] = gx * x[i] + gy * y[i] + constant;
   }
 
-  // Robust size of the residuals as a multiple of the claimed stddevs, over samples near the plane. What
-  // stands on the ground makes residuals positive only, so the negative ones alone tell the size of the
-  // ground's own.
+  // Robust size of the residuals as a multiple of the claimed stddevs, at least 1, over samples near the
+  // plane. What stands on the ground makes residuals positive only, so the negative ones alone tell the size
+  // of the ground's own.
   double residualScale(double tolerance) {
-    ratios_.resize(count_);
-    size_t used = 0;
-    for (size_t i = 0; i < count_; ++i) {
-      const double residual = disparity_[i] - expected_[i];
-      ratios_[used] = -residual * precision_[i];
-      used += (residual <= 0) & (residual > -2 * tolerance);  // no branch: half of them are, at random
-    }
-    ratios_.resize(used);
-    return scaleOf(ratios_);
+    const Nearby nearby = measureNearby(tolerance);
+    if (nearby.small > nearby.all / 2 || nearby.all == 0) return 1;  // the median is among the small ones
+    return std::max(1.0, kPerMedian * orderStatistic(ratios_.data(), ratios_.size(), nearby.all / 2));
   }
 
   // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
@@ -124,6 +111,31 @@ class PlaneProblem {
   }
 
  private:
+  // Samples below the plane and near it, and those of them that are not farther off than claimed.
+  struct Nearby {
+    size_t all, small;
+  };
+
+  // Counts them and sets the ratios of their residuals to the claimed stddevs, of other samples to infinity.
+  UAV_LANDING_MULTIVERSION Nearby measureNearby(double tolerance) {
+    const DoubleLanes none{}, one = none + 1, infinity = none + std::numeric_limits<double>::infinity();
+    const double farthest = -2 * tolerance;
+    DoubleLanes all{}, small{};
+    for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
+      DoubleLanes precision, disparity, expected;
+      load(&precision_[i], precision);
+      load(&disparity_[i], disparity);
+      load(&expected_[i], expected);
+      const DoubleLanes residual = disparity - expected;
+      const auto near = (residual <= 0) & (residual > farthest) & (precision > 0);
+      const DoubleLanes ratio = near ? -residual * precision : infinity;
+      store(ratio, &ratios_[i]);
+      all += near ? one : none;
+      small += kPerMedian * ratio <= 1 ? one : none;
+    }
+    return {static_cast<size_t>(sum(all)), static_cast<size_t>(sum(small))};
+  }
+
   size_t count_ = 0;
   double fb_ = 0;
   std::vector<double> x_, y_;  // derivatives of the disparity by the plane vector; by its third component: fb
