@@ -11,8 +11,10 @@ namespace uav_landing {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kFew = 2;     // values in a range that are looked at one by one
-constexpr int kTries = 10;  // limits before that, where many values are the same
+constexpr int kFew = 2;  // values in a range that are looked at one by one
+constexpr int kSlow =
+    3;  // limits in turn that leave most of a range's values, before one of them is looked at
+constexpr int kTries = 10;  // limits after the samples
 
 using IntLanes = int __attribute__((vector_size(32)));
 
@@ -172,21 +174,34 @@ double orderStatistic(const double* values, size_t count, size_t rank) {
 UAV_LANDING_MULTIVERSION float orderStatistic(const float* values, int count, int rank, float guess) {
   // What is looked for is in [low, high): below_low values are smaller than low, below_high than high.
   float low = 0, high = kInfinity, limit = guess;
-  int below_low = 0, below_high = count;
-  for (int i = 0; i < kTries && below_high - below_low > kFew && limit > low && limit < high; ++i) {
-    const int below = countBelow(values, count, limit);
-    if (below == rank) return smallestFrom(values, count, limit);
-    if (below == rank + 1) return largestBelow(values, count, limit);
-    (below < rank ? low : high) = limit;
-    (below < rank ? below_low : below_high) = below;
-    const float share =
-        (static_cast<float>(rank - below_low) + 0.5F) / static_cast<float>(below_high - below_low);
-    limit = high < kInfinity ? low + share * (high - low) : 2 * limit;
-  }
+  int below_low = 0, below_high = count, slow = 0;
   for (;;) {
-    const float next = smallestFrom(values, count, low);
-    if (!(next < kInfinity) || countUpTo(values, count, next) > rank) return next;
-    low = __builtin_nextafterf(next, kInfinity);
+    const int inside = below_high - below_low;
+    if (inside > kFew && slow < kSlow && limit > low && limit < high) {
+      const int below = countBelow(values, count, limit);
+      if (below == rank) return smallestFrom(values, count, limit);
+      if (below == rank + 1) return largestBelow(values, count, limit);
+      (below < rank ? low : high) = limit;
+      (below < rank ? below_low : below_high) = below;
+      // Many values may be the same, or far from the others.
+      slow = 4 * (below_high - below_low) > 3 * inside ? slow + 1 : 0;
+    } else {
+      const float next = smallestFrom(values, count, low);
+      if (!(next < kInfinity)) return next;
+      const int up_to = countUpTo(values, count, next);
+      if (up_to > rank) return next;
+      low = __builtin_nextafterf(next, kInfinity);
+      below_low = up_to;
+      slow = 0;
+    }
+    if (high < kInfinity) {
+      const float share =
+          (static_cast<float>(rank - below_low) + 0.5F) / static_cast<float>(below_high - below_low);
+      limit = low + (slow > 0 ? 0.5F : share) * (high - low);
+    } else {
+      limit *=
+          std::min(2.F, 1.1F * static_cast<float>(rank + 1) / static_cast<float>(std::max(below_low, 1)));
+    }
   }
 }
 
