@@ -85,6 +85,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
   const DoubleLanes limits = DoubleLanes{} + limit;
   LongLanes first{}, second{};  // of their own, so that one need not wait for the other
   size_t i = 0;
+  UAV_LANDING_UNROLL
   for (; i + 2 * kDoubleLanes <= count; i += 2 * kDoubleLanes) {
     DoubleLanes a, b;
     load(values + i, a);
