@@ -118,8 +118,8 @@ bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, in
   for (const int y : {v, v + kHeight - 1}) {
     for (const int x : {u, u + kWidth - 1}) {
       const double moved = shift.at(x, y), column = x - moved;
-      if (moved - rig.principalOffset() < kLeastDisparity) return false;
-      if (column < kMargin || column > right_mask_.cols - 2 - kMargin) return false;
+      if (!(moved - rig.principalOffset() >= kLeastDisparity)) return false;
+      if (!(column >= kMargin && column <= right_mask_.cols - 2 - kMargin)) return false;
       if (left_mask_.at<uchar>(y, x) == 0 || right_mask_.at<uchar>(y, cvRound(column)) == 0) return false;
     }
   }

@@ -204,6 +204,20 @@ Pair mostlyNoise(const Scene& scene, double height) {
   return pair;
 }
 
+TEST(StereoDepthStage, LooksForNoMoreCornersThanTheImageHasRoomFor) {
+  Scene scene(12);
+  const Pair pair = scene.render(makePose(1.5, -10, 0));
+  const auto corners = [&](int pixels_per_corner) {
+    scene.parameters.pixels_per_corner = pixels_per_corner;
+    const StereoDepthResult result = scene.first(pair);
+    EXPECT_FALSE(result.failure) << pixels_per_corner << ": " << result.failure.message();
+    return result.corners;
+  };
+  EXPECT_EQ(corners(1), StereoDepthParameters().corner_count);
+  EXPECT_EQ(corners(300), 320 * 240 / 300);
+  EXPECT_EQ(corners(600), 320 * 240 / 600);
+}
+
 TEST(StereoDepthStage, BelievesAPlaneThatOnlyCornersFoundWhenTheNextPairHasItToo) {
   const Scene scene(18);
   StereoDepthStage stage(scene.model, scene.parameters);
