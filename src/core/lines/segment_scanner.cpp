@@ -2,59 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstddef>
 #include <cstring>
+#include <opencv2/core.hpp>
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "base/multiversion.h"
+#include "lines/edge_growth.h"
 
 namespace uav_landing {
 
 namespace {
 
 constexpr double kScansPerLine = 3;  // scan lines that the shortest line along an image axis crosses
-constexpr double kSlopePrior = 10;   // stations that the gradient's direction at the start is worth
 constexpr double kMaxScatter = 0.6;  // px, RMS of the stations about the line; whole pixels scatter by 0.3
 constexpr double kMaxSlope = 1.1;    // px to the side a row; what is flatter belongs to the other axis
-constexpr int kFirstLook = 3;        // stations to each side after which texture is mostly told
-constexpr int kDense = 8;            // stations to each side after which every other row will do
-constexpr double kLeastShare = 0.8;  // of stations that show the edge
 constexpr double kLargestResponse = 4 * 255 * 2;  // across and along together
-
-/// Straight line u = u0 + slope v through the stations seen so far, by least squares; v from the start.
-class GrowingLine {
- public:
-  explicit GrowingLine(double slope) : first_slope_(slope), slope_(slope) {}
-
-  void add(double v, double u) {
-    n_ += 1;
-    sv_ += v;
-    su_ += u;
-    svv_ += v * v;
-    svu_ += v * u;
-    suu_ += u * u;
-  }
-  /// To what has been added.
-  void fit() {
-    const double svv = svv_ + kSlopePrior, svu = svu_ + kSlopePrior * first_slope_;
-    // One division for both: the next stations wait for it.
-    const double determinant = n_ * svv - sv_ * sv_, inverse = 1 / (n_ * determinant);
-    slope_ = (n_ * svu - sv_ * su_) * (n_ * inverse);
-    offset_ = (su_ - slope_ * sv_) * (determinant * inverse);
-  }
-  double at(double v) const { return offset_ + slope_ * v; }
-  double slope() const { return slope_; }
-  double count() const { return n_; }
-  double meanSquare() const {
-    const double squares = suu_ - 2 * (offset_ * su_ + slope_ * svu_) + n_ * offset_ * offset_ +
-                           2 * offset_ * slope_ * sv_ + slope_ * slope_ * svv_;
-    return squares / n_;
-  }
-
- private:
-  double n_ = 0, sv_ = 0, su_ = 0, svv_ = 0, svu_ = 0, suu_ = 0;
-  double first_slope_, slope_, offset_ = 0;
-};
 
 /// 3x3 Sobel responses of the middle one of three rows.
 UAV_LANDING_MULTIVERSION void sobel(const uchar* __restrict a, const uchar* __restrict b,
@@ -106,21 +69,6 @@ UAV_LANDING_MULTIVERSION void transpose(const cv::Mat& image, cv::Mat& transpose
       transposed.at<uchar>(u, v) = image.at<uchar>(v, u);
 }
 
-/// Where edges may be, in an image or in a transposed one.
-class Ground {
- public:
-  Ground(const cv::Mat& mask, bool transposed)
-      : mask_(mask.ptr<uchar>()),
-        along_row_(transposed ? static_cast<std::ptrdiff_t>(mask.step) : 1),
-        to_next_row_(transposed ? 1 : static_cast<std::ptrdiff_t>(mask.step)) {}
-
-  bool has(int u, int v) const { return mask_[u * along_row_ + v * to_next_row_] != 0; }
-
- private:
-  const uchar* mask_;
-  std::ptrdiff_t along_row_, to_next_row_;
-};
-
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
 class SteepEdges {
  public:
@@ -129,7 +77,8 @@ class SteepEdges {
         ground_(ground),
         limits_(limits),
         spacing_(std::max(1, static_cast<int>(limits.min_length * M_SQRT1_2 / kScansPerLine))),
-        least_(static_cast<int>(std::ceil(limits.low / 2))) {
+        least_(static_cast<int>(std::ceil(limits.low / 2))),
+        rows_{image.ptr<uchar>(), static_cast<std::ptrdiff_t>(image.step), image.cols, image.rows} {
     taken_ = taken.image({image.cols, image.rows / spacing_ + 1});
     taken_.setTo(0);
   }
@@ -188,65 +137,16 @@ class SteepEdges {
     return true;
   }
 
-  /// Column of the strongest brightness step of this sign within a pixel of the expected place, or -1.
-  int edgeAt(int v, double expected, int sign) const {
-    constexpr int kLeft = 3, kRight = 4;  // pixels that are loaded with the middle one
-    const int middle = static_cast<int>(expected + 0.5);
-    if (!(expected >= kLeft) || middle + kRight >= image_.cols || v < 1 || v + 1 >= image_.rows) return -1;
-    const uchar* row = image_.ptr<uchar>(v) + middle - kLeft;
-    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image_.step);
-    const cv::v_uint16x8 here = cv::v_load_expand(row);
-    const cv::v_int16x8 sums = cv::v_reinterpret_as_s16(here + here + cv::v_load_expand(row - stride) +
-                                                        cv::v_load_expand(row + stride));
-    const cv::v_int16x8 steps = cv::v_rotate_right<2>(sums) - sums;  // i: across pixel middle - 2 + i
-    // Of steps that are as strong the one in the middle, then the one before: that is in the lowest bits, of
-    // which the lower two are the place from middle - 1.
-    constexpr short kBase = 8, kPlace = 3, kBefore = 4 + 0, kMiddle = 4 + 1, kAfter = 2;
-    const cv::v_int16x8 coded = cv::v_mul_wrap(steps, cv::v_setall_s16(static_cast<short>(kBase * sign))) +
-                                cv::v_int16x8(0, kBefore, kMiddle, kAfter, 0, 0, 0, 0);
-    const int strongest = cv::v_extract_n<1>(
-        cv::v_max(coded, cv::v_max(cv::v_rotate_right<1>(coded), cv::v_rotate_right<2>(coded))));
-    if (strongest < kBase * least_) return -1;
-    const int best = middle - 1 + (strongest & kPlace);
-    return ground_.has(best, v) ? best : -1;
-  }
-
   template <class Emit>
   void follow(int u, int v, int sign, double slope, const Emit& emit) {
-    GrowingLine line(slope);
-    line.add(0, 0);
-    line.fit();
-    struct Side {
-      int step, end = 0, misses = 0;
-      bool open = true;
-    } sides[] = {{1}, {-1}};
-    int looked = 1;
-    for (int distance = 1, skip = 1; sides[0].open || sides[1].open; distance += skip) {
-      if (distance > kDense) skip = 2;
-      for (Side& side : sides) {
-        if (!side.open) continue;
-        const int station = side.step * distance;
-        ++looked;
-        const double expected = u + line.at(station);
-        const int found = edgeAt(v + station, expected, sign);
-        if (found >= 0 && std::abs(found - expected) < 1.25) {
-          line.add(station, found - u);
-          side.end = station;
-          side.misses = 0;
-        } else if (++side.misses * skip > limits_.max_gap) {
-          side.open = false;
-          looked -= side.misses;
-        }
-      }
-      line.fit();
-      if (distance == kFirstLook && line.count() < kLeastShare * looked) return;
-    }
-    const double length = (sides[0].end - sides[1].end) * std::hypot(1, line.slope());
-    if (length < limits_.min_length || std::abs(line.slope()) > kMaxSlope ||
-        line.count() < kLeastShare * looked || line.meanSquare() > kMaxScatter * kMaxScatter)
+    const GrownEdge edge = growEdge(rows_, ground_, {u, v, sign, slope}, {least_, limits_.max_gap});
+    const GrowingLine& line = edge.line;
+    if (!edge.isShown() || std::abs(line.slope()) > kMaxSlope ||
+        (edge.to - edge.from) * std::hypot(1, line.slope()) < limits_.min_length ||
+        line.meanSquare() > kMaxScatter * kMaxScatter)
       return;
-    take(u, v, sign, line, sides[1].end, sides[0].end);
-    emit(u + line.at(sides[1].end), v + sides[1].end, u + line.at(sides[0].end), v + sides[0].end, sign);
+    take(u, v, sign, line, edge.from, edge.to);
+    emit(u + line.at(edge.from), v + edge.from, u + line.at(edge.to), v + edge.to, sign);
   }
 
   /// Keeps the scan rows from starting on this line again.
@@ -268,6 +168,7 @@ class SteepEdges {
   cv::Mat taken_;
   int spacing_;  // of the scan rows
   int least_;    // Sobel response across an edge: it may lie at 45 degrees
+  PixelRows rows_;
 };
 
 }  // namespace
