@@ -48,10 +48,13 @@ UAV_LANDING_MULTIVERSION void markStarts(const short* __restrict across, const s
 /// lower one four times turns rows into columns.
 UAV_LANDING_MULTIVERSION void transpose(const cv::Mat& image, cv::Mat& transposed) {
   constexpr int kBlock = 16;
-  const int rows = image.rows - image.rows % kBlock, columns = image.cols - image.cols % kBlock;
+  const int rows = image.rows, columns = image.cols;
+  if (rows < kBlock || columns < kBlock) return cv::transpose(image, transposed);
   const size_t step = image.step, transposed_step = transposed.step;
-  for (int v = 0; v < rows; v += kBlock)
-    for (int u = 0; u < columns; u += kBlock) {
+  // The last blocks overlap with those before.
+  for (int row = 0; row < rows; row += kBlock)
+    for (int column = 0; column < columns; column += kBlock) {
+      const int v = std::min(row, rows - kBlock), u = std::min(column, columns - kBlock);
       cv::v_uint8x16 block[kBlock], mixed[kBlock];
       const uchar* from = image.ptr<uchar>(v) + u;
       for (int i = 0; i < kBlock; ++i, from += step) block[i] = cv::v_load(from);
@@ -64,9 +67,6 @@ UAV_LANDING_MULTIVERSION void transpose(const cv::Mat& image, cv::Mat& transpose
       uchar* to = transposed.ptr<uchar>(u) + v;
       for (int i = 0; i < kBlock; ++i, to += transposed_step) cv::v_store(to, block[i]);
     }
-  for (int v = 0; v < image.rows; ++v)
-    for (int u = v < rows ? columns : 0; u < image.cols; ++u)
-      transposed.at<uchar>(u, v) = image.at<uchar>(v, u);
 }
 
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
