@@ -156,9 +156,10 @@ class SteepEdges {
       const int station = first + row * spacing_ - v;
       if (station > to) break;
       const int middle = cvRound(u + line.at(station));
+      const int begin = std::max(0, middle - 2), end = std::min(taken_.cols, middle + 3);
       uchar* taken = taken_.ptr<uchar>(row);
-      for (int k = std::max(0, middle - 2); k <= std::min(taken_.cols - 1, middle + 2); ++k)
-        taken[k] |= static_cast<uchar>(bit(sign));
+      UAV_LANDING_UNROLL
+      for (int k = begin; k < end; ++k) taken[k] |= static_cast<uchar>(bit(sign));
     }
   }
 
