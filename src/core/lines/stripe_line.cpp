@@ -43,20 +43,16 @@ struct Profile {
     const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
     return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
   }
-  /// Where the gradient has a minimum of at most -least: bit k + kReach for pixel k, |k| <= kReach.
+  /// Where the gradient has a minimum of at most -least < 0: bit k + kReach for pixel k, |k| <= kReach.
   unsigned minima(int least) const {
-    constexpr int kAtOnce = cv::v_int16x8::nlanes;
-    const cv::v_int16x8 signs = cv::v_setall_s16(static_cast<short>(sign));
-    const cv::v_int16x8 highest = cv::v_setall_s16(static_cast<short>(-least));
-    const auto pixels = [&](int k) { return cv::v_reinterpret_as_s16(cv::v_load_expand(grey + k)); };
+    constexpr int kAtOnce = cv::v_uint8x16::nlanes;
+    // By how much pixels get darker. Bytes will do: where they get brighter there is 0, and no minimum.
+    const auto fall = [&](int k) { return cv::v_load(grey + k - sign) - cv::v_load(grey + k + sign); };
+    const cv::v_uint8x16 lowest = cv::v_setall_u8(static_cast<uchar>(least));
     unsigned found = 0;
-    for (int k = -kReach; k <= kReach; k += kAtOnce) {
-      const int first = std::min(k, kReach + 1 - kAtOnce);
-      const cv::v_int16x8 middle = pixels(first);
-      const cv::v_int16x8 before = cv::v_mul_wrap(signs, middle - pixels(first - 2));
-      const cv::v_int16x8 here = cv::v_mul_wrap(signs, pixels(first + 1) - pixels(first - 1));
-      const cv::v_int16x8 after = cv::v_mul_wrap(signs, pixels(first + 2) - middle);
-      const cv::v_int16x8 is_minimum = here <= cv::v_min(highest, cv::v_min(before, after));
+    for (const int first : {-kReach, kReach + 1 - kAtOnce}) {
+      const cv::v_uint8x16 is_minimum =
+          fall(first) >= cv::v_max(lowest, cv::v_max(fall(first - 1), fall(first + 1)));
       found |= static_cast<unsigned>(cv::v_signmask(is_minimum)) << (first + kReach);
     }
     return found;
