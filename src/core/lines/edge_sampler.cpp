@@ -52,15 +52,15 @@ UAV_LANDING_MULTIVERSION void findPeaks(const EdgeColumns& edges, const Stations
 
 /// Leaves out the stations without an edge.
 void keepFound(const EdgeColumns& edges, int stations, Peaks& peaks) {
-  int kept = 0;
+  std::ptrdiff_t kept = 0;
   while (kept < stations && edges.found[kept] != 0) ++kept;
-  for (int i = kept; i < stations; ++i) {
+  for (std::ptrdiff_t i = kept; i < stations; ++i) {
     peaks.along[kept] = peaks.along[i];
     peaks.across[kept] = peaks.across[i];
     peaks.gradient[kept] = peaks.gradient[i];
     kept += edges.found[i];
   }
-  peaks.count = kept;
+  peaks.count = static_cast<int>(kept);
 }
 
 /// Column k of eight rows of eight pixels each: pixel k of all of them, from the offset on.
@@ -185,9 +185,13 @@ void EdgeSampler::collect(double from, double to, int most, Peaks& peaks) const 
 
   static constexpr std::array<uchar, 2 * kAtOnce> kNothing = {};  // no edges
   std::array<const uchar*, EdgeColumns::kMost> pixels;
-  const uchar* row = pixels_ + stations.first * step_;
-  for (int i = 0; i < stations.count; ++i, row += stations.step * step_)
-    pixels[i] = isGround(stations.at(i), edges.centre[i]) ? row + edges.centre[i] : &kNothing[kAtOnce];
+  const uchar *row = pixels_ + stations.first * step_, *ground = ground_ + stations.first * to_next_station_;
+  const std::ptrdiff_t to_next_row = stations.step * step_, to_next = stations.step * to_next_station_,
+                       to_neighbour = to_neighbour_;
+  for (int i = 0; i < stations.count; ++i, row += to_next_row, ground += to_next) {
+    const std::ptrdiff_t centre = edges.centre[i];
+    pixels[i] = ground[centre * to_neighbour] != 0 ? row + centre : &kNothing[kAtOnce];
+  }
   for (int i = stations.count; i % kAtOnce != 0; ++i) pixels[i] = &kNothing[kAtOnce];
 
   for (int i = 0; i < stations.count; i += kAtOnce)
