@@ -130,6 +130,13 @@ template <int kReach>
   cv::v_store(&edges.found[first], found);
 }
 
+/// Of all stations, filled up to whole groups.
+template <int kReach>
+UAV_LANDING_MULTIVERSION void findEdges(const uchar* const* pixels, int stations, short sign, short least,
+                                        EdgeColumns& edges) {
+  for (int i = 0; i < stations; i += kAtOnce) findStrongest<kReach>(&pixels[i], sign, least, edges, i);
+}
+
 }  // namespace
 
 EdgeSampler::EdgeSampler(const cv::Mat& pixels, const cv::Mat& ground, const Axis& axis, const EdgeKind& kind)
@@ -194,8 +201,7 @@ void EdgeSampler::collect(double from, double to, int most, Peaks& peaks) const 
   }
   for (int i = stations.count; i % kAtOnce != 0; ++i) pixels[i] = &kNothing[kAtOnce];
 
-  for (int i = 0; i < stations.count; i += kAtOnce)
-    findStrongest<kReach>(&pixels[i], sign_, least_, edges, i);
+  findEdges<kReach>(pixels.data(), stations.count, sign_, least_, edges);
   findPeaks(edges, stations, frame_, peaks);
   keepFound(edges, stations.count, peaks);
 }
