@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <opencv2/core.hpp>
-#include <optional>
+#include <vector>
 
 #include "image/harris_rows.h"
 #include "image/mask_bounds.h"
@@ -19,121 +19,171 @@ struct Candidate {
   short x, y;
 };
 
-/// Appends the marked pixels of a row and returns the end. There must be room for all of the row: two of each
-/// block are written, and only the end tells which ones stay, as how many there are a processor cannot guess.
-Candidate* addMarked(const uchar* marks, const float* responses, int columns, int row, Candidate* end) {
-  static_assert(HarrisRows::kBlock == sizeof(std::uint64_t), "a block's marks are looked at as one number");
-  constexpr std::uint64_t kOnes = 0x0101010101010101, kLast = std::uint64_t(1) << 63;
-  for (int begin = 0; begin < columns; begin += HarrisRows::kBlock) {
-    std::uint64_t bits;
-    std::memcpy(&bits, marks + begin, sizeof(bits));
-    if (bits == 0) continue;
-    const auto put = [&](Candidate* place) {
-      const int u = begin + __builtin_ctzll(bits | kLast) / 8;
-      *place = {responses[u], static_cast<short>(u), static_cast<short>(row)};
-      bits &= bits - 1;
-    };
-    Candidate* const stop = end + (bits * kOnes >> 56);
-    put(end++);
-    put(end++);
-    while (end < stop) put(end++);
-    end = stop;
-  }
-  return end;
-}
-
-/// Local maxima of the Harris response inside the mask, by rows, with a response of at least quality times
-/// the strongest one.
-void findMaxima(const cv::Mat& image, const cv::Mat& mask, double quality, double harris_k,
-                std::vector<Candidate>& maxima) {
-  HarrisRows harris(image, harris_k);
+/// The local maxima of an image, by rows.
+struct Maxima {
+  std::vector<Candidate> memory;  // the first count of them
   size_t count = 0;
+  float strongest = 0;
+
+  /// Those of the marked pixels of a row that are allowed and have a response above 0. All are written, and
+  /// only the end tells which ones stay, as a processor cannot guess that.
+  void addRow(const std::uint64_t* marks, const uchar* allowed, const float* responses, int columns,
+              int row) {
+    if (memory.size() < count + columns) memory.resize(2 * (count + columns));
+    Candidate* end = &memory[count];
+    float largest = strongest;
+    for (int begin = 0; begin < columns; begin += HarrisRows::kBlock) {
+      for (std::uint64_t bits = *marks++; bits != 0; bits &= bits - 1) {
+        const int u = begin + __builtin_ctzll(bits);
+        const float response = allowed[u] != 0 ? responses[u] : 0;
+        *end = {response, static_cast<short>(u), static_cast<short>(row)};
+        end += response > 0 ? 1 : 0;
+        largest = std::max(largest, response);
+      }
+    }
+    count = end - memory.data();
+    strongest = largest;
+  }
+};
+
+/// Of the Harris response inside the mask.
+void findMaxima(const cv::Mat& image, const cv::Mat& mask, double harris_k, Maxima& maxima) {
+  HarrisRows harris(image, harris_k);
+  maxima.count = 0;
+  maxima.strongest = 0;
   for (int v = 2; v + 2 < image.rows; ++v) {
     harris.compute(v);
-    if (v < 4) continue;
-    if (maxima.size() < count + image.cols) maxima.resize(2 * (count + image.cols));
-    const uchar* marks = harris.maxima(v - 1, mask.ptr<uchar>(v - 1));
-    count = addMarked(marks, harris.response(v - 1), image.cols, v - 1, &maxima[count]) - maxima.data();
+    if (v >= 4)
+      maxima.addRow(harris.maxima(v - 1), mask.ptr<uchar>(v - 1), harris.response(v - 1), image.cols, v - 1);
   }
-  maxima.resize(count);
-  float strongest = 0;
-  for (const Candidate& candidate : maxima) strongest = std::max(strongest, candidate.response);
-  const float threshold = static_cast<float>(quality) * strongest;
-  maxima.erase(std::remove_if(maxima.begin(), maxima.end(),
-                              [threshold](const Candidate& c) { return c.response < threshold; }),
-               maxima.end());
 }
 
-/// Strongest first, equals as they come: digit by digit of the response's bits, which are in the order of
-/// positive numbers. sorted: memory to work in.
-void sortByResponse(std::vector<Candidate>& candidates, std::vector<Candidate>& sorted) {
-  constexpr int kBits = 11, kDigits = 1 << kBits;
-  sorted.resize(candidates.size());
-  const auto digit = [](const Candidate& candidate, int shift) {
+/// Candidates of at least a least response in classes of nearly the same one, the strongest first. The bits
+/// of positive numbers are in the order of these.
+class Classes {
+ public:
+  static constexpr int kCount = 2048;
+
+  /// memory: to work in.
+  Classes(const Maxima& maxima, float least, std::vector<Candidate>& memory)
+      : strongest_(bitsOf(maxima.strongest)), least_(least) {
+    if (memory.size() < maxima.count) memory.resize(maxima.memory.size());
+    candidates_ = memory.data();
+    const Candidate *first = maxima.memory.data(), *last = first + maxima.count;
+    for (const Candidate* candidate = first; candidate < last; ++candidate) ++ends_[classOf(*candidate) + 1];
+    for (int i = 0; i <= kCount; ++i) ends_[i + 1] += ends_[i];
+    for (const Candidate* candidate = first; candidate < last; ++candidate)
+      candidates_[ends_[classOf(*candidate)]++] = *candidate;
+  }
+
+  Candidate* begin(int i) const { return candidates_ + (i == 0 ? 0 : ends_[i - 1]); }
+  Candidate* end(int i) const { return candidates_ + ends_[i]; }
+
+ private:
+  static std::uint32_t bitsOf(float response) {
     std::uint32_t bits;
-    std::memcpy(&bits, &candidate.response, sizeof(bits));
-    return kDigits - 1 - static_cast<int>((bits >> shift) & (kDigits - 1));
-  };
-  for (int shift = 0; shift < 32; shift += kBits) {
-    std::array<int, kDigits + 1> begin{};
-    for (const Candidate& candidate : candidates) ++begin[digit(candidate, shift) + 1];
-    for (int i = 0; i < kDigits; ++i) begin[i + 1] += begin[i];
-    for (const Candidate& candidate : candidates) sorted[begin[digit(candidate, shift)]++] = candidate;
-    candidates.swap(sorted);
+    std::memcpy(&bits, &response, sizeof(bits));
+    return bits;
   }
-}
+  /// 64 for each halving of the response; the last one is of those that are too weak.
+  int classOf(const Candidate& candidate) const {
+    constexpr std::uint32_t kLast = kCount - 1;
+    const std::uint32_t number = (strongest_ - bitsOf(candidate.response)) >> 17;
+    return static_cast<int>(candidate.response < least_ ? kCount : std::min(number, kLast));
+  }
 
-/// The corners accepted so far, in square cells.
+  std::uint32_t strongest_;
+  float least_;
+  Candidate* candidates_;
+  std::array<int, kCount + 2> ends_{};
+};
+
+/// What corners are accepted by: not too many in a square cell, and none near another.
 class Cells {
  public:
   static constexpr int kMost = 4;  // corners in a cell
 
   Cells(const cv::Size& area, double cell, double min_distance)
-      : min_squared_(min_distance * min_distance), reach_(static_cast<int>(std::ceil(min_distance))) {
-    columns_.reserve(area.width);
-    rows_.reserve(area.height);
+      : reach_(static_cast<int>(std::ceil(min_distance)) - 1),
+        stride_((area.width + 2 * reach_) / 8 + static_cast<int>(sizeof(std::uint64_t))),
+        taken_(static_cast<size_t>(stride_) * (area.height + 2 * reach_)) {
     for (int x = 0; x < area.width; ++x) columns_.push_back(static_cast<int>(x / cell));
-    for (int y = 0; y < area.height; ++y) rows_.push_back(static_cast<int>(y / cell));
-    cells_.resize(static_cast<size_t>(columns_.back() + 1) * (rows_.back() + 1));
+    const int across = columns_.back() + 1;
+    for (int y = 0; y < area.height; ++y) rows_.push_back(across * static_cast<int>(y / cell));
+    counts_.resize(rows_.back() + across);
+    drawNear(min_distance * min_distance);
   }
 
-  /// How many stronger ones the cell of a corner has, which is added to it; nothing when it is full, or when
-  /// there is a stronger corner nearer than the least distance.
-  std::optional<int> add(const cv::Point& point) {
-    Cell& own = at(columns_[point.x], rows_[point.y]);
-    if (own.count == kMost || !isFree(point)) return std::nullopt;
-    own.corners[own.count] = point;
-    return own.count++;
+  /// Leaves those candidates whose cell has room and that no corner is nearer to than the least distance, and
+  /// returns their end. All are written, as a processor cannot guess which ones stay.
+  Candidate* keepFree(Candidate* begin, Candidate* end) const {
+    const int *columns = columns_.data(), *rows = rows_.data();
+    const uchar *counts = counts_.data(), *taken = taken_.data() + static_cast<size_t>(reach_) * stride_;
+    const std::ptrdiff_t stride = stride_;
+    const unsigned reach = reach_;
+    Candidate* kept = begin;
+    for (const Candidate* candidate = begin; candidate < end; ++candidate) {
+      const int x = candidate->x, y = candidate->y;
+      const unsigned place = x + reach;
+      const bool has_room = counts[rows[y] + columns[x]] < kMost;
+      *kept = *candidate;
+      const int is_taken = taken[y * stride + place / 8] >> place % 8 & 1;
+      kept += has_room ? 1 - is_taken : 0;
+    }
+    return kept;
+  }
+
+  /// Accepts a candidate that is free, and returns how many its cell had before.
+  int add(const Candidate& candidate) {
+    const int size = 2 * reach_ + 1, shift = candidate.x % 8;
+    const std::uint64_t* near = near_.data();
+    for (int x = 0; x < size; x += kTogether, near += size) {
+      uchar* place = &taken_[static_cast<size_t>(candidate.y) * stride_ + (candidate.x + x) / 8];
+      for (int row = 0; row < size; ++row, place += stride_) {
+        std::uint64_t bits;
+        std::memcpy(&bits, place, sizeof(bits));
+        bits |= near[row] << shift;
+        std::memcpy(place, &bits, sizeof(bits));
+      }
+    }
+    return counts_[rows_[candidate.y] + columns_[candidate.x]]++;
   }
 
  private:
-  struct Cell {
-    int count = 0;
-    std::array<cv::Point, kMost> corners;
-  };
+  // Pixels that are marked at once: of a word, less those that the first one may be behind a byte's begin.
+  static constexpr int kTogether = 56;
 
-  Cell& at(int column, int row) { return cells_[static_cast<size_t>(row) * (columns_.back() + 1) + column]; }
-
-  bool isFree(const cv::Point& point) {
-    const auto last = [&](const std::vector<int>& cell_of, int place) {
-      return cell_of[std::min(place + reach_, static_cast<int>(cell_of.size()) - 1)];
-    };
-    for (int y = rows_[std::max(point.y - reach_, 0)]; y <= last(rows_, point.y); ++y)
-      for (int x = columns_[std::max(point.x - reach_, 0)]; x <= last(columns_, point.x); ++x) {
-        const Cell& cell = at(x, y);
-        for (int i = 0; i < cell.count; ++i) {
-          const cv::Point step = cell.corners[i] - point;
-          if (step.dot(step) < min_squared_) return false;
-        }
+  void drawNear(double squared_distance) {
+    for (int first = -reach_; first <= reach_; first += kTogether)
+      for (int y = -reach_; y <= reach_; ++y) {
+        std::uint64_t bits = 0;
+        for (int x = 0; x < kTogether && first + x <= reach_; ++x)
+          if ((first + x) * (first + x) + y * y < squared_distance) bits |= std::uint64_t(1) << x;
+        near_.push_back(bits);
       }
-    return true;
   }
 
-  double min_squared_;
-  int reach_;
-  std::vector<int> columns_, rows_;  // of cells, of a pixel
-  std::vector<Cell> cells_;
+  int reach_, stride_;
+  std::vector<int> columns_, rows_;  // of cells, of a pixel; rows: their first cells
+  std::vector<uchar> counts_;        // corners of each cell
+  std::vector<std::uint64_t> near_;  // marks of what is too near to a corner, words below each other
+  std::vector<uchar> taken_;         // a bit for each pixel that is, with margins
 };
+
+/// Accepts those of a class's candidates that are free, strongest first and equals by rows, and adds each to
+/// those of its rank: what its cell had before.
+void accept(Candidate* begin, Candidate* end, Cells& cells,
+            std::array<std::vector<Candidate>, Cells::kMost>& ranked) {
+  // Most are not free before already, which is sooner found than their order.
+  end = cells.keepFree(begin, end);
+  std::sort(begin, end, [](const Candidate& a, const Candidate& b) {
+    if (a.response != b.response) return a.response > b.response;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
+  for (Candidate* candidate = begin; candidate < end; ++candidate)
+    if (cells.keepFree(candidate, candidate + 1) != candidate)
+      ranked[cells.add(*candidate)].push_back(*candidate);
+}
 
 }  // namespace
 
@@ -141,19 +191,18 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
                                    double min_distance, double harris_k) {
   const cv::Rect area = boundsOf(mask);
   if (area.width < 7 || area.height < 7) return {};
-  static thread_local std::vector<Candidate> maxima, memory;  // kept, as there are many
-  findMaxima(image(area), mask(area), quality, harris_k, maxima);
-  sortByResponse(maxima, memory);
+  static thread_local Maxima maxima;  // their memory is kept, as there are many
+  static thread_local std::vector<Candidate> candidates;
+  findMaxima(image(area), mask(area), harris_k, maxima);
+  const Classes classes(maxima, static_cast<float>(quality) * maxima.strongest, candidates);
 
   // Rank within cells first, so that strong markings do not take all corners, then by strength.
   Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
-  std::array<std::vector<cv::Point>, Cells::kMost> ranked;
-  for (const Candidate& candidate : maxima) {
-    const cv::Point point(candidate.x, candidate.y);
-    if (const std::optional<int> rank = cells.add(point)) ranked[*rank].push_back(point + area.tl());
-  }
+  std::array<std::vector<Candidate>, Cells::kMost> ranked;
+  for (int i = 0; i < Classes::kCount; ++i) accept(classes.begin(i), classes.end(i), cells, ranked);
   std::vector<cv::Point> corners;
-  for (const std::vector<cv::Point>& rank : ranked) corners.insert(corners.end(), rank.begin(), rank.end());
+  for (const std::vector<Candidate>& rank : ranked)
+    for (const Candidate& corner : rank) corners.push_back(cv::Point(corner.x, corner.y) + area.tl());
   if (corners.size() > static_cast<size_t>(count)) corners.resize(count);
   std::sort(corners.begin(), corners.end(),
             [](const cv::Point& a, const cv::Point& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });

@@ -1,7 +1,9 @@
 #include "image/harris_rows.h"
 
 #include <algorithm>
+#include <opencv2/core/hal/intrin.hpp>
 
+#include "base/lanes.h"
 #include "base/multiversion.h"
 
 namespace uav_landing {
@@ -56,17 +58,55 @@ UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const fl
   }
 }
 
-inline float larger(float a, float b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline void larger(const Lanes& a, const Lanes& b, Lanes& larger) {
+  larger = a > b ? a : b;
+}
+using LaneMarks = int __attribute__((vector_size(sizeof(Lanes))));
 
-/// A maximum is larger than its neighbours before it, and not smaller than those after it.
-UAV_LANDING_MULTIVERSION void markMaxima(const Rows<float>& rows, const uchar* __restrict allowed,
-                                         int columns, uchar* __restrict maxima) {
+/// Whether pixels are larger than their neighbours before them, and not smaller than those after them.
+[[gnu::always_inline]] inline void findMaxima(const float* above, const float* row, const float* below,
+                                              LaneMarks& is_maximum) {
+  Lanes left, middle, right, beside, before, after;
+  load(above - 1, left);
+  load(above, middle);
+  load(above + 1, right);
+  load(row - 1, beside);
+  larger(left, middle, left);
+  larger(right, beside, right);
+  larger(left, right, before);
+  load(below - 1, left);
+  load(below, middle);
+  load(below + 1, right);
+  load(row + 1, beside);
+  larger(left, middle, left);
+  larger(right, beside, right);
+  larger(left, right, after);
+  load(row, middle);
+  is_maximum = (middle > before) & (middle >= after);
+}
+
+[[gnu::always_inline]] inline cv::v_int16x8 packed(const LaneMarks& m) {
+  using Half = int __attribute__((vector_size(sizeof(Lanes) / 2)));
+  using Register = decltype(cv::v_int32x4::val);
+  return cv::v_pack(cv::v_int32x4((Register)(Half{m[0], m[1], m[2], m[3]})),
+                    cv::v_int32x4((Register)(Half{m[4], m[5], m[6], m[7]})));
+}
+
+/// One bit for each pixel of the middle row's blocks.
+UAV_LANDING_MULTIVERSION void markMaxima(const Rows<float>& rows, int blocks,
+                                         std::uint64_t* __restrict marks) {
+  constexpr int kTogether = 2 * kLanes;
   const float *a = rows.above, *b = rows.middle, *c = rows.below;
-  for (int u = 2; u < columns - 2; ++u) {
-    const float before = larger(larger(a[u - 1], a[u]), larger(a[u + 1], b[u - 1]));
-    const float after = larger(larger(c[u - 1], c[u]), larger(c[u + 1], b[u + 1]));
-    const int is_larger = b[u] > larger(before, 0.F) ? 1 : 0, not_smaller = b[u] >= after ? 1 : 0;
-    maxima[u] = static_cast<uchar>(is_larger & not_smaller & allowed[u]);
+  for (int block = 0; block < blocks; ++block) {
+    std::uint64_t bits = 0;
+    for (int i = 0; i < HarrisRows::kBlock; i += kTogether, a += kTogether, b += kTogether, c += kTogether) {
+      LaneMarks first, second;
+      findMaxima(a, b, c, first);
+      findMaxima(a + kLanes, b + kLanes, c + kLanes, second);
+      const int some = cv::v_signmask(cv::v_pack(packed(first), packed(second)));
+      bits |= static_cast<std::uint64_t>(some) << i;
+    }
+    marks[block] = bits;
   }
 }
 
@@ -77,9 +117,10 @@ HarrisRows::HarrisRows(const cv::Mat& image, double k)
       k_(static_cast<float>(k)),
       columns_(image.cols),
       products_(9 * static_cast<size_t>(columns_)),
-      responses_(3 * static_cast<size_t>(columns_) + kBlock),
+      blocks_((columns_ + kBlock - 1) / kBlock),
+      responses_(3 * static_cast<size_t>(blocks_) * kBlock + 2 * kAround),
       sums_(3 * static_cast<size_t>(columns_)),
-      maxima_((static_cast<size_t>(columns_) + kBlock - 1) / kBlock * kBlock) {}
+      maxima_(blocks_) {}
 
 void HarrisRows::compute(int v) {
   for (next_ = std::max(next_, v - 1); next_ <= v + 1; ++next_) {
@@ -94,8 +135,8 @@ void HarrisRows::compute(int v) {
   respond(xx, xy, yy, columns_, k_, responseRow(v));
 }
 
-const uchar* HarrisRows::maxima(int v, const uchar* allowed) {
-  markMaxima({responseRow(v - 1), responseRow(v), responseRow(v + 1)}, allowed, columns_, maxima_.data());
+const std::uint64_t* HarrisRows::maxima(int v) {
+  markMaxima({responseRow(v - 1), responseRow(v), responseRow(v + 1)}, blocks_, maxima_.data());
   return maxima_.data();
 }
 

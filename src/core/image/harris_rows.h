@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -15,24 +16,26 @@ class HarrisRows {
   /// Computes the response of row v (2 <= v < rows - 2), 0 in the two outermost columns; rows must be asked
   /// for in turn, from 2 on.
   void compute(int v);
-  /// Good for whole blocks of kBlock.
   const float* response(int v) { return responseRow(v); }
-  /// 1 at the local maxima of row v where allowed, a mask of 0 and 255, is not 0; 0 elsewhere, filled up to
-  /// whole blocks of kBlock. Row v + 1 must be the one computed last. Of equal neighbours the last one
-  /// counts.
-  const uchar* maxima(int v, const uchar* allowed);
-  static constexpr int kBlock = 8;
+  /// A bit for each pixel of row v, the lowest one of a block first: set at local maxima of those not in the
+  /// two outermost columns. Row v + 1 must be the one computed last. Of equal neighbours the last one counts.
+  const std::uint64_t* maxima(int v);
+  static constexpr int kBlock = 64;
 
  private:
   float* productRow(int v) { return products_.data() + static_cast<size_t>(v % 3) * 3 * columns_; }
-  float* responseRow(int v) { return responses_.data() + static_cast<size_t>(v % 3) * columns_; }
+  float* responseRow(int v) { return &responses_[kAround + static_cast<size_t>(v % 3) * blocks_ * kBlock]; }
+
+  static constexpr int kAround = 1;  // responses read beside a row
 
   const cv::Mat& image_;
   float k_;
   int columns_, next_ = 1;
-  std::vector<float> products_, responses_;  // three rows each
-  std::vector<float> sums_;                  // one row
-  std::vector<uchar> maxima_;
+  std::vector<float> products_;   // three rows
+  int blocks_;                    // of a row
+  std::vector<float> responses_;  // three rows of whole blocks, 0 where there are none
+  std::vector<float> sums_;       // one row
+  std::vector<std::uint64_t> maxima_;
 };
 
 }  // namespace uav_landing
