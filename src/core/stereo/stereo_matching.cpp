@@ -7,6 +7,7 @@
 
 #include "base/image_memory.h"
 #include "base/thinned.h"
+#include "base/touch_ahead.h"
 #include "stereo/shift_model.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/image/corners.h"
@@ -38,6 +39,9 @@ class CornerMatcher {
         backward_(level.right, level.left, parameters.window_radius, parameters.matching_cost),
         forward_warp_(parameters.warp_window ? shift_.forward() : RowWarp{}),
         backward_warp_(parameters.warp_window ? shift_.backward() : RowWarp{}) {}
+
+  // Touches the right mask where the match of a corner is expected.
+  void touch(int u, int v) const { touchPixel(level_.right_mask, u - shift_.at(u, v), v); }
 
   // Column in the right image and its stddev; false when there is no trustworthy match.
   bool match(int u, int v, double* column, double* stddev) {
@@ -89,6 +93,8 @@ std::vector<DisparitySample> matchAll(const StereoLevel& level, const std::vecto
   CornerMatcher matcher(level, g, parameters, steps);
   std::vector<DisparitySample> samples;
   samples.reserve(corners.size());
+  // All at once, as each is in another line of the cache.
+  for (const cv::Point& corner : corners) matcher.touch(corner.x, corner.y);
   for (const cv::Point& corner : corners) {
     double column, stddev;
     if (!matcher.match(corner.x, corner.y, &column, &stddev)) continue;
