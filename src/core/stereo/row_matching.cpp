@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "base/interpolation.h"
 #include "base/lanes.h"
@@ -143,18 +144,34 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, con
   }
 }
 
-// Correlation of a window of this energy with what the sums at position k are of. Nowhere without contrast,
-// nor outside the image, where the sums are no numbers.
-double correlation(const BlockSums& block, int k, double count, double energy) {
-  const double cross = block.cross[k], sum = block.sums[k], squares = block.squares[k];
-  const double other = squares - sum * sum / count;
-  return other >= 1e-3 * energy ? cross / std::sqrt(other * energy) : kNoScore;
+// Correlations of a window of this energy with what the sums are of. Nowhere without contrast, nor outside
+// the image, where the sums are no numbers.
+void correlate(const BlockSums& block, double count, double energy, float* scores) {
+  using Pair = cv::v_float64x2;
+  const Pair counts = cv::v_setall_f64(count), energies = cv::v_setall_f64(energy);
+  const Pair least = cv::v_setall_f64(1e-3 * energy), none = cv::v_setall_f64(kNoScore);
+  const auto correlation = [&](const Pair& cross, const Pair& sum, const Pair& squares) {
+    const Pair other = squares - sum * sum / counts;
+    return cv::v_select(other >= least, cross / cv::v_sqrt(other * energies), none);
+  };
+  for (int k = 0; k < kLanes; k += cv::v_float32x4::nlanes) {
+    const cv::v_float32x4 cross = cv::v_load_aligned(&block.cross[k]),
+                          sums = cv::v_load_aligned(&block.sums[k]),
+                          squares = cv::v_load_aligned(&block.squares[k]);
+    const Pair first = correlation(cv::v_cvt_f64(cross), cv::v_cvt_f64(sums), cv::v_cvt_f64(squares));
+    const Pair second =
+        correlation(cv::v_cvt_f64_high(cross), cv::v_cvt_f64_high(sums), cv::v_cvt_f64_high(squares));
+    cv::v_store(scores + k, cv::v_cvt_f32(first, second));
+  }
 }
 
-// Sum of squared differences over twice the window's own energy: 1 when equal, 0 when unrelated.
-double likeness(const BlockSums& block, int k, double energy) {
-  const double cross = block.cross[k], squares = block.squares[k];
-  return std::isnan(block.sums[k]) ? kNoScore : 1.0 - (energy - 2.0 * cross + squares) / (2.0 * energy);
+// Sums of squared differences over twice the window's own energy: 1 when equal, 0 when unrelated.
+void compare(const BlockSums& block, double energy, float* scores) {
+  for (int k = 0; k < kLanes; ++k) {
+    const double cross = block.cross[k], squares = block.squares[k];
+    scores[k] = static_cast<float>(
+        std::isnan(block.sums[k]) ? kNoScore : 1.0 - (energy - 2.0 * cross + squares) / (2.0 * energy));
+  }
 }
 
 }  // namespace
@@ -199,20 +216,23 @@ void RowSearch::resample(int v, int width, const RowWarp& warp) {
 }
 
 void RowSearch::scoreAll() {
-  const int size = 2 * radius_ + 1, count = 2 * steps_ + 1;
+  const int size = 2 * radius_ + 1;
   column_sums_.resize(stride_);
   column_squares_.resize(stride_);
   addColumns(strip_.data(), size, stride_, column_sums_.data(), column_squares_.data());
-  scores_.resize(count);
+  scores_.resize(padded_);
   const double pixels = static_cast<double>(template_.values.size()), energy = template_.energy;
   BlockSums block;
-  for (int first = 0; first < count; first += kLanes) {
+  for (int first = 0; first < padded_; first += kLanes) {
     addUp(template_.values.data(), strip_.data() + first, column_sums_.data() + first,
           column_squares_.data() + first, size, stride_, block);
-    for (int k = 0; k < std::min(kLanes, count - first); ++k)
-      scores_[first + k] = static_cast<float>(
-          cost_ == MatchingCost::kSsd ? likeness(block, k, energy) : correlation(block, k, pixels, energy));
+    if (cost_ == MatchingCost::kSsd) {
+      compare(block, energy, &scores_[first]);
+    } else {
+      correlate(block, pixels, energy, &scores_[first]);
+    }
   }
+  scores_.resize(2 * steps_ + 1);  // without what fills up
 }
 
 RowCandidate RowSearch::interpolated(int index) const {
