@@ -9,6 +9,7 @@
 #include "base/interpolation.h"
 #include "base/lanes.h"
 #include "base/multiversion.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 namespace {
@@ -58,16 +59,34 @@ struct PlaceRows {
   }
 }
 
+// Where the places of rows begin: columns before the first ones, and how far these are behind them. All rows
+// at once, filled up to whole lanes.
+struct RowStarts {
+  static constexpr int kMost = 2 * kLargestWindowRadius + kLanes;
+
+  std::array<int, kMost> column;
+  std::array<float, kMost> behind;
+
+  [[gnu::always_inline]] inline RowStarts(const PlaceRows& places, int rows) {
+    const double start = places.start, by_row = places.by_row, back = places.least(0);
+    for (int j = 0; j < wholeLanes(rows); ++j) {
+      const double place = start + by_row * j;
+      column[j] = static_cast<int>(place + back);
+      behind[j] = static_cast<float>(place - column[j]);
+    }
+  }
+};
+
 // Values at the places in the image's rows from v on, less the mean, by linear interpolation.
 UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
                                           float mean, float* out) {
   const float drift = static_cast<float>(places.step - 1);
   const int count = places.count;
-  for (int j = 0; j < rows; ++j, out += count) {
-    const double place = places.at(j);
-    const int first = static_cast<int>(places.least(place));
-    const float* row = image.ptr<float>(v + j) + first;
-    const float start = static_cast<float>(place - first);
+  const RowStarts starts(places, rows);
+  const float* first = image.ptr<float>(v);
+  for (int j = 0; j < rows; ++j, out += count, first += rowStride(image)) {
+    const float* row = first + starts.column[j];
+    const float start = starts.behind[j];
     if (count == kUsualStride) {
       interpolateRow(row, start, drift, kUsualStride, mean, out);
     } else {
