@@ -8,11 +8,9 @@
 #include "base/multiversion.h"
 #include "base/thinned.h"
 #include "stereo/row_fit.h"
-#include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
-#include "uav_landing/parameters/pixels_per_corner.h"
 #include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
@@ -21,10 +19,8 @@ namespace {
 using row_fit::RowFit;
 using row_fit::RowShift;
 
-// Corners measured, at most: enough, as the filter behind averages over frames; half of those that a small
-// image has room for.
-constexpr int kMeasured = 240, kPixelsPerMeasured = 2 * kUsualPixelsPerCorner;
-constexpr size_t kSearched = 80;
+// Corners measured: enough, as the filter behind averages over frames.
+constexpr size_t kMeasured = 240, kSearched = 80;
 // Error of a row that its residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
 constexpr double kMinScore = 0.8;
@@ -137,9 +133,7 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<DisparitySample>& samples,
                                                const Eigen::Vector3d& g, int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
-  const int most = cornerBudget(level.rig.size, kMeasured, kPixelsPerMeasured);
-  const std::vector<PlacedCorner> some =
-      thinned(placed(level.rig, corners, samples, g), static_cast<size_t>(most));
+  const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, samples, g), kMeasured);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
   int matched = 0, again = 0;
