@@ -99,6 +99,7 @@ uav_landing_add_gtest(ground_edges_test test/core/runway/ground_edges_test.cpp
 uav_landing_add_gtest(position_filter_test test/core/runway/position_filter_test.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(centre_columns_test test/core/runway/centre_columns_test.cpp)
 uav_landing_add_gtest(runway_edges_test test/core/runway/runway_edges_test.cpp)
 uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)

@@ -18,13 +18,26 @@ constexpr int kLanes = 8;
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
+/// As many whole numbers; comparisons of lanes give -1 where they hold, and 0.
+using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
+
+[[gnu::always_inline]] inline void store(const IntLanes& from, int* to) {
+  std::memcpy(to, &from, sizeof(IntLanes));
+}
+/// Towards zero.
+[[gnu::always_inline]] inline void truncate(const Lanes& from, IntLanes& to) {
+  to = __builtin_convertvector(from, IntLanes);
+}
+[[gnu::always_inline]] inline void convert(const IntLanes& from, Lanes& to) {
+  to = __builtin_convertvector(from, Lanes);
+}
+
 /// Eight whole numbers as floats. Element by element: the compiler makes one instruction of that, but not of
 /// loops or conversions of vectors.
 template <typename Number>
 [[gnu::always_inline]] inline void convert(const Number* from, Lanes& to) {
-  using Integers = int __attribute__((vector_size(32)));
   to = __builtin_convertvector(
-      (Integers{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]}), Lanes);
+      (IntLanes{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]}), Lanes);
 }
 
 /// start, start + step, ...

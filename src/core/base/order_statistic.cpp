@@ -11,12 +11,9 @@ namespace uav_landing {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kFew = 2;  // values in a range that are looked at one by one
-constexpr int kSlow =
-    3;  // limits in turn that leave most of a range's values, before one of them is looked at
+constexpr int kFew = 2;     // values in a range that are looked at one by one
+constexpr int kSlow = 3;    // limits in turn that leave most of a range, before a value of it is looked at
 constexpr int kTries = 10;  // limits after the samples
-
-using IntLanes = int __attribute__((vector_size(32)));
 
 [[gnu::always_inline]] inline int sumOf(const IntLanes& n) {
   return ((n[0] + n[4]) + (n[2] + n[6])) + ((n[1] + n[5]) + (n[3] + n[7]));

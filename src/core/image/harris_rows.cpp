@@ -61,11 +61,10 @@ UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const fl
 [[gnu::always_inline]] inline void larger(const Lanes& a, const Lanes& b, Lanes& larger) {
   larger = a > b ? a : b;
 }
-using LaneMarks = int __attribute__((vector_size(sizeof(Lanes))));
 
 /// Whether pixels are larger than their neighbours before them, and not smaller than those after them.
 [[gnu::always_inline]] inline void findMaxima(const float* above, const float* row, const float* below,
-                                              LaneMarks& is_maximum) {
+                                              IntLanes& is_maximum) {
   Lanes left, middle, right, beside, before, after;
   load(above - 1, left);
   load(above, middle);
@@ -85,7 +84,7 @@ using LaneMarks = int __attribute__((vector_size(sizeof(Lanes))));
   is_maximum = (middle > before) & (middle >= after);
 }
 
-[[gnu::always_inline]] inline cv::v_int16x8 packed(const LaneMarks& m) {
+[[gnu::always_inline]] inline cv::v_int16x8 packed(const IntLanes& m) {
   using Half = int __attribute__((vector_size(sizeof(Lanes) / 2)));
   using Register = decltype(cv::v_int32x4::val);
   return cv::v_pack(cv::v_int32x4((Register)(Half{m[0], m[1], m[2], m[3]})),
@@ -100,7 +99,7 @@ UAV_LANDING_MULTIVERSION void markMaxima(const Rows<float>& rows, int blocks,
   for (int block = 0; block < blocks; ++block) {
     std::uint64_t bits = 0;
     for (int i = 0; i < HarrisRows::kBlock; i += kTogether, a += kTogether, b += kTogether, c += kTogether) {
-      LaneMarks first, second;
+      IntLanes first, second;
       findMaxima(a, b, c, first);
       findMaxima(a + kLanes, b + kLanes, c + kLanes, second);
       const int some = cv::v_signmask(cv::v_pack(packed(first), packed(second)));

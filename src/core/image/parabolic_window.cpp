@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
@@ -96,7 +95,6 @@ class AlongRows {
   // start: of each row, columns. rows: of the arrays, filled up to whole lanes.
   [[gnu::always_inline]] inline void find(const std::array<float, kMostLines>& starts, int rows, float step,
                                           int count) {
-    using Integers = int __attribute__((vector_size(sizeof(Lanes))));
     drift_ = step - 1;
     for (int j = 0; j < wholeLanes(rows); j += kLanes) {
       Lanes start;
@@ -104,9 +102,12 @@ class AlongRows {
       for (int i = 0; i < count; i += kLanes, start += step * kLanes) {
         Begin& begin = begins_[i / kLanes];
         const Lanes last = start + drift_ * (kLanes - 1);
-        const Integers first = __builtin_convertvector(last < start ? last : start, Integers);
-        std::memcpy(&begin.first[j], &first, sizeof(first));
-        store(start - __builtin_convertvector(first, Lanes), &begin.behind[j]);
+        IntLanes first;
+        Lanes before;
+        truncate(last < start ? last : start, first);
+        convert(first, before);
+        store(first, &begin.first[j]);
+        store(start - before, &begin.behind[j]);
       }
     }
   }

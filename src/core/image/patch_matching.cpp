@@ -7,11 +7,10 @@
 #include "base/lanes.h"
 #include "base/multiversion.h"
 #include "image/parabolic_window.h"
+#include "image/window_layout.h"
 
 namespace uav_landing {
 namespace {
-
-constexpr int kUsualSize = 11;  // of windows, by default
 
 // Over one row of the windows of kLanes neighbouring shifts.
 struct RowSums {
@@ -63,8 +62,8 @@ struct ShiftSums {
 
 // The usual size is known to the compiler, which then needs no loop for a row.
 UAV_LANDING_MULTIVERSION void addRows(const float* area, int size, int stride, int rows, RowSums* sums) {
-  if (size == kUsualSize) {
-    addRowsAny(area, kUsualSize, stride, rows, sums);
+  if (size == kUsualWindowSize) {
+    addRowsAny(area, kUsualWindowSize, stride, rows, sums);
   } else {
     addRowsAny(area, size, stride, rows, sums);
   }
@@ -72,8 +71,8 @@ UAV_LANDING_MULTIVERSION void addRows(const float* area, int size, int stride, i
 
 UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* area, const RowSums* rows, int size,
                                     int stride, ShiftSums& shifts) {
-  if (size == kUsualSize) {
-    addUpAny(window, area, rows, kUsualSize, stride, shifts);
+  if (size == kUsualWindowSize) {
+    addUpAny(window, area, rows, kUsualWindowSize, stride, shifts);
   } else {
     addUpAny(window, area, rows, size, stride, shifts);
   }

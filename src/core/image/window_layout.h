@@ -19,6 +19,9 @@ inline std::ptrdiff_t rowStride(const cv::Mat& image) {
 /// From row to row of a window.
 constexpr int windowStride(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
 
+/// Rows and columns of a window of the default radius.
+constexpr int kUsualWindowSize = 2 * kUsualWindowRadius + 1;
+
 /// Of the largest window; the last row's lanes may be written beyond it.
 using WindowValues =
     std::array<float, windowStride(kLargestWindowRadius) * (2 * kLargestWindowRadius + 1) + kLanes>;

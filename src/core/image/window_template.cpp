@@ -38,9 +38,8 @@ UAV_LANDING_MULTIVERSION double sumOf(const float* values, int count) {
 // The window's rows one after the other. The last lanes of a row end where it does. The usual size is known
 // to the compiler, which then needs no loop for a row.
 UAV_LANDING_MULTIVERSION void copyRows(const float* image, std::ptrdiff_t stride, int size, float* out) {
-  constexpr int kUsualSize = 2 * kUsualWindowRadius + 1;
-  if (size == kUsualSize) {
-    copyRowsAny(image, stride, kUsualSize, out);
+  if (size == kUsualWindowSize) {
+    copyRowsAny(image, stride, kUsualWindowSize, out);
   } else {
     copyRowsAny(image, stride, size, out);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -16,7 +15,6 @@ namespace uav_landing {
 namespace {
 
 using Across = TopView::Across;
-using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kColumns = TopView::kColumns, kBlock = TopView::kBlock;
@@ -86,7 +84,7 @@ UAV_LANDING_MULTIVERSION void findShades(const Known& known, const Greys& greys,
     load(&known.greys.values[c], grey);
     const Lanes level = (grey - greys.dark) / contrast;
     const IntLanes shade = (level < 0.35F) - (level > 0.65F) - (level == kInfinity);
-    std::memcpy(&shades[c], &shade, sizeof shade);
+    store(shade, &shades[c]);
   }
 }
 

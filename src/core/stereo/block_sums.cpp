@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/interpolation.h"
 #include "base/lanes.h"
@@ -24,20 +23,22 @@ class RowPixels {
   // starts: the first places of the rows.
   [[gnu::always_inline]] inline void read(const cv::Mat& right, int top,
                                           const std::array<float, kHeight>& starts, float step) {
-    using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
     static_assert(kHeight == kLanes, "a number for each row");
     drift_ = step - 1;
     const float most = std::max(drift_, 0.f) * kLanes;
     Lanes x;
     load(starts.data(), x);
     const Lanes last = x + step * static_cast<float>(kWidth - 1) - static_cast<float>(kWidth - 1);
-    const IntLanes first = __builtin_convertvector(x < last ? x : last, IntLanes);
-    const Lanes begin = x - __builtin_convertvector(first, Lanes);
+    IntLanes first;
+    Lanes before;
+    truncate(x < last ? x : last, first);
+    convert(first, before);
+    const Lanes begin = x - before;
     for (int k = 0; k < kParts; ++k) {
       const Lanes here = begin + drift_ * static_cast<float>(k * kLanes);
       const IntLanes none_further = here + most < 0.999f;
       store(here, begin_[k].data());
-      std::memcpy(none_further_[k].data(), &none_further, sizeof none_further);
+      store(none_further, none_further_[k].data());
     }
     const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(right.step);
     const uchar* above = right.ptr<uchar>(top) - 1;

@@ -15,8 +15,7 @@ namespace uav_landing {
 namespace {
 
 constexpr float kNoScore = -1.f;
-constexpr int kUsualSize = 11;    // of windows, by default
-constexpr int kUsualStride = 24;  // of what these are looked for in, where the plane is known
+constexpr int kUsualStride = 24;  // of what usual windows are looked for in, where the plane is known
 
 // Rows of places of which each is in the column after that of the one before or, from one of them on, in the
 // one after that or still the same: row j at start + j by_row, and on by step.
@@ -115,8 +114,8 @@ UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const Pla
 // The usual size is known to the compiler, which then needs no loop for a column.
 UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int stride, float* sums,
                                          float* squares) {
-  if (rows == kUsualSize && stride == kUsualStride) {
-    addColumnsOfAny(strip, kUsualSize, kUsualStride, sums, squares);
+  if (rows == kUsualWindowSize && stride == kUsualStride) {
+    addColumnsOfAny(strip, kUsualWindowSize, kUsualStride, sums, squares);
   } else {
     addColumnsOfAny(strip, rows, stride, sums, squares);
   }
@@ -156,8 +155,8 @@ struct BlockSums {
 // The usual size is known to the compiler, which then needs no loop for a row.
 UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, const float* column_sums,
                                     const float* column_squares, int size, int stride, BlockSums& block) {
-  if (size == kUsualSize) {
-    addUpAny(window, strip, column_sums, column_squares, kUsualSize, stride, block);
+  if (size == kUsualWindowSize) {
+    addUpAny(window, strip, column_sums, column_squares, kUsualWindowSize, stride, block);
   } else {
     addUpAny(window, strip, column_sums, column_squares, size, stride, block);
   }
