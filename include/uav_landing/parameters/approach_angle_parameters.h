@@ -92,10 +92,14 @@ struct ApproachAngleParameters {
     v.flag("remove_rotation", remove_rotation,
            "take the rotation between the frames out of the image velocities first (sliding_window only)");
     v.choice("angle_formula", angle_formula, {"general", "eq1"}, "asin(n.t) or the paper's eq (1)");
-    v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners followed between frames");
-    v.number(
-        "pixels_per_corner", pixels_per_corner, 1, 10000, "px",
-        "of the image, for each corner at least: where windows overlap much, more corners tell little more");
+    v.number("corner_count", corner_count, 20, 5000, "corners",
+             "Harris corners followed between frames, at most; fewer by pixels_per_corner. Of those that "
+             "stereo_depth "
+             "kept, where there are any");
+    v.number("pixels_per_corner", pixels_per_corner, 1, 10000, "px",
+             "of the image for each corner, at least: 256 corners at 320x240; fewer pixels for more corners, "
+             "which "
+             "tell little more where their windows overlap much");
     v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px",
              "matching window is (2 r + 1) squared");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",

@@ -37,10 +37,12 @@ struct StereoDepthParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.number("corner_count", corner_count, 20, 5000, "corners", "Harris corners kept in the left image");
-    v.number(
-        "pixels_per_corner", pixels_per_corner, 1, 10000, "px",
-        "of the image, for each corner at least: where windows overlap much, more corners tell little more");
+    v.number("corner_count", corner_count, 20, 5000, "corners",
+             "Harris corners kept in the left image, at most; fewer by pixels_per_corner");
+    v.number("pixels_per_corner", pixels_per_corner, 1, 10000, "px",
+             "of the image for each corner, at least: 256 corners at 320x240; fewer pixels for more corners, "
+             "which "
+             "tell little more where their windows overlap much");
     v.number("harris_k", harris_k, 0.01, 0.2, "", "k of the Harris response");
     v.number("corner_quality", corner_quality, 1e-9, 0.5, "",
              "weakest corner kept, as a share of the strongest response");
