@@ -28,6 +28,8 @@ uav_landing_add_gtest(rectification_test test/core/image/rectification_test.cpp)
 uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
 
 # lines
+uav_landing_add_gtest(heading_gate_test test/core/lines/heading_gate_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(line_segments_test test/core/lines/line_segments_test.cpp)
 uav_landing_add_gtest(segment_scanner_test test/core/lines/segment_scanner_test.cpp)
 uav_landing_add_gtest(stripe_line_test test/core/lines/stripe_line_test.cpp)
@@ -98,6 +100,8 @@ uav_landing_add_gtest(ground_edges_test test/core/runway/ground_edges_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(position_filter_test test/core/runway/position_filter_test.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway/runway_direction_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(right_view_test test/core/runway/right_view_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(centre_columns_test test/core/runway/centre_columns_test.cpp)
 uav_landing_add_gtest(runway_edges_test test/core/runway/runway_edges_test.cpp)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -16,6 +17,9 @@ struct VanishingPoint {
   Eigen::Matrix3d covariance;  ///< rad^2, rank 2 (direction is in its null space)
   std::vector<char> inliers;   ///< per line: 1 when it passes through the point
   int inlier_count = 0;
+  /// How many points as well supported are expected of as many lines of random direction; infinite where
+  /// that was not asked.
+  double coincidences = std::numeric_limits<double>::infinity();
 };
 
 /// RANSAC (paper, section 2) over pairs of lines (until those of the best point must have been drawn often),

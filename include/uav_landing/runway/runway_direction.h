@@ -15,17 +15,26 @@ namespace uav_landing {
 /// Lines and vanishing point of the runway in both rectified views, and both views' direction combined.
 struct RunwayDirection {
   ApproachAngleResult::View left, right;
-  std::vector<LineSegment> left_lines, right_lines;  ///< those of the views, with their uncertainty
+  /// Those of the views that may lie along the runway, with their uncertainty.
+  std::vector<LineSegment> left_lines, right_lines;
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 
-/// Stages 3 and 4. plane: of the ground from stereo, or null; with it lines are looked for below the horizon
-/// only, the direction must lie near the ground, and where a view has too few lines for a vanishing point of
-/// its own, two long edges side by side that agree in both views are enough. Masks: of the rectified views,
-/// eroded.
+/// The ground as stereo sees it.
+struct SeenGround {
+  GroundPlane plane;
+  RigRotation rows;  ///< what vertical disparities tell, or unknown
+};
+
+/// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, and
+/// only those that may be along the runway are fitted; where the left view's point is on the ground and not
+/// there by chance, its lines are looked for in the right view where the ground has them, instead of all
+/// lines there; the direction must lie near the ground; and where a view has too few lines for a vanishing
+/// point of its own, two long edges side by side that agree in both views are enough. Masks: of the rectified
+/// views, eroded.
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const GroundPlane* plane, const ApproachAngleParameters& parameters,
+                                    const SeenGround* ground, const ApproachAngleParameters& parameters,
                                     Timings& timings);
 
 }  // namespace uav_landing

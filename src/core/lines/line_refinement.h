@@ -14,7 +14,7 @@ struct EdgePicture {
   cv::Mat ground;             ///< mono8, of the image: edges only where it is not 0
 };
 
-/// Fits a straight line to the intensity gradient's peak along a rough segment (off by up to 3 px), to
+/// Fits a straight line to the intensity gradient's peak along a rough segment (off by up to 2 px), to
 /// sub-pixel: at rows (columns, when the line is flat) the gradient's peak near the line is interpolated.
 /// Only gradients of the rough segment's sign count, so the two sides of a thin stripe do not mix. The line
 /// grows or shrinks to where the edge is. The standard deviations come from the scatter of the peaks about

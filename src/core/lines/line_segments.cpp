@@ -7,7 +7,9 @@
 #include <optional>
 #include <tuple>
 
+#include "base/image_memory.h"
 #include "image/mask_bounds.h"
+#include "image/transpose.h"
 #include "lines/line_refinement.h"
 #include "lines/segment_scanner.h"
 
@@ -173,13 +175,35 @@ bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment)
   });
 }
 
-std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const EdgePicture& picture,
-                                 double min_length, double min_gradient) {
+LineSegment asFound(const RoughSegment& s) {
+  const double angle_stddev = kUnrefinedStddev * std::sqrt(12.0) / (s.b - s.a).norm();
+  const LineSegment line = makeLineSegment(s.a, s.b, kUnrefinedStddev, angle_stddev);
+  if (line.line.head<2>().dot(s.brighter) >= 0) return line;
+  return makeLineSegment(s.b, s.a, kUnrefinedStddev, angle_stddev);
+}
+
+/// A part of an image, and which lines in it are worth refining: null for all.
+struct Part {
+  EdgePicture picture;
+  cv::Point origin;
+  const HeadingGate* gate;
+
+  Eigen::Vector2d offset() const { return {origin.x, origin.y}; }
+  bool passes(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    return gate == nullptr || gate->passes((a + offset()).homogeneous().cross((b + offset()).homogeneous()));
+  }
+};
+
+/// As long ones as are looked for in the whole image. Those that do not pass stay as they are.
+std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const Part& part, double min_length,
+                                 double min_gradient) {
   std::vector<LineSegment> lines;
   for (RoughSegment& segment : candidates) {
-    if (segment.brighter.isZero()) segment.brighter = brighterSide(picture, segment.a, segment.b);
+    if (segment.brighter.isZero()) segment.brighter = brighterSide(part.picture, segment.a, segment.b);
     if (isKnown(lines, segment)) continue;
-    const auto line = refineLine(picture, segment, min_gradient);
+    const std::optional<LineSegment> line = part.passes(segment.a, segment.b)
+                                                ? refineLine(part.picture, segment, min_gradient)
+                                                : asFound(segment);
     if (line && line->length() >= min_length) addOrMerge(lines, *line);
   }
   return lines;
@@ -190,34 +214,90 @@ std::vector<LineSegment> asFound(const std::vector<RoughSegment>& candidates) {
   for (const RoughSegment& s : candidates)
     if (std::none_of(lines.begin(), lines.end(),
                      [&s](const LineSegment& line) { return overlaps(line, s.a, s.b); }))
-      lines.push_back(makeLineSegment(s.a, s.b, kUnrefinedStddev,
-                                      kUnrefinedStddev * std::sqrt(12.0) / (s.b - s.a).norm()));
+      lines.push_back(asFound(s));
   return lines;
 }
 
-void shift(LineSegment& line, const Eigen::Vector2d& by) {
-  line.a += by;
-  line.b += by;
-  line.line.z() -= line.line.head<2>().dot(by);
+/// The part of a segment inside a rectangle (Liang and Barsky 1984).
+std::optional<Ends> clipped(const Ends& ends, const cv::Rect2d& inside) {
+  const Eigen::Vector2d along = ends.second - ends.first;
+  double from = 0, to = 1;
+  const auto cut = [&](int axis, double first, double last) {
+    if (along[axis] == 0) {
+      if (ends.first[axis] < first || ends.first[axis] > last) to = from;
+      return;
+    }
+    const double enter = (first - ends.first[axis]) / along[axis];
+    const double leave = (last - ends.first[axis]) / along[axis];
+    from = std::max(from, std::min(enter, leave));
+    to = std::min(to, std::max(enter, leave));
+  };
+  cut(0, inside.x, inside.x + inside.width);
+  cut(1, inside.y, inside.y + inside.height);
+  if (!(from < to)) return std::nullopt;
+  return Ends(ends.first + from * along, ends.first + to * along);
+}
+
+/// In the image that the part is of: those that pass before the others, longest first.
+std::vector<LineSegment> ofWholeImage(std::vector<LineSegment> lines, const Part& part) {
+  keepLongest(lines, lines.size(), [](const LineSegment& l) { return Ends(l.a, l.b); });
+  std::stable_partition(lines.begin(), lines.end(),
+                        [&](const LineSegment& line) { return part.passes(line.a, line.b); });
+  if (lines.size() > kMaxLines) lines.resize(kMaxLines);
+  for (LineSegment& line : lines) {
+    line.a += part.offset();
+    line.b += part.offset();
+    line.line.z() -= line.line.head<2>().dot(part.offset());
+  }
+  return lines;
+}
+
+/// Weakest one of a line, grey/px.
+double minGradient(const ApproachAngleParameters& parameters) {
+  return 0.5 * parameters.canny_low / kSobelScale;
+}
+
+/// What lines are looked for in; too small a part has none.
+std::optional<Part> partWithLines(const cv::Mat& image, const cv::Mat& ground, const HeadingGate* gate) {
+  constexpr int kSmallest = 8;
+  const cv::Rect bounds = boundsOf(ground);
+  if (bounds.width < kSmallest || bounds.height < kSmallest) return std::nullopt;
+  return Part{{image(bounds), {}, ground(bounds)}, bounds.tl(), gate};
 }
 
 }  // namespace
 
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters) {
-  const cv::Rect part = boundsOf(ground);
-  if (part.width < 8 || part.height < 8) return {};
+                                   const ApproachAngleParameters& parameters, const HeadingGate* gate) {
+  std::optional<Part> part = partWithLines(image, ground, gate);
+  if (!part) return {};
   const double min_length = parameters.min_line_length * image.rows;
-  EdgePicture picture{image(part), {}, ground(part)};
-  std::vector<RoughSegment> candidates = roughSegments(picture, min_length, parameters);
+  std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters);
   keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
+  return ofWholeImage(parameters.refine_lines
+                          ? refined(candidates, *part, min_length, minGradient(parameters))
+                          : asFound(candidates),
+                      *part);
+}
 
-  const double min_gradient = 0.5 * parameters.canny_low / kSobelScale;
-  std::vector<LineSegment> lines =
-      parameters.refine_lines ? refined(candidates, picture, min_length, min_gradient) : asFound(candidates);
-  for (LineSegment& line : lines) shift(line, {part.x, part.y});
-  keepLongest(lines, kMaxLines, [](const LineSegment& l) { return Ends(l.a, l.b); });
-  return lines;
+std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
+                                       const std::vector<RoughSegment>& expected,
+                                       const ApproachAngleParameters& parameters, const HeadingGate& gate) {
+  std::optional<Part> part = partWithLines(image, ground, &gate);
+  if (!part) return {};
+  static thread_local ImageMemory memory;
+  const cv::Size size = part->picture.image.size();
+  part->picture.transposed = memory.image({size.height, size.width});
+  transpose(part->picture.image, part->picture.transposed);
+  const cv::Rect2d inside(0, 0, size.width - 1, size.height - 1);
+  std::vector<RoughSegment> candidates;
+  for (const RoughSegment& line : expected) {
+    const auto ends = clipped({line.a - part->offset(), line.b - part->offset()}, inside);
+    if (ends && part->passes(ends->first, ends->second))
+      candidates.push_back({ends->first, ends->second, line.brighter});
+  }
+  const double min_length = parameters.min_line_length * image.rows;
+  return ofWholeImage(refined(candidates, *part, min_length, minGradient(parameters)), *part);
 }
 
 }  // namespace uav_landing

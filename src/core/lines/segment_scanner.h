@@ -5,14 +5,9 @@
 #include <vector>
 
 #include "base/image_memory.h"
+#include "uav_landing/lines/line_segments.h"
 
 namespace uav_landing {
-
-/// A straight edge to about a pixel.
-struct RoughSegment {
-  Eigen::Vector2d a, b;                                ///< ends, px
-  Eigen::Vector2d brighter = Eigen::Vector2d::Zero();  ///< roughly towards the brighter side; 0: not known
-};
 
 /// What counts as an edge, and how long a straight one must be.
 struct EdgeLimits {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "lines/vanishing_candidate.h"
+#include "uav_landing/lines/heading_gate.h"
 #include "uav_landing/lines/line_segments.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -30,7 +32,8 @@ class VanishingLines {
   /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
   /// perfectly straight.
   double toleranceOf(const VanishingCandidate& line) const;
-  /// Indices of the lines that pass through a direction by that tolerance.
+  /// Indices of the lines that pass through a direction by that tolerance. With a normal known beforehand
+  /// those that cannot be along the runway do not, wherever they lie.
   std::vector<int> passing(const Eigen::Vector3d& direction) const;
 
   /// Along the horizon a pixel is less of an angle the farther it is to the side. Over V.z.
@@ -43,7 +46,8 @@ class VanishingLines {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
+  std::optional<HeadingGate> gate_;  // by that normal
+  Eigen::Vector2d horizon_;          // direction of the horizon in the image, unit
 };
 
 }  // namespace uav_landing

@@ -45,15 +45,14 @@ double directionSpread(const VanishingLines& lines, const LineIndices& used) {
   return M_PI - gap;
 }
 
-Failure check(const VanishingLines& lines, const VanishingConsensus& consensus,
-              const Eigen::Vector3d& direction, const LineIndices& used) {
+Failure check(const VanishingLines& lines, const Eigen::Vector3d& direction, const LineIndices& used,
+              double coincidences) {
   if (const Failure failure = checkDirection(lines, direction, used)) return failure;
   const double spread = directionSpread(lines, used);
   if (spread < kMinSpread)
     return noVanishingPoint("lines are parallel within ", std::round(10 * spread / kDegree) / 10,
                             " deg, less than ", kMinSpread / kDegree);
-  if (lines.parameters().min_lines > 2 &&
-      expectedCoincidences(lines, direction, used, consensus.meetings) > kChance)
+  if (lines.parameters().min_lines > 2 && coincidences > kChance)
     return noVanishingPoint("as many lines meet by chance: ", used.size(), " of ", lines.count());
   return {};
 }
@@ -75,8 +74,12 @@ Expected<VanishingPoint> fitTo(const VanishingLines& lines, const VanishingConse
     return tl::unexpected(
         noVanishingPoint(n, " lines of at least ", lines.parameters().min_lines, " meet in one point"));
   for (int iteration = 0; iteration < 3; ++iteration) fit.plainStep(used);
-  if (const Failure failure = check(lines, consensus, fit.direction(), used)) return tl::unexpected(failure);
-  return fit.describe(used);
+  const double coincidences = expectedCoincidences(lines, fit.direction(), used, consensus.meetings);
+  if (const Failure failure = check(lines, fit.direction(), used, coincidences))
+    return tl::unexpected(failure);
+  Expected<VanishingPoint> point = fit.describe(used);
+  if (point) point->coincidences = coincidences;
+  return point;
 }
 
 /// Where those two of the lines meet that differ most in direction; nothing when all are parallel.

@@ -53,9 +53,9 @@ bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covari
 
 /// Of the right camera as rows that do not match show it: the rows of larger ones are never found.
 bool isRotation(const RigRotation& rotation) {
-  constexpr double kLargest = 0.2, kLeastStddev = 1e-6;  // rad
+  constexpr double kLargest = 0.2, kLargestYaw = 1, kLeastStddev = 1e-6;  // rad; rows hardly show a yaw
   return rotation.w.allFinite() && within(rotation.w.x(), kLargest) && within(rotation.w.z(), kLargest) &&
-         isCovariance<3>(rotation.covariance) &&
+         within(rotation.w.y(), kLargestYaw) && isCovariance<3>(rotation.covariance) &&
          rotation.covariance.diagonal().minCoeff() >= kLeastStddev * kLeastStddev;
 }
 

@@ -2,10 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "base/image_memory.h"
 #include "lines/stripe_line.h"
+#include "runway/right_view.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/runway/ground_direction.h"
 
@@ -13,8 +17,11 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// By which a line's direction on the ground may be off before its stripe is looked at.
-constexpr double kDirectionSlack = 5 * kDegree;
+constexpr double kSure = 1e-3;  // expected coincidences of a point that is not there by chance
+constexpr double kGate = 3;     // sigma between a point and the ground
+// 1 sigma between the two, beyond which they say little of each other.
+constexpr double kVague = 0.4 * kDegree;
+constexpr double kEnough = 0.5;  // of the lines through the other view's point
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   Eigen::Matrix3d K = rig.K();
@@ -24,7 +31,7 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
 
 // The mask without what lies above the horizon (K^-T n) or less than a margin below it, where the far end of
 // everything on the ground merges with what stands behind it. Good until the next call.
-cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
+cv::Mat belowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
   static thread_local ImageMemory memory;
   const double margin = 0.01 * mask.rows;
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
@@ -34,91 +41,173 @@ cv::Mat groundPart(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::V
   return ground;
 }
 
-std::vector<LineSegment> linesOf(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
-                                 const Eigen::Vector3d* normal, const ApproachAngleParameters& parameters,
-                                 Timings& timings) {
-  ScopedTimer timer(timings, "hough_transform");
-  return findLines(image, normal ? groundPart(mask, K, *normal) : mask, parameters);
-}
+// What lines are looked for in.
+struct View {
+  const cv::Mat& image;
+  const cv::Mat& mask;
+  Eigen::Matrix3d K;
+};
 
-// Whether a line lies along the runway, if on the ground; without a normal that is not known.
-bool mayBeAlong(const LineSegment& segment, const Eigen::Matrix3d& K, const Eigen::Vector3d* normal,
-                double max_yaw) {
-  if (normal == nullptr) return true;
-  const Eigen::Vector3d along = (K.transpose() * segment.line).cross(*normal);
-  return std::abs(along.x()) <= std::tan(max_yaw + kDirectionSlack) * std::abs(along.z());
-}
+// What is found in a view: its lines, the same freed of what blur does to stripes as far as the vanishing
+// point depends on them, and that.
+struct Found {
+  std::vector<LineSegment> lines, straight;
+  Expected<VanishingPoint> point = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+};
 
-// The lines freed of what blur does to stripes, as far as the vanishing point depends on them: most lines of
-// texture run across.
-std::vector<LineSegment> straight(const cv::Mat& image, const cv::Mat& mask, const Eigen::Matrix3d& K,
-                                  const Eigen::Vector3d* normal, const std::vector<LineSegment>& lines,
-                                  const ApproachAngleParameters& parameters, Timings& timings) {
-  if (!parameters.stripe_centres) return lines;
-  ScopedTimer timer(timings, "hough_transform");
-  std::vector<size_t> places;
-  std::vector<LineSegment> chosen;
-  for (size_t i = 0; i < lines.size(); ++i) {
-    if (!mayBeAlong(lines[i], K, normal, parameters.max_yaw_deg * kDegree)) continue;
-    places.push_back(i);
-    chosen.push_back(lines[i]);
-  }
-  chosen = withoutStripeBias(image, mask, chosen);
-  std::vector<LineSegment> result = lines;
-  for (size_t k = 0; k < places.size(); ++k) result[places[k]] = chosen[k];
-  return result;
-}
-
-void report(const Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
-            ApproachAngleResult::View& view) {
-  for (size_t i = 0; i < lines.size(); ++i)
-    view.lines.push_back({lines[i].a, lines[i].b, point && point->inliers[i] != 0});
-  if (point) {
-    view.vanishing_direction = point->direction;
-    view.vanishing_covariance = point->covariance;
+ApproachAngleResult::View reportOf(const Found& found) {
+  ApproachAngleResult::View view;
+  for (size_t i = 0; i < found.lines.size(); ++i)
+    view.lines.push_back({found.lines[i].a, found.lines[i].b, found.point && found.point->inliers[i] != 0});
+  if (found.point) {
+    view.vanishing_direction = found.point->direction;
+    view.vanishing_covariance = found.point->covariance;
   } else {
-    view.failure = point.error();
+    view.failure = found.point.error();
   }
+  return view;
 }
+
+// The steps, with what all of them need. plane: of the ground, or null.
+class Search {
+ public:
+  Search(const GroundPlane* plane, const ApproachAngleParameters& parameters, Timings& timings)
+      : plane_(plane),
+        normal_(plane ? plane->normal() : Eigen::Vector3d::UnitY()),
+        parameters_(parameters),
+        timings_(timings) {}
+
+  // By the view itself.
+  Found in(const View& view) const {
+    std::vector<LineSegment> lines;
+    {
+      ScopedTimer timer(timings_, "hough_transform");
+      const HeadingGate gate = gateOf(view);
+      lines = plane_ ? findLines(view.image, groundPart(view), parameters_, &gate)
+                     : findLines(view.image, view.mask, parameters_);
+    }
+    return withPoint(view, std::move(lines));
+  }
+
+  // Of lines that the other view has shown already, where they are expected; by the view itself where those
+  // through the other view's point are mostly lost. Needs a plane.
+  Found following(const View& view, const std::vector<RoughSegment>& expected,
+                  const VanishingPoint& other) const {
+    std::vector<LineSegment> lines;
+    {
+      ScopedTimer timer(timings_, "hough_transform");
+      lines = findLinesNear(view.image, groundPart(view), expected, parameters_, gateOf(view));
+    }
+    Found found = withPoint(view, std::move(lines));
+    if (found.point && found.point->inlier_count >= kEnough * other.inlier_count) return found;
+    return in(view);
+  }
+
+  // Without a plane that is not known of any line, and all are returned.
+  std::vector<LineSegment> along(const View& view, const std::vector<LineSegment>& lines) const {
+    if (plane_ == nullptr) return lines;
+    const HeadingGate gate = gateOf(view);
+    std::vector<LineSegment> passing;
+    std::copy_if(lines.begin(), lines.end(), std::back_inserter(passing),
+                 [&](const LineSegment& line) { return gate.passes(line.line); });
+    return passing;
+  }
+
+  // Whether the other view's lines may be looked for where this one has them: that view is a witness of where
+  // they lie then, but not of which ones are there. A point that may be there by chance, or off the ground,
+  // is told by lines that the other view finds by itself: those meet elsewhere. The paper's Hough transforms,
+  // and lines as those find them, are of each view alone.
+  bool isSure(const Expected<VanishingPoint>& point) const {
+    return plane_ != nullptr && point && point->coincidences <= kSure && isOnGround(*point) &&
+           parameters_.hough_method == HoughMethod::kScanLines && parameters_.refine_lines;
+  }
+
+  // The points of views that have none of their own, by the direction that the ground gives their lines.
+  void tryTogether(const View& left_view, const View& right_view, Found& left, Found& right) const {
+    if (plane_ == nullptr || (left.point && right.point)) return;
+    ScopedTimer timer(timings_, "ransac");
+    const auto along = findLinesAlong({{left.straight, left_view.K}, {right.straight, right_view.K}}, normal_,
+                                      plane_->normalCovariance(), maxYaw());
+    if (!along) return;
+    const auto retry = [&](const View& view, Found& found, const std::vector<char>& members) {
+      if (found.point) return;
+      Expected<VanishingPoint> fitted =
+          fitVanishingPoint(found.straight, view.K, parameters_, members, normal());
+      if (fitted) found.point = std::move(fitted);
+    };
+    retry(left_view, left, along->front());
+    retry(right_view, right, along->back());
+  }
+
+ private:
+  Found withPoint(const View& view, std::vector<LineSegment> lines) const {
+    Found found;
+    found.lines = std::move(lines);
+    found.straight = straight(view, found.lines);
+    ScopedTimer timer(timings_, "ransac");
+    found.point = findVanishingPoint(found.straight, view.K, parameters_, normal());
+    return found;
+  }
+
+  std::vector<LineSegment> straight(const View& view, const std::vector<LineSegment>& lines) const {
+    if (!parameters_.stripe_centres) return lines;
+    ScopedTimer timer(timings_, "hough_transform");
+    if (plane_ == nullptr) return withoutStripeBias(view.image, view.mask, lines);
+    const HeadingGate gate = gateOf(view);
+    std::vector<size_t> places;
+    std::vector<LineSegment> chosen;
+    for (size_t i = 0; i < lines.size(); ++i) {
+      if (!gate.passes(lines[i].line)) continue;
+      places.push_back(i);
+      chosen.push_back(lines[i]);
+    }
+    chosen = withoutStripeBias(view.image, view.mask, chosen);
+    std::vector<LineSegment> result = lines;
+    for (size_t k = 0; k < places.size(); ++k) result[places[k]] = chosen[k];
+    return result;
+  }
+
+  bool isOnGround(const VanishingPoint& point) const {
+    const double straightness = parameters_.runway_straightness_deg * kDegree;
+    const double variance = point.direction.dot(plane_->normalCovariance() * point.direction) +
+                            normal_.dot(point.covariance * normal_) + straightness * straightness;
+    return variance <= kVague * kVague &&
+           std::abs(normal_.dot(point.direction)) <= kGate * std::sqrt(variance);
+  }
+
+  cv::Mat groundPart(const View& view) const { return belowHorizon(view.mask, view.K, normal_); }
+  const Eigen::Vector3d* normal() const { return plane_ ? &normal_ : nullptr; }
+  double maxYaw() const { return parameters_.max_yaw_deg * kDegree; }
+  HeadingGate gateOf(const View& view) const { return {view.K, normal_, maxYaw()}; }
+
+  const GroundPlane* plane_;
+  Eigen::Vector3d normal_;
+  const ApproachAngleParameters& parameters_;
+  Timings& timings_;
+};
 
 }  // namespace
 
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const GroundPlane* plane, const ApproachAngleParameters& parameters,
+                                    const SeenGround* ground, const ApproachAngleParameters& parameters,
                                     Timings& timings) {
-  const Eigen::Matrix3d K_left = viewK(rig, true), K_right = viewK(rig, false);
-  const Eigen::Vector3d plane_normal = plane ? plane->normal() : Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d* normal = plane ? &plane_normal : nullptr;
+  const View left_view{left, left_mask, viewK(rig, true)}, right_view{right, right_mask, viewK(rig, false)};
+  const Search search(ground ? &ground->plane : nullptr, parameters, timings);
+  Found in_left = search.in(left_view);
+  Found in_right =
+      search.isSure(in_left.point)
+          ? search.following(right_view, linesInRightView(rig, *ground, in_left.lines), *in_left.point)
+          : search.in(right_view);
+  search.tryTogether(left_view, right_view, in_left, in_right);
+
   RunwayDirection result;
-  result.left_lines = linesOf(left, left_mask, K_left, normal, parameters, timings);
-  result.right_lines = linesOf(right, right_mask, K_right, normal, parameters, timings);
-
-  const std::vector<LineSegment> left_lines =
-      straight(left, left_mask, K_left, normal, result.left_lines, parameters, timings);
-  const std::vector<LineSegment> right_lines =
-      straight(right, right_mask, K_right, normal, result.right_lines, parameters, timings);
-
-  ScopedTimer timer(timings, "ransac");
-  Expected<VanishingPoint> in_left = findVanishingPoint(left_lines, K_left, parameters, normal);
-  Expected<VanishingPoint> in_right = findVanishingPoint(right_lines, K_right, parameters, normal);
-  if (plane && (!in_left || !in_right)) {
-    const auto along = findLinesAlong({{left_lines, K_left}, {right_lines, K_right}}, plane_normal,
-                                      plane->normalCovariance(), parameters.max_yaw_deg * kDegree);
-    const auto retry = [&](Expected<VanishingPoint>& point, const std::vector<LineSegment>& lines,
-                           const Eigen::Matrix3d& K, const std::vector<char>& members) {
-      if (point) return;
-      Expected<VanishingPoint> fitted = fitVanishingPoint(lines, K, parameters, members, normal);
-      if (fitted) point = std::move(fitted);
-    };
-    if (along) {
-      retry(in_left, left_lines, K_left, along->front());
-      retry(in_right, right_lines, K_right, along->back());
-    }
-  }
-  report(in_left, result.left_lines, result.left);
-  report(in_right, result.right_lines, result.right);
-  result.combined = combineVanishingPoints(in_left, in_right, parameters.runway_straightness_deg * kDegree);
+  result.left = reportOf(in_left);
+  result.right = reportOf(in_right);
+  result.left_lines = search.along(left_view, in_left.lines);
+  result.right_lines = search.along(right_view, in_right.lines);
+  result.combined =
+      combineVanishingPoints(in_left.point, in_right.point, parameters.runway_straightness_deg * kDegree);
   return result;
 }
 

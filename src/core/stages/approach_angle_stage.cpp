@@ -55,7 +55,8 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const RunwayDirection direction = findDirection(left, right, has_plane ? &stereo.plane : nullptr, result);
+    const SeenGround ground{stereo.plane, stereo.vertical_rotation};
+    const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
@@ -80,10 +81,10 @@ struct ApproachAngleStage::Implementation {
     return imu;
   }
 
-  RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const GroundPlane* plane,
+  RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
     RunwayDirection direction =
-        findRunwayDirection(model.rig, left, right, left_mask, right_mask, plane, parameters, timings);
+        findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground, parameters, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;

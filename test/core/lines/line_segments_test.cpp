@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -240,6 +241,77 @@ TEST(FindLines, LookAtTheWholeOfATinyOrEmptyImageWithoutHarm) {
   const cv::Mat noise(40, 40, CV_8UC1);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 256);
   findLines(noise, cv::Mat(40, 40, CV_8UC1, cv::Scalar(255)), {});
+}
+
+/// A view whose horizon is the row of runway()'s vanishing point.
+HeadingGate runwayGate() {
+  Eigen::Matrix3d K;
+  K << 500, 0, 322, 0, 500, 95, 0, 0, 1;
+  return {K, Eigen::Vector3d::UnitY(), 30 * M_PI / 180};
+}
+
+/// With its brighter side, the inside: to the right of the way from a to b.
+RoughSegment edgeOf(const cv::Point2d& a, const cv::Point2d& b) {
+  return {{a.x, a.y}, {b.x, b.y}, {a.y - b.y, b.x - a.x}};
+}
+
+TEST(FindLines, RefineOnlyThoseThatMayBeAlongTheRunwayIfToldSo) {
+  const auto polygons = runway();
+  const HeadingGate gate = runwayGate();
+  const std::vector<LineSegment> lines = findLines(render(polygons, 2, 0.8), allGround(), {}, &gate);
+  ASSERT_EQ(lines.size(), 4U);
+  expectEdges(lines, polygons[0], 1.5);
+  const Polygon& corners = polygons[0];
+  for (const int side : {1, 3}) {
+    const cv::Point2d &a = corners[side], &b = corners[(side + 1) % 4];
+    const LineSegment* line = nearest(lines, a, b);
+    EXPECT_LT(std::max(distance(*line, a), distance(*line, b)), 0.05);
+    EXPECT_LT(line->offset_stddev, 0.1);
+  }
+  for (const int side : {0, 2})
+    EXPECT_GE(nearest(lines, corners[side], corners[(side + 1) % 4])->offset_stddev, 0.5);
+}
+
+TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
+  const Polygon corners = runway()[0];
+  const cv::Mat image = render({corners}, 2, 0.8);
+  RoughSegment right = edgeOf(corners[1] + cv::Point2d(1.9, 0), corners[2] + cv::Point2d(1.2, 0));
+  // As far beyond the image's lower side as it is long.
+  right.b += right.b - right.a;
+  const RoughSegment left = edgeOf(corners[3] - cv::Point2d(1.3, 0.8), corners[0] - cv::Point2d(1.3, 0.8));
+  const RoughSegment nowhere = edgeOf({100, 150}, {130, 300}), outside = edgeOf({-90, 150}, {-30, 300});
+  RoughSegment darker = right;
+  darker.brighter = -darker.brighter;
+  const auto find = [&](const std::vector<RoughSegment>& expected) {
+    return findLinesNear(image, allGround(), expected, {}, runwayGate());
+  };
+  EXPECT_TRUE(find({nowhere, outside, darker}).empty());
+  const std::vector<LineSegment> lines = find({nowhere, right, outside, left});
+  ASSERT_EQ(lines.size(), 2U);
+  for (const int side : {1, 3}) {
+    const cv::Point2d &a = corners[side], &b = corners[(side + 1) % 4];
+    const LineSegment* line = nearest(lines, a, b);
+    EXPECT_LT(std::max(distance(*line, a), distance(*line, b)), 0.05);
+    EXPECT_GT(line->length(), 0.85 * cv::norm(b - a));
+    EXPECT_GT(line->line.dot(Eigen::Vector3d(322, 300, 1)), 0) << "brighter inside";
+  }
+  EXPECT_TRUE(findLinesNear(image, cv::Mat::zeros(kSize, CV_8UC1), {right, left}, {}, runwayGate()).empty());
+}
+
+TEST(FindLinesNear, AreAsFindLinesHasThemButForThoseAcross) {
+  const cv::Mat image = render(runway(), 2, 0.8);
+  const HeadingGate gate = runwayGate();
+  const std::vector<LineSegment> found = findLines(image, allGround(), {}, &gate);
+  std::vector<RoughSegment> expected;
+  for (const LineSegment& line : found) expected.push_back({line.a, line.b, line.line.head<2>()});
+  const std::vector<LineSegment> again = findLinesNear(image, allGround(), expected, {}, gate);
+  ASSERT_EQ(found.size(), 4U);
+  ASSERT_EQ(again.size(), 2U);
+  for (size_t i = 0; i < again.size(); ++i) {
+    EXPECT_LT(std::abs(found[i].line.dot(again[i].middle().homogeneous())), 0.02);
+    EXPECT_NEAR(again[i].offset_stddev, found[i].offset_stddev, 0.2 * found[i].offset_stddev);
+    EXPECT_NEAR(again[i].length(), found[i].length(), 3);
+  }
 }
 
 }  // namespace

@@ -223,6 +223,20 @@ TEST(VanishingPoint, IsFoundAmongClutter) {
   }
 }
 
+TEST(VanishingPoint, TellsHowManyAreExpectedByChance) {
+  Scene scene(-3 * kDegree, -7 * kDegree, -5 * kDegree);
+  std::vector<LineSegment> lines = scene.runway(0.08);
+  const auto clear = findVanishingPoint(lines, makeK(), {});
+  lines.resize(4);
+  const auto few = findVanishingPoint(lines, makeK(), {});
+  for (int i = 0; i < 5; ++i) lines.push_back(scene.clutter());
+  const auto hidden = findVanishingPoint(lines, makeK(), {});
+  ASSERT_TRUE(clear && few && hidden);
+  EXPECT_LT(clear->coincidences, 1e-6);
+  EXPECT_GT(few->coincidences, 10 * clear->coincidences);
+  EXPECT_GT(hidden->coincidences, 10 * few->coincidences);
+}
+
 TEST(VanishingPoint, IsNotClaimedForLinesOfAnyDirection) {
   int claimed = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {

@@ -89,5 +89,20 @@ TEST(ResultCheck, AMotionTooSmallForADirectionKeepsItsNumbersButNoAngle) {
   }
 }
 
+TEST(ResultCheck, ARotationOfTheRigFurtherThanAnyIsLeftOut) {
+  StereoRig rig;
+  rig.size = {640, 480};
+  const auto isKept = [&](double x, double y, double z) {
+    StereoDepthResult result;
+    result.failure = {Reason::kNotYet, ""};
+    result.vertical_rotation = {{x, y, z}, 1e-6 * Eigen::Matrix3d::Identity(), 100};
+    return checked(rig, result).vertical_rotation.known();
+  };
+  EXPECT_TRUE(isKept(0.1, -0.9, -0.1));
+  EXPECT_FALSE(isKept(0.3, 0, 0));
+  EXPECT_FALSE(isKept(0, 1e300, 0));
+  EXPECT_FALSE(isKept(0, 0, -0.3));
+}
+
 }  // namespace
 }  // namespace uav_landing

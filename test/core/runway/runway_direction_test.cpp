@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -21,6 +22,7 @@ struct Scene {
   GroundRenderer ground{61};
   ApproachAngleParameters parameters;
   Pose pose;
+  double plane_pitch_error = 0, plane_height_error = 0;  // rad, share
   cv::Mat left, right;
 
   Scene() {
@@ -37,9 +39,11 @@ struct Scene {
 
   RunwayDirection find(bool with_normal) {
     Timings timings;
-    const GroundPlane plane{pose.down() / pose.height(), Eigen::Matrix3d::Identity() * 1e-8};
+    const Eigen::Vector3d down = Eigen::AngleAxisd(plane_pitch_error, Eigen::Vector3d::UnitX()) * pose.down();
+    const SeenGround ground_seen{
+        {down / (pose.height() * (1 + plane_height_error)), Eigen::Matrix3d::Identity() * 1e-8}, {}};
     return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
-                               with_normal ? &plane : nullptr, parameters, timings);
+                               with_normal ? &ground_seen : nullptr, parameters, timings);
   }
   /// The runway runs along x.
   double error(const Eigen::Vector3d& direction) const {
@@ -75,14 +79,48 @@ TEST(RunwayDirection, LooksBelowTheHorizonOnlyWhenTheGroundIsKnown) {
 }
 
 TEST(RunwayDirection, ComesFromOneViewWhenTheOtherSeesNothing) {
-  Scene scene;
-  scene.right.setTo(cv::Scalar(100));
+  for (const bool blind_left : {false, true}) {
+    Scene scene;
+    (blind_left ? scene.left : scene.right).setTo(cv::Scalar(100));
+    const RunwayDirection found = scene.find(true);
+    const ApproachAngleResult::View &blind = blind_left ? found.left : found.right,
+                                    &seeing = blind_left ? found.right : found.left;
+    EXPECT_FALSE(seeing.failure);
+    EXPECT_TRUE(blind.failure);
+    EXPECT_FALSE(blind.vanishing_direction.allFinite());
+    ASSERT_TRUE(found.combined);
+    EXPECT_LT(scene.error(found.combined->direction), 0.2 * kDegree);
+  }
+}
+
+/// Whether the right view finds an edge that it alone sees, as it does when it looks for lines of its own.
+bool findsItsOwn(Scene& scene) {
+  const cv::Point from(150, 330), to(190, 260);
+  cv::line(scene.right, from, to, cv::Scalar(20), 3, cv::LINE_AA);
   const RunwayDirection found = scene.find(true);
   EXPECT_FALSE(found.left.failure);
-  EXPECT_TRUE(found.right.failure);
-  EXPECT_FALSE(found.right.vanishing_direction.allFinite());
-  ASSERT_TRUE(found.combined);
-  EXPECT_LT(scene.error(found.combined->direction), 0.2 * kDegree);
+  EXPECT_FALSE(found.right.failure);
+  const Eigen::Vector2d middle(0.5 * (from.x + to.x), 0.5 * (from.y + to.y));
+  return std::any_of(found.right_lines.begin(), found.right_lines.end(), [&](const LineSegment& line) {
+    return std::abs(line.line.dot(middle.homogeneous())) < 3 && (line.middle() - middle).norm() < 20;
+  });
+}
+
+TEST(RunwayDirection, FollowsTheLinesOfTheLeftViewIntoTheRightOne) {
+  Scene scene;
+  EXPECT_FALSE(findsItsOwn(scene));
+}
+
+TEST(RunwayDirection, IsNotFollowedFromAPointThatIsNotOnTheGround) {
+  Scene scene;
+  scene.plane_pitch_error = 0.6 * kDegree;
+  EXPECT_TRUE(findsItsOwn(scene));
+}
+
+TEST(RunwayDirection, LooksForLinesOfItsOwnWhereThoseFollowedAreLost) {
+  Scene scene;
+  scene.plane_height_error = 0.2;
+  EXPECT_TRUE(findsItsOwn(scene));
 }
 
 TEST(RunwayDirection, LooksInsideTheMasksOnly) {

@@ -53,9 +53,9 @@ struct Approach {
     }
     Timings timings;
     const Eigen::Vector3d n = now.down();
-    const GroundPlane plane{n / now.height(), Eigen::Matrix3d::Identity() * 1e-8};
-    const RunwayDirection direction =
-        findRunwayDirection(rig, left, right, model.left_mask, model.right_mask, &plane, parameters, timings);
+    const SeenGround ground_seen{{n / now.height(), Eigen::Matrix3d::Identity() * 1e-8}, {}};
+    const RunwayDirection direction = findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
+                                                          &ground_seen, parameters, timings);
     ApproachAngleResult approach;
     approach.left = direction.left;
     approach.right = direction.right;
