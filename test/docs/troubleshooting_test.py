@@ -3,7 +3,8 @@ import unittest
 
 from project import SOURCE_DIR
 
-FOREIGN = ("Skipped loading plugin", "stereo_image_proc", "no such package media_export")
+FOREIGN = ("Skipped loading plugin", "stereo_image_proc", "no such package media_export",
+           "Unable to register with master node … Will keep trying")
 
 
 def phrases(message):
