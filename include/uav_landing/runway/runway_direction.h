@@ -15,7 +15,7 @@ namespace uav_landing {
 /// Lines and vanishing point of the runway in both rectified views, and both views' direction combined.
 struct RunwayDirection {
   ApproachAngleResult::View left, right;
-  /// Those of the views that may lie along the runway, with their uncertainty.
+  /// Those of the views, with their uncertainty; where a runway is followed, those that may lie along it.
   std::vector<LineSegment> left_lines, right_lines;
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
@@ -24,14 +24,16 @@ struct RunwayDirection {
 struct SeenGround {
   GroundPlane plane;
   RigRotation rows;  ///< what vertical disparities tell, or unknown
+  /// Whether a runway is followed on it already: then nothing depends on lines that are not there.
+  bool has_runway = false;
 };
 
-/// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, and
-/// only those that may be along the runway are fitted; where the left view's point is on the ground and not
-/// there by chance, its lines are looked for in the right view where the ground has them, instead of all
-/// lines there; the direction must lie near the ground; and where a view has too few lines for a vanishing
-/// point of its own, two long edges side by side that agree in both views are enough. Masks: of the rectified
-/// views, eroded.
+/// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, the
+/// direction must lie near the ground, and where a view has too few lines for a vanishing point of its own,
+/// two long edges side by side that agree in both views are enough. Where the ground has a runway already,
+/// only lines that may be along it are fitted, and if the left view's point is on the ground and not there by
+/// chance, its lines are looked for in the right view where the ground has them, instead of all lines there.
+/// Masks: of the rectified views, eroded.
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,

@@ -28,6 +28,9 @@ class RunwayTracker {
   ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
                                       const RunwayDirection& direction, double height);
   void reset();
+  /// Whether the last pair has shown the runway where those before it did. Until then it also matters which
+  /// lines are not there.
+  bool isSettled() const { return centre_.isSeen() && contradicted_ == 0; }
 
  private:
   /// A place on the ground followed over pairs: its distance from the camera along one axis.
@@ -42,6 +45,7 @@ class RunwayTracker {
     void miss(double seconds, double patience);
     double value() const { return value_.value_or(0); }
     int confirmations() const { return confirmations_; }
+    bool isSeen() const { return confirmations_ >= kConfirmations && missed_ == 0; }
 
    private:
     std::optional<double> value_;

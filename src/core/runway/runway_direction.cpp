@@ -68,12 +68,13 @@ ApproachAngleResult::View reportOf(const Found& found) {
   return view;
 }
 
-// The steps, with what all of them need. plane: of the ground, or null.
+// The steps, with what all of them need. ground: or null.
 class Search {
  public:
-  Search(const GroundPlane* plane, const ApproachAngleParameters& parameters, Timings& timings)
-      : plane_(plane),
-        normal_(plane ? plane->normal() : Eigen::Vector3d::UnitY()),
+  Search(const SeenGround* ground, const ApproachAngleParameters& parameters, Timings& timings)
+      : plane_(ground ? &ground->plane : nullptr),
+        has_runway_(ground && ground->has_runway),
+        normal_(ground ? ground->plane.normal() : Eigen::Vector3d::UnitY()),
         parameters_(parameters),
         timings_(timings) {}
 
@@ -83,7 +84,7 @@ class Search {
     {
       ScopedTimer timer(timings_, "hough_transform");
       const HeadingGate gate = gateOf(view);
-      lines = plane_ ? findLines(view.image, groundPart(view), parameters_, &gate)
+      lines = plane_ ? findLines(view.image, groundPart(view), parameters_, has_runway_ ? &gate : nullptr)
                      : findLines(view.image, view.mask, parameters_);
     }
     return withPoint(view, std::move(lines));
@@ -103,9 +104,9 @@ class Search {
     return in(view);
   }
 
-  // Without a plane that is not known of any line, and all are returned.
+  // Those that may be along the runway, if there is one.
   std::vector<LineSegment> along(const View& view, const std::vector<LineSegment>& lines) const {
-    if (plane_ == nullptr) return lines;
+    if (!has_runway_) return lines;
     const HeadingGate gate = gateOf(view);
     std::vector<LineSegment> passing;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(passing),
@@ -114,11 +115,12 @@ class Search {
   }
 
   // Whether the other view's lines may be looked for where this one has them: that view is a witness of where
-  // they lie then, but not of which ones are there. A point that may be there by chance, or off the ground,
+  // they lie then, but not of which ones are there. So half of a runway would be taken for a whole one the
+  // sooner, as the edge that tells is not seen; and a point that may be there by chance, or off the ground,
   // is told by lines that the other view finds by itself: those meet elsewhere. The paper's Hough transforms,
   // and lines as those find them, are of each view alone.
   bool isSure(const Expected<VanishingPoint>& point) const {
-    return plane_ != nullptr && point && point->coincidences <= kSure && isOnGround(*point) &&
+    return has_runway_ && point && point->coincidences <= kSure && isOnGround(*point) &&
            parameters_.hough_method == HoughMethod::kScanLines && parameters_.refine_lines;
   }
 
@@ -181,6 +183,7 @@ class Search {
   HeadingGate gateOf(const View& view) const { return {view.K, normal_, maxYaw()}; }
 
   const GroundPlane* plane_;
+  bool has_runway_;
   Eigen::Vector3d normal_;
   const ApproachAngleParameters& parameters_;
   Timings& timings_;
@@ -193,7 +196,7 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,
                                     Timings& timings) {
   const View left_view{left, left_mask, viewK(rig, true)}, right_view{right, right_mask, viewK(rig, false)};
-  const Search search(ground ? &ground->plane : nullptr, parameters, timings);
+  const Search search(ground, parameters, timings);
   Found in_left = search.in(left_view);
   Found in_right =
       search.isSure(in_left.point)

@@ -55,7 +55,7 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const SeenGround ground{stereo.plane, stereo.vertical_rotation};
+    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled()};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,

@@ -23,6 +23,7 @@ struct Scene {
   ApproachAngleParameters parameters;
   Pose pose;
   double plane_pitch_error = 0, plane_height_error = 0;  // rad, share
+  bool has_runway = true;
   cv::Mat left, right;
 
   Scene() {
@@ -41,7 +42,9 @@ struct Scene {
     Timings timings;
     const Eigen::Vector3d down = Eigen::AngleAxisd(plane_pitch_error, Eigen::Vector3d::UnitX()) * pose.down();
     const SeenGround ground_seen{
-        {down / (pose.height() * (1 + plane_height_error)), Eigen::Matrix3d::Identity() * 1e-8}, {}};
+        {down / (pose.height() * (1 + plane_height_error)), Eigen::Matrix3d::Identity() * 1e-8},
+        {},
+        has_runway};
     return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
                                with_normal ? &ground_seen : nullptr, parameters, timings);
   }
@@ -109,6 +112,12 @@ bool findsItsOwn(Scene& scene) {
 TEST(RunwayDirection, FollowsTheLinesOfTheLeftViewIntoTheRightOne) {
   Scene scene;
   EXPECT_FALSE(findsItsOwn(scene));
+}
+
+TEST(RunwayDirection, LooksForLinesOfItsOwnUntilARunwayIsKnown) {
+  Scene scene;
+  scene.has_runway = false;
+  EXPECT_TRUE(findsItsOwn(scene));
 }
 
 TEST(RunwayDirection, IsNotFollowedFromAPointThatIsNotOnTheGround) {
