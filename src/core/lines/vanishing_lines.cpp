@@ -26,7 +26,6 @@ VanishingLines::VanishingLines(const std::vector<LineSegment>& lines, const Eige
   const Eigen::Vector3d horizon =
       prior_normal ? Eigen::Vector3d(Kinv_.transpose() * *prior_normal) : Eigen::Vector3d::UnitY();
   horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();
-  if (prior_normal != nullptr) gate_.emplace(K, *prior_normal, parameters.max_yaw_deg * kDegree);
 }
 
 bool VanishingLines::alongRunway(const Eigen::Vector3d& v) const {
@@ -54,9 +53,7 @@ std::vector<int> VanishingLines::passing(const Eigen::Vector3d& direction) const
   indices.reserve(lines_.size());
   for (int i = 0; i < count(); ++i) {
     const VanishingCandidate& line = (*this)[i];
-    if (line.endMiss2(V) <= std::pow(toleranceOf(line), 2) && !line.isAboveHorizon(V) &&
-        (!gate_ || gate_->passes(line.line)))
-      indices.push_back(i);
+    if (line.endMiss2(V) <= std::pow(toleranceOf(line), 2) && !line.isAboveHorizon(V)) indices.push_back(i);
   }
   return indices;
 }

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "lines/vanishing_candidate.h"
-#include "uav_landing/lines/heading_gate.h"
 #include "uav_landing/lines/line_segments.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -32,8 +30,7 @@ class VanishingLines {
   /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
   /// perfectly straight.
   double toleranceOf(const VanishingCandidate& line) const;
-  /// Indices of the lines that pass through a direction by that tolerance. With a normal known beforehand
-  /// those that cannot be along the runway do not, wherever they lie.
+  /// Indices of the lines that pass through a direction by that tolerance.
   std::vector<int> passing(const Eigen::Vector3d& direction) const;
 
   /// Along the horizon a pixel is less of an angle the farther it is to the side. Over V.z.
@@ -46,8 +43,7 @@ class VanishingLines {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  std::optional<HeadingGate> gate_;  // by that normal
-  Eigen::Vector2d horizon_;          // direction of the horizon in the image, unit
+  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
 };
 
 }  // namespace uav_landing
