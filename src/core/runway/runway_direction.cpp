@@ -72,8 +72,7 @@ ApproachAngleResult::View reportOf(const Found& found) {
 class Search {
  public:
   Search(const SeenGround* ground, const ApproachAngleParameters& parameters, Timings& timings)
-      : plane_(ground ? &ground->plane : nullptr),
-        has_runway_(ground && ground->has_runway),
+      : ground_(ground),
         normal_(ground ? ground->plane.normal() : Eigen::Vector3d::UnitY()),
         parameters_(parameters),
         timings_(timings) {}
@@ -84,8 +83,8 @@ class Search {
     {
       ScopedTimer timer(timings_, "hough_transform");
       const HeadingGate gate = gateOf(view);
-      lines = plane_ ? findLines(view.image, groundPart(view), parameters_, has_runway_ ? &gate : nullptr)
-                     : findLines(view.image, view.mask, parameters_);
+      lines = ground_ ? findLines(view.image, groundPart(view), parameters_, hasRunway() ? &gate : nullptr)
+                      : findLines(view.image, view.mask, parameters_);
     }
     return withPoint(view, std::move(lines));
   }
@@ -106,7 +105,7 @@ class Search {
 
   // Those that may be along the runway, if there is one.
   std::vector<LineSegment> along(const View& view, const std::vector<LineSegment>& lines) const {
-    if (!has_runway_) return lines;
+    if (!hasRunway()) return lines;
     const HeadingGate gate = gateOf(view);
     std::vector<LineSegment> passing;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(passing),
@@ -120,16 +119,16 @@ class Search {
   // is told by lines that the other view finds by itself: those meet elsewhere. The paper's Hough transforms,
   // and lines as those find them, are of each view alone.
   bool isSure(const Expected<VanishingPoint>& point) const {
-    return has_runway_ && point && point->coincidences <= kSure && isOnGround(*point) &&
+    return hasRunway() && point && point->coincidences <= kSure && isOnGround(*point) &&
            parameters_.hough_method == HoughMethod::kScanLines && parameters_.refine_lines;
   }
 
   // The points of views that have none of their own, by the direction that the ground gives their lines.
   void tryTogether(const View& left_view, const View& right_view, Found& left, Found& right) const {
-    if (plane_ == nullptr || (left.point && right.point)) return;
+    if (ground_ == nullptr || (left.point && right.point)) return;
     ScopedTimer timer(timings_, "ransac");
     const auto along = findLinesAlong({{left.straight, left_view.K}, {right.straight, right_view.K}}, normal_,
-                                      plane_->normalCovariance(), maxYaw());
+                                      ground_->plane.normalCovariance(), maxYaw());
     if (!along) return;
     const auto retry = [&](const View& view, Found& found, const std::vector<char>& members) {
       if (found.point) return;
@@ -154,7 +153,7 @@ class Search {
   std::vector<LineSegment> straight(const View& view, const std::vector<LineSegment>& lines) const {
     if (!parameters_.stripe_centres) return lines;
     ScopedTimer timer(timings_, "hough_transform");
-    if (plane_ == nullptr) return withoutStripeBias(view.image, view.mask, lines);
+    if (ground_ == nullptr) return withoutStripeBias(view.image, view.mask, lines);
     const HeadingGate gate = gateOf(view);
     std::vector<size_t> places;
     std::vector<LineSegment> chosen;
@@ -171,19 +170,19 @@ class Search {
 
   bool isOnGround(const VanishingPoint& point) const {
     const double straightness = parameters_.runway_straightness_deg * kDegree;
-    const double variance = point.direction.dot(plane_->normalCovariance() * point.direction) +
+    const double variance = point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
                             normal_.dot(point.covariance * normal_) + straightness * straightness;
     return variance <= kVague * kVague &&
            std::abs(normal_.dot(point.direction)) <= kGate * std::sqrt(variance);
   }
 
   cv::Mat groundPart(const View& view) const { return belowHorizon(view.mask, view.K, normal_); }
-  const Eigen::Vector3d* normal() const { return plane_ ? &normal_ : nullptr; }
+  bool hasRunway() const { return ground_ != nullptr && ground_->has_runway; }
+  const Eigen::Vector3d* normal() const { return ground_ ? &normal_ : nullptr; }
   double maxYaw() const { return parameters_.max_yaw_deg * kDegree; }
   HeadingGate gateOf(const View& view) const { return {view.K, normal_, maxYaw()}; }
 
-  const GroundPlane* plane_;
-  bool has_runway_;
+  const SeenGround* ground_;
   Eigen::Vector3d normal_;
   const ApproachAngleParameters& parameters_;
   Timings& timings_;
