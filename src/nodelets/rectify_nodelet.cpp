@@ -1,6 +1,7 @@
 #include <image_transport/image_transport.h>
 #include <sensor_msgs/TimeReference.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -65,6 +66,7 @@ class RectifyNodelet : public StageNodelet {
     input_queue_ = static_cast<uint32_t>(pairing.queue_size);
 
     transport_ = std::make_unique<image_transport::ImageTransport>(getNodeHandle());
+    checkTransport();
     advertise("left", left_);
     advertise("right", right_);
     skew_publisher_ = getNodeHandle().advertise<sensor_msgs::TimeReference>(
@@ -76,6 +78,14 @@ class RectifyNodelet : public StageNodelet {
           enqueue({left, right, left_info, right_info});
         });
     worker_ = std::thread([this] { work(); });
+  }
+
+  // To subscribe by one that is not there throws, in whatever thread a subscriber connects.
+  void checkTransport() {
+    const std::vector<std::string> there = transport_->getLoadableTransports();
+    if (std::find(there.begin(), there.end(), "image_transport/" + node_.image_transport) == there.end())
+      refuseToLoad("rectify/image_transport: no transport '" + node_.image_transport +
+                   "' is installed, see rosrun image_transport list_transports");
   }
 
   std::string infoTopic(const std::string& side) const {

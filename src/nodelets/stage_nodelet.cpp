@@ -57,6 +57,10 @@ ros::SubscriberStatusCallback StageNodelet::onConnection() {
 }
 
 void StageNodelet::updateSubscription() {
+  guard([this] { subscribeIfWanted(); });
+}
+
+void StageNodelet::subscribeIfWanted() {
   const std::lock_guard<std::mutex> lock(subscription_mutex_);
   if (stopped_) return;
   const bool want = wanted();

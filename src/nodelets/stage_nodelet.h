@@ -50,7 +50,8 @@ class StageNodelet : public nodelet::Nodelet {
   virtual std::string complaint() = 0;
   /// More for the log, once per complaint_period.
   virtual void complainMore() {}
-  /// Service ~reset: what earlier pairs left behind is forgotten, as if just loaded. Runs like a callback.
+  /// Service ~reset: what earlier pairs left behind is forgotten; messages that wait to be paired stay. Runs
+  /// like a callback.
   virtual void forget() {}
   /// Values of its own for the diagnostics; called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
@@ -64,6 +65,9 @@ class StageNodelet : public nodelet::Nodelet {
     if (failure) refuseToLoad(failure.detail);
     return parameters;
   }
+
+  /// Throws what setUp() is to throw, after it is in the log.
+  [[noreturn]] void refuseToLoad(const std::string& problem);
 
   /// For publishers: (un)subscribes as subscribers come and go.
   ros::SubscriberStatusCallback onConnection();
@@ -129,9 +133,9 @@ class StageNodelet : public nodelet::Nodelet {
 
  private:
   void onInit() final;
+  void subscribeIfWanted();
   /// Since when the inputs are subscribed, s; none while nobody wants the output.
   std::optional<double> subscribedFor() const;
-  [[noreturn]] void refuseToLoad(const std::string& problem);
   void complain();
   void diagnose();
 

@@ -37,6 +37,18 @@ class TableWriter {
   std::ostream& out_;
 };
 
+/// Refuses sections that contradict each other. name: of the file.
+Expected<Parameters> agreeing(Expected<Parameters> parameters, const std::string& name) {
+  if (!parameters) return parameters;
+  const double seen = parameters->approach_angle.runway_width,
+               known = parameters->kalman_height.known_runway_width;
+  if (seen <= 0 || known <= 0 || seen == known) return parameters;
+  return tl::make_unexpected(
+      Failure{Reason::kInputInvalid,
+              text(name, ": approach_angle/runway_width is ", seen,
+                   " m and kalman_height/known_runway_width ", known, " m, expected the same")});
+}
+
 }  // namespace
 
 template Failure loadSection(const YAML::Node&, const std::string&, RectifyParameters&);
@@ -46,10 +58,12 @@ template Failure loadSection(const YAML::Node&, const std::string&, KalmanHeight
 template Failure loadSection(const YAML::Node&, const std::string&, OverlayParameters&);
 
 Expected<Parameters> parseParameters(const std::string& yaml_text, const std::string& name) {
-  return parseSections<Parameters>(yaml_text, name);
+  return agreeing(parseSections<Parameters>(yaml_text, name), name);
 }
 
-Expected<Parameters> loadParameterFile(const std::string& path) { return loadSectionFile<Parameters>(path); }
+Expected<Parameters> loadParameterFile(const std::string& path) {
+  return agreeing(loadSectionFile<Parameters>(path), path);
+}
 
 std::string parameterTable() {
   std::ostringstream out;
