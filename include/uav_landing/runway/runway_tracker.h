@@ -27,10 +27,12 @@ class RunwayTracker {
   /// the lines it was found from. height: by stereo, m, or NaN; without it only the left view counts.
   ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
                                       const RunwayDirection& direction, double height);
+  /// A pair of which nothing is known but that the motion up to the next one does not begin before it.
+  void skip(double stamp);
   void reset();
-  /// Whether the last pair has shown the runway where those before it did. Until then it also matters which
-  /// lines are not there.
-  bool isSettled() const { return centre_.isSeen() && contradicted_ == 0; }
+  /// Whether the pair before the one of this stamp has shown the runway where those before it did. Until then
+  /// it also matters which lines are not there.
+  bool isSettled(double stamp) const { return follows(stamp) && centre_.isSeen() && contradicted_ == 0; }
 
  private:
   /// A place on the ground followed over pairs: its distance from the camera along one axis.
@@ -54,6 +56,10 @@ class RunwayTracker {
     double missed_ = 0;  // s
   };
 
+  /// Whether the pair before is near enough in time for what it has shown to count.
+  bool follows(double stamp) const;
+  /// Since the pair before, s; forgets that when it does not follow.
+  double advance(double stamp);
   void predict(const GroundAxes* axes, const ApproachAngleResult::Motion& step);
   /// Edges along the runway that both views see, and those that at least one does.
   struct Edges {
@@ -65,10 +71,14 @@ class RunwayTracker {
   void findThresholdLine(double seconds, const cv::Mat& left, const GroundAxes& axes,
                          ApproachAngleResult::Runway& result);
 
+  void missAll(double seconds);
+  void missCentre(double seconds);
+  void forgetRunway();
+  void followWidth(const RunwayCrossSection& seen, ApproachAngleResult::Runway& result);
+
   RigModel model_;
   ApproachAngleParameters parameters_;
   std::optional<double> last_stamp_;
-  void followWidth(const RunwayCrossSection& seen, ApproachAngleResult::Runway& result);
 
   Follower centre_, threshold_;
   Follower width_, wider_;   // between the outermost edges; edges farther out that are not confirmed yet

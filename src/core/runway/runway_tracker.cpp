@@ -58,25 +58,53 @@ RunwayTracker::RunwayTracker(const RigModel& rig, const ApproachAngleParameters&
 
 void RunwayTracker::reset() {
   last_stamp_.reset();
+  forgetRunway();
+}
+
+void RunwayTracker::forgetRunway() {
   centre_ = threshold_ = width_ = wider_ = Follower();
   contradicted_ = 0;
+}
+
+bool RunwayTracker::follows(double stamp) const {
+  return last_stamp_ && stamp > *last_stamp_ && stamp - *last_stamp_ <= kLongestStep;
+}
+
+double RunwayTracker::advance(double stamp) {
+  if (!follows(stamp)) reset();
+  const double seconds = last_stamp_ ? stamp - *last_stamp_ : 0;
+  last_stamp_ = stamp;
+  return seconds;
+}
+
+void RunwayTracker::skip(double stamp) {
+  const double seconds = advance(stamp);
+  predict(nullptr, {});
+  missAll(seconds);
+}
+
+void RunwayTracker::missAll(double seconds) {
+  missCentre(seconds);
+  threshold_.miss(seconds, kThresholdPatience);
+}
+
+// Another runway, or this one from elsewhere, is of another width: in heights, too.
+void RunwayTracker::missCentre(double seconds) {
+  centre_.miss(seconds, kPatience);
+  if (centre_.confirmations() == 0) width_ = wider_ = Follower();
 }
 
 ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& left,
                                                    const ApproachAngleResult& approach,
                                                    const RunwayDirection& direction, double height) {
-  const double seconds = last_stamp_ ? stamp - *last_stamp_ : 0;
-  if (seconds < 0 || seconds > kLongestStep) reset();
-  last_stamp_ = stamp;
-
+  const double seconds = advance(stamp);
   ApproachAngleResult::Runway result;
   if (!approach.n.allFinite() || !direction.combined) {
     result.failure = approach.n.allFinite() ? direction.combined.error()
                                             : Failure{Reason::kNoGroundNormal, "nothing to measure against"};
     result.threshold_failure = result.failure;
     predict(nullptr, approach.step);
-    centre_.miss(seconds, kPatience);
-    threshold_.miss(seconds, kThresholdPatience);
+    missAll(seconds);
     return result;
   }
   // The runway's own slope and curve turn its vanishing point up and down, not to the sides.
@@ -136,8 +164,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;
     contradicted_ = contradicts ? contradicted_ + seconds : 0;
     if (contradicted_ > kPatience) {
-      centre_ = threshold_ = width_ = wider_ = Follower();
-      contradicted_ = 0;
+      forgetRunway();
     } else if ((!seen || contradicts) && expected.tolerance <= kVague * width_.value()) {
       seen = findRunwayEdges(axes, edges.both, width, expected);
       if (!seen) seen = findRunwayEdges(axes, edges.either, width, expected);
@@ -145,7 +172,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   }
   if (!seen) {
     result.failure = seen.error();
-    centre_.miss(seconds, kPatience);
+    missCentre(seconds);
     return;
   }
   if (!centre_.update(seen->centre, seen->variance, kSlack * seen->width)) {
@@ -163,6 +190,8 @@ void RunwayTracker::followWidth(const RunwayCrossSection& seen, ApproachAngleRes
     width_.update(seen.width, seen.width_variance, kSameWidth * seen.width);
     result.width = seen.width;
     result.width_variance = seen.width_variance;
+  } else if (width_.confirmations() < kConfirmations) {  // one pair's word against the other's
+    width_.update(seen.width, seen.width_variance, kSameWidth * seen.width);
   } else if (seen.width > width_.value() &&
              wider_.update(seen.width, seen.width_variance, kSameWidth * seen.width)) {
     width_ = wider_;

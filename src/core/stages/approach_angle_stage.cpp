@@ -51,26 +51,36 @@ struct ApproachAngleStage::Implementation {
       result.step.failure = result.window.failure = result.failure;
       result.runway.failure = result.runway.threshold_failure = result.failure;
       if (result.failure.reason == Reason::kInputInvalid) return result;
-      if (!repeated(stereo)) tracker.skip(stamp, left);
+      skip(stamp, left, stereo);
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled()};
+    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp)};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
       result.step.failure = result.window.failure = result.failure;
       result.runway.failure = result.runway.threshold_failure = result.failure;
-      if (!repeated(stereo)) tracker.skip(stamp, left);
+      skip(stamp, left, stereo);
       return result;
     }
     straightenPlan(result);
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     ScopedTimer timer(timings, "runway_position");
-    result.runway =
-        runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
+    if (repeated(stereo)) {
+      result.runway.failure = result.runway.threshold_failure = result.step.failure;
+    } else {
+      result.runway =
+          runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
+    }
     return result;
+  }
+
+  void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
+    if (repeated(stereo)) return;
+    tracker.skip(stamp, left);
+    runway.skip(stamp);
   }
 
   // The ground's normal is that of level ground but for the slope of the ground.

@@ -26,6 +26,7 @@ struct Approach {
   ApproachAngleParameters parameters;
   RunwayTracker tracker{model, parameters};
   int frame = 0;
+  double time = 0, climbed = 0;  // s, m
   std::optional<Pose> last;
 
   Approach() {
@@ -35,7 +36,7 @@ struct Approach {
   }
   Pose pose() const {
     Pose now;
-    now.position = {0.1 * frame, 0.4 - 0.01 * frame, 1.7 - 0.01 * frame};
+    now.position = {0.1 * frame, 0.4 - 0.01 * frame, 1.7 - 0.01 * frame + climbed};
     now.pitch = -6 * kDegree;
     now.roll = (3 - 0.5 * frame) * kDegree;
     now.yaw = (-4 + 0.3 * frame) * kDegree;
@@ -68,7 +69,14 @@ struct Approach {
       approach.step.covariance = Matrix6d::Identity() * 1e-6;
     }
     last = now;
-    return tracker.process(0.05 * frame++, left, approach, direction, now.height());
+    ++frame;
+    return tracker.process(time += 0.05, left, approach, direction, now.height());
+  }
+  /// A pair that shows nothing, after which the motion begins.
+  void skip() {
+    last = pose();
+    ++frame;
+    tracker.skip(time += 0.05);
   }
 };
 
@@ -111,6 +119,65 @@ TEST(RunwayTracker, FindsItAgainAtOnceAfterAPairWithoutEdges) {
   for (int i = 0; i < 4; ++i) approach.next();
   EXPECT_TRUE(approach.next(0, true).failure);
   EXPECT_FALSE(approach.next().failure);
+}
+
+TEST(RunwayTracker, DoesNotKnowHowTheCameraMovedOverPairsThatAreSkipped) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  approach.skip();
+  EXPECT_FALSE(approach.next(0.5).failure) << "as far to the side as nobody would believe otherwise";
+}
+
+TEST(RunwayTracker, ForgetsTheWidthWithTheRunway) {
+  Approach approach;
+  for (int i = 0; i < 6; ++i) approach.next();
+  for (int i = 0; i < 22; ++i) approach.next(0, true);
+  approach.climbed = 1;  // from where it is narrower, in heights
+  for (int i = 0; i < 2; ++i) approach.next();
+  const auto runway = approach.next();
+  EXPECT_FALSE(runway.failure) << runway.failure.message();
+  EXPECT_NEAR(runway.width * (approach.last->height()), 2 * 1.1 + 0.12, 0.05);
+}
+
+TEST(RunwayTracker, OnePairIsNotEnoughForAWidth) {
+  Approach approach;
+  for (int i = 0; i < 2; ++i) approach.next();
+  approach.ground.line_offset = 1.5;
+  EXPECT_FALSE(approach.next().failure) << "the middle is where it was";
+  approach.ground.line_offset = 1.1;
+  approach.next();
+  const auto runway = approach.next();
+  EXPECT_NEAR(runway.width * (approach.last->height()), 2 * 1.1 + 0.12, 0.05);
+}
+
+TEST(RunwayTracker, IsSettledWhileThePairsShowTheSameRunway) {
+  Approach approach;
+  const auto settled = [&] { return approach.tracker.isSettled(approach.time + 0.05); };
+  const auto settle = [&] {
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_FALSE(settled()) << i;
+      approach.next();
+    }
+    EXPECT_TRUE(settled());
+  };
+  settle();
+  approach.next(0, true);
+  EXPECT_FALSE(settled()) << "not seen";
+  approach.next();
+  EXPECT_TRUE(settled());
+  approach.next(0.5);
+  EXPECT_FALSE(settled()) << "seen elsewhere";
+  approach.next();
+  EXPECT_TRUE(settled());
+  approach.skip();
+  EXPECT_FALSE(settled()) << "skipped";
+  approach.next();
+  EXPECT_TRUE(settled());
+  EXPECT_FALSE(approach.tracker.isSettled(approach.time)) << "the stamp stands";
+  EXPECT_FALSE(approach.tracker.isSettled(approach.time - 1)) << "the stamp went back";
+  EXPECT_FALSE(approach.tracker.isSettled(approach.time + 1.1)) << "long ago";
+  approach.time -= 5;
+  settle();
 }
 
 TEST(RunwayTracker, ForgetsOnReset) {

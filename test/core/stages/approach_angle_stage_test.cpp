@@ -38,6 +38,27 @@ TEST(ApproachAngleStage, ARepeatedPictureIsNoStandstillAndTheStepAfterItIsOverTh
   expectMotion(result.step, Movement(path(5 * kPeriod), now), now.height(), "after the repeated picture");
 }
 
+TEST(ApproachAngleStage, APictureOnceMoreDoesNotConfirmTheRunwayInIt) {
+  ApproachScene scene(7);
+  scene.ground.contrast = 3;
+  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  ApproachAngleResult result;
+  double stamp = 0, taken = 0;
+  std::string known;
+  for (const char fresh : std::string("0rr0r0r0")) {
+    stamp += kPeriod;
+    if (fresh == '0') taken = stamp;
+    const Pose pose = path(taken);
+    StereoDepthResult stereo = scene.stereo(pose, stamp);
+    stereo.left_repeated = fresh == 'r';
+    result =
+        stage.process(stamp, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose), stereo);
+    known += result.runway.failure ? '-' : '+';
+  }
+  EXPECT_EQ(known, "-----+-+");
+}
+
 TEST(ApproachAngleStage, MeasuresDescendingLevelDriftingAndRollingMotion) {
   struct Case {
     std::string name;
