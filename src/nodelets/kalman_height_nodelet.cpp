@@ -182,12 +182,12 @@ class KalmanHeightNodelet : public StageNodelet {
     const Eigen::Isometry3d rectified_from_child =
         child.left_from_child ? rectified_from_left * *child.left_from_child : Eigen::Isometry3d::Identity();
     const Eigen::Vector3d lever_arm = rectified_from_child.translation();
-    LandingResult estimate = child.left_from_child ? referTo(lever_arm, camera, plane, step,
-                                                             normalQuantile(parameters_.integrity_risk))
-                                                   : camera;
+    LandingResult estimate =
+        child.left_from_child ? referTo(lever_arm, camera, plane, step, parameters_) : camera;
     if (child.failure) {
       estimate.failure = child.failure;
       estimate.height_valid = estimate.angle_valid = false;
+      estimate.forgetPosition();
     }
     note(estimate);
 

@@ -4,19 +4,23 @@
 #include <sstream>
 
 #include "pose_covariance.h"
+#include "uav_landing/height/height_limit.h"
 
 namespace uav_landing {
 namespace {
 
-void moveLevel(double by, LandingResult& body) {
-  body.height_protection_level += by;
-  if (!body.height_valid || !(body.height_protection_level > body.height_alert_limit)) return;
+void refuseHeight(const Failure& failure, LandingResult& body) {
+  if (!body.height_valid || !failure) return;
   body.height_valid = false;
-  if (body.failure) return;
+  if (!body.failure) body.failure = failure;
+}
+
+Failure levelAbove(double limit, double level, double by) {
+  if (!(level > limit)) return {};
   std::ostringstream text;
-  text << "the lever arm adds " << by << " m to the protection level: " << body.height_protection_level
-       << " m, alert limit " << body.height_alert_limit << " m";
-  body.failure = {Reason::kUncertain, text.str()};
+  text << "the lever arm adds " << by << " m to the protection level: " << level << " m, alert limit "
+       << limit << " m";
+  return {Reason::kUncertain, text.str()};
 }
 
 }  // namespace
@@ -44,16 +48,15 @@ double heightByPitch(const LandingResult& camera, const Eigen::Vector3d& point) 
 }
 
 LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera, const GroundPlane& plane,
-                      const ApproachAngleResult::Motion& step, double level_sigmas) {
+                      const ApproachAngleResult::Motion& step, const KalmanHeightParameters& parameters) {
   LandingResult body = camera;
   const Eigen::Vector3d n = normalFromPitchRoll(camera.pitch, camera.roll);
   if (!n.allFinite()) {
     body.height = body.height_variance = body.raw_height = body.raw_height_variance = kUnknown;
     body.points_height = body.vertical_speed = body.vertical_speed_variance = kUnknown;
-    body.x = body.x_variance = body.y = body.y_variance = body.height_protection_level = kUnknown;
-    if (body.height_valid && !body.failure)
-      body.failure = {Reason::kNoGroundNormal, "the lever arm needs the attitude"};
-    body.height_valid = false;
+    body.height_protection_level = kUnknown;
+    body.forgetPosition();
+    refuseHeight({Reason::kNoGroundNormal, "the lever arm needs the attitude"}, body);
     return body;
   }
   const double shift = -n.dot(point);
@@ -62,7 +65,11 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   body.raw_height += shift;
   body.raw_height_variance = heightVariance(camera, camera.raw_height_variance, plane, point);
   body.points_height += shift;
-  moveLevel(level_sigmas * std::sqrt(heightVariance(camera, 0, GroundPlane(), point)), body);
+  const double swing =
+      normalQuantile(parameters.integrity_risk) * std::sqrt(heightVariance(camera, 0, GroundPlane(), point));
+  body.height_protection_level += swing;
+  refuseHeight(levelAbove(body.height_alert_limit, body.height_protection_level, swing), body);
+  refuseHeight(tooUncertain(body.height, body.height_variance, parameters), body);
 
   const Eigen::Vector3d across = runwayFromCamera(camera) * point;
   body.x += across.x();

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -21,10 +22,10 @@ double heightByPitch(const LandingResult& camera, const Eigen::Vector3d& point);
 /// rectified left camera's optical frame, m. plane: of the pair, from which height and attitude err together.
 /// Heights move by -n.point, with variances as in poseCovariance, x and y by the point turned into the runway
 /// frame; the vertical speed by the rotation of step, without which it is unknown. Angles and velocity stay
-/// those of the camera. The protection level grows by level_sigmas standard deviations of how the point
-/// swings with the attitude, and the height is not valid where it is above the alert limit then. Without an
-/// attitude the point's height is unknown and not valid.
+/// those of the camera. The protection level grows by how the point swings with the attitude, as large as
+/// belongs to integrity_risk. The height is not valid where that is above the alert limit then, or where the
+/// point's height is too uncertain (height_limit.h). Without an attitude it is unknown and not valid.
 LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera, const GroundPlane& plane,
-                      const ApproachAngleResult::Motion& step, double level_sigmas);
+                      const ApproachAngleResult::Motion& step, const KalmanHeightParameters& parameters);
 
 }  // namespace uav_landing

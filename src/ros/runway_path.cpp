@@ -8,7 +8,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kStartStddev = 1000;  // m: says "not known" in finite numbers
-constexpr double kSpeedError = 0.05;   // of the speed; does not average out
+// Of the speed, 1 sigma that does not average out: of one that is seen, and of one that was seen before.
+constexpr double kSpeedError = 0.05, kOldSpeedError = 1;
 constexpr size_t kTrackPoints = 2000;
 constexpr double kTrackSpacing = 0.02;  // of the height
 constexpr double kMaxStart = 100;       // heights: a path that hardly descends meets the ground far away
@@ -18,11 +19,12 @@ constexpr double kMaxStart = 100;       // heights: a path that hardly descends 
 std::optional<RunwayPath::Position> RunwayPath::update(const LandingResult& camera) {
   if (last_stamp_ && camera.stamp <= *last_stamp_) reset();
   const Eigen::Matrix3d rotation = runwayFromCamera(camera);
-  if (rotation.allFinite() && camera.velocity.allFinite()) velocity_ = (rotation * camera.velocity).head<2>();
+  const bool seen = rotation.allFinite() && camera.velocity.allFinite();
+  if (seen) velocity_ = (rotation * camera.velocity).head<2>();
   if (last_stamp_) {
     const double T = camera.stamp - *last_stamp_;
     xy_ += velocity_ * T;
-    drift_stddev_ += kSpeedError * velocity_.norm() * T;
+    drift_stddev_ += (seen ? kSpeedError : kOldSpeedError) * velocity_.norm() * T;
     last_stamp_ = camera.stamp;
   }
   if (!camera.height_valid || !std::isfinite(camera.height) || !rotation.allFinite()) return std::nullopt;

@@ -38,7 +38,7 @@ void useResult(const ApproachMessages& messages, const LandingResult& camera) {
   const StereoDepthResult stereo = toResult(messages.stereo);
   const ApproachAngleResult approach = toResult(messages.approach);
   const Eigen::Vector3d arm(0.1, -0.5, 2);
-  const LandingResult body = referTo(arm, camera, stereo.plane, approach.step, 5);
+  const LandingResult body = referTo(arm, camera, stereo.plane, approach.step, {});
   require(!body.height_valid || std::isfinite(body.height), "a valid height of the body is finite");
   static RunwayPath path;
   const auto place = path.update(camera);

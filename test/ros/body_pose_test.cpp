@@ -70,15 +70,14 @@ class ReferToTest : public testing::Test {
     step_.rotation.setZero();
     step_.covariance.setZero();
   }
-  static constexpr double kLevelSigmas = 5;
-
   LandingResult refer(const Eigen::Vector3d& point) const {
-    return referTo(point, camera_, plane_, step_, kLevelSigmas);
+    return referTo(point, camera_, plane_, step_, parameters_);
   }
 
   LandingResult camera_;
   GroundPlane plane_;  // none: height and attitude err independently
   ApproachAngleResult::Motion step_;
+  KalmanHeightParameters parameters_;
 };
 
 TEST_F(ReferToTest, APointBehindACameraThatLooksDownIsHigher) {
@@ -139,9 +138,10 @@ TEST_F(ReferToTest, TheProtectionLevelHoldsForThePoint) {
   camera_.pitch_variance = 1e-4;
   camera_.height_protection_level = 0.5;
   camera_.height_alert_limit = 0.6;
+  parameters_.integrity_risk = 1 - std::erf(5 / std::sqrt(2.0));
   // 5 sigma of 2 m cos 30 degrees times 0.01 rad.
   const LandingResult body = refer({0, 0, -2});
-  EXPECT_NEAR(body.height_protection_level, 0.5 + 5 * std::sqrt(3.0) * 0.01, 1e-12);
+  EXPECT_NEAR(body.height_protection_level, 0.5 + 5 * std::sqrt(3.0) * 0.01, 1e-9);
   EXPECT_TRUE(body.height_valid);
   camera_.height_alert_limit = 0.55;
   const LandingResult beyond = refer({0, 0, -2});
@@ -149,6 +149,17 @@ TEST_F(ReferToTest, TheProtectionLevelHoldsForThePoint) {
   EXPECT_EQ(beyond.failure.reason, Reason::kUncertain);
   EXPECT_NE(beyond.failure.message().find("the lever arm adds 0.0866"), std::string::npos)
       << beyond.failure.message();
+}
+
+TEST_F(ReferToTest, APointThatSwingsTooFarHasNoValidHeight) {
+  camera_.pitch_variance = 4e-4;
+  camera_.height_protection_level = 0.5;
+  camera_.height_alert_limit = 10;
+  EXPECT_TRUE(refer({0, 0, -5}).height_valid) << "3 sigma 0.4 m of 0.6 m";
+  const LandingResult body = refer({0, 0, -30});
+  EXPECT_FALSE(body.height_valid);
+  EXPECT_EQ(body.failure.reason, Reason::kUncertain);
+  EXPECT_NE(body.failure.message().find("3 sigma of"), std::string::npos) << body.failure.message();
 }
 
 TEST_F(ReferToTest, NoseUpRotationLowersThePointBehind) {

@@ -68,6 +68,25 @@ TEST(RunwayPath, FliesOnThroughPairsWithoutAnEstimate) {
   EXPECT_NEAR(path.update(flying(2))->position.x(), -480, 1e-9);
 }
 
+TEST(RunwayPath, ASpeedThatIsNotSeenAnyMoreMayBeAnother) {
+  const auto varianceAfter = [](bool seen) {
+    RunwayPath path;
+    path.update(flying(0));
+    for (int i = 1; i < 200; ++i) {
+      LandingResult camera = flying(0);
+      camera.stamp = i;
+      if (!seen) camera.velocity.setConstant(kUnknown);
+      path.update(camera);
+    }
+    LandingResult camera = flying(0);
+    camera.stamp = 200;
+    return path.update(camera)->variance.x();
+  };
+  // 10 m/s for 200 s.
+  EXPECT_NEAR(varianceAfter(true), 1e6 + std::pow(0.05 * 2010, 2), 1e3);
+  EXPECT_GT(varianceAfter(false), 1e6 + std::pow(1900, 2));
+}
+
 TEST(RunwayPath, AStampThatGoesBackBeginsAnew) {
   RunwayPath path;
   path.update(flying(10));

@@ -12,10 +12,12 @@ namespace uav_landing {
 /// measurement on, until the uncertainty makes them worthless or the time jumps.
 class PositionFilter {
  public:
-  /// Of one pair. normal: of the ground, left camera frame. height: m, with variance; NaN while it is not
-  /// valid. Fills x, y, the runway's width and their variances of the result.
-  void process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
-               double height_variance, LandingResult& result);
+  /// Of one pair. normal: of the ground, left camera frame. turn: how the camera turned since the pair
+  /// before. height: m, with variance; NaN while it is not valid. Fills x, y, the runway's width and their
+  /// variances of the result.
+  void process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
+               const ApproachAngleResult::Motion& turn, double height, double height_variance,
+               LandingResult& result);
   void reset() { *this = PositionFilter(); }
 
  private:
@@ -42,12 +44,15 @@ class PositionFilter {
     double rejected_ = 0;  // s
   };
 
+  /// seen: the runway's direction, where it is.
+  void followDirection(const Eigen::Vector3d& seen, const ApproachAngleResult::Motion& turn, double seconds);
   void move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
             double seconds);
 
   Axis x_, y_;
   std::optional<double> last_stamp_;
   Eigen::Vector3d direction_ = Eigen::Vector3d::Constant(kUnknown);  // of landing, left camera frame
+  double unseen_turn_ = 0;                                           // 1 sigma of it, rad
   std::optional<Eigen::Vector2d> velocity_;                          // along and across the runway, m/s
   double width_ = 0;                                                 // m, last seen
 };

@@ -185,6 +185,8 @@ class KalmanHeightStage {
   double varianceFactor() const { return parameters_.integrity_monitor ? scatter_.factor() : 1; }
   /// From the plane of the surface ahead to its tangent straight below.
   void followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction);
+  /// As it was on the last pair with a plane, on one without.
+  void carryBend(double stamp, Reconstruction& reconstruction);
   void followSurface(double surface_variance);
 
   LandingResult withoutStamp(LandingResult result) const;
@@ -237,6 +239,10 @@ class KalmanHeightStage {
   double surface_variance_ = 0;  ///< of the surface about its plane as far as it is certain, m^2
   int surface_pairs_ = 0;        ///< that the mean is of
   double bend_variance_ = 0;     ///< of the height, by the bend of the surface ahead, m^2
+  struct Bend {
+    double height, variance, stamp;  ///< of the surface below less that of the plane ahead, m, m^2; s
+  };
+  std::optional<Bend> last_bend_;
   /// Of a height that is averaged over points, by what makes the average another than the plane's; m^2.
   double averaging_variance_ = 0;
   int confirmations_ = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/rotation.h"
+#include "uav_landing/height/attitude_filter.h"
 
 namespace uav_landing {
 namespace {
@@ -62,9 +63,11 @@ void PositionFilter::Axis::report(double& value, double& reported) const {
 }
 
 void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
-                             double height, double height_variance, LandingResult& result) {
+                             const ApproachAngleResult::Motion& turn, double height, double height_variance,
+                             LandingResult& result) {
   const double seconds = last_stamp_ ? result.stamp - *last_stamp_ : 0;
   last_stamp_ = result.stamp;
+  followDirection(approach.vanishing_direction, turn, seconds);
   move(approach, normal, height, seconds);
   const ApproachAngleResult::Runway& seen = approach.runway;
   const auto metric = [&](double ratio, double variance) {
@@ -86,23 +89,30 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
   y_.report(result.y, result.y_variance);
 }
 
+void PositionFilter::followDirection(const Eigen::Vector3d& seen, const ApproachAngleResult::Motion& turn,
+                                     double seconds) {
+  if (seen.allFinite()) {
+    direction_ = seen;
+    unseen_turn_ = 0;
+  } else if (turn.rotation.allFinite()) {
+    direction_ = rotationMatrix(turn.rotation) * direction_;
+  } else {
+    unseen_turn_ += AttitudeFilter::kTurnRate * seconds;
+  }
+}
+
 void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vector3d& normal, double height,
                           double seconds) {
   const ApproachAngleResult::Motion& step = approach.step;
   const bool moved = !step.failure && step.translation_over_height.allFinite() && step.rotation.allFinite();
-  if (approach.vanishing_direction.allFinite()) {
-    direction_ = approach.vanishing_direction;
-  } else if (moved) {
-    direction_ = rotationMatrix(step.rotation) * direction_;
-  }
   if (moved && std::isfinite(height) && direction_.allFinite() && normal.allFinite()) {
     const Eigen::Vector3d forward = (direction_ - normal.dot(direction_) * normal).normalized();
     // A step that began earlier: the rest of the time has been guessed before.
     const double share = seconds > 0 && step.duration > seconds ? seconds / step.duration : 1;
     const Eigen::Vector3d t = share * height * step.translation_over_height;
     const Eigen::Vector2d movement(forward.dot(t), forward.cross(normal).dot(t));
-    x_.predict(movement.x(), kAlongError * t.norm());
-    y_.predict(movement.y(), kAcrossError * t.norm());
+    x_.predict(movement.x(), kAlongError * t.norm() + unseen_turn_ * std::abs(movement.y()));
+    y_.predict(movement.y(), kAcrossError * t.norm() + unseen_turn_ * std::abs(movement.x()));
     if (step.duration > 0) velocity_ = movement / (share * step.duration);
     return;
   }

@@ -96,7 +96,7 @@ void KalmanHeightStage::useWidth(const ApproachAngleResult::Runway& runway, Reco
     // What was refused for its tilt is the ground that the width was seen on, too.
     if (!by_stereo && same && !reconstruction.tilted && confirmations_ >= kConfirmations) {
       reconstruction.failure = {};
-      reconstruction.height = seen->height;
+      reconstruction.height = result.width_height;
       reconstruction.variance = result.width_height_variance;
       width_variance_ = seen->common;
       reconstruction.by_width = true;
@@ -139,11 +139,22 @@ void KalmanHeightStage::followSurface(double surface_variance) {
 void KalmanHeightStage::followBend(const StereoDepthResult& stereo, Reconstruction& reconstruction) {
   reconstruction.below = reconstruction.plane;
   bend_variance_ = 0;
+  last_bend_ = {0, 0, stereo.stamp};
   if (!stereo.below.valid() || parameters_.height_source != HeightSource::kPlane) return;
   // What corrects the plane of the surface ahead corrects the tangent likewise: both are of the same images.
   reconstruction.below.g += stereo.below.g - stereo.plane.g;
   reconstruction.bend = reconstruction.below.height() - reconstruction.plane.height();
   bend_variance_ = std::max(0.0, stereo.below.heightVariance() - stereo.plane.heightVariance());
+  last_bend_ = {reconstruction.bend, bend_variance_, stereo.stamp};
+}
+
+// The ground ahead is soon another one.
+void KalmanHeightStage::carryBend(double stamp, Reconstruction& reconstruction) {
+  constexpr double kLasts = 1;  // s, after which the bend may as well be none or twice as large
+  if (!last_bend_) return;
+  reconstruction.bend = last_bend_->height;
+  bend_variance_ =
+      last_bend_->variance + std::pow(last_bend_->height * (stamp - last_bend_->stamp) / kLasts, 2);
 }
 
 KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDepthResult& stereo,
@@ -153,7 +164,10 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   Reconstruction reconstruction;
   const GroundPlane measured = withSkew(rig_, stereo, approach.step);
   reconstruction.failure = missingPlane(stereo, measured);
-  if (reconstruction.failure) return reconstruction;
+  if (reconstruction.failure) {
+    carryBend(stereo.stamp, reconstruction);
+    return reconstruction;
+  }
 
   followSurface(stereo.surface_variance);
   findPlane(measured, stereo, approach, reconstruction);

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "height/attitude.h"
 #include "height/vertical_speed.h"
+#include "uav_landing/height/height_limit.h"
 #include "uav_landing/height/reconstruction.h"
 #include "uav_landing/results/result_check.h"
 #include "uav_landing/rig/rig_rotation.h"
@@ -80,7 +81,8 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     Eigen::Vector3d n = approach.n;
     if (reconstruction.plane.valid())
       n = reconstruction.tilted ? reconstruction.normal.n : reconstruction.plane.normal();
-    position_.process(approach, n, result.height_valid ? result.height - reconstruction.bend : kUnknown,
+    position_.process(approach, n, turnSince(approach),
+                      result.height_valid ? result.height - reconstruction.bend : kUnknown,
                       result.height_variance, result);
   }
   reportRig(result);
@@ -110,9 +112,9 @@ void KalmanHeightStage::reset() {
   position_.reset();
   attitude_.reset();
   width_.reset();
-  width_variance_ = 0;
   rig_rotation_.reset();
-  rig_variance_ = 0;
+  width_variance_ = rig_variance_ = 0;
+  last_bend_.reset();
   rig_change_.reset();
   pairs_failed_ = pairs_passed_ = 0;
   if (filter_.initialised()) loseTrack();
@@ -170,6 +172,7 @@ void KalmanHeightStage::reportRig(LandingResult& result) const {
     const double stddev = std::sqrt(result.rig_rotation.covariance(i, i));
     if (std::abs(angle) - kSigmas * stddev <= parameters_.max_rig_rotation_deg * kDegree) continue;
     result.height_valid = result.angle_valid = false;
+    result.forgetPosition();
     result.failure = {Reason::kRigBent,
                       text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
                            " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
@@ -331,17 +334,14 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   result.vertical_speed = filter_.state()[1];
   result.vertical_speed_variance = filter_.covariance()(1, 1);
 
-  const double limit = std::max(parameters_.min_height_error, parameters_.max_height_error * h);
-  const double bound = 3 * std::sqrt(result.height_variance);
   const double age = result.stamp - last_accepted_;
   Failure failure;
   if (confirmations_ < kConfirmations) {
     failure = {Reason::kNotYet, text(confirmations_, " of ", kConfirmations, " agreeing heights")};
   } else if (!(age <= parameters_.max_age)) {
     failure = {Reason::kTimeout, text("no believable height for ", age, " s")};
-  } else if (!(h > 0 && bound <= limit)) {
-    failure = {Reason::kUncertain,
-               text("height ", h, " m has 3 sigma of ", bound, " m, more than ", limit, " m")};
+  } else {
+    failure = tooUncertain(h, result.height_variance, parameters_);
   }
   result.height_valid = !failure;
   if (!result.failure) result.failure = failure;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 namespace uav_landing {
 namespace {
@@ -42,7 +43,7 @@ struct Flight {
     }
     LandingResult result;
     result.stamp = kPeriod * frame++;
-    filter.process(approach, Eigen::Vector3d::UnitY(), kHeight, 1e-4, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, kHeight, 1e-4, result);
     return result;
   }
 };
@@ -105,7 +106,7 @@ TEST(PositionFilter, AStepOverTwoPairsOfWhichTheFirstWasGuessedCountsOnce) {
     }
     result = {};
     result.stamp = stamp;
-    filter.process(approach, Eigen::Vector3d::UnitY(), kHeight, 1e-4, result);
+    filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, kHeight, 1e-4, result);
   };
   process(1, 0.1, true);
   process(1.1, 0.1, false);  // 2 m
@@ -136,6 +137,58 @@ TEST(PositionFilter, OneSightWithoutTheSystematicErrorTellsItForThoseAfter) {
   for (int i = 0; i < 20; ++i) result = flight.next(true, true);
   EXPECT_NEAR(result.x, flight.x, 0.2);
   EXPECT_LT(std::sqrt(result.x_variance), 0.8);
+}
+
+/// Flies straight on at 20 m/s; for half a second nothing is seen, and after that the motion alone.
+struct Blind {
+  PositionFilter filter;
+  LandingResult result;
+  double stamp = 0;
+
+  /// turn: what is known of the camera's rotation. heading: of the camera to the right of the runway, rad.
+  void next(bool runway, bool motion, const std::optional<Eigen::Vector3d>& turn, double heading) {
+    ApproachAngleResult approach;
+    const Eigen::Vector3d along(-std::sin(heading), 0, std::cos(heading));
+    if (runway) approach.vanishing_direction = along;
+    approach.step.failure = {Reason::kNoMotion, ""};
+    if (motion) {
+      approach.step.failure = {};
+      approach.step.duration = kPeriod;
+      approach.step.rotation.setZero();
+      approach.step.translation_over_height = 20 * kPeriod / kHeight * along;
+    }
+    approach.runway.failure = approach.runway.threshold_failure = {Reason::kNoRunway, ""};
+    if (runway) {
+      approach.runway.failure = {};
+      approach.runway.y = 0;
+      approach.runway.width = 3;
+      approach.runway.y_variance = approach.runway.width_variance = 1e-6;
+    }
+    ApproachAngleResult::Motion turned;
+    if (turn) turned.rotation = *turn;
+    result = {};
+    result.stamp = stamp += kPeriod;
+    filter.process(approach, Eigen::Vector3d::UnitY(), turned, kHeight, 1e-4, result);
+  }
+};
+
+TEST(PositionFilter, TurnsThatNobodySawMakeTheWayAcrossUncertain) {
+  // The camera turns right by 0.07 rad while nothing is seen.
+  const double turned = 0.07;
+  const auto fly = [&](const std::optional<Eigen::Vector3d>& turn) {
+    Blind flight;
+    for (int i = 0; i < 3; ++i) flight.next(true, true, Eigen::Vector3d(0, 0, 0), 0);
+    for (int i = 1; i <= 5; ++i) flight.next(false, false, turn, turned * i / 5);
+    for (int i = 0; i < 10; ++i) flight.next(false, true, Eigen::Vector3d(0, 0, 0), turned);
+    return flight.result;
+  };
+  const LandingResult unseen = fly(std::nullopt);
+  EXPECT_GT(std::abs(unseen.y), 1) << "0.07 of 20 m";
+  EXPECT_LT(std::abs(unseen.y), 3 * std::sqrt(unseen.y_variance));
+  // What the camera sees turns the other way.
+  const LandingResult told = fly(Eigen::Vector3d(0, -turned / 5, 0));
+  EXPECT_NEAR(told.y, 0, 0.1);
+  EXPECT_LT(told.y_variance, 0.7 * unseen.y_variance);
 }
 
 TEST(PositionFilter, IsGivenUpWhenItSaysLittle) {

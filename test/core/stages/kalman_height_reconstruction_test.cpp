@@ -196,6 +196,27 @@ TEST(KalmanHeightReconstruction, CarriesOnByTheRunwaysWidthWithoutStereo) {
   }
 }
 
+TEST(KalmanHeightReconstruction, TheWidthTellsTheHeightAboveWhatIsBelowWhereTheSurfaceBends) {
+  // The plane ahead is 20 m below, the surface straight below 20.5 m.
+  KalmanHeightStage stage(usualRig(), {});
+  double stamp = 0;
+  LandingResult before, result;
+  for (int i = 0; i < 20; ++i, stamp += kStep) {
+    StereoDepthResult stereo = stereoAt(stamp, 20);
+    stereo.below = stereo.plane;
+    stereo.below.g *= 20 / 20.5;
+    before = stage.process(stereo, runwayFrom(stamp, 20));
+  }
+  EXPECT_NEAR(before.height, 20.5, 0.01);
+  for (int i = 0; i < 5; ++i, stamp += kStep) {
+    result = stage.process(noStereo(stamp), runwayFrom(stamp, 20));
+    EXPECT_NEAR(result.raw_height, 20.5, 0.02) << i;
+  }
+  EXPECT_TRUE(result.height_valid) << result.failure.message();
+  EXPECT_EQ(result.status, Status::kTracking);
+  EXPECT_GT(result.raw_height_variance, std::pow(0.2, 2)) << "half a second on the bend may be another";
+}
+
 TEST(KalmanHeightReconstruction, TheWidthSeenOnAPlaneRefusedForItsTiltIsNoHeight) {
   KalmanHeightStage stage(usualRig(), {});
   double stamp = 0;

@@ -285,6 +285,24 @@ TEST(KalmanHeightStage, IsNotValidWhenTheRigIsCertainlyBentBeyondTheLimit) {
   }
 }
 
+TEST(KalmanHeightStage, KnowsNoPlaceByAHeightThatABentRigMade) {
+  for (const double roll_deg : {0.0, 0.3}) {
+    KalmanHeightStage stage(usualRig(), {});
+    LandingResult result;
+    for (int i = 0; i < 50; ++i) {
+      ApproachAngleResult approach = angleAt(i * kStep);
+      approach.runway.x = -8;
+      approach.runway.y = 0.1;
+      approach.runway.width = 4;
+      approach.runway.x_variance = approach.runway.y_variance = approach.runway.width_variance = 1e-6;
+      result = stage.process(bentRig(i * kStep, roll_deg), approach);
+    }
+    EXPECT_EQ(std::isfinite(result.y), roll_deg == 0);
+    EXPECT_EQ(std::isfinite(result.x), roll_deg == 0);
+    EXPECT_EQ(std::isfinite(result.y_variance), roll_deg == 0);
+  }
+}
+
 TEST(KalmanHeightStage, ReportsABentRigWithinTheLimitAndNoneWhenNotWatching) {
   KalmanHeightParameters parameters;
   KalmanHeightStage watching(usualRig(), parameters);

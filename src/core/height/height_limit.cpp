@@ -1,0 +1,18 @@
+#include "uav_landing/height/height_limit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace uav_landing {
+
+Failure tooUncertain(double height, double variance, const KalmanHeightParameters& parameters) {
+  const double limit = std::max(parameters.min_height_error, parameters.max_height_error * height);
+  const double bound = 3 * std::sqrt(variance);
+  if (height > 0 && bound <= limit) return {};
+  return {Reason::kUncertain,
+          text("height ", height, " m has 3 sigma of ", bound, " m, more than ", limit, " m")};
+}
+
+}  // namespace uav_landing
