@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "uav_landing/height/height_filter.h"
@@ -12,6 +13,8 @@ class HeightMemory {
  public:
   /// Age from which a remembered height is compared, s.
   static constexpr double kAge = 0.5;
+  /// 1 sigma by which the horizontal that the motion refers to is wrong for a whole memory, rad.
+  static constexpr double kDirectionError = 0.15 * M_PI / 180;
 
   /// Carries on. speed, variance: vertical speed by motion, NaN when there is none. velocity: m/s, of the
   /// camera: what a wrong direction of the horizontal counts with.

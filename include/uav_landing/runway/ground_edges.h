@@ -11,6 +11,9 @@ namespace uav_landing {
 /// The ground's axes as the left camera sees them, and how well they are known. Lengths on the ground are in
 /// multiples of the left camera's height above it.
 struct GroundAxes {
+  /// n.r of the horizon's neighbourhood, where nothing is measured.
+  static constexpr double kLeastSlope = 1e-3;
+
   Eigen::Vector3d down;     ///< ground normal n, unit, left camera frame
   Eigen::Vector3d forward;  ///< landing direction in the ground, unit
   Eigen::Vector3d left;     ///< across it, unit

@@ -84,8 +84,8 @@ class RowAlignment {
   /// is one whose right image is from level().
   Measured measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
                    const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g);
-  /// What vertical disparities the pair measured last has after level(): averaged over the last second or so,
-  /// with what the calibration leads to expect, as long as the two do not contradict each other.
+  /// What vertical disparities the pair measured last has after level(): averaged over the last twenty pairs
+  /// or so, with what the calibration leads to expect, as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig) const;
   /// What level() has taken out of the pair measured last, rad.
   const Eigen::Vector3d& levelledBy() const { return levelled_by_; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/median.h"
+#include "uav_landing/integrity/height_memory.h"
 
 namespace uav_landing {
 namespace {
@@ -26,8 +27,6 @@ constexpr double kLasting = 1.0 / 3;
 constexpr int kMostCoasts = 3;  // pairs without a motion in a row
 constexpr double kClimbChange =
     0.05;  // 1 sigma of the climb on a usual step that is not known, of its length
-// 1 sigma by which the direction of the motion is wrong, the same all the way, rad.
-constexpr double kDirectionError = 0.15 * M_PI / 180;
 
 struct GroundPoint {
   double ahead, height, stddev;  // m
@@ -55,7 +54,7 @@ void GroundMemory::Patch::add(const Patch& look) {
 
 double GroundMemory::Patch::variance() const {
   const double of_looks = (1 - kLasting + kLasting * looks) / information;
-  return of_looks + drift + std::pow(kDirectionError * flown, 2);
+  return of_looks + drift + std::pow(HeightMemory::kDirectionError * flown, 2);
 }
 
 void GroundMemory::carry(std::deque<Patch>& patches, const Eigen::Matrix3d& R, const Eigen::Vector3d& step,

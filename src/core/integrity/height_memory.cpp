@@ -3,13 +3,6 @@
 #include <cmath>
 
 namespace uav_landing {
-namespace {
-
-// 1 sigma by which the horizontal that the motion refers to is wrong for a whole memory, rad.
-constexpr double kDirectionError = 0.15 * M_PI / 180;
-
-}  // namespace
-
 double HeightMemory::Memory::variance() const {
   return filter.covariance()(0, 0) + std::pow(kDirectionError * distance, 2);
 }

@@ -12,6 +12,7 @@
 #include "image/transpose.h"
 #include "lines/line_refinement.h"
 #include "lines/segment_scanner.h"
+#include "lines/straight_edge.h"
 
 namespace uav_landing {
 
@@ -30,23 +31,20 @@ using Ends = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 /// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not,
 /// and leaving it out makes the Hough transform both faster and cleaner.
 bool isStraightHere(const cv::Mat& dx, const cv::Mat& dy, int u, int v) {
-  constexpr float kStep = 3, kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // px; within 25 degrees; 40 %
-  constexpr int kSteps = 2, kNeeded = 3;                               // to each side; in all
-  const float gx = dx.at<short>(v, u), gy = dy.at<short>(v, u), g2 = gx * gx + gy * gy;
-  const float scale = kStep / std::max(std::abs(gx), std::abs(gy));
+  constexpr int kSteps = 2;  // to each side
+  const float gx = dx.at<short>(v, u), gy = dy.at<short>(v, u);
+  const float scale = kAlongEdge / std::max(std::abs(gx), std::abs(gy));
   int agreeing = 0;
   for (const int side : {-1, 1}) {
     for (int i = 1; i <= kSteps; ++i) {
       const int x = u - cvRound(gy * scale * side * i), y = v + cvRound(gx * scale * side * i);
       if (x < 0 || y < 0 || x >= dx.cols || y >= dx.rows) break;
-      const float hx = dx.at<short>(y, x), hy = dy.at<short>(y, x), h2 = hx * hx + hy * hy;
-      const float product = gx * hx + gy * hy;
-      if (product <= 0 || product * product < kMinCos2 * g2 * h2 || h2 < kMinStrength2 * g2) break;
+      if (!alikeAlongEdge(gx, gy, dx.at<short>(y, x), dy.at<short>(y, x))) break;
       ++agreeing;
     }
-    if (agreeing + kSteps < kNeeded) return false;
+    if (agreeing + kSteps < kAlikeAlongEdge) return false;
   }
-  return agreeing >= kNeeded;
+  return agreeing >= kAlikeAlongEdge;
 }
 
 cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,

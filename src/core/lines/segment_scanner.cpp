@@ -9,6 +9,7 @@
 #include "base/multiversion.h"
 #include "image/transpose.h"
 #include "lines/edge_growth.h"
+#include "lines/straight_edge.h"
 
 namespace uav_landing {
 
@@ -90,12 +91,9 @@ class SteepEdges {
 
   /// Whether the gradient keeps direction and strength for several pixels along the edge; texture does not.
   bool isStraightAt(int u, int v, int gu, int gv) const {
-    constexpr int kStep = 3, kNeeded = 3;                     // rows; of two places to each side
-    constexpr float kMinCos2 = 0.82F, kMinStrength2 = 0.16F;  // within 25 degrees; 40 %
     const float slope = -static_cast<float>(gv) / static_cast<float>(gu);
-    const float g2 = static_cast<float>(gu * gu + gv * gv);
     int missing = 0;
-    for (const int rows : {kStep, -kStep, 2 * kStep, -2 * kStep}) {
+    for (const int rows : {kAlongEdge, -kAlongEdge, 2 * kAlongEdge, -2 * kAlongEdge}) {
       const int x = u + cvRound(slope * static_cast<float>(rows)), y = v + rows;
       bool agrees = x >= 1 && y >= 1 && x + 1 < image_.cols && y + 1 < image_.rows;
       if (agrees) {
@@ -103,11 +101,9 @@ class SteepEdges {
                     *c = image_.ptr<uchar>(y + 1) + x;
         const float hu = static_cast<float>(a[1] + 2 * b[1] + c[1] - a[-1] - 2 * b[-1] - c[-1]);
         const float hv = static_cast<float>(c[-1] + 2 * c[0] + c[1] - a[-1] - 2 * a[0] - a[1]);
-        const float h2 = hu * hu + hv * hv,
-                    product = hu * static_cast<float>(gu) + hv * static_cast<float>(gv);
-        agrees = product > 0 && product * product >= kMinCos2 * g2 * h2 && h2 >= kMinStrength2 * g2;
+        agrees = alikeAlongEdge(static_cast<float>(gu), static_cast<float>(gv), hu, hv);
       }
-      if (!agrees && ++missing > 4 - kNeeded) return false;
+      if (!agrees && ++missing > 4 - kAlikeAlongEdge) return false;
     }
     return true;
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uav_landing/runway/ground_edges.h"
+
 namespace uav_landing {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr double kLeastMargin = 1.4;            // over any other direction
 constexpr double kGate = 3;                     // sigma
 constexpr double kStraight = 0.03 * kDegree;    // 1 sigma by which edges of one runway are not parallel
 constexpr double kLargestStddev = 1 * kDegree;  // of a line that counts
-constexpr double kLeastSlope = 1e-3;            // n.r of the horizon's neighbourhood
 constexpr double kLeastSpread = 0.3;            // heights between the outermost of one view
 
 /// A line on the ground.
@@ -43,7 +44,7 @@ class Finder {
     for (size_t i = 0; i < lines.lines.size(); ++i) {
       const LineSegment& line = lines.lines[i];
       const Eigen::Vector3d a = Kinv * line.a.homogeneous(), b = Kinv * line.b.homogeneous();
-      if (std::min(normal_.dot(a), normal_.dot(b)) < kLeastSlope) continue;
+      if (std::min(normal_.dot(a), normal_.dot(b)) < GroundAxes::kLeastSlope) continue;
       const double xa = forward_.dot(a) / normal_.dot(a), xb = forward_.dot(b) / normal_.dot(b);
       if (std::min(xa, xb) <= 0) continue;
       Direction d;

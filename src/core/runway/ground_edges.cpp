@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kSameEdge = 3;            // sigma between measurements of one edge
 constexpr double kLeastTolerance = 0.003;  // of the distance from the camera to the edge, in the same
-constexpr double kLeastSlope = 1e-3;       // n.r of the horizon's neighbourhood, where nothing is measured
 constexpr double kBorder = 16;             // px
 constexpr double kAlong = 3;               // sigma between the direction of a line and that of the runway
 constexpr double kStraight = 0.5;  // px, 1 sigma by which an edge in the picture is not a straight line
@@ -45,7 +44,7 @@ class View {
   /// behind the camera.
   std::optional<std::pair<double, double>> ends(const LineSegment& line) const {
     const Eigen::Vector3d a = ray(line.a), b = ray(line.b);
-    if (std::min(axes_.down.dot(a), axes_.down.dot(b)) < kLeastSlope) return std::nullopt;
+    if (std::min(axes_.down.dot(a), axes_.down.dot(b)) < GroundAxes::kLeastSlope) return std::nullopt;
     const double at_a = onGround(a).x(), at_b = onGround(b).x();
     if (std::min(at_a, at_b) <= 0) return std::nullopt;
     return std::minmax(at_a, at_b);

@@ -47,7 +47,7 @@ Eigen::Matrix3d believedShare(const Eigen::Matrix3d& information, double fy) {
   return (Eigen::Matrix3d::Identity() + information * together).inverse();
 }
 
-/// What edges say of the rows, of the pairs of the last second together: each pair's noise is its own, and
+/// What edges say of the rows, of the last twenty pairs or so together: each pair's noise is its own, and
 /// the rig's rotation is not.
 class RowsByEdges {
  public:
