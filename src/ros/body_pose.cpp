@@ -65,8 +65,10 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   body.raw_height += shift;
   body.raw_height_variance = heightVariance(camera, camera.raw_height_variance, plane, point);
   body.points_height += shift;
-  const double swing =
-      normalQuantile(parameters.integrity_risk) * std::sqrt(heightVariance(camera, 0, GroundPlane(), point));
+  body.height_above_runway += shift;
+  const double by_attitude = heightVariance(camera, 0, GroundPlane(), point);
+  body.height_above_runway_variance += by_attitude;
+  const double swing = normalQuantile(parameters.integrity_risk) * std::sqrt(by_attitude);
   body.height_protection_level += swing;
   refuseHeight(levelAbove(body.height_alert_limit, body.height_protection_level, swing), body);
   refuseHeight(tooUncertain(body.height, body.height_variance, parameters), body);

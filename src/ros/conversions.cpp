@@ -182,6 +182,8 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.x_variance = result.x_variance;
   message.y = result.y;
   message.y_variance = result.y_variance;
+  message.height_above_runway = result.height_above_runway;
+  message.height_above_runway_variance = result.height_above_runway_variance;
   message.runway_width = result.runway_width;
   message.runway_width_variance = result.runway_width_variance;
   message.width_height = result.width_height;
@@ -232,6 +234,8 @@ LandingResult toResult(const LandingEstimate& message) {
   result.x_variance = message.x_variance;
   result.y = message.y;
   result.y_variance = message.y_variance;
+  result.height_above_runway = message.height_above_runway;
+  result.height_above_runway_variance = message.height_above_runway_variance;
   result.runway_width = message.runway_width;
   result.runway_width_variance = message.runway_width_variance;
   result.width_height = message.width_height;

@@ -64,6 +64,8 @@ class ReferToTest : public testing::Test {
     camera_.height_valid = true;
     camera_.height = camera_.raw_height = camera_.points_height = 10;
     camera_.height_variance = camera_.raw_height_variance = 0.01;
+    camera_.height_above_runway = 8;
+    camera_.height_above_runway_variance = 4;
     camera_.vertical_speed = -1;
     camera_.vertical_speed_variance = 0.04;
     step_.duration = 0.1;
@@ -85,6 +87,7 @@ TEST_F(ReferToTest, APointBehindACameraThatLooksDownIsHigher) {
   EXPECT_NEAR(body.height, 11, 1e-12) << "2 m sin 30 degrees";
   EXPECT_NEAR(body.raw_height, 11, 1e-12);
   EXPECT_NEAR(body.points_height, 11, 1e-12);
+  EXPECT_NEAR(body.height_above_runway, 9, 1e-12);
   EXPECT_NEAR(body.vertical_speed, -1, 1e-12) << "no rotation";
   EXPECT_TRUE(body.height_valid);
 }
@@ -93,6 +96,7 @@ TEST_F(ReferToTest, UncertainPitchMakesTheHeightOfAPointBehindUncertain) {
   camera_.pitch_variance = 1e-4;
   // The point moves by 2 m cos 30 degrees per radian.
   EXPECT_NEAR(refer({0, 0, -2}).height_variance, 0.01 + 3 * 1e-4, 1e-12);
+  EXPECT_NEAR(refer({0, 0, -2}).height_above_runway_variance, 4 + 3 * 1e-4, 1e-12);
 }
 
 TEST_F(ReferToTest, UncertainRollMattersForAPointToTheSide) {

@@ -256,6 +256,8 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
                          &result.x_variance,
                          &result.y,
                          &result.y_variance,
+                         &result.height_above_runway,
+                         &result.height_above_runway_variance,
                          &result.runway_width,
                          &result.runway_width_variance,
                          &result.width_height,
@@ -299,6 +301,8 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_TRUE(message.y_known);
   EXPECT_EQ(message.x, result.x);
   EXPECT_EQ(message.y_variance, result.y_variance);
+  EXPECT_EQ(message.height_above_runway, result.height_above_runway);
+  EXPECT_EQ(message.height_above_runway_variance, result.height_above_runway_variance);
   EXPECT_FALSE(toMessage(LandingResult(), header(), "base_link", 0, 0).x_known);
   EXPECT_EQ(message.height_protection_level, 0.4);
   EXPECT_EQ(message.height_alert_limit, 0.5);

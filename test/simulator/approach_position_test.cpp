@@ -63,6 +63,37 @@ TEST_P(ApproachPosition, AndAttitudeAreThoseOfTheSimulator) {
   }
 }
 
+// The ground falls towards the threshold by half a degree, which nobody can see from above it.
+TEST(ApproachHeights, AboveTheGroundBelowAndAboveTheRunway) {
+  SimulatorParameters parameters = parametersOf({"over a slope"});
+  parameters.path.start_x = -56;
+  parameters.path.start_height = 10;
+  parameters.path.duration = 3.2;
+  parameters.wobble.roll_deg = parameters.wobble.pitch_deg = parameters.wobble.yaw_deg = 0;
+  parameters.profile.slope_before_deg = -0.5;
+  parameters.profile.change_start = -5;
+  parameters.profile.change_length = 10;
+  const auto simulator = ApproachSimulator::create(parameters);
+  ASSERT_TRUE(simulator) << simulator.error().message();
+  auto chain = Pipeline::create(simulator->rig().left.calibration, simulator->rig().right.calibration, {});
+  ASSERT_TRUE(chain) << chain.error().message();
+  int before = 0, behind = 0;  // the slope
+  LandingResult last;
+  for (int i = 0; i < simulator->frames(); ++i) {
+    const ApproachSimulator::Frame frame = simulator->frame(i);
+    last = chain->process(100 + frame.time, frame.left, frame.right).landing;
+    if (!std::isfinite(last.height_above_runway)) continue;
+    const double x = frame.truth.x, ground = x < -5 ? -x * std::tan(0.5 * kDegree) : 0;
+    EXPECT_LT(std::abs(last.height_above_runway - (frame.truth.height + ground)),
+              3 * std::sqrt(last.height_above_runway_variance) + 0.03)
+        << x;
+    (x < -5 ? before : behind) += 1;
+  }
+  EXPECT_GE(before, 10);
+  EXPECT_GE(behind, 5);
+  EXPECT_LT(std::sqrt(last.height_above_runway_variance), 0.05) << "over the runway";
+}
+
 INSTANTIATE_TEST_SUITE_P(, ApproachPosition,
                          testing::Values(Flight{"straight"}, Flight{"left", 8}, Flight{"right", -8},
                                          Flight{"yaw_left", 0, 10}, Flight{"yaw_right", 0, -10},

@@ -176,7 +176,12 @@ struct LandingResult {
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
   double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
-  void forgetPosition() { x = x_variance = y = y_variance = kUnknown; }
+  /// Of the point above the plane of the runway's surface, m, m^2; unknown until the threshold is seen.
+  double height_above_runway = kUnknown, height_above_runway_variance = kUnknown;
+  void forgetPosition() {
+    x = x_variance = y = y_variance = kUnknown;
+    height_above_runway = height_above_runway_variance = kUnknown;
+  }
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);

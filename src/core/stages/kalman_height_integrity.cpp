@@ -1,5 +1,5 @@
-// The integrity part of KalmanHeightStage: what a pair says with each source left out, and the protection
-// level.
+// The integrity part of KalmanHeightStage: what a pair says with each source left out, the protection level,
+// and a rig that is bent too far.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,12 +16,13 @@
 namespace uav_landing {
 namespace {
 
+constexpr double kDegree = M_PI / 180;
 // Edges of the runway that are farther than this from the width learned are not believed (width_height.cpp).
 constexpr double kWidthTolerance = 0.02;
 // Share of the matches along the rows that must hold across the rows.
 constexpr double kLeastRowAgreement = 0.5;
 // 1 sigma of the baseline's direction after a calibration, beside what its measurement claims, rad.
-constexpr double kBaselineCalibration = 0.2 * M_PI / 180;
+constexpr double kBaselineCalibration = 0.2 * kDegree;
 
 }  // namespace
 
@@ -314,6 +315,26 @@ void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingR
   refuse(result, {Reason::kUncertain,
                   text("height ", result.height, " m has a protection level of ", level.bound,
                        " m because of ", level.source, ", alert limit ", result.height_alert_limit, " m")});
+}
+
+void KalmanHeightStage::reportRig(LandingResult& result) const {
+  if (!parameters_.rig_watch) return;
+  constexpr double kSigmas = 3;
+  constexpr const char* kAxes[] = {"pitch", "yaw", "roll"};
+  result.rig_rotation = rig_rotation_.rotation();
+  if (!result.rig_rotation.known()) return;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = result.rig_rotation.w[i];
+    const double stddev = std::sqrt(result.rig_rotation.covariance(i, i));
+    if (std::abs(angle) - kSigmas * stddev <= parameters_.max_rig_rotation_deg * kDegree) continue;
+    result.height_valid = result.angle_valid = false;
+    result.forgetPosition();
+    result.failure = {Reason::kRigBent,
+                      text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
+                           " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
+                           parameters_.max_rig_rotation_deg, " deg allowed")};
+    return;
+  }
 }
 
 }  // namespace uav_landing

@@ -9,16 +9,11 @@
 #include "height/vertical_speed.h"
 #include "uav_landing/height/height_limit.h"
 #include "uav_landing/height/reconstruction.h"
+#include "uav_landing/height/runway_height.h"
 #include "uav_landing/results/result_check.h"
 #include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
-namespace {
-
-constexpr double kDegree = M_PI / 180;
-
-}  // namespace
-
 KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
     : rig_(rig),
       parameters_(parameters),
@@ -84,6 +79,9 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
     position_.process(approach, n, turnSince(approach),
                       result.height_valid ? result.height - reconstruction.bend : kUnknown,
                       result.height_variance, result);
+    const RunwayHeight above = runwayHeight(result, reconstruction.bend, width_.independent());
+    result.height_above_runway = above.height;
+    result.height_above_runway_variance = above.variance;
   }
   reportRig(result);
   if (parameters_.integrity_monitor) result.tests = tests_.finish();
@@ -159,26 +157,6 @@ void KalmanHeightStage::reportPlane(const Reconstruction& reconstruction, const 
       reconstruction.plane.valid() ? reconstruction.normal : GroundNormal{approach.n, approach.n_covariance};
   const VanishingMemory::Direction runway = runwayDirection(repeated, normal.n, approach);
   reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
-}
-
-void KalmanHeightStage::reportRig(LandingResult& result) const {
-  if (!parameters_.rig_watch) return;
-  constexpr double kSigmas = 3;
-  constexpr const char* kAxes[] = {"pitch", "yaw", "roll"};
-  result.rig_rotation = rig_rotation_.rotation();
-  if (!result.rig_rotation.known()) return;
-  for (int i = 0; i < 3; ++i) {
-    const double angle = result.rig_rotation.w[i];
-    const double stddev = std::sqrt(result.rig_rotation.covariance(i, i));
-    if (std::abs(angle) - kSigmas * stddev <= parameters_.max_rig_rotation_deg * kDegree) continue;
-    result.height_valid = result.angle_valid = false;
-    result.forgetPosition();
-    result.failure = {Reason::kRigBent,
-                      text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
-                           " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
-                           parameters_.max_rig_rotation_deg, " deg allowed")};
-    return;
-  }
 }
 
 Failure KalmanHeightStage::followTime(double stamp) {

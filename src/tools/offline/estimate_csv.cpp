@@ -16,7 +16,8 @@ const char* const kHeader =
     "approach_angle_stddev_deg,pitch_deg,roll_deg,yaw_deg,x_m,y_m,foe_u_px,foe_v_px,status,compute_ms,"
     "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason,x_stddev_m,y_stddev_m,"
     "runway_width_m,width_height_m,width_height_stddev_m,rig_rx_deg,rig_ry_deg,rig_rz_deg,rig_rx_stddev_deg,"
-    "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests";
+    "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests,"
+    "height_above_runway_m,height_above_runway_stddev_m";
 
 }  // namespace
 
@@ -46,6 +47,7 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   for (int i = 0; i < 3; ++i) row.number(landing.rig_rotation.w[i] * kDegrees);
   for (int i = 0; i < 3; ++i) row.number(std::sqrt(landing.rig_rotation.covariance(i, i)) * kDegrees);
   row.number(landing.height_alert_limit).text(landing.protection_source).text(failedTests(landing.tests));
+  row.number(landing.height_above_runway).number(std::sqrt(landing.height_above_runway_variance));
   file_ << '\n';
 }
 

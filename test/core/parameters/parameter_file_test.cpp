@@ -56,6 +56,15 @@ TEST(ParameterFile, NamesTheNearestSectionForAnUnknownOne) {
             "test.yaml: stereo_dept: no such section; did you mean stereo_depth?");
 }
 
+TEST(ParameterFile, RefusesTwoWidthsOfOneRunway) {
+  EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\nkalman_height: {known_runway_width: 30}\n"),
+            "accepted");
+  EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\n"), "accepted");
+  EXPECT_NE(errorOf("approach_angle: {runway_width: 30}\nkalman_height: {known_runway_width: 31}\n")
+                .find("approach_angle/runway_width is 30 m"),
+            std::string::npos);
+}
+
 TEST(ParameterFile, RefusesValuesOutOfRangeWithTheRange) {
   EXPECT_EQ(errorOf("stereo_depth: {window_radius: 99}"),
             "test.yaml: stereo_depth/window_radius: 99 is out of range, expected 2 to 15 px");
