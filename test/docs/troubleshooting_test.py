@@ -4,7 +4,8 @@ import unittest
 from project import SOURCE_DIR
 
 FOREIGN = ("Skipped loading plugin", "stereo_image_proc", "no such package media_export",
-           "Unable to register with master node … Will keep trying")
+           "Unable to register with master node … Will keep trying",
+           "Detected jump back in time … Clearing TF buffer", "TF_REPEATED_DATA")
 
 
 def phrases(message):

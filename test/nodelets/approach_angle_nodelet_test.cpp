@@ -129,14 +129,18 @@ TEST_F(ApproachAngleNodeletTest, ComplainsOfNothingBeforeItHasWaitedForIt) {
   const Listener<ApproachAngle> listener("/uav_landing/approach_angle");
   const std::string complaint = "nothing to work on for 0.5 s";
   ASSERT_TRUE(logged(complaint)) << wholeLog();
-  for (const auto& line : log_.messages())
-    if (line->msg.find(complaint) != std::string::npos)
+  for (const auto& line : log_.messages()) {
+    if (line->msg.find(complaint) != std::string::npos) {
       EXPECT_GE((line->header.stamp - subscribed).toSec(), 0.5) << line->msg;
+    }
+  }
   EXPECT_TRUE(diagnostics.waitFor(
       [&](const auto& array) { return array.status[0].level == diagnostic_msgs::DiagnosticStatus::ERROR; }));
-  for (const auto& array : diagnostics.messages())
-    if (array->status[0].level == diagnostic_msgs::DiagnosticStatus::ERROR)
+  for (const auto& array : diagnostics.messages()) {
+    if (array->status[0].level == diagnostic_msgs::DiagnosticStatus::ERROR) {
       EXPECT_GE((array->header.stamp - subscribed).toSec(), 0.5) << array->status[0].message;
+    }
+  }
 }
 
 TEST_F(ApproachAngleNodeletTest, RunsWithoutStereoWhenToldTo) {

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "autopilot_messages.h"
+#include "node_parameter_table.h"
 #include "parameter_names.h"
 
 namespace uav_landing {
@@ -24,6 +27,15 @@ TYPED_TEST(NodeParametersOf, HaveNoNameOfTheSection) {
   ASSERT_GT(names.size(), 14u);
   const std::set<std::string> different(names.begin(), names.end());
   EXPECT_EQ(different.size(), names.size());
+}
+
+TEST(NodeParameterTable, IsTheOneInTheDocumentation) {
+  std::ifstream file(UAV_LANDING_SOURCE_DIR "/docs/node_parameters.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  EXPECT_EQ(page.str(), nodeParameterTable())
+      << "docs/node_parameters.md is out of date. Regenerate it:\n"
+         "rosrun uav_landing process_bag --list-node-parameters > docs/node_parameters.md";
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ class UsageTest(ProcessBagTest):
         result = run([PROGRAMS / "process_bag", "--help"])
         self.assertEqual(result.returncode, 0)
         for option in ("--input", "--camera", "--imu", "--config", "--csv", "--output", "--report-data", "--list-parameters",
-                       "--version"):
+                       "--list-node-parameters", "--version"):
             self.assertIn(option, result.stdout)
 
     def test_version_and_parameters_need_no_bag(self):

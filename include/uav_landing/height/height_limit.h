@@ -1,7 +1,7 @@
 #pragma once
 
-#include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/base/failure.h"
+#include "uav_landing/parameters/kalman_height_parameters.h"
 
 namespace uav_landing {
 

@@ -67,7 +67,10 @@ struct KalmanHeightParameters {
     v.number("height_model_error", height_model_error, 0.0, 0.1, "of height",
              "1 sigma by which the surface below differs from the plane seen ahead; does not average out");
     v.number("gate", gate, 1.0, 20.0, "sigma", "largest normalised innovation that is believed");
-    v.number("max_age", max_age, 0.05, 10.0, "s", "without a pair for this long the status is lost");
+    v.number(
+        "max_age", max_age, 0.05, 10.0, "s",
+        "without a believable height for this long, while coasting, the height is not valid; without a pair "
+        "for this long the status is lost");
     v.number("reset_timeout", reset_timeout, 0.1, 60.0, "s",
              "without an accepted measurement for this long the filter starts anew");
     v.number("max_height_error", max_height_error, 0.001, 1.0, "of height",

@@ -5,6 +5,7 @@
 
 #include "bags/stereo_bag_reader.h"
 #include "command_line.h"
+#include "node_parameter_table.h"
 #include "offline/estimate_bag.h"
 #include "offline/estimate_csv.h"
 #include "offline/offline_chain.h"
@@ -136,7 +137,14 @@ int main(int argc, char** argv) {
         std::cout << parameterTable();
         throw CLI::Success();
       },
-      "print all parameters of the config file and leave");
+      "print what a config file may hold, with defaults and meaning (docs/parameters.md), and leave");
+  app.add_flag_callback(
+      "--list-node-parameters",
+      [] {
+        std::cout << nodeParameterTable();
+        throw CLI::Success();
+      },
+      "print the nodelets' parameters that are in no config file (docs/node_parameters.md), and leave");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   options.imu_needed = imu->count() > 0 && !options.imu.empty();
   try {

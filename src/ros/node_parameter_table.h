@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace uav_landing {
+
+/// docs/node_parameters.md: the private parameters that are in no config file.
+std::string nodeParameterTable();
+
+}  // namespace uav_landing
