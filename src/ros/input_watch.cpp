@@ -1,5 +1,6 @@
 #include "input_watch.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace uav_landing {
@@ -12,18 +13,11 @@ InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size
 InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
   Waiting& waiting = waiting_[input];
   ++inputs_[input].received;
+  if (isLeftOver(input, stamp)) return refused(input, Arrival::kLate);
   const Arrival arrival = waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
-  if (!StampOrder::isUsed(arrival)) {
-    Input& counted = inputs_[input];
-    ++(arrival == Arrival::kLate       ? counted.late
-       : arrival == Arrival::kRepeated ? counted.repeated
-                                       : counted.unstamped);
-    ++counted.dropped;
-    return arrival;
-  }
+  if (!StampOrder::isUsed(arrival)) return refused(input, arrival);
   if (arrival == Arrival::kBackwards) {
-    ++jumps_;
-    forget();
+    goBack(input);
     waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
   }
   waiting.latest = stamp;
@@ -33,6 +27,39 @@ InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
     ++inputs_[input].dropped;
   }
   return arrival;
+}
+
+InputWatch::Arrival InputWatch::refused(size_t input, Arrival arrival) {
+  Input& counted = inputs_[input];
+  ++(arrival == Arrival::kLate       ? counted.late
+     : arrival == Arrival::kRepeated ? counted.repeated
+                                     : counted.unstamped);
+  ++counted.dropped;
+  return arrival;
+}
+
+bool InputWatch::isLeftOver(size_t input, const ros::Time& stamp) {
+  std::optional<ros::Time>& before = waiting_[input].before_jump;
+  if (!before || stamp.isZero()) return false;
+  // The inputs that went back may be as far again meanwhile.
+  const bool caught_up = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
+    return !other.before_jump && other.latest > *before;
+  });
+  if (caught_up || stamp <= *before) {
+    before.reset();
+    return false;
+  }
+  before = stamp;
+  return true;
+}
+
+void InputWatch::goBack(size_t input) {
+  ++jumps_;
+  std::vector<ros::Time> latest;
+  for (const Waiting& waiting : waiting_) latest.push_back(waiting.latest);
+  forget();
+  for (size_t i = 0; i < waiting_.size(); ++i)
+    if (i != input && !latest[i].isZero()) waiting_[i].before_jump = latest[i];
 }
 
 void InputWatch::paired(size_t input, const ros::Time& stamp) {
@@ -50,6 +77,7 @@ void InputWatch::forget() {
     inputs_[i].dropped += waiting_[i].stamps.size();
     waiting_[i].stamps.clear();
     waiting_[i].latest = ros::Time();
+    waiting_[i].before_jump.reset();
     waiting_[i].order.reset();
   }
 }

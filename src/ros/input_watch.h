@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,11 +51,18 @@ class InputWatch {
     StampOrder order;
     std::deque<ros::Time> stamps;
     ros::Time latest;
+    // When another input has shown that the clock went back, until this one has: its latest before that.
+    std::optional<ros::Time> before_jump;
     uint64_t received_before = 0;  // at the last complaint
     uint64_t paired_before = 0;
     uint64_t repeated_before = 0;
     uint64_t unstamped_before = 0;
   };
+
+  Arrival refused(size_t input, Arrival arrival);
+  /// Sent before the clock went back, and still under way when another input showed that.
+  bool isLeftOver(size_t input, const ros::Time& stamp);
+  void goBack(size_t input);
 
   std::vector<Input> inputs_;
   std::vector<Waiting> waiting_;

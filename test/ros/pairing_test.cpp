@@ -130,6 +130,29 @@ TEST_F(StereoPairingTest, RightImageLeftOverFromTheLastLoopIsNotPaired) {
   EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {1.0, 1.0}}));
 }
 
+TEST_F(StereoPairingTest, WhatWasUnderWayWhenTheClockWentBackLeavesWhatWaitsInPlace) {
+  addPair(10.0);
+  addLeft(10.1);
+  addLeft(10.2);
+  addLeft(1.0);
+  addRight(10.1);
+  addRight(10.2);
+  addLeft(1.1);
+  addRight(1.0);
+  addRight(1.1);
+  addPair(1.2);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {1.0, 1.0}, {1.1, 1.1}, {1.2, 1.2}}));
+  EXPECT_EQ(pairing_.jumps(), 1u);
+  EXPECT_EQ(pairing_.inputs()[2].late, 2u);
+}
+
+TEST_F(StereoPairingTest, OneWrongStampDoesNotKeepTheOtherInputsOut) {
+  addPair(10.0);
+  addLeft(1.0);
+  for (const double stamp : {10.1, 10.2, 10.3}) addPair(stamp);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {10.1, 10.1}, {10.2, 10.2}, {10.3, 10.3}}));
+}
+
 TEST_F(StereoPairingTest, ARepeatedStampIsDropped) {
   addPair(1.0);
   addPair(1.0);
