@@ -18,7 +18,7 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kMaxCandidates = 250;  // segments refined, longest first
+constexpr int kMaxCandidates = 250;  // segments refined, those that may be along the runway and longest first
 constexpr int kMaxLines = 150;       // lines returned, longest first
 constexpr int kMaxHoughLines = 400;  // infinite lines of the standard transform, most votes first
 constexpr double kHoughAngle = CV_PI / 180;
@@ -271,7 +271,13 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
   if (!part) return {};
   const double min_length = parameters.min_line_length * image.rows;
   std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters);
-  keepLongest(candidates, kMaxCandidates, [](const RoughSegment& s) { return Ends(s.a, s.b); });
+  keepLongest(candidates, candidates.size(), [](const RoughSegment& s) { return Ends(s.a, s.b); });
+  if (candidates.size() > kMaxCandidates) {
+    // Texture may have more lines across than are looked at.
+    std::stable_partition(candidates.begin(), candidates.end(),
+                          [&](const RoughSegment& s) { return part->passes(s.a, s.b); });
+    candidates.resize(kMaxCandidates);
+  }
   return ofWholeImage(parameters.refine_lines
                           ? refined(candidates, *part, min_length, minGradient(parameters))
                           : asFound(candidates),

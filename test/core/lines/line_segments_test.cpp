@@ -272,6 +272,27 @@ TEST(FindLines, RefineOnlyThoseThatMayBeAlongTheRunwayIfToldSo) {
     EXPECT_GE(nearest(lines, corners[side], corners[(side + 1) % 4])->offset_stddev, 0.5);
 }
 
+TEST(FindLines, LinesAcrossLeaveRoomForThoseAlongTheRunway) {
+  // 300 edges of 60 px across, and a stripe of 40 px from the vanishing point (322, 95) on.
+  cv::Mat image(kSize, CV_8U, cv::Scalar(70));
+  for (int column = 0; column < 5; ++column)
+    for (int row = 0; row < 30; ++row) {
+      const cv::Rect bar(10 + 80 * column + (column > 1 ? 210 : 0), 110 + 12 * row, 60, 6);
+      image(bar & cv::Rect({}, kSize)).setTo(190);
+    }
+  const cv::Point2d a(322 + 0.1 * 200, 295), b(322 + 0.1 * 240, 335);
+  const std::vector<cv::Point> stripe{a, b, cv::Point2d(b.x + 9, b.y), cv::Point2d(a.x + 7, a.y)};
+  cv::fillConvexPoly(image, stripe, cv::Scalar(190));
+  const HeadingGate gate = runwayGate();
+  const auto found = [&](const HeadingGate* used) {
+    const std::vector<LineSegment> lines = findLines(image, allGround(), {}, used);
+    const LineSegment* line = nearest(lines, a, b);
+    return line != nullptr && std::max(distance(*line, a), distance(*line, b)) < 1.5;
+  };
+  EXPECT_FALSE(found(nullptr)) << "there are longer ones";
+  EXPECT_TRUE(found(&gate));
+}
+
 TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
   const Polygon corners = runway()[0];
   const cv::Mat image = render({corners}, 2, 0.8);
