@@ -3,6 +3,7 @@
 #include <cmath>
 
 namespace uav_landing {
+
 double HeightMemory::Memory::variance() const {
   return filter.covariance()(0, 0) + std::pow(kDirectionError * distance, 2);
 }

@@ -81,7 +81,7 @@ class Search {
   Found in(const View& view) const {
     std::vector<LineSegment> lines;
     {
-      ScopedTimer timer(timings_, "hough_transform");
+      ScopedTimer timer(timings_, "lines");
       const HeadingGate gate = gateOf(view);
       lines = ground_ ? findLines(view.image, groundPart(view), parameters_, hasRunway() ? &gate : nullptr)
                       : findLines(view.image, view.mask, parameters_);
@@ -95,7 +95,7 @@ class Search {
                   const VanishingPoint& other) const {
     std::vector<LineSegment> lines;
     {
-      ScopedTimer timer(timings_, "hough_transform");
+      ScopedTimer timer(timings_, "lines");
       lines = findLinesNear(view.image, groundPart(view), expected, parameters_, gateOf(view));
     }
     Found found = withPoint(view, std::move(lines));
@@ -152,7 +152,7 @@ class Search {
 
   std::vector<LineSegment> straight(const View& view, const std::vector<LineSegment>& lines) const {
     if (!parameters_.stripe_centres) return lines;
-    ScopedTimer timer(timings_, "hough_transform");
+    ScopedTimer timer(timings_, "lines");
     if (ground_ == nullptr) return withoutStripeBias(view.image, view.mask, lines);
     const HeadingGate gate = gateOf(view);
     std::vector<size_t> places;

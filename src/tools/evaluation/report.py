@@ -18,7 +18,7 @@ from evaluation.tables import InputError, Table  # noqa: E402
 
 # The paper's Table 1: row, its time in ms per frame of 320x240, and our parts that belong to it (parts that are named
 # nowhere are feature matching).
-PAPER_ROWS = (("Pre-process", 3.4, ("rectify",)), ("Hough transforms", 4.7, ("hough_transform",)),
+PAPER_ROWS = (("Pre-process", 3.4, ("rectify",)), ("Hough transforms", 4.7, ("lines",)),
               ("RANSAC", 6.2, ("ransac",)), ("Feature matching", 11.9, ()),
               ("Kalman filter", 1.2, ("reconstruction", "kalman_filter")), ("Image show", 2.8, ("overlay",)))
 PAPER_TOTAL = 31.2

@@ -45,6 +45,8 @@ void TimingTable::take(const ProcessedPair& pair) {
 
 void TimingTable::finish() {
   if (all_.count() == 0) return;
+  std::stable_sort(parts_.begin(), parts_.end(),
+                   [](const auto& a, const auto& b) { return a.second.total() > b.second.total(); });
   out_ << std::left << std::setw(28) << "time per pair, ms" << std::right;
   for (const char* name : {"mean", "median", "99 %", "worst", "total, s"}) out_ << std::setw(10) << name;
   out_ << '\n';

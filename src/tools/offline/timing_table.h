@@ -32,7 +32,7 @@ class TimingTable : public PairSink {
  public:
   explicit TimingTable(std::ostream& out) : out_(out) {}
   void take(const ProcessedPair& pair) override;
-  /// Prints the table.
+  /// Prints the table, what takes longest first.
   void finish() override;
 
  private:
@@ -40,7 +40,7 @@ class TimingTable : public PairSink {
   void print(const std::string& name, const TimeStatistics& times);
 
   std::ostream& out_;
-  std::vector<std::pair<std::string, TimeStatistics>> parts_;  ///< in order of execution
+  std::vector<std::pair<std::string, TimeStatistics>> parts_;  ///< as they came, until finish()
   TimeStatistics all_;
 };
 
