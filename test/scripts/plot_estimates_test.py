@@ -3,6 +3,7 @@ import unittest
 from pathlib import Path
 
 import cv2
+import numpy as np
 
 from project import SOURCE_DIR, run
 
@@ -10,10 +11,22 @@ TRUTH = "stamp_s,left,right,height_m,approach_angle_deg\n" + "".join(
     f"{100 + 0.1 * i:.3f},{i}.png,{i}.png,{2 - 0.02 * i},{'' if i == 0 else 5}\n" for i in range(50))
 
 
-def estimates(valid, height_error):
+def estimates(valid, height_error, gap=()):
+    """As the truth but for the error; in the gap nothing is valid."""
     columns = "stamp_s,valid,height_m,height_stddev_m,height_valid,approach_angle_deg,approach_angle_stddev_deg,angle_valid"
-    return columns + "\n" + "".join(
-        f"{100 + 0.1 * i:.3f},{valid},{2 - 0.02 * i + height_error},0.01,{valid},5.1,0.05,{valid}\n" for i in range(50))
+    rows = []
+    for i in range(50):
+        ok = 0 if i in gap else valid
+        rows.append(f"{100 + 0.1 * i:.3f},{ok},{2 - 0.02 * i + height_error},0.01,{ok},5.1,0.05,{ok}\n")
+    return columns + "\n" + "".join(rows)
+
+
+def widest_gap(picture):
+    """Columns without red along the line of the height's error, which is constant."""
+    blue, green, red = (picture[picture.shape[0] // 2:, :picture.shape[1] // 2, k].astype(int) for k in range(3))
+    is_red = (red > 150) & (blue < 120) & (green < 120)
+    line = is_red[is_red.sum(axis=1).argmax()]
+    return np.diff(np.flatnonzero(line)).max()
 
 
 class PlotEstimatesTest(unittest.TestCase):
@@ -36,6 +49,10 @@ class PlotEstimatesTest(unittest.TestCase):
         for name, text in (("wrong", estimates(valid=1, height_error=0.5)), ("invalid", estimates(valid=0, height_error=0))):
             with self.subTest(name):
                 self.assertTrue((self.plot(name, text) != good).any())
+
+    def test_no_error_is_drawn_where_nothing_is_valid(self):
+        self.assertLess(widest_gap(self.plot("all", estimates(valid=1, height_error=0.5))), 5)
+        self.assertGreater(widest_gap(self.plot("gap", estimates(valid=1, height_error=0.5, gap=range(20, 30)))), 40)
 
     def test_names_the_file_that_is_missing(self):
         result = run([SOURCE_DIR / "scripts/plot_estimates", "--truth", self.folder / "frames.csv",
