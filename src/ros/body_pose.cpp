@@ -18,6 +18,7 @@ void refuseHeight(const Failure& failure, LandingResult& body) {
 Failure levelAbove(double limit, double level, double by) {
   if (!(level > limit)) return {};
   std::ostringstream text;
+  text.precision(4);  // as the reasons of the stages
   text << "the lever arm adds " << by << " m to the protection level: " << level << " m, alert limit "
        << limit << " m";
   return {Reason::kUncertain, text.str()};

@@ -1,6 +1,7 @@
 # Test programs of the core, by the folders of src/core.
 
 # base
+uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
 uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
 
 # parameters

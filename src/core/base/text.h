@@ -13,4 +13,12 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
+/// A measured number as a reason shows it: four significant digits, the rest is noise.
+inline std::string rounded(double value) {
+  std::ostringstream out;
+  out.precision(4);
+  out << value;
+  return out.str();
+}
+
 }  // namespace uav_landing

@@ -11,8 +11,8 @@ Failure tooUncertain(double height, double variance, const KalmanHeightParameter
   const double limit = std::max(parameters.min_height_error, parameters.max_height_error * height);
   const double bound = 3 * std::sqrt(variance);
   if (height > 0 && bound <= limit) return {};
-  return {Reason::kUncertain,
-          text("height ", height, " m has 3 sigma of ", bound, " m, more than ", limit, " m")};
+  return {Reason::kUncertain, text("height ", rounded(height), " m has 3 sigma of ", rounded(bound),
+                                   " m, more than ", rounded(limit), " m")};
 }
 
 }  // namespace uav_landing

@@ -136,8 +136,8 @@ struct ApproachAngleStage::Implementation {
       fused = fuseNormal(fused, {result.imu.normal, result.imu.normal_covariance}, kMaxVanishingNis, &nis);
       if (!(nis <= kMaxVanishingNis)) {
         const double off = std::acos(std::clamp(fused.normal().dot(result.imu.normal), -1.0, 1.0));
-        result.imu.failure = {Reason::kRejected,
-                              text("the imu's attitude is ", off / kDegree, " deg off the ground ahead")};
+        result.imu.failure = {Reason::kRejected, text("the imu's attitude is ", rounded(off / kDegree),
+                                                      " deg off the ground ahead")};
       }
     }
     setNormal(fused, result);

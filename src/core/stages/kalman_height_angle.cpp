@@ -132,7 +132,7 @@ void KalmanHeightStage::reportAngle(const ApproachAngleResult& approach, const R
   const double stddev = std::sqrt(result.approach_angle_variance);
   const double limit = parameters_.max_angle_stddev_deg * kDegree;
   if (!failure && !(stddev <= limit))
-    failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", stddev / kDegree,
+    failure = {Reason::kUncertain, text("approach angle has 1 sigma of ", rounded(stddev / kDegree),
                                         " deg, more than ", parameters_.max_angle_stddev_deg, " deg")};
   result.angle_valid = !failure;
   if (!result.failure) result.failure = failure;

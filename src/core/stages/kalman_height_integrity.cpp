@@ -265,7 +265,7 @@ void KalmanHeightStage::testMemory(double T, const Reconstruction& reconstructio
   const bool agrees = !tests_.failed(Consistency::kSinkRate);
   if (!agrees) {
     const double off = filter_.state()[0] - expected->height;
-    refuse(result, {Reason::kInconsistent, text("sink_rate: the height is off by ", off,
+    refuse(result, {Reason::kInconsistent, text("sink_rate: the height is off by ", rounded(off),
                                                 " m from the one before and the motion since")});
   }
   memory_.refresh(filter_, agrees,
@@ -289,9 +289,9 @@ void KalmanHeightStage::awaitRecovery(double T, LandingResult& result) {
   recovery_.follow(std::min(T, parameters_.max_age), pair,
                    outdated || disputed || tests_.failed(Consistency::kSinkRate));
   if (!recovery_.pending()) return;
-  refuse(result,
-         {Reason::kInconsistent, text("after contradictions nothing has contradicted for ", recovery_.quiet(),
-                                      " s only, ", parameters_.recovery_time, " s needed")});
+  refuse(result, {Reason::kInconsistent,
+                  text("after contradictions nothing has contradicted for ", rounded(recovery_.quiet()),
+                       " s only, ", parameters_.recovery_time, " s needed")});
 }
 
 void KalmanHeightStage::refuse(LandingResult& result, const Failure& failure) const {
@@ -312,9 +312,9 @@ void KalmanHeightStage::reportProtection(const Eigen::Vector3d& normal, LandingR
   result.height_alert_limit =
       std::max(parameters_.alert_limit, parameters_.alert_limit_relative * result.height);
   if (level.bound <= result.height_alert_limit) return;
-  refuse(result, {Reason::kUncertain,
-                  text("height ", result.height, " m has a protection level of ", level.bound,
-                       " m because of ", level.source, ", alert limit ", result.height_alert_limit, " m")});
+  refuse(result, {Reason::kUncertain, text("height ", rounded(result.height), " m has a protection level of ",
+                                           rounded(level.bound), " m because of ", level.source,
+                                           ", alert limit ", rounded(result.height_alert_limit), " m")});
 }
 
 void KalmanHeightStage::reportRig(LandingResult& result) const {
@@ -330,9 +330,9 @@ void KalmanHeightStage::reportRig(LandingResult& result) const {
     result.height_valid = result.angle_valid = false;
     result.forgetPosition();
     result.failure = {Reason::kRigBent,
-                      text("the right camera's ", kAxes[i], " is off its calibration by ", angle / kDegree,
-                           " deg with 1 sigma of ", stddev / kDegree, " deg, at most ",
-                           parameters_.max_rig_rotation_deg, " deg allowed")};
+                      text("the right camera's ", kAxes[i], " is off its calibration by ",
+                           rounded(angle / kDegree), " deg with 1 sigma of ", rounded(stddev / kDegree),
+                           " deg, at most ", parameters_.max_rig_rotation_deg, " deg allowed")};
     return;
   }
 }

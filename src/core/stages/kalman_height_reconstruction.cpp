@@ -25,7 +25,7 @@ Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) 
     return {Reason::kNoPlane, "the ground plane has no finite value and covariance"};
   const double relative = std::sqrt(plane.heightVariance()) / plane.height();
   if (!(relative <= kLargestRelative))
-    return {Reason::kUncertain, text("the height of the ground plane has 1 sigma of ", relative,
+    return {Reason::kUncertain, text("the height of the ground plane has 1 sigma of ", rounded(relative),
                                      " of itself, more than ", kLargestRelative)};
   return {};
 }
@@ -183,8 +183,8 @@ KalmanHeightStage::Reconstruction KalmanHeightStage::reconstruct(const StereoDep
   }
   reconstruction.variance += modelVariance(reconstruction.height);
   if (!reconstruction.failure && !(reconstruction.height > 0 && reconstruction.variance >= 0))
-    reconstruction.failure = {Reason::kNoPlane,
-                              text("height of ", reconstruction.height, " m is not above the ground")};
+    reconstruction.failure = {
+        Reason::kNoPlane, text("height of ", rounded(reconstruction.height), " m is not above the ground")};
   return reconstruction;
 }
 
@@ -241,7 +241,7 @@ void KalmanHeightStage::averageAttitude(const StereoDepthResult& stereo, const A
     tests_.addRatio(Consistency::kTilt, off, estimate.ratio, AttitudeFilter::kGate);
   if (estimate.agrees || reconstruction.failure) return;
   reconstruction.tilted = true;
-  refusePair({Reason::kRejected, text("the ground plane is tilted by ", off / kDegree,
+  refusePair({Reason::kRejected, text("the ground plane is tilted by ", rounded(off / kDegree),
                                       " deg against the pairs before and the rotation since")},
              reconstruction, result);
 }

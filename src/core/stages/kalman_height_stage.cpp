@@ -250,9 +250,10 @@ void KalmanHeightStage::updateHeight(double stamp, const Reconstruction& reconst
   }
   result.rejected = true;
   ++consecutive_rejections_;
-  result.failure = {Reason::kRejected, text("raw height ", reconstruction.height, " m, expected ",
-                                            reconstruction.height - update.innovation, " m with 1 sigma of ",
-                                            std::sqrt(update.innovation_variance), " m")};
+  result.failure = {Reason::kRejected,
+                    text("raw height ", rounded(reconstruction.height), " m, expected ",
+                         rounded(reconstruction.height - update.innovation), " m with 1 sigma of ",
+                         rounded(std::sqrt(update.innovation_variance)), " m")};
   if (confirmations_ < kConfirmations) {
     // Two measurements that contradict each other, and nothing yet that says which one is wrong.
     loseTrack();
