@@ -189,6 +189,111 @@ TEST_F(Overlay, LongReasonStaysInsideTheStrip) {
   EXPECT_EQ(cv::norm(margin, panel, cv::NORM_INF), 0);
 }
 
+constexpr int kPicture = 480;  // rows above the strip of a picture that is 640 columns wide
+
+/// The strip's rows of labels, values, status and the rest of the reason.
+cv::Mat labels(const cv::Mat& picture) { return picture.rowRange(kPicture, kPicture + 18).clone(); }
+cv::Mat values(const cv::Mat& picture) { return picture.rowRange(kPicture + 20, kPicture + 40).clone(); }
+cv::Mat statusLine(const cv::Mat& picture) { return picture.rowRange(kPicture + 42, kPicture + 59).clone(); }
+cv::Mat reasonLine(const cv::Mat& picture) { return picture.rowRange(kPicture + 61, kPicture + 78).clone(); }
+
+/// Where two pictures differ; empty when they do not.
+cv::Rect changed(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference, grey;
+  cv::absdiff(a, b, difference);
+  cv::cvtColor(difference, grey, cv::COLOR_BGR2GRAY);
+  return cv::boundingRect(grey);
+}
+
+/// Where there is writing on the panel.
+cv::Rect written(const cv::Mat& part) {
+  return changed(part, cv::Mat(part.size(), part.type(), part.at<cv::Vec3b>(0, 0)));
+}
+
+/// Pixels filled with a strong red.
+int redPixels(const cv::Mat& part) {
+  int count = 0;
+  for (int row = 0; row < part.rows; ++row) {
+    for (int column = 0; column < part.cols; ++column) {
+      const auto pixel = part.at<cv::Vec3b>(row, column);
+      count += pixel[2] > 200 && pixel[0] < 150 && pixel[1] < 150;
+    }
+  }
+  return count;
+}
+
+cv::Mat leftHalf(const cv::Mat& part) { return part.colRange(0, 200); }
+cv::Mat middle(const cv::Mat& part) { return part.colRange(260, 450); }
+
+TEST_F(Overlay, StripMarksWhatIsNotValidAtItsNameAndTurnsItsNumberRed) {
+  landing.approach_angle = 6 * kDegree;
+  landing.approach_angle_variance = 1e-6;
+  const cv::Mat good = draw();
+  EXPECT_EQ(redPixels(labels(good)) + redPixels(values(good)), 0);
+  landing.height_valid = false;
+  const cv::Mat no_height = draw();
+  EXPECT_GT(redPixels(leftHalf(labels(no_height))), 300);
+  EXPECT_GT(redPixels(leftHalf(values(no_height))), 30);
+  EXPECT_EQ(redPixels(middle(labels(no_height))) + redPixels(middle(values(no_height))), 0);
+  landing.height_valid = true;
+  landing.angle_valid = false;
+  const cv::Mat no_angle = draw();
+  EXPECT_GT(redPixels(middle(labels(no_angle))), 300);
+  EXPECT_GT(redPixels(middle(values(no_angle))), 30);
+  EXPECT_EQ(redPixels(leftHalf(labels(no_angle))) + redPixels(leftHalf(values(no_angle))), 0);
+}
+
+TEST_F(Overlay, ReasonIsAsLargeHoweverLongItIs) {
+  landing.height_valid = false;
+  landing.failure = {Reason::kUncertain, "H"};
+  const cv::Mat brief = draw();
+  landing.failure.detail =
+      "H height 18.96 m has a protection level of 1.887 m because of surface_below, alert limit 0.948 m";
+  const cv::Mat lengthy = draw();
+  const cv::Mat beginning = statusLine(brief).colRange(0, 180);
+  EXPECT_EQ(cv::norm(beginning, statusLine(lengthy).colRange(0, 180), cv::NORM_INF), 0);
+  EXPECT_EQ(written(reasonLine(brief)).area(), 0);
+  EXPECT_GE(written(reasonLine(lengthy)).height, 9);
+  EXPECT_EQ(brief.size(), lengthy.size());
+}
+
+TEST_F(Overlay, AttitudeIsUnderItsNamesAndInsideTheStrip) {
+  landing.pitch = landing.roll = landing.yaw = 0;
+  const cv::Mat level = values(draw());
+  std::vector<cv::Rect> columns;
+  for (double LandingResult::*angle : {&LandingResult::pitch, &LandingResult::roll, &LandingResult::yaw}) {
+    landing.*angle = (angle == &LandingResult::pitch ? -80.5 : -170.5) * kDegree;
+    columns.push_back(changed(level, values(draw())));
+    landing.*angle = 0;
+  }
+  // The names begin at 448, 508 and 570.
+  EXPECT_NEAR(columns[0].x, 448, 4);
+  EXPECT_NEAR(columns[1].x, 508, 4);
+  EXPECT_NEAR(columns[2].x, 570, 4);
+  EXPECT_LT(columns[0].br().x, columns[1].x);
+  EXPECT_LT(columns[1].br().x, columns[2].x);
+  EXPECT_LE(columns[2].br().x, 632);
+}
+
+TEST_F(Overlay, NumbersStayAsWideWhenTheyChange) {
+  const auto width = [&](double height, double stddev) {
+    landing.height = height;
+    landing.height_variance = stddev * stddev;
+    return written(leftHalf(values(draw())).colRange(0, 170)).width;
+  };
+  EXPECT_NEAR(width(8.284, 0.01), width(8.28, 0.0143), 2);
+  EXPECT_NEAR(width(18.28, 0.2), width(18.3, 0.143), 2);
+}
+
+TEST_F(Overlay, ZeroHasNoSign) {
+  landing.vertical_speed = 0;
+  landing.approach_angle = landing.approach_angle_variance = landing.pitch = 0;
+  const cv::Mat zero = draw();
+  landing.vertical_speed = 0.004;
+  landing.approach_angle = landing.pitch = -0.004 * kDegree;
+  EXPECT_EQ(cv::norm(zero, draw(), cv::NORM_INF), 0);
+}
+
 TEST_F(Overlay, MatchesAreMarkedInBothViews) {
   stereo.points = {{200, 180, 50, 0.1, true}};
   const cv::Mat picture = drawMatches(rig, image, image, stereo, twice());

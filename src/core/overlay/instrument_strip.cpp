@@ -13,11 +13,11 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr int kWidth = 640, kHeight = 80, kMargin = 10;  // the strip in its own units
+constexpr double kLabelFont = 0.34, kValueFont = 0.5, kStatusFont = 0.42;
+constexpr int kLabelRow = 14, kValueRow = 34, kStatusRow = 54, kReasonRow = 72;
 
-struct Instrument {
-  std::string name, value;
-  cv::Scalar colour;
-};
+const cv::Scalar kGreen(90, 220, 90), kAmber(40, 180, 255), kRed(105, 105, 255);
 
 std::string formatted(const char* format, double value) {
   if (!std::isfinite(value)) return "-";
@@ -26,34 +26,64 @@ std::string formatted(const char* format, double value) {
   return text.data();
 }
 
-/// "12.01 +-0.05 deg"; OpenCV's font has neither the sign nor the degree.
-std::string withDeviation(const char* format, double value, double variance, const char* unit) {
+/// With always as many decimals, so that a number that changes stays as wide; zero has no sign.
+std::string withDecimals(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
-  return formatted(format, value) + " +-" + formatted("%.2g", std::sqrt(variance)) + " " + unit;
+  const double unit = std::pow(10, -decimals);
+  const std::string format = "%." + std::to_string(decimals) + "f";
+  return formatted(format.c_str(), std::round(value / unit) == 0 ? 0 : value);
 }
 
-std::array<Instrument, 4> instruments(const LandingResult& landing) {
-  const auto usable = [](bool valid) { return valid ? colour::kText : colour::kDim; };
+/// "12.01 +-0.05 deg"; OpenCV's font has neither the sign nor the degree. No deviation is said to be zero.
+std::string withDeviation(double value, double variance, int decimals, const char* unit) {
+  if (!std::isfinite(value)) return "-";
+  const double deviation = std::max(std::sqrt(variance), std::pow(10, -decimals));
+  return withDecimals(value, decimals) + " +-" + withDecimals(deviation, decimals) + " " + unit;
+}
+
+/// Four digits, at most millimetres.
+int heightDecimals(double height) { return std::abs(height) < 10 ? 3 : std::abs(height) < 100 ? 2 : 1; }
+
+struct Instrument {
+  int column;  ///< units
+  std::string name, value;
+  bool valid = true;
+  bool marked = false;  ///< says itself that it is not valid
+};
+
+std::array<Instrument, 6> instruments(const LandingResult& landing) {
+  const std::string sink_rate = withDecimals(-landing.vertical_speed, 2);
   return {{
-      {"HEIGHT", withDeviation("%.3f", landing.height, landing.height_variance, "m"),
-       usable(landing.height_valid)},
-      {"SINK RATE", formatted("%.2f m/s", -landing.vertical_speed), usable(landing.height_valid)},
-      {"APPROACH ANGLE",
-       withDeviation("%.2f", landing.approach_angle * kDegrees,
-                     landing.approach_angle_variance * kDegrees * kDegrees, "deg"),
-       usable(landing.angle_valid)},
-      {"PITCH  ROLL  YAW",
-       formatted("%.1f", landing.pitch * kDegrees) + "  " + formatted("%.1f", landing.roll * kDegrees) +
-           "  " + formatted("%.1f", landing.yaw * kDegrees),
-       colour::kText},
+      {kMargin, "HEIGHT",
+       withDeviation(landing.height, landing.height_variance, heightDecimals(landing.height), "m"),
+       landing.height_valid, true},
+      {174, "SINK RATE", sink_rate == "-" ? sink_rate : sink_rate + " m/s", landing.height_valid},
+      {274, "APPROACH ANGLE",
+       withDeviation(landing.approach_angle * kDegrees, landing.approach_angle_variance * kDegrees * kDegrees,
+                     2, "deg"),
+       landing.angle_valid, true},
+      {448, "PITCH", withDecimals(landing.pitch * kDegrees, 1)},
+      {508, "ROLL", withDecimals(landing.roll * kDegrees, 1)},
+      {570, "YAW", withDecimals(landing.yaw * kDegrees, 1)},
   }};
 }
 
-const cv::Scalar kGreen(90, 220, 90), kAmber(40, 180, 255), kRed(70, 70, 255);
-
 cv::Scalar statusColour(const LandingResult& landing) {
-  if (landing.status == Status::kTracking) return landing.valid() ? kGreen : kAmber;
-  return landing.status == Status::kLost ? kRed : kAmber;
+  if (!landing.valid()) return kRed;
+  return landing.status == Status::kTracking ? kGreen : kAmber;
+}
+
+/// "tracking", "HEIGHT NOT VALID, tracking: uncertain: height 18.96 m has ...".
+std::string statusAndReason(const LandingResult& landing) {
+  std::string line;
+  if (!landing.valid()) {
+    if (landing.angle_valid) line += "HEIGHT ";
+    if (landing.height_valid) line += "ANGLE ";
+    line += "NOT VALID, ";
+  }
+  line += toString(landing.status);
+  if (landing.failure) line += ": " + landing.failure.message();
+  return line;
 }
 
 /// "PROTECTION LEVEL 0.07 of 0.60 m".
@@ -63,32 +93,81 @@ std::string protectionLevel(const LandingResult& landing) {
          formatted("%.2f m", landing.height_alert_limit);
 }
 
+/// How many characters of the text fit into so many units, whole words if there are any.
+size_t fitting(const std::string& text, int room) {
+  size_t count = text.size();
+  while (count > 0 && textWidth(text.substr(0, count), kStatusFont) > room) --count;
+  if (count == text.size()) return count;
+  const size_t space = text.rfind(' ', count);
+  return space == std::string::npos || space == 0 ? count : space;
+}
+
+/// Broken at a word, and cut at one if it is longer still. Smaller letters could not be read.
+std::array<std::string, 2> twoLines(const std::string& text, int first_room, int second_room) {
+  const size_t first = fitting(text, first_room);
+  std::string rest = text.substr(first);
+  rest.erase(0, rest.find_first_not_of(' '));
+  const std::string more = " ...";
+  if (fitting(rest, second_room) < rest.size())
+    rest = rest.substr(0, fitting(rest, second_room - textWidth(more, kStatusFont))) + more;
+  return {text.substr(0, first), rest};
+}
+
+/// Draws in units, whatever size the strip has.
+class Strip {
+ public:
+  explicit Strip(int width) : unit_(static_cast<double>(width) / kWidth) {
+    picture_.create(pixels(kHeight), width, CV_8UC3);
+    picture_ = colour::kPanel;
+  }
+
+  void text(int column, int row, const std::string& what, double font_scale, const cv::Scalar& colour) {
+    drawText(picture_, {pixels(column), pixels(row)}, what, font_scale * unit_, colour);
+  }
+
+  void draw(const Instrument& instrument) {
+    text(instrument.column, kLabelRow, instrument.name, kLabelFont, colour::kLabel);
+    text(instrument.column, kValueRow, instrument.value, kValueFont, instrument.valid ? colour::kText : kRed);
+    if (instrument.marked && !instrument.valid)
+      notValid(instrument.column + textWidth(instrument.name, kLabelFont) + 6);
+  }
+
+  const cv::Mat& picture() const { return picture_; }
+
+ private:
+  int pixels(double units) const { return static_cast<int>(std::lround(units * unit_)); }
+
+  void notValid(int column) {
+    const std::string words = "NOT VALID";
+    constexpr int kPadding = 4;
+    const cv::Point corner(pixels(column), pixels(kLabelRow - 11));
+    const cv::Point opposite(pixels(column + textWidth(words, kLabelFont) + 2 * kPadding),
+                             pixels(kLabelRow + 3));
+    cv::rectangle(picture_, corner, opposite, kRed, cv::FILLED);
+    text(column + kPadding, kLabelRow, words, kLabelFont, colour::kPanel);
+  }
+
+  cv::Mat picture_;
+  double unit_;  // pixels
+};
+
 }  // namespace
 
 cv::Mat drawInstrumentStrip(const LandingResult& landing, int width) {
-  const double unit = width / 640.0;  // everything in proportion to a strip 640 pixels wide
-  const auto pixels = [unit](double value) { return static_cast<int>(std::lround(value * unit)); };
-  cv::Mat strip(pixels(62), width, CV_8UC3, colour::kPanel);
+  Strip strip(width);
+  for (const Instrument& instrument : instruments(landing)) strip.draw(instrument);
 
-  const std::array<double, 4> columns = {10, 204, 308, 482};
-  const std::array<Instrument, 4> all = instruments(landing);
-  for (size_t i = 0; i < all.size(); ++i) {
-    drawText(strip, {pixels(columns[i]), pixels(14)}, all[i].name, 0.34 * unit, colour::kLabel);
-    drawText(strip, {pixels(columns[i]), pixels(34)}, all[i].value, 0.5 * unit, all[i].colour);
-  }
-
-  std::string status = toString(landing.status);
-  if (landing.failure) status += ": " + landing.failure.message();
   const std::string level = protectionLevel(landing);
-  const int level_width = textWidth(level, 0.34 * unit);
-  drawText(strip, {width - pixels(10) - level_width, pixels(54)}, level, 0.34 * unit,
-           landing.height_protection_level > landing.height_alert_limit ? kAmber : colour::kLabel);
+  const int level_width = textWidth(level, kLabelFont);
+  strip.text(kWidth - kMargin - level_width, kStatusRow, level, kLabelFont,
+             landing.height_protection_level > landing.height_alert_limit ? kAmber : colour::kLabel);
 
-  const double room = width - pixels(30) - level_width;
-  const double font_scale =
-      std::min(0.42 * unit, 0.42 * unit * room / std::max(1, textWidth(status, 0.42 * unit)));
-  drawText(strip, {pixels(10), pixels(54)}, status, font_scale, statusColour(landing));
-  return strip;
+  const std::string line = statusAndReason(landing);
+  const int room = kWidth - 2 * kMargin;
+  const std::array<std::string, 2> lines = twoLines(line, room - kMargin - level_width, room);
+  strip.text(kMargin, kStatusRow, lines[0], kStatusFont, statusColour(landing));
+  strip.text(kMargin, kReasonRow, lines[1], kStatusFont, statusColour(landing));
+  return strip.picture();
 }
 
 }  // namespace uav_landing
