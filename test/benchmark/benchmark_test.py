@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
 from project import SOURCE_DIR, rosrun
@@ -36,6 +37,12 @@ class BenchmarkTest(unittest.TestCase):
             self.assertAlmostEqual(measured["growth"], math.log(large / small) / math.log(4), delta=1e-3)
             subprocess.run([sys.executable, str(SOURCE_DIR / "benchmark/plot"), str(numbers), str(picture)], check=True)
             self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_picture_names_stages_of_a_tenth_of_some_sequence_only(self):
+        plot = SourceFileLoader("benchmark_plot", str(SOURCE_DIR / "benchmark/plot")).load_module()
+        small = {"stages": {"rectify": {"median": 0.1}, "ransac": {"median": 0.5}, "corners": {"median": 5.0}}}
+        large = {"stages": {"rectify": {"median": 9.0}, "corners": {"median": 20.0}}}
+        self.assertEqual(plot.large_stages([small, large]), ["corners", "rectify"])
 
     def test_refuses_a_dataset_that_is_not_there(self):
         result = rosrun("benchmark", "--widths", "160", "--pairs", "4", "--datasets", "/nowhere")
