@@ -33,7 +33,7 @@ namespace uav_landing {
 /// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
 /// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
 /// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. markers
-/// (MarkerArray).
+/// (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
 class KalmanHeightNodelet : public StageNodelet {
  public:
   KalmanHeightNodelet() : StageNodelet("kalman_height") {}
@@ -62,7 +62,7 @@ class KalmanHeightNodelet : public StageNodelet {
     range_publisher_ = advertise<sensor_msgs::Range>("height", kStageQueue);
     pose_publisher_ = advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", kStageQueue);
     marker_publisher_ = advertise<visualization_msgs::MarkerArray>("markers", 1);
-    if (node_.publish_tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
 
     tf_static_subscriber_ = handle.subscribe<tf2_msgs::TFMessage>(
         "/tf_static", 100,
@@ -82,10 +82,10 @@ class KalmanHeightNodelet : public StageNodelet {
 
   // Who listens to the transform cannot be told, so with it the chain always runs.
   bool wanted() const override {
-    return broadcaster_ || estimate_publisher_.getNumSubscribers() + range_publisher_.getNumSubscribers() +
-                                   pose_publisher_.getNumSubscribers() +
-                                   marker_publisher_.getNumSubscribers() >
-                               0;
+    return node_.publish_tf ||
+           estimate_publisher_.getNumSubscribers() + range_publisher_.getNumSubscribers() +
+                   pose_publisher_.getNumSubscribers() + marker_publisher_.getNumSubscribers() >
+               0;
   }
   void subscribe() override {
     feed<0, StereoDepth>(kStereoDepth, *pairing_, subscribers_);
@@ -214,8 +214,8 @@ class KalmanHeightNodelet : public StageNodelet {
                     {std::sqrt(place->variance.x()), std::sqrt(place->variance.y()),
                      std::sqrt(camera.height_variance)},
                     runway_from_camera};
-      marker_publisher_.publish(drawLanding(header, node_, estimate, aircraft,
-                                            (runway_from_camera * camera.velocity).head<2>(), path_.track()));
+      show(drawLanding(header, node_, estimate, aircraft, (runway_from_camera * camera.velocity).head<2>(),
+                       path_.track(), path_.runwayWidth()));
     }
     return estimate;
   }
@@ -244,7 +244,7 @@ class KalmanHeightNodelet : public StageNodelet {
   void broadcast(const std_msgs::Header& header, const std::string& child_frame,
                  const Eigen::Isometry3d& runway_from_child) {
     // One transform per stamp: the pairing drops stamps that repeat.
-    if (!broadcaster_ || !runway_from_child.matrix().allFinite()) return;
+    if (!node_.publish_tf || !runway_from_child.matrix().allFinite()) return;
     geometry_msgs::TransformStamped transform = tf2::eigenToTransform(runway_from_child);
     transform.header = header;
     transform.child_frame_id = child_frame;
@@ -290,9 +290,18 @@ class KalmanHeightNodelet : public StageNodelet {
     estimate_publisher_.publish(
         boost::make_shared<LandingEstimate>(toMessage(lost, header, child, kUnknown, 0)));
     publishRange(lost, stamp, child);
-    if (marker_publisher_.getNumSubscribers() > 0)
-      marker_publisher_.publish(
-          drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(), path_.track()));
+    if (marker_publisher_.getNumSubscribers() > 0) {
+      LandingScene scene = drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(),
+                                       path_.track(), path_.runwayWidth());
+      // The images' clock may be another one: tf would take nothing older than this for what comes.
+      if (!own_clock) scene.view.header.stamp = ros::Time(0, 1);
+      show(scene);
+    }
+  }
+
+  void show(const LandingScene& scene) {
+    marker_publisher_.publish(scene.markers);
+    broadcaster_->sendTransform(scene.view);
   }
 
   void note(const LandingResult& estimate) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 namespace uav_landing {
 namespace {
@@ -10,6 +11,19 @@ namespace {
 using visualization_msgs::Marker;
 
 constexpr double kDegree = M_PI / 180;
+constexpr double kDashes = 20;  // of the centre line, gaps included
+
+// The scene beside the runway is drawn in units of the aircraft's height, down to this share of the runway's
+// width. So it looks the same from the view in rviz/landing.rviz, which is fixed against landing_view.
+constexpr double kLeastUnit = 0.1;
+// What is looked at while no aircraft has been seen: above the threshold, in widths of the runway.
+constexpr double kIdleHeight = 0.2;
+const Eigen::Vector3d kViewPoint(-3.4, -0.7, 0.9);  // from the aircraft
+// Above the horizon and the aircraft: of the middle of the text's last line's foot, and of its letters.
+const Eigen::Vector3d kNumbersFoot(0, -0.36, 1.0);
+constexpr double kLetters = 0.12, kLine = 0.012, kSpan = 0.6;
+constexpr double kLineSpacing = 1.0;  // of rviz, in heights of letters
+constexpr size_t kTextWidth = 38;     // letters; longer lines do not fit into the view
 
 /// By which rviz tells markers apart.
 struct Identity {
@@ -52,21 +66,25 @@ Marker marker(const std_msgs::Header& header, const Identity& identity, int type
 }
 
 /// Outline, surface and centre line.
-void addRunway(const std_msgs::Header& header, const NodeParameters& parameters,
-               std::vector<Marker>& markers) {
-  const double length = parameters.drawn_runway_length, half = parameters.drawn_runway_width / 2;
-  const double line = parameters.drawn_runway_width / 50;
-  Marker surface = marker(header, kSurface, Marker::CUBE, length, colour(0.25F, 0.25F, 0.27F, 0.9F));
-  surface.scale.y = parameters.drawn_runway_width;
-  surface.scale.z = line / 10;
-  surface.pose.position = point({length / 2, 0, -line / 10});
+void addRunway(const std_msgs::Header& header, double length, double width, std::vector<Marker>& markers) {
+  const double half = width / 2, line = width / 50;
+  Marker surface = marker(header, kSurface, Marker::TRIANGLE_LIST, 1, colour(1, 1, 1));
+  surface.scale.y = surface.scale.z = 1;
+  const double below = -line / 10;
+  for (const auto& corner : {Eigen::Vector3d(0, half, below), Eigen::Vector3d(0, -half, below),
+                             Eigen::Vector3d(length, half, below), Eigen::Vector3d(length, half, below),
+                             Eigen::Vector3d(0, -half, below), Eigen::Vector3d(length, -half, below)}) {
+    surface.points.push_back(point(corner));
+    surface.colors.push_back(colour(0.25F, 0.25F, 0.27F));  // without rviz's light, in which it is black
+  }
   Marker outline = marker(header, kOutline, Marker::LINE_STRIP, line, colour(1, 1, 1));
   for (const auto& corner :
        {Eigen::Vector3d(0, half, 0), Eigen::Vector3d(length, half, 0), Eigen::Vector3d(length, -half, 0),
         Eigen::Vector3d(0, -half, 0), Eigen::Vector3d(0, half, 0)})
     outline.points.push_back(point(corner));
   Marker centre = marker(header, kCentreLine, Marker::LINE_LIST, line, colour(1, 1, 1));
-  const double dash = parameters.drawn_runway_width;
+  // Not of the width, with every measurement of which all dashes would move.
+  const double dash = length / kDashes;
   for (double x = dash; x + dash < length; x += 2 * dash) {
     centre.points.push_back(point({x, 0, 0}));
     centre.points.push_back(point({x + dash, 0, 0}));
@@ -77,7 +95,7 @@ void addRunway(const std_msgs::Header& header, const NodeParameters& parameters,
 /// Straight on along the approach angle, down to the ground.
 Marker glidePath(const std_msgs::Header& header, double line, const LandingResult& estimate,
                  const Eigen::Vector3d& position, const Eigen::Vector2d& direction) {
-  Marker glide = marker(header, kGlidePath, Marker::LINE_LIST, line / 2, colour(1.0F, 0.8F, 0.1F));
+  Marker glide = marker(header, kGlidePath, Marker::LINE_LIST, line, colour(1.0F, 0.8F, 0.1F));
   const double slope = std::tan(estimate.approach_angle);
   if (!estimate.angle_valid || !(slope > 0.001) || !(direction.norm() > 0)) {
     glide.action = Marker::DELETE;
@@ -115,19 +133,28 @@ bool hasEllipsoid(const NodeParameters& parameters, const DrawnAircraft& aircraf
   return aircraft.stddev.maxCoeff() < parameters.drawn_runway_length / 6;
 }
 
-/// Where the aircraft is with three sigma, ellipsoid_scale times larger; as thick as a line at least.
-Marker ellipsoid(const std_msgs::Header& header, double line, const NodeParameters& parameters,
+/// Where the aircraft is with three sigma, ellipsoid_scale times larger: the three ellipses about its axes,
+/// behind which nothing is hidden. No axis is longer than one unit: that along the runway would reach beyond
+/// the view.
+Marker ellipsoid(const std_msgs::Header& header, double unit, const NodeParameters& parameters,
                  const DrawnAircraft& aircraft) {
-  Marker shape = marker(header, kUncertainty, Marker::SPHERE, 1, colour(1.0F, 0.65F, 0.3F, 0.8F));
+  Marker shape =
+      marker(header, kUncertainty, Marker::LINE_LIST, kLine * unit / 2, colour(1.0F, 0.65F, 0.3F, 0.8F));
   if (!hasEllipsoid(parameters, aircraft)) {
     shape.action = Marker::DELETE;
     return shape;
   }
-  shape.pose.position = point(aircraft.position);
-  const Eigen::Vector3d size = (6 * parameters.ellipsoid_scale * aircraft.stddev).cwiseMax(line);
-  shape.scale.x = size.x();
-  shape.scale.y = size.y();
-  shape.scale.z = size.z();
+  const Eigen::Vector3d half = (3 * parameters.ellipsoid_scale * aircraft.stddev).cwiseMin(unit / 2);
+  constexpr int kSides = 32;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 2 * kSides; ++i) {
+      const double turn = 2 * M_PI / kSides * ((i + 1) / 2);
+      Eigen::Vector3d p = Eigen::Vector3d::Zero();
+      p[(axis + 1) % 3] = half[(axis + 1) % 3] * std::cos(turn);
+      p[(axis + 2) % 3] = half[(axis + 2) % 3] * std::sin(turn);
+      shape.points.push_back(point(aircraft.position + p));
+    }
+  }
   return shape;
 }
 
@@ -138,7 +165,20 @@ std::string number(const char* format, double value, const char* unknown) {
   return buffer;
 }
 
-// Short lines: the aircraft may be near the edge of the view.
+/// Lines of kTextWidth letters at most where there are spaces.
+std::string wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string word, lines;
+  size_t length = 0;
+  while (words >> word) {
+    const bool fits = length == 0 || length + 1 + word.size() <= kTextWidth;
+    if (!lines.empty()) lines += fits ? ' ' : '\n';
+    length = fits && length > 0 ? length + 1 + word.size() : word.size();
+    lines += word;
+  }
+  return lines;
+}
+
 std::string numbers(const LandingResult& estimate) {
   std::string text = std::string(toString(estimate.status)) + (estimate.valid() ? "" : ", not valid");
   text += "\nheight " + number("%.2f m", estimate.height_valid ? estimate.height : kUnknown, "-");
@@ -147,53 +187,68 @@ std::string numbers(const LandingResult& estimate) {
   text += "\napproach " +
           number("%.2f deg", estimate.angle_valid ? estimate.approach_angle / kDegree : kUnknown, "-");
   text += "\nprotection level " + number("%.2f m", estimate.height_protection_level, "-");
-  if (estimate.failure) text += "\n" + estimate.failure.message();
+  if (estimate.failure) text += "\n" + wrapped(estimate.failure.message());
   return text;
+}
+
+Marker numbersAt(const std_msgs::Header& header, const LandingResult& estimate, const std::string& text,
+                 const Eigen::Vector3d& anchor, double unit) {
+  Marker shown = marker(header, kNumbers, Marker::TEXT_VIEW_FACING, 0,
+                        estimate.valid() ? colour(0.3F, 1.0F, 0.3F) : colour(1.0F, 0.4F, 0.3F));
+  shown.text = text;
+  shown.scale.z = kLetters * unit;
+  // rviz wants the middle of the text.
+  const auto lines = static_cast<double>(1 + std::count(text.begin(), text.end(), '\n'));
+  shown.pose.position =
+      point(anchor + unit * kNumbersFoot + Eigen::Vector3d(0, 0, lines * kLineSpacing * shown.scale.z / 2));
+  return shown;
 }
 
 }  // namespace
 
-visualization_msgs::MarkerArray drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
-                                            const LandingResult& estimate,
-                                            const std::optional<DrawnAircraft>& aircraft,
-                                            const Eigen::Vector2d& direction,
-                                            const std::deque<Eigen::Vector3d>& track) {
-  visualization_msgs::MarkerArray array;
-  const double line = parameters.drawn_runway_width / 50;
-  addRunway(header, parameters, array.markers);
+LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
+                         const LandingResult& estimate, const std::optional<DrawnAircraft>& aircraft,
+                         const Eigen::Vector2d& direction, const std::deque<Eigen::Vector3d>& track,
+                         double runway_width) {
+  const double width = std::isfinite(runway_width) ? runway_width : parameters.drawn_runway_width;
+  const Eigen::Vector3d anchor = aircraft        ? aircraft->position
+                                 : track.empty() ? Eigen::Vector3d(0, 0, kIdleHeight * width)
+                                                 : track.back();
+  const double unit = std::max(anchor.z(), kLeastUnit * width);
+  LandingScene scene;
+  std::vector<Marker>& markers = scene.markers.markers;
+  addRunway(header, parameters.drawn_runway_length, width, markers);
 
-  Marker path = marker(header, kPath, Marker::LINE_STRIP, line / 2, colour(0.2F, 0.7F, 1.0F));
+  Marker path = marker(header, kPath, Marker::LINE_STRIP, kLine * unit, colour(0.2F, 0.7F, 1.0F));
   for (const Eigen::Vector3d& p : track) path.points.push_back(point(p));
   if (path.points.size() < 2) path.action = Marker::DELETE;
-  array.markers.push_back(path);
+  markers.push_back(path);
 
   if (aircraft) {
-    array.markers.push_back(glidePath(header, line, estimate, aircraft->position, direction));
-    array.markers.push_back(silhouette(header, parameters.drawn_runway_width / 2.5, *aircraft));
-    array.markers.push_back(ellipsoid(header, line, parameters, *aircraft));
+    markers.push_back(glidePath(header, kLine * unit, estimate, aircraft->position, direction));
+    markers.push_back(silhouette(header, kSpan * unit, *aircraft));
+    markers.push_back(ellipsoid(header, unit, parameters, *aircraft));
   } else {
     // rviz would go on showing them where the aircraft was.
     for (const Identity& shown : {kGlidePath, kAircraft, kUncertainty}) {
-      array.markers.push_back(marker(header, shown, Marker::CUBE, 0, {}));
-      array.markers.back().action = Marker::DELETE;
+      markers.push_back(marker(header, shown, Marker::CUBE, 0, {}));
+      markers.back().action = Marker::DELETE;
     }
   }
 
-  Marker text = marker(header, kNumbers, Marker::TEXT_VIEW_FACING, 0,
-                       estimate.valid() ? colour(0.3F, 1.0F, 0.3F) : colour(1.0F, 0.4F, 0.3F));
-  text.text = numbers(estimate);
+  std::string text = numbers(estimate);
   if (aircraft && hasEllipsoid(parameters, *aircraft))
-    text.text += "\nellipsoid 3 sigma" + number(" x %g", parameters.ellipsoid_scale, "");
-  const Eigen::Vector3d anchor = aircraft        ? aircraft->position
-                                 : track.empty() ? Eigen::Vector3d::Zero()
-                                                 : track.back();
-  text.scale.z = std::max(parameters.drawn_runway_width / 14, 0.08 * anchor.z());
-  // The middle of the text, so high that its last line is above the aircraft.
-  const auto lines = 1 + std::count(text.text.begin(), text.text.end(), '\n');
-  text.pose.position =
-      point(anchor + Eigen::Vector3d(0, 0, 0.75 * static_cast<double>(lines) * text.scale.z));
-  array.markers.push_back(text);
-  return array;
+    text += "\nellipsoid 3 sigma" + number(" x %g", parameters.ellipsoid_scale, "");
+  markers.push_back(numbersAt(header, estimate, text, anchor, unit));
+
+  scene.view.header = header;
+  scene.view.child_frame_id = "landing_view";
+  const Eigen::Vector3d view_point = anchor + unit * kViewPoint;
+  scene.view.transform.translation.x = view_point.x();
+  scene.view.transform.translation.y = view_point.y();
+  scene.view.transform.translation.z = view_point.z();
+  scene.view.transform.rotation.w = 1;
+  return scene;
 }
 
 }  // namespace uav_landing

@@ -18,6 +18,7 @@ constexpr double kMaxStart = 100;       // heights: a path that hardly descends 
 
 std::optional<RunwayPath::Position> RunwayPath::update(const LandingResult& camera) {
   if (last_stamp_ && camera.stamp <= *last_stamp_) reset();
+  if (std::isfinite(camera.runway_width)) runway_width_ = camera.runway_width;
   const Eigen::Matrix3d rotation = runwayFromCamera(camera);
   const bool seen = rotation.allFinite() && camera.velocity.allFinite();
   if (seen) velocity_ = (rotation * camera.velocity).head<2>();

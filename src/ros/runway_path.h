@@ -10,7 +10,7 @@ namespace uav_landing {
 
 /// Where the left camera is in the runway frame. Along and across the runway it is as the estimate says once
 /// that knows; until then the velocity is summed up from an arbitrary start: the point where the first path
-/// meets the ground becomes the origin.
+/// meets the ground becomes the origin. And how wide the runway is, for drawing.
 class RunwayPath {
  public:
   struct Position {
@@ -25,6 +25,8 @@ class RunwayPath {
 
   /// The positions so far, thinned out; the last kept ones.
   const std::deque<Eigen::Vector3d>& track() const { return track_; }
+  /// Of the last pair that measured it, m; unknown: none has.
+  double runwayWidth() const { return runway_width_; }
 
  private:
   /// Of x (axis 0) or y (1), when it is known.
@@ -37,6 +39,7 @@ class RunwayPath {
   double drift_stddev_ = 0;                             // m
   bool known_[2] = {false, false};                      // x, y: of the last estimate
   std::deque<Eigen::Vector3d> track_;
+  double runway_width_ = kUnknown;
 };
 
 }  // namespace uav_landing

@@ -52,7 +52,8 @@ void useResult(const ApproachMessages& messages, const LandingResult& camera) {
         place->position,
         {std::sqrt(place->variance.x()), std::sqrt(place->variance.y()), std::sqrt(camera.height_variance)},
         runwayFromCamera(camera)};
-  drawLanding(messages.stereo.header, {}, body, aircraft, Eigen::Vector2d(20, 0), path.track());
+  drawLanding(messages.stereo.header, {}, body, aircraft, Eigen::Vector2d(20, 0), path.track(),
+              path.runwayWidth());
   static const cv::Mat grey(messages.rig.size.height, messages.rig.size.width, CV_8UC1, cv::Scalar(100));
   static int turn = 0;
   if (++turn % 64 == 0) drawOverlay(messages.rig, grey, stereo, approach, camera, {});

@@ -40,6 +40,22 @@ TEST(RunwayPath, SumsUpTheVelocity) {
   EXPECT_NEAR(place->position.z(), 48, 1e-12);
 }
 
+TEST(RunwayPath, KeepsTheWidthMeasuredLastOfOneApproach) {
+  RunwayPath path;
+  EXPECT_TRUE(std::isnan(path.runwayWidth()));
+  LandingResult camera = flying(1);
+  camera.runway_width = 43.6;
+  path.update(camera);
+  path.update(flying(2));
+  EXPECT_EQ(path.runwayWidth(), 43.6);
+  camera.stamp = 3;
+  camera.runway_width = 43.5;
+  path.update(camera);
+  EXPECT_EQ(path.runwayWidth(), 43.5);
+  path.update(flying(0));
+  EXPECT_TRUE(std::isnan(path.runwayWidth())) << "another approach";
+}
+
 TEST(RunwayPath, TurnsTheVelocityIntoTheRunwayFrame) {
   RunwayPath path;
   LandingResult camera = flying(0);
