@@ -21,9 +21,9 @@ constexpr double kIdleHeight = 0.2;
 const Eigen::Vector3d kViewPoint(-3.4, -0.7, 0.9);  // from the aircraft
 // Above the horizon and the aircraft: of the middle of the text's last line's foot, and of its letters.
 const Eigen::Vector3d kNumbersFoot(0, -0.36, 1.0);
-constexpr double kLetters = 0.12, kLine = 0.012, kSpan = 0.6;
+constexpr double kLetters = 0.11, kLine = 0.012, kSpan = 0.6;
 constexpr double kLineSpacing = 1.0;  // of rviz, in heights of letters
-constexpr size_t kTextWidth = 38;     // letters; longer lines do not fit into the view
+constexpr size_t kTextWidth = 42;     // letters; longer lines do not fit into the view
 
 /// By which rviz tells markers apart.
 struct Identity {

@@ -52,7 +52,7 @@ struct NodeParameters {
            "broadcast runway_frame to the estimated frame; if not, the chain rests while nobody subscribes "
            "its output (kalman_height)");
     v.number("drawn_runway_width", drawn_runway_width, 0.1, 200.0, "m",
-             "of the runway as drawn (kalman_height markers)");
+             "of the runway as drawn until it has been measured (kalman_height markers)");
     v.number("drawn_runway_length", drawn_runway_length, 0.1, 10000.0, "m",
              "of the runway as drawn (kalman_height markers)");
     v.number(
