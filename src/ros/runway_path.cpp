@@ -1,5 +1,6 @@
 #include "runway_path.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "body_pose.h"
@@ -13,12 +14,16 @@ constexpr double kSpeedError = 0.05, kOldSpeedError = 1;
 constexpr size_t kTrackPoints = 2000;
 constexpr double kTrackSpacing = 0.02;  // of the height
 constexpr double kMaxStart = 100;       // heights: a path that hardly descends meets the ground far away
+constexpr int kMeanOf = 20;             // widths of the runway
 
 }  // namespace
 
 std::optional<RunwayPath::Position> RunwayPath::update(const LandingResult& camera) {
   if (last_stamp_ && camera.stamp <= *last_stamp_) reset();
-  if (std::isfinite(camera.runway_width)) runway_width_ = camera.runway_width;
+  if (std::isfinite(camera.runway_width)) {
+    widths_ = std::min(widths_ + 1, kMeanOf);
+    runway_width_ += (camera.runway_width - runway_width_) / widths_;
+  }
   const Eigen::Matrix3d rotation = runwayFromCamera(camera);
   const bool seen = rotation.allFinite() && camera.velocity.allFinite();
   if (seen) velocity_ = (rotation * camera.velocity).head<2>();

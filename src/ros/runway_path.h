@@ -25,8 +25,8 @@ class RunwayPath {
 
   /// The positions so far, thinned out; the last kept ones.
   const std::deque<Eigen::Vector3d>& track() const { return track_; }
-  /// Of the last pair that measured it, m; unknown: none has.
-  double runwayWidth() const { return runway_width_; }
+  /// Mean of what the last pairs measured, as some take other lines for its edges, m; unknown: none has.
+  double runwayWidth() const { return widths_ > 0 ? runway_width_ : kUnknown; }
 
  private:
   /// Of x (axis 0) or y (1), when it is known.
@@ -39,7 +39,8 @@ class RunwayPath {
   double drift_stddev_ = 0;                             // m
   bool known_[2] = {false, false};                      // x, y: of the last estimate
   std::deque<Eigen::Vector3d> track_;
-  double runway_width_ = kUnknown;
+  int widths_ = 0;           // pairs that measured it
+  double runway_width_ = 0;  // m
 };
 
 }  // namespace uav_landing

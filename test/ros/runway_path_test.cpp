@@ -40,7 +40,7 @@ TEST(RunwayPath, SumsUpTheVelocity) {
   EXPECT_NEAR(place->position.z(), 48, 1e-12);
 }
 
-TEST(RunwayPath, KeepsTheWidthMeasuredLastOfOneApproach) {
+TEST(RunwayPath, KeepsTheWidthOfOneApproach) {
   RunwayPath path;
   EXPECT_TRUE(std::isnan(path.runwayWidth()));
   LandingResult camera = flying(1);
@@ -48,12 +48,22 @@ TEST(RunwayPath, KeepsTheWidthMeasuredLastOfOneApproach) {
   path.update(camera);
   path.update(flying(2));
   EXPECT_EQ(path.runwayWidth(), 43.6);
-  camera.stamp = 3;
-  camera.runway_width = 43.5;
-  path.update(camera);
-  EXPECT_EQ(path.runwayWidth(), 43.5);
   path.update(flying(0));
   EXPECT_TRUE(std::isnan(path.runwayWidth())) << "another approach";
+}
+
+TEST(RunwayPath, OnePairOfAnotherWidthHardlyChangesIt) {
+  RunwayPath path;
+  const auto measure = [&](double stamp, double width) {
+    LandingResult camera = flying(stamp);
+    camera.runway_width = width;
+    path.update(camera);
+    return path.runwayWidth();
+  };
+  for (int i = 0; i < 40; ++i) measure(0.1 * i, 58);
+  EXPECT_NEAR(measure(4.1, 62), 58.2, 1e-9);
+  for (int i = 0; i < 100; ++i) measure(4.2 + 0.1 * i, 62);
+  EXPECT_NEAR(path.runwayWidth(), 62, 0.1);
 }
 
 TEST(RunwayPath, TurnsTheVelocityIntoTheRunwayFrame) {
