@@ -311,7 +311,10 @@ void KalmanHeightStage::reportHeight(LandingResult& result) const {
   result.height_variance =
       varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance().total();
   result.vertical_speed = filter_.state()[1];
-  result.vertical_speed_variance = filter_.covariance()(1, 1);
+  // Motions are given as much as they scatter themselves; where heights alone tell the speed it scatters as
+  // they do.
+  result.vertical_speed_variance =
+      filter_.covariance()(1, 1) * (parameters_.use_motion ? 1 : varianceFactor());
 
   const double age = result.stamp - last_accepted_;
   Failure failure;

@@ -121,8 +121,9 @@ TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
 }
 
 TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThatSaysSo) {
-  const auto fly = [](double scatter) {
-    KalmanHeightStage stage(test::usualRig(), {});
+  KalmanHeightParameters parameters;
+  const auto fly = [&](double scatter) {
+    KalmanHeightStage stage(test::usualRig(), parameters);
     std::mt19937 random(5);
     std::normal_distribution<double> error(0, scatter);
     LandingResult result;
@@ -138,6 +139,11 @@ TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThat
   const double claimed = std::sqrt(fly(0).raw_height_variance);
   const LandingResult honest = fly(0.8 * claimed), bold = fly(2.5 * claimed);
   EXPECT_GT(bold.height_variance, 1.5 * honest.height_variance);
+  EXPECT_NEAR(bold.vertical_speed_variance, honest.vertical_speed_variance,
+              0.1 * honest.vertical_speed_variance)
+      << "by the motion";
+  parameters.use_motion = false;
+  EXPECT_GT(fly(2.5 * claimed).vertical_speed_variance, 1.5 * fly(0.8 * claimed).vertical_speed_variance);
 }
 
 TEST(KalmanHeightIntegrity, MotionsThatScatterMoreThanTheyClaimHaveASpeedThatSaysSo) {
