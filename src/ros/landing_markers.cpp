@@ -1,5 +1,7 @@
 #include "landing_markers.h"
 
+#include <tf2_eigen/tf2_eigen.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -241,13 +243,9 @@ LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& p
     text += "\nellipsoid 3 sigma" + number(" x %g", parameters.ellipsoid_scale, "");
   markers.push_back(numbersAt(header, estimate, text, anchor, unit));
 
+  scene.view = tf2::eigenToTransform(Eigen::Isometry3d(Eigen::Translation3d(anchor + unit * kViewPoint)));
   scene.view.header = header;
   scene.view.child_frame_id = "landing_view";
-  const Eigen::Vector3d view_point = anchor + unit * kViewPoint;
-  scene.view.transform.translation.x = view_point.x();
-  scene.view.transform.translation.y = view_point.y();
-  scene.view.transform.translation.z = view_point.z();
-  scene.view.transform.rotation.w = 1;
   return scene;
 }
 

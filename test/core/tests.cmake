@@ -107,6 +107,8 @@ uav_landing_add_gtest(right_view_test test/core/runway/right_view_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(centre_columns_test test/core/runway/centre_columns_test.cpp)
 uav_landing_add_gtest(runway_edges_test test/core/runway/runway_edges_test.cpp)
+uav_landing_add_gtest(runway_threshold_test test/core/runway/runway_threshold_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 

@@ -2,15 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "autopilot_messages.h"
 #include "node_parameter_table.h"
 #include "parameter_names.h"
+#include "support/documentation.h"
 
 namespace uav_landing {
 namespace {
@@ -30,12 +29,7 @@ TYPED_TEST(NodeParametersOf, HaveNoNameOfTheSection) {
 }
 
 TEST(NodeParameterTable, IsTheOneInTheDocumentation) {
-  std::ifstream file(UAV_LANDING_SOURCE_DIR "/docs/node_parameters.md");
-  std::ostringstream page;
-  page << file.rdbuf();
-  EXPECT_EQ(page.str(), nodeParameterTable())
-      << "docs/node_parameters.md is out of date. Regenerate it:\n"
-         "rosrun uav_landing process_bag --list-node-parameters > docs/node_parameters.md";
+  test::expectPage("node_parameters.md", nodeParameterTable(), "--list-node-parameters");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <initializer_list>
 #include <ostream>
-#include <sstream>
 #include <string>
 
 namespace uav_landing {
@@ -16,29 +15,28 @@ class TableWriter {
 
   template <class Number>
   void number(const char* name, Number value, double min, double max, const char* unit, const char* meaning) {
-    std::ostringstream given, range;
-    given << value;
-    range << min << " to " << max;
-    row(name, given.str(), range.str(), unit, meaning);
+    begin(name) << value << " | " << min << " to " << max;
+    end(unit, meaning);
   }
   void flag(const char* name, bool value, const char* meaning) {
-    row(name, value ? "true" : "false", "true, false", "", meaning);
+    begin(name) << (value ? "true" : "false") << " | true, false";
+    end("", meaning);
   }
   template <class Enum>
   void choice(const char* name, Enum value, std::initializer_list<const char*> choices, const char* meaning) {
-    std::string all;
-    for (const char* candidate : choices) all += (all.empty() ? "" : ", ") + std::string(candidate);
-    row(name, choices.begin()[static_cast<int>(value)], all, "", meaning);
+    begin(name) << choices.begin()[static_cast<int>(value)] << " | ";
+    for (const char* const& candidate : choices)
+      out_ << (&candidate == choices.begin() ? "" : ", ") << candidate;
+    end("", meaning);
   }
   void text(const char* name, const std::string& value, const char* meaning) {
-    row(name, value.empty() ? "(empty)" : value, "", "", meaning);
+    begin(name) << (value.empty() ? "(empty)" : value) << " | ";
+    end("", meaning);
   }
 
  private:
-  void row(const char* name, const std::string& value, const std::string& range, const char* unit,
-           const char* meaning) {
-    out_ << "| `" << name << "` | " << value << " | " << range << " | " << unit << " | " << meaning << " |\n";
-  }
+  std::ostream& begin(const char* name) { return out_ << "| `" << name << "` | "; }
+  void end(const char* unit, const char* meaning) { out_ << " | " << unit << " | " << meaning << " |\n"; }
 
   std::ostream& out_;
 };

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <sstream>
 #include <string>
+
+#include "support/documentation.h"
 
 namespace uav_landing {
 namespace {
@@ -142,12 +143,7 @@ TEST(ParameterFile, ShippedPresetsLoad) {
 }
 
 TEST(ParameterTable, IsTheOneInTheDocumentation) {
-  std::ifstream file(UAV_LANDING_SOURCE_DIR "/docs/parameters.md");
-  std::ostringstream page;
-  page << file.rdbuf();
-  EXPECT_EQ(page.str(), parameterTable())
-      << "docs/parameters.md is out of date. Regenerate it:\n"
-         "rosrun uav_landing process_bag --list-parameters > docs/parameters.md";
+  test::expectPage("parameters.md", parameterTable(), "--list-parameters");
 }
 
 }  // namespace
