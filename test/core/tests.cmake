@@ -21,6 +21,7 @@ uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
 uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
+uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(mask_bounds_test test/core/image/mask_bounds_test.cpp)

@@ -14,6 +14,7 @@
 
 #include "geometry/rotation.h"
 #include "image/image_cells.h"
+#include "image/window_overlap.h"
 #include "motion/motion_rows.h"
 
 namespace uav_landing {
@@ -107,56 +108,10 @@ std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::
   return own;
 }
 
-// The places of matches, from the top of the image down as corners mostly come: those far above one are all
-// at the front, so that they need not be looked at.
-class Places {
- public:
-  explicit Places(const std::vector<TemporalMatch>& matches)
-      : u_(static_cast<Eigen::Index>(matches.size())), v_(u_.size()) {
-    lowest_.reserve(matches.size());
-    float lowest = -std::numeric_limits<float>::infinity();
-    for (const TemporalMatch& match : matches) {
-      const auto i = static_cast<Eigen::Index>(lowest_.size());
-      u_[i] = static_cast<float>(match.now.x());
-      v_[i] = static_cast<float>(match.now.y());
-      lowest = std::max(lowest, v_[i]);
-      lowest_.push_back(lowest);
-    }
-  }
-
-  // Sum of the shares that the windows before have of this one.
-  float shared(Eigen::Index i, float extent) const {
-    const float share = 1 / extent;
-    const Eigen::Index first = firstNear(i, extent), count = i - first;
-    const auto inside = [&](const Eigen::ArrayXf& places) {
-      return (1 - share * (places.segment(first, count) - places[i]).abs()).max(0.0F);
-    };
-    return (inside(u_) * inside(v_)).sum();
-  }
-
- private:
-  // All before it are too far above. Whole blocks, so that sums are rounded as those over all.
-  Eigen::Index firstNear(Eigen::Index i, float extent) const {
-    constexpr Eigen::Index kBlock = 8;
-    const float far = v_[i] - extent - 1;
-    const auto end = lowest_.begin() + i;
-    return (std::lower_bound(lowest_.begin(), end, far) - lowest_.begin()) / kBlock * kBlock;
-  }
-
-  Eigen::ArrayXf u_, v_;
-  std::vector<float> lowest_;  // of the places up to each
-};
-
-// By which the variance of what is fitted to matches is larger than if their windows shared no noise: the
-// mean over them of the shares that all windows have of one.
 double overlapFactor(const std::vector<TemporalMatch>& matches) {
-  const Places places(matches);
-  double shared = 0;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const auto extent = static_cast<float>(matches[i].extent);
-    if (extent > 0) shared += 2 * places.shared(static_cast<Eigen::Index>(i), extent);
-  }
-  return 1 + shared / static_cast<double>(matches.size());
+  WindowOverlap windows(matches.size());
+  for (const TemporalMatch& match : matches) windows.add(match.now.x(), match.now.y(), match.extent);
+  return windows.factor();
 }
 
 // What matches of a part of the image share, with the residuals that they have at their own normal. factor:
