@@ -70,7 +70,7 @@ struct StereoDepthParameters {
     v.flag("direct_refinement", direct_refinement,
            "refine the plane by aligning the grey levels of the two images over the ground");
     v.flag("surface_curvature", surface_curvature,
-           "let the slope of the surface ahead change with the distance where the refinement shows that it "
+           "let the slope of the surface ahead change with the distance where the disparities show that it "
            "does: "
            "the height is then that above the surface straight below");
     v.number("slope_change_deg", slope_change_deg, 0.001, 10.0, "deg",

@@ -64,10 +64,10 @@ struct StereoDepthResult {
   /// some of that is the same in the next pairs. Unknown without direct refinement.
   double lasting_share = kUnknown;
   /// Tangent of the surface straight below the camera, for the height: the plane is that of the surface
-  /// ahead. Not known without direct refinement.
+  /// ahead. Not known where too little of the ground is seen.
   GroundPlane below;
   /// Mean change of the surface's slope over distance, positive in a sag, 1/m, and its variance, 1/m^2;
-  /// unknown without direct refinement.
+  /// known where below is.
   double curvature = kUnknown, curvature_variance = kUnknown;
   double residual_stddev = kUnknown;   ///< of the points on the plane, pixels of disparity
   double surface_variance = kUnknown;  ///< of the surface ahead about the plane, unbiased (may be < 0), m^2

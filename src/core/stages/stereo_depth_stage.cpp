@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
+#include "stereo/corner_plane.h"
 #include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/stereo/direct_refinement.h"
-#include "uav_landing/stereo/plane_consensus.h"
 #include "uav_landing/stereo/plane_fit.h"
 #include "uav_landing/stereo/stereo_matching.h"
 #include "uav_landing/stereo/surface_profile.h"
@@ -36,11 +36,13 @@ struct StereoDepthStage::Implementation {
   RigModel model;
   StereoDepthParameters parameters;
   PlaneLimits limits;
-  int corner_count;
+  int corner_count, window;  // window: width and height of the corners', pixels
   StereoLevel fine, coarse;
   MatchImage left, right;
   RowAlignment rows;
-  cv::Mat level_fine, level_coarse;  // right images with their rows made level
+  cv::Mat level_fine, level_coarse;      // right images with their rows made level
+  std::vector<DisparitySample> samples;  // of the corners
+  PlaneFit corner_fit;                   // to them
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
@@ -56,6 +58,7 @@ struct StereoDepthStage::Implementation {
       : model(rig),
         parameters(p),
         corner_count(cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
+        window(2 * p.window_radius + 1),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
     limits = {p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance};
     fine.rig = rig.rig;
@@ -118,8 +121,9 @@ struct StereoDepthStage::Implementation {
     }
     extend(groundRows(*start, 0));
     refine(*start, result);
-    if (!direct || result.failure) return;
-    if (!refineDirectly(left_image, right_image, result) && result.from_search) waitForNextPair(result);
+    if (result.failure || (direct && refineDirectly(left_image, right_image, result))) return;
+    keepCorners(result);
+    if (direct && result.from_search) waitForNextPair(result);
   }
 
   // A search finds some plane in nothing but noise, too. One that the images' alignment does not bear out
@@ -221,52 +225,40 @@ struct StereoDepthStage::Implementation {
     result.corners = static_cast<int>(corners.size());
     // A bent rig's rows must be level before anything is matched along them.
     if (result.from_search && rows.search(fine, corners, start)) levelRows();
-    std::vector<DisparitySample> samples;
     {
       ScopedTimer timer(timings, "feature_matching");
       samples = matchCorners(fine, corners, start, parameters);
     }
-    fitOrSayWhyNot(samples, result);
-    measureRows(corners, samples, result);
+    fit(result);
+    measureRows(corners, result);
   }
 
-  void fitOrSayWhyNot(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
+  void fit(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
+    for (const DisparitySample& sample : samples)
+      result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     if (static_cast<int>(samples.size()) < parameters.min_points) {
       const bool few_corners = result.corners < parameters.min_points;
       result.failure = {few_corners ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
                         std::to_string(samples.size()) + " matches of " + std::to_string(result.corners) +
                             " corners, at least " + std::to_string(parameters.min_points) + " needed"};
-    }
-    fit(samples, result);
-  }
-
-  void fit(const std::vector<DisparitySample>& samples, StereoDepthResult& result) {
-    for (const DisparitySample& sample : samples)
-      result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
-    if (result.failure) return;
-    const Consensus consensus = findPlane(model.rig, samples, limits, 200, nullptr, true);
-    if (!consensus.found) {
-      result.failure = {Reason::kNoPlane,
-                        "no plausible ground plane in " + std::to_string(samples.size()) + " matches"};
       return;
     }
-    const Expected<PlaneFit> plane =
-        refinePlane(model.rig, samples, consensus.g, limits, parameters.disparity_bias_stddev);
+    Expected<PlaneFit> plane = fitCorners(model.rig, samples, limits, parameters.disparity_bias_stddev);
     if (!plane) {
       result.failure = plane.error();
       return;
     }
-    result.plane = plane->plane;
-    result.residual_stddev = plane->residual_stddev;
-    result.surface_variance = surfaceVariance(model.rig, samples, *plane, 2 * parameters.window_radius + 1);
-    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = plane->agrees[i] != 0;
+    corner_fit = std::move(*plane);
+    result.plane = corner_fit.plane;
+    result.residual_stddev = corner_fit.residual_stddev;
+    result.surface_variance = surfaceVariance(model.rig, samples, corner_fit, window);
+    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = corner_fit.agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
     result.row_bias_stddev = parameters.row_bias_stddev;
   }
 
-  void measureRows(const std::vector<cv::Point>& corners, const std::vector<DisparitySample>& samples,
-                   StereoDepthResult& result) {
+  void measureRows(const std::vector<cv::Point>& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     if (result.failure) return;
     const RowAlignment::Measured measured = rows.measure(fine, corners, samples, result.plane.g);
@@ -304,18 +296,28 @@ struct StereoDepthStage::Implementation {
     result.lasting_share = fit->lasting_share;
     // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.
     result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, 1);
-    if (parameters.surface_curvature) bend(*fit, result);
+    bend(direct->samples(), *fit, result.row_covariance, result);
     return true;
   }
 
-  void bend(const PlaneFit& flat, StereoDepthResult& result) {
+  // Their plane is the pair's.
+  void keepCorners(StereoDepthResult& result) {
+    result.plane.covariance +=
+        sharedCovariance(model.rig, samples, corner_fit, window, parameters.disparity_bias_stddev);
+    bend(samples, corner_fit, result.plane.covariance - corner_fit.plane.covariance, result);
+  }
+
+  // flat: fit to the samples. besides: what these do not know of the covariance.
+  void bend(const std::vector<DisparitySample>& seen, const PlaneFit& flat, const Eigen::Matrix3d& besides,
+            StereoDepthResult& result) {
+    if (!parameters.surface_curvature) return;
     ScopedTimer timer(timings, "surface_profile");
     const std::optional<SurfaceProfile> profile =
-        fitSurfaceProfile(model.rig, direct->samples(), flat, limits, parameters.disparity_bias_stddev,
+        fitSurfaceProfile(model.rig, seen, flat, limits, parameters.disparity_bias_stddev,
                           parameters.slope_change_deg * kDegree);
     if (!profile) return;
     result.below = profile->below;
-    result.below.covariance += result.row_covariance;
+    result.below.covariance += besides;
     result.curvature = profile->curvature;
     result.curvature_variance = profile->curvature_variance;
   }

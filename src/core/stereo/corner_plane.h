@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "uav_landing/stereo/plane_fit.h"
+
+namespace uav_landing {
+
+/// The plane that most disparities of corners agree on, fitted to these. bias_stddev: as for refinePlane.
+/// Fails when there is none.
+Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                              const PlaneLimits& limits, double bias_stddev);
+
+/// What the covariance of that plane leaves out, 1/m^2: noise of pixels that several windows are of, and
+/// errors that are alike in a part of the image (image_cells.h), in the directions in which they move the
+/// plane. window: width and height of the corners' windows, pixels.
+Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                                 const PlaneFit& fit, int window, double bias_stddev);
+
+}  // namespace uav_landing

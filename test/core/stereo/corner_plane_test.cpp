@@ -1,0 +1,110 @@
+#include "stereo/corner_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "image/image_cells.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kBias = 0.02, kNoise = 0.05;  // pixels
+constexpr int kWindow = 11;
+
+StereoRig rig() {
+  StereoRig rig;
+  rig.size = {640, 480};
+  rig.fx = rig.fy = 500;
+  rig.cx = rig.cx_right = 320;
+  rig.cy = 240;
+  rig.baseline = 0.5;
+  return rig;
+}
+
+const Eigen::Vector3d kPlane(0, 0.1, 0.01);
+
+PlaneLimits limits() { return {0.5, 0.5, 20, 0.6}; }
+
+/// Corners on a lattice, farther from each other than windows are wide.
+std::vector<DisparitySample> corners(std::mt19937& random, double step, double common) {
+  std::normal_distribution<double> normal;
+  std::array<double, kImageCells> shared{};
+  for (double& error : shared) error = common * normal(random);
+  std::vector<DisparitySample> samples;
+  for (double v = 260; v < 470; v += step)
+    for (double u = 20; u < 620; u += step) {
+      const double disparity = rig().fb() * kPlane.dot(rig().ray(u, v));
+      samples.push_back({u, v, kNoise, disparity + kNoise * normal(random) + shared[imageCell(rig(), u, v)]});
+    }
+  return samples;
+}
+
+/// Covariance of the plane vectors fitted, and the mean of what is claimed, both without the bias; with what
+/// corners share or without it.
+struct Scatter {
+  Eigen::Matrix3d real = Eigen::Matrix3d::Zero(), claimed = real, with_shared = real;
+};
+Scatter scatter(double step, double common) {
+  constexpr int kTimes = 300;
+  std::mt19937 random(1);
+  Scatter result;
+  for (int i = 0; i < kTimes; ++i) {
+    const std::vector<DisparitySample> samples = corners(random, step, common);
+    const PlaneFit fit = fitCorners(rig(), samples, limits(), kBias).value();
+    const Eigen::Vector3d error = fit.plane.g - kPlane;
+    Eigen::Matrix3d claimed = fit.plane.covariance;
+    claimed(2, 2) -= std::pow(kBias / rig().fb(), 2);
+    result.real += error * error.transpose() / kTimes;
+    result.claimed += claimed / kTimes;
+    result.with_shared += (claimed + sharedCovariance(rig(), samples, fit, kWindow, kBias)) / kTimes;
+  }
+  return result;
+}
+
+TEST(CornerPlane, IndependentErrorsAreClaimedOnce) {
+  const Scatter found = scatter(20, 0);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_GT(found.claimed(i, i), 0.9 * found.real(i, i)) << i;
+    EXPECT_LT(found.claimed(i, i), 1.5 * found.real(i, i)) << i;
+    EXPECT_GE(found.with_shared(i, i), found.claimed(i, i)) << i;
+    EXPECT_LT(found.with_shared(i, i), 2.2 * found.real(i, i)) << i;  // some of it is there by chance
+  }
+}
+
+TEST(CornerPlane, ErrorsOfPartsOfTheImageAreClaimed) {
+  const Scatter found = scatter(20, kNoise);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_LT(found.claimed(i, i), 0.5 * found.real(i, i)) << i;
+    EXPECT_GT(found.with_shared(i, i), 0.5 * found.real(i, i)) << i;  // a dozen parts tell three unknowns
+    EXPECT_LT(found.with_shared(i, i), 1.5 * found.real(i, i)) << i;
+  }
+}
+
+TEST(CornerPlane, WindowsThatOverlapAreClaimedFor) {
+  std::mt19937 random(2);
+  const std::vector<DisparitySample> samples = corners(random, 5.5, 0);  // half of them
+  const PlaneFit fit = fitCorners(rig(), samples, limits(), kBias).value();
+  Eigen::Matrix3d own = fit.plane.covariance;
+  own(2, 2) -= std::pow(kBias / rig().fb(), 2);
+  const Eigen::Matrix3d shared = sharedCovariance(rig(), samples, fit, kWindow, kBias);
+  const Eigen::Matrix3d without = sharedCovariance(rig(), samples, fit, 1, kBias);
+  // Of one on a lattice of half a window's width: itself, four beside it by half, four aslant by a quarter.
+  const double factor = 1 + 4.0 / 2 + 4.0 / 4;
+  EXPECT_NEAR((shared - without).trace() / own.trace(), factor - 1, 0.1);
+}
+
+TEST(CornerPlane, SaysThatThereIsNone) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anything(1, 60);
+  std::vector<DisparitySample> samples = corners(random, 20, 0);
+  for (DisparitySample& sample : samples) sample.disparity = anything(random);
+  const Expected<PlaneFit> fit = fitCorners(rig(), samples, limits(), kBias);
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().reason, Reason::kNoPlane);
+}
+
+}  // namespace
+}  // namespace uav_landing
