@@ -135,7 +135,7 @@ TEST(ParameterFile, DefaultsLieWithinTheirOwnRanges) {
 }
 
 TEST(ParameterFile, ShippedPresetsLoad) {
-  for (const char* name : {"stereo", "paper"}) {
+  for (const char* name : {"stereo", "fast", "paper"}) {
     const auto parameters =
         loadParameterFile(std::string(UAV_LANDING_SOURCE_DIR "/config/") + name + ".yaml");
     EXPECT_TRUE(parameters) << parameters.error().message();
