@@ -39,6 +39,8 @@ TEST_P(BentGround, HeightIsTheClearanceStraightBelow) {
   for (int i = 0; i < simulator.frames(); ++i) {
     const ApproachSimulator::Frame frame = simulator.frame(i);
     const StereoDepthResult result = stage.process(frame.time, frame.left, frame.right);
+    // Corners alone are believed with the second pair.
+    if (i == 0 && !direct) continue;
     ASSERT_FALSE(result.failure) << result.failure.message();
     ASSERT_TRUE(result.below.valid());
     EXPECT_NEAR(result.below.height(), frame.truth.height, 3 * std::sqrt(result.below.heightVariance())) << i;

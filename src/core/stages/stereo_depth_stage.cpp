@@ -123,11 +123,11 @@ struct StereoDepthStage::Implementation {
     refine(*start, result);
     if (result.failure || (direct && refineDirectly(left_image, right_image, result))) return;
     keepCorners(result);
-    if (direct && result.from_search) waitForNextPair(result);
+    if (result.from_search) waitForNextPair(result);
   }
 
-  // A search finds some plane in nothing but noise, too. One that the images' alignment does not bear out
-  // counts when the next pair's is there as well.
+  // A search finds some plane in nothing but noise, too. One that no alignment of the images bears out counts
+  // when the next pair's is there as well.
   void waitForNextPair(StereoDepthResult& result) {
     remember(result.plane.g);
     StereoDepthResult waiting;

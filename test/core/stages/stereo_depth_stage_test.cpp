@@ -239,10 +239,13 @@ TEST(StereoDepthStage, BelievesAPlaneThatOnlyCornersFoundWhenTheNextPairHasItToo
   expectWaitingThenPose(3.5, "after long darkness");
 }
 
-TEST(StereoDepthStage, BelievesCornersAloneAtOnceWithoutDirectRefinement) {
+TEST(StereoDepthStage, BelievesASearchWithoutDirectRefinementWithTheNextPair) {
   Scene scene(18);
   scene.parameters.direct_refinement = false;
-  expectPose(scene.first(mostlyNoise(scene, 1.6)), makePose(1.6, -8, 0), "corners alone");
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  EXPECT_EQ(stage.process(1, pair.left, pair.right).failure.reason, Reason::kNotYet);
+  expectPose(stage.process(1.1, pair.left, pair.right), makePose(1.6, -8, 0), "the next pair");
 }
 
 TEST(StereoDepthStage, NamesUniformBlackAndSaturatedImages) {
