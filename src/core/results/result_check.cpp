@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "geometry/bias_variance.h"
 
 namespace uav_landing {
 namespace {
@@ -134,7 +135,7 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return "plane_covariance: not a covariance of this plane";
   if (!isShare(result.row_covariance, result.plane.covariance))
     return "plane_row_covariance: not a part of plane_covariance";
-  const double bias = std::pow(result.disparity_bias_stddev / rig.fb(), 2);
+  const double bias = biasVariance(rig, result.disparity_bias_stddev);
   const double with_bias = result.plane.covariance(2, 2);
   if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))
     return text("disparity_bias_stddev: ", result.disparity_bias_stddev,

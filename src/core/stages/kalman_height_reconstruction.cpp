@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "geometry/bias_variance.h"
 #include "rig/pair_skew.h"
 #include "uav_landing/height/reconstruction.h"
 #include "uav_landing/rig/rig_rotation.h"
@@ -194,7 +195,7 @@ void KalmanHeightStage::findPlane(const GroundPlane& measured, const StereoDepth
   Eigen::Matrix3d& common = reconstruction.common;
   plane = measured;
   common = stereo.row_covariance;
-  common(2, 2) += std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  common(2, 2) += biasVariance(rig_, stereo.disparity_bias_stddev);
   reconstruction.alone = plane;
   reconstruction.alone_common = common;
   if (parameters_.rig_watch) return watchRig(stereo, approach, reconstruction);
@@ -263,7 +264,7 @@ void KalmanHeightStage::watchRig(const StereoDepthResult& stereo, const Approach
   if (!rig_change_.doubts(stereo.vertical_rotation)) rig_rotation_.updateVertical(stereo.vertical_rotation);
   // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
   GroundPlane without = reconstruction.plane;
-  without.covariance(2, 2) -= std::pow(stereo.disparity_bias_stddev / rig_.fb(), 2);
+  without.covariance(2, 2) -= biasVariance(rig_, stereo.disparity_bias_stddev);
   const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);
   const RigRotation rotation = rig_rotation_.rotation();
   if (rotation.known()) {

@@ -36,13 +36,11 @@ struct StereoDepthStage::Implementation {
   RigModel model;
   StereoDepthParameters parameters;
   PlaneLimits limits;
-  int corner_count, window;  // window: width and height of the corners', pixels
+  int corner_count;
   StereoLevel fine, coarse;
   MatchImage left, right;
   RowAlignment rows;
-  cv::Mat level_fine, level_coarse;      // right images with their rows made level
-  std::vector<DisparitySample> samples;  // of the corners
-  PlaneFit corner_fit;                   // to them
+  cv::Mat level_fine, level_coarse;  // right images with their rows made level
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
@@ -58,7 +56,6 @@ struct StereoDepthStage::Implementation {
       : model(rig),
         parameters(p),
         corner_count(cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
-        window(2 * p.window_radius + 1),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
     limits = {p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance};
     fine.rig = rig.rig;
@@ -88,6 +85,9 @@ struct StereoDepthStage::Implementation {
     }
     return result;
   }
+
+  // Width and height of corners' windows, pixels.
+  int window() const { return 2 * parameters.window_radius + 1; }
 
   // For the next pair to follow.
   void remember(const Eigen::Vector3d& g) {
@@ -120,9 +120,9 @@ struct StereoDepthStage::Implementation {
       return;
     }
     extend(groundRows(*start, 0));
-    refine(*start, result);
+    const MatchedCorners corners = matchedCorners(*start, result);
     if (result.failure || (direct && refineDirectly(left_image, right_image, result))) return;
-    keepCorners(result);
+    keepPlaneOf(corners, result);
     if (result.from_search) waitForNextPair(result);
   }
 
@@ -216,8 +216,10 @@ struct StereoDepthStage::Implementation {
     return findGroundCorners(fine, g, corner_count, parameters);
   }
 
-  void refine(const Eigen::Vector3d& start, StereoDepthResult& result) {
+  // With their plane, unless the result says why there is none.
+  MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
     std::vector<cv::Point> corners;
+    MatchedCorners matched;
     {
       ScopedTimer timer(timings, "harris_corners");
       corners = cornersOn(start);
@@ -227,38 +229,36 @@ struct StereoDepthStage::Implementation {
     if (result.from_search && rows.search(fine, corners, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
-      samples = matchCorners(fine, corners, start, parameters);
+      matched.samples = matchCorners(fine, corners, start, parameters);
     }
-    fit(result);
-    measureRows(corners, result);
+    fit(matched, result);
+    measureRows(corners, matched.samples, result);
+    return matched;
   }
 
-  void fit(StereoDepthResult& result) {
+  void fit(MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
+    const std::vector<DisparitySample>& samples = corners.samples;
     for (const DisparitySample& sample : samples)
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
-    if (static_cast<int>(samples.size()) < parameters.min_points) {
-      const bool few_corners = result.corners < parameters.min_points;
-      result.failure = {few_corners ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
-                        std::to_string(samples.size()) + " matches of " + std::to_string(result.corners) +
-                            " corners, at least " + std::to_string(parameters.min_points) + " needed"};
-      return;
-    }
-    Expected<PlaneFit> plane = fitCorners(model.rig, samples, limits, parameters.disparity_bias_stddev);
+    Expected<PlaneFit> plane =
+        fitCorners(model.rig, samples, result.corners, limits, parameters.disparity_bias_stddev);
     if (!plane) {
       result.failure = plane.error();
       return;
     }
-    corner_fit = std::move(*plane);
-    result.plane = corner_fit.plane;
-    result.residual_stddev = corner_fit.residual_stddev;
-    result.surface_variance = surfaceVariance(model.rig, samples, corner_fit, window);
-    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = corner_fit.agrees[i] != 0;
+    corners.fit = std::move(*plane);
+    const PlaneFit& fit = corners.fit;
+    result.plane = fit.plane;
+    result.residual_stddev = fit.residual_stddev;
+    result.surface_variance = surfaceVariance(model.rig, samples, fit, window());
+    for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = fit.agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
     result.row_bias_stddev = parameters.row_bias_stddev;
   }
 
-  void measureRows(const std::vector<cv::Point>& corners, StereoDepthResult& result) {
+  void measureRows(const std::vector<cv::Point>& corners, const std::vector<DisparitySample>& samples,
+                   StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     if (result.failure) return;
     const RowAlignment::Measured measured = rows.measure(fine, corners, samples, result.plane.g);
@@ -300,11 +300,10 @@ struct StereoDepthStage::Implementation {
     return true;
   }
 
-  // Their plane is the pair's.
-  void keepCorners(StereoDepthResult& result) {
+  void keepPlaneOf(const MatchedCorners& corners, StereoDepthResult& result) {
     result.plane.covariance +=
-        sharedCovariance(model.rig, samples, corner_fit, window, parameters.disparity_bias_stddev);
-    bend(samples, corner_fit, result.plane.covariance - corner_fit.plane.covariance, result);
+        sharedCovariance(model.rig, corners, window(), parameters.disparity_bias_stddev);
+    bend(corners.samples, corners.fit, result.plane.covariance - corners.fit.plane.covariance, result);
   }
 
   // flat: fit to the samples. besides: what these do not know of the covariance.

@@ -1,9 +1,9 @@
 #include "stereo/corner_plane.h"
 
 #include <Eigen/LU>
-#include <cmath>
 #include <string>
 
+#include "geometry/bias_variance.h"
 #include "image/image_cells.h"
 #include "image/window_overlap.h"
 #include "uav_landing/stereo/plane_consensus.h"
@@ -38,9 +38,15 @@ double overlapFactor(const std::vector<DisparitySample>& samples, const PlaneFit
 
 }  // namespace
 
-Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
                               const PlaneLimits& limits, double bias_stddev) {
   constexpr int kTrials = 200;
+  if (static_cast<int>(samples.size()) < limits.min_points) {
+    return tl::make_unexpected(
+        Failure{corners < limits.min_points ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
+                std::to_string(samples.size()) + " matches of " + std::to_string(corners) +
+                    " corners, at least " + std::to_string(limits.min_points) + " needed"});
+  }
   const Consensus consensus = findPlane(rig, samples, limits, kTrials, nullptr, true);
   if (!consensus.found) {
     return tl::make_unexpected(Failure{
@@ -49,8 +55,9 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
   return refinePlane(rig, samples, consensus.g, limits, bias_stddev);
 }
 
-Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                                 const PlaneFit& fit, int window, double bias_stddev) {
+Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,
+                                 double bias_stddev) {
+  const auto& [samples, fit] = corners;
   const Eigen::Matrix3d independent = independentCovariance(rig, samples, fit);
   ClusterCovariance<3> parts;
   for (size_t i = 0; i < samples.size(); ++i) {
@@ -61,7 +68,7 @@ Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const std::vector<Dispari
               independent * row * (residual / (samples[i].stddev * samples[i].stddev)));
   }
   Eigen::Matrix3d own = fit.plane.covariance;
-  own(2, 2) -= std::pow(bias_stddev / rig.fb(), 2);
+  own(2, 2) -= biasVariance(rig, bias_stddev);
   return (overlapFactor(samples, fit, window) - 1) * own + parts.shared();
 }
 

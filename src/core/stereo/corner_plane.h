@@ -7,15 +7,21 @@
 
 namespace uav_landing {
 
-/// The plane that most disparities of corners agree on, fitted to these. bias_stddev: as for refinePlane.
-/// Fails when there is none.
-Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+/// What the corners of a pair say.
+struct MatchedCorners {
+  std::vector<DisparitySample> samples;
+  PlaneFit fit;  ///< the plane of most of them, where there is one
+};
+
+/// The plane that most disparities of corners agree on, fitted to these. corners: that were looked for.
+/// bias_stddev: as for refinePlane. Fails when there are too few, or no plane.
+Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
                               const PlaneLimits& limits, double bias_stddev);
 
 /// What the covariance of that plane leaves out, 1/m^2: noise of pixels that several windows are of, and
 /// errors that are alike in a part of the image (image_cells.h), in the directions in which they move the
 /// plane. window: width and height of the corners' windows, pixels.
-Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                                 const PlaneFit& fit, int window, double bias_stddev);
+Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,
+                                 double bias_stddev);
 
 }  // namespace uav_landing

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/bias_variance.h"
 #include "stereo/pair_disparities.h"
 #include "stereo/sample_stddevs.h"
 #include "uav_landing/results/stage_results.h"
@@ -120,8 +121,8 @@ struct DirectRefinement::Implementation {
     }
     const Eigen::Matrix3d plane_by_rows = by_plane.inverse() * mixed;
     // Residuals that are larger than claimed, or alike, tell the rows the worse, as they tell the plane.
-    const Eigen::Vector3d bias = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
-    const Eigen::Matrix3d own = fit.plane.covariance - bias * bias.transpose();
+    Eigen::Matrix3d own = fit.plane.covariance;
+    own(2, 2) -= biasVariance(rig, bias_stddev);
     const double inflation = std::max(1.0, (by_plane * own).trace() / 3);
     edges.add((by_rows - mixed.transpose() * plane_by_rows) / inflation,
               (rows_right - plane_by_rows.transpose() * plane_right) / inflation, about);

@@ -12,6 +12,7 @@
 #include "base/median.h"
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
+#include "geometry/bias_variance.h"
 
 namespace uav_landing {
 namespace {
@@ -205,10 +206,10 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
   fit.plane.g = g;
-  const Eigen::Vector3d common = Eigen::Vector3d::UnitZ() * (bias_stddev / rig.fb());
   const Eigen::Matrix3d information = sums.information / (scale * scale);
   const double inflation = clusterInflation(rig, samples, problem, g, fit.agrees, scale, information);
-  fit.plane.covariance = inflation * information.inverse() + common * common.transpose();
+  fit.plane.covariance = inflation * information.inverse();
+  fit.plane.covariance(2, 2) += biasVariance(rig, bias_stddev);
   return fit;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/order_statistic.h"
+#include "geometry/bias_variance.h"
 #include "stereo/profile_samples.h"
 
 namespace uav_landing {
@@ -185,7 +186,7 @@ class ProfileFit {
   /// By how much the covariance of the plane is larger than independent errors would make it.
   double noise(double bias_stddev) const {
     Eigen::Matrix3d random = plane_.plane.covariance;
-    random(2, 2) -= std::pow(bias_stddev / rig_.fb(), 2);
+    random(2, 2) -= biasVariance(rig_, bias_stddev);
     return std::max(1.0, (random * to_plane_).trace() / 3);
   }
 

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <random>
+#include <utility>
 
+#include "geometry/bias_variance.h"
 #include "image/image_cells.h"
+#include "support/rigs.h"
 
 namespace uav_landing {
 namespace {
@@ -14,15 +16,7 @@ namespace {
 constexpr double kBias = 0.02, kNoise = 0.05;  // pixels
 constexpr int kWindow = 11;
 
-StereoRig rig() {
-  StereoRig rig;
-  rig.size = {640, 480};
-  rig.fx = rig.fy = 500;
-  rig.cx = rig.cx_right = 320;
-  rig.cy = 240;
-  rig.baseline = 0.5;
-  return rig;
-}
+StereoRig rig() { return test::usualRig(); }
 
 const Eigen::Vector3d kPlane(0, 0.1, 0.01);
 
@@ -42,6 +36,18 @@ std::vector<DisparitySample> corners(std::mt19937& random, double step, double c
   return samples;
 }
 
+MatchedCorners fitted(std::vector<DisparitySample> samples) {
+  PlaneFit fit = fitCorners(rig(), samples, static_cast<int>(samples.size()), limits(), kBias).value();
+  return {std::move(samples), std::move(fit)};
+}
+
+/// Of the plane without the bias.
+Eigen::Matrix3d ownCovariance(const PlaneFit& fit) {
+  Eigen::Matrix3d own = fit.plane.covariance;
+  own(2, 2) -= biasVariance(rig(), kBias);
+  return own;
+}
+
 /// Covariance of the plane vectors fitted, and the mean of what is claimed, both without the bias; with what
 /// corners share or without it.
 struct Scatter {
@@ -52,14 +58,12 @@ Scatter scatter(double step, double common) {
   std::mt19937 random(1);
   Scatter result;
   for (int i = 0; i < kTimes; ++i) {
-    const std::vector<DisparitySample> samples = corners(random, step, common);
-    const PlaneFit fit = fitCorners(rig(), samples, limits(), kBias).value();
-    const Eigen::Vector3d error = fit.plane.g - kPlane;
-    Eigen::Matrix3d claimed = fit.plane.covariance;
-    claimed(2, 2) -= std::pow(kBias / rig().fb(), 2);
+    const MatchedCorners found = fitted(corners(random, step, common));
+    const Eigen::Vector3d error = found.fit.plane.g - kPlane;
+    const Eigen::Matrix3d claimed = ownCovariance(found.fit);
     result.real += error * error.transpose() / kTimes;
     result.claimed += claimed / kTimes;
-    result.with_shared += (claimed + sharedCovariance(rig(), samples, fit, kWindow, kBias)) / kTimes;
+    result.with_shared += (claimed + sharedCovariance(rig(), found, kWindow, kBias)) / kTimes;
   }
   return result;
 }
@@ -85,15 +89,12 @@ TEST(CornerPlane, ErrorsOfPartsOfTheImageAreClaimed) {
 
 TEST(CornerPlane, WindowsThatOverlapAreClaimedFor) {
   std::mt19937 random(2);
-  const std::vector<DisparitySample> samples = corners(random, 5.5, 0);  // half of them
-  const PlaneFit fit = fitCorners(rig(), samples, limits(), kBias).value();
-  Eigen::Matrix3d own = fit.plane.covariance;
-  own(2, 2) -= std::pow(kBias / rig().fb(), 2);
-  const Eigen::Matrix3d shared = sharedCovariance(rig(), samples, fit, kWindow, kBias);
-  const Eigen::Matrix3d without = sharedCovariance(rig(), samples, fit, 1, kBias);
+  const MatchedCorners found = fitted(corners(random, 5.5, 0));  // half of a window from each other
+  const Eigen::Matrix3d shared = sharedCovariance(rig(), found, kWindow, kBias);
+  const Eigen::Matrix3d without = sharedCovariance(rig(), found, 1, kBias);
   // Of one on a lattice of half a window's width: itself, four beside it by half, four aslant by a quarter.
   const double factor = 1 + 4.0 / 2 + 4.0 / 4;
-  EXPECT_NEAR((shared - without).trace() / own.trace(), factor - 1, 0.1);
+  EXPECT_NEAR((shared - without).trace() / ownCovariance(found.fit).trace(), factor - 1, 0.1);
 }
 
 TEST(CornerPlane, SaysThatThereIsNone) {
@@ -101,9 +102,13 @@ TEST(CornerPlane, SaysThatThereIsNone) {
   std::uniform_real_distribution<double> anything(1, 60);
   std::vector<DisparitySample> samples = corners(random, 20, 0);
   for (DisparitySample& sample : samples) sample.disparity = anything(random);
-  const Expected<PlaneFit> fit = fitCorners(rig(), samples, limits(), kBias);
-  ASSERT_FALSE(fit);
-  EXPECT_EQ(fit.error().reason, Reason::kNoPlane);
+  const auto reason = [&](int corners) {
+    return fitCorners(rig(), samples, corners, limits(), kBias).error().reason;
+  };
+  EXPECT_EQ(reason(500), Reason::kNoPlane);
+  samples.resize(19);
+  EXPECT_EQ(reason(500), Reason::kTooFewMatches);
+  EXPECT_EQ(reason(19), Reason::kTooFewFeatures);
 }
 
 }  // namespace
