@@ -61,15 +61,17 @@ struct Kinked {
   }
 };
 
+/// Along axes where the samples tell each coordinate by itself, in which a curvature with a variance of 1
+/// 1/m^2 is as likely in all directions.
 struct Bend {
-  Kinks mean = Kinks::Zero();  // changes of slope at the kinks
+  Kinks mean = Kinks::Zero();
   KinkMatrix covariance = KinkMatrix::Zero();
 };
 
 /// What may be there besides a plane: a surface with some variance of its curvature.
 struct Alternative {
-  double log = 0;  // of its likelihood ratio
-  Bend bend;
+  double log = 0;         // of its likelihood ratio
+  Kinks mean, variances;  // of the bend
 };
 using Alternatives = std::array<Alternative, kBendShares.size()>;
 
@@ -82,13 +84,13 @@ Bend mixture(const Alternatives& alternatives, double prior) {
   for (size_t i = 0; i < weights.size(); ++i)
     sum += weights[i] = prior * std::exp(alternatives[i].log - largest);
   Bend result;
-  KinkMatrix squares = KinkMatrix::Zero();
   for (size_t i = 0; i < weights.size(); ++i) {
-    const Bend& one = alternatives[i].bend;
+    const Alternative& one = alternatives[i];
     result.mean += weights[i] / sum * one.mean;
-    squares += weights[i] / sum * (one.covariance + one.mean * one.mean.transpose());
+    result.covariance += weights[i] / sum * one.mean * one.mean.transpose();
+    result.covariance.diagonal() += weights[i] / sum * one.variances;
   }
-  result.covariance = squares - result.mean * result.mean.transpose();
+  result.covariance -= result.mean * result.mean.transpose();
   return result;
 }
 
@@ -145,27 +147,34 @@ class ProfileFit {
     const Kinks right = right_kinks - mixed_left.transpose() * by_plane.solve(right_plane);
     // In coordinates of which nothing is known but that they have a stddev of the curvature's, each by
     // itself.
-    const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(kinks_->root.transpose() * information *
-                                                         kinks_->root);
-    values_ = axes.eigenvalues().cwiseMax(0.0);
-    axes_ = kinks_->root * axes.eigenvectors();
-    right_ = axes_.transpose() * right;
+    information_ = kinks_->root.transpose() * information * kinks_->root;
+    right_ = kinks_->root.transpose() * right;
   }
 
-  /// The mean of the bend alone. variance: of the curvature, 1/m^2.
-  Kinks meanBend(double variance) const { return axes_ * kept(variance).cwiseProduct(right_); }
+  /// Changes of slope at the kinks. variance: of the curvature, 1/m^2.
+  Kinks meanBend(double variance) const {
+    KinkMatrix information = information_;
+    information.diagonal().array() += 1 / variance;
+    return kinks_->root * information.llt().solve(right_);
+  }
 
   /// per_metre: variance of the curvature, 1/m^2, of which the alternatives have their shares.
-  Alternatives alternatives(double per_metre) const {
+  Alternatives alternatives(double per_metre) {
+    const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(information_);
+    to_kinks_ = kinks_->root * axes.eigenvectors();
+    const Kinks information = axes.eigenvalues().cwiseMax(0.0);
+    const Kinks right = axes.eigenvectors().transpose() * right_;
     Alternatives all;
     for (size_t i = 0; i < all.size(); ++i) {
       const double variance = kBendShares[i] * kBendShares[i] * per_metre;
-      all[i].log = evidence(variance);
-      all[i].bend.mean = meanBend(variance);
-      all[i].bend.covariance = axes_ * kept(variance).asDiagonal() * axes_.transpose();
+      all[i].log = evidence(variance, information, right);
+      all[i].variances = (1 / variance + information.array()).inverse();
+      all[i].mean = all[i].variances.cwiseProduct(right);
     }
     return all;
   }
+
+  Kinks changesOfSlope(const Bend& bend) const { return to_kinks_ * bend.mean; }
 
   /// Takes the bend off the disparities and fits the plane to what is left.
   bool flatten(const Kinks& bend, const PlaneLimits& limits, double bias_stddev) {
@@ -193,19 +202,19 @@ class ProfileFit {
   SurfaceProfile profile(const Bend& bend) const {
     SurfaceProfile result;
     result.below = plane_.plane;
-    result.below.covariance += plane_by_kinks_ * bend.covariance * plane_by_kinks_.transpose();
-    result.curvature = bend.mean.sum() / kinks_->farthest;
-    result.curvature_variance = bend.covariance.sum() / std::pow(kinks_->farthest, 2);
+    const Eigen::Matrix<double, 3, kKinks> plane_by_bend = plane_by_kinks_ * to_kinks_;
+    result.below.covariance += plane_by_bend * bend.covariance * plane_by_bend.transpose();
+    const Kinks curvature = to_kinks_.colwise().sum() / kinks_->farthest;
+    result.curvature = curvature.dot(bend.mean);
+    result.curvature_variance = curvature.dot(bend.covariance * curvature);
     return result;
   }
 
  private:
-  Kinks kept(double variance) const { return (1 / variance + values_.array()).inverse(); }
-
   /// Log of the likelihood ratio of a surface with that variance against a flat one.
-  double evidence(double variance) const {
-    const Eigen::Array<double, kKinks, 1> gain = 1 + variance * values_.array();
-    return 0.5 * (variance * right_.array().square() / gain - gain.log()).sum();
+  static double evidence(double variance, const Kinks& information, const Kinks& right) {
+    const Eigen::Array<double, kKinks, 1> gain = 1 + variance * information.array();
+    return 0.5 * (variance * right.array().square() / gain - gain.log()).sum();
   }
 
   /// By the plane through all of them.
@@ -248,8 +257,9 @@ class ProfileFit {
   Eigen::Matrix3d to_plane_;
   Eigen::Matrix<double, 3, kKinks> plane_by_kinks_;
   Eigen::Matrix<double, kWaves, kWaves> wave_information_;
-  KinkMatrix axes_;
-  Kinks values_, right_;
+  KinkMatrix information_;  // of the changes of slope, in coordinates of root
+  Kinks right_;
+  KinkMatrix to_kinks_;  // from a bend's axes
 };
 
 }  // namespace
@@ -274,7 +284,7 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   const Bend possible = mixture(alternatives, kBendChance);
   const Kinks missed = possible.mean - bend.mean;
   bend.covariance = possible.covariance + missed * missed.transpose();
-  if (!fit.flatten(bend.mean, limits, bias_stddev)) return std::nullopt;
+  if (!fit.flatten(fit.changesOfSlope(bend), limits, bias_stddev)) return std::nullopt;
   return fit.profile(bend);
 }
 
