@@ -13,9 +13,9 @@ SIGMAS_95 = 1.959964
 NOISE, HEIGHTS = (1, 2, 5), (3, 10, 30)
 # name, unit, the flag that must be set for the value to be used
 QUANTITIES = (("height", "m", "height_valid"), ("approach_angle", "deg", "angle_valid"), ("pitch", "deg", "height_valid"),
-              ("roll", "deg", "height_valid"), ("y", "m", "height_valid"))
-TITLES = {"height": "height", "approach_angle": "approach angle", "pitch": "pitch", "roll": "roll", "y": "lateral"}
-OVER_FLAT = ("approach_angle", "pitch", "roll")
+              ("roll", "deg", "height_valid"), ("y", "m", "height_valid"), ("speed", "m_s", "height_valid"))
+TITLES = {"height": "height", "approach_angle": "approach angle", "pitch": "pitch", "roll": "roll", "y": "lateral", "speed": "speed"}
+OVER_FLAT = ("approach_angle", "pitch", "roll", "speed")
 IMAGE = ROOT / "docs/images/consistency.png"
 TEXT = """{count} snippets for each noise and height, of {frames} frames at 20 Hz and drawn like the approaches above, one sample
 each: the last frame. Every snippet has another scene and path, and other errors of calibration, drawn from what the
@@ -29,8 +29,9 @@ the valid ones; *n* is the number of them for what follows.
 Height is that over ground that bends by as much and as often as the estimator is told to expect: flat in 60 of 100 snippets,
 in 10 each with one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma),
 somewhere from 100 m behind the aircraft to 300 m ahead. The others are over flat ground, *n* of them, as pitch, roll and angle
-are against the surface ahead, which has no one direction where it bends; one column shows the height there, which must be
-found too cautious: from 30 m most of its claim is for a bend between the ground seen and the ground below.
+are against the surface ahead, which has no one direction where it bends, and the speed is that along the path of the last step;
+one column shows the height there, which must be found too cautious: from 30 m most of its claim is for a bend between the ground
+seen and the ground below.
 
 Roll is claimed a little too cautiously at 10 m: most of what pairs of a second have in common is what rows may be off by (up to
 8° of roll for a pixel), and a row of a single match is claimed to 0.04 px at best, of which the simulator's lenses, which have
@@ -113,7 +114,7 @@ def plot(cells):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
-    figure, axes = plt.subplots(2, len(QUANTITIES), figsize=(15, 5.5), sharex=True, sharey="row")
+    figure, axes = plt.subplots(2, len(QUANTITIES), figsize=(17, 5.5), sharex=True, sharey="row")
     labels = [f"{cell['height']} m, {cell['noise']}" for cell in cells]
     for column, (name, _, _) in enumerate(QUANTITIES):
         upper, lower = axes[0][column], axes[1][column]

@@ -185,9 +185,13 @@ struct LandingResult {
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
-  Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);  ///< left camera frame, m/s
-  double innovation = kUnknown, innovation_variance = kUnknown;    ///< of the raw height
-  bool rejected = false;                                           ///< the raw height failed the gate
+  /// Mean of the last step, left camera frame now, m/s, m^2/s^2.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  double speed() const { return velocity.norm(); }               ///< along the path, m/s
+  double speedVariance() const;                                  ///< m^2/s^2
+  double innovation = kUnknown, innovation_variance = kUnknown;  ///< of the raw height
+  bool rejected = false;                                         ///< the raw height failed the gate
   int consecutive_rejections = 0;
   int resets = 0;                             ///< filter resets since start
   RigRotation rig_rotation;                   ///< unknown when rig_watch is off

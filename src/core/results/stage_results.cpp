@@ -16,4 +16,8 @@ const char* toString(Status status) {
   return "unknown";
 }
 
+double LandingResult::speedVariance() const {
+  return velocity.dot(velocity_covariance * velocity) / velocity.squaredNorm();
+}
+
 }  // namespace uav_landing

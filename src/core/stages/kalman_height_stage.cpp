@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "height/attitude.h"
+#include "height/camera_velocity.h"
 #include "height/vertical_speed.h"
 #include "uav_landing/height/height_limit.h"
 #include "uav_landing/height/reconstruction.h"
@@ -68,9 +69,10 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, stereo.left_repeated, result);
-  if (!approach.step.failure)
-    result.velocity = approach.step.translation_over_height * (result.height - reconstruction.bend) /
-                      approach.step.duration;
+  const CameraVelocity velocity = cameraVelocity(approach.step, result.height - reconstruction.bend,
+                                       result.height_variance, stamps_.ofDuration());
+  result.velocity = velocity.mean;
+  result.velocity_covariance = velocity.covariance;
   {
     const ScopedTimer timer(timings_, "runway_filter");
     Eigen::Vector3d n = approach.n;

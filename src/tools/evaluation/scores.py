@@ -18,9 +18,10 @@ QUANTITIES = (
     ("y", "y_m", "y_m", "m"),
     ("foe_u", "foe_u_px", "foe_u_px", "px"),
     ("foe_v", "foe_v_px", "foe_v_px", "px"),
+    ("speed", "speed_m_s", "speed_m_s", "m/s"),
 )
 CLAIMED = {"height": "height_stddev_m", "approach_angle": "approach_angle_stddev_deg", "x": "x_stddev_m",
-           "y": "y_stddev_m"}
+           "y": "y_stddev_m", "speed": "speed_stddev_m_s"}
 
 
 def statistics(error, unit):

@@ -17,8 +17,8 @@ const char* const kHeader =
     "raw_approach_angle_deg,raw_approach_angle_stddev_deg,"
     "pitch_true_deg,pitch_deg,pitch_stddev_deg,roll_true_deg,roll_deg,roll_stddev_deg,"
     "yaw_true_deg,yaw_deg,yaw_stddev_deg,x_true_m,x_m,x_stddev_m,y_true_m,y_m,y_stddev_m,"
-    "stretch,bend_rx_deg,bend_ry_deg,bend_rz_deg,lens_rows_px,lens_tilt_deg,slope_change_deg,speed_m_s,"
-    "runway_width_m";
+    "stretch,bend_rx_deg,bend_ry_deg,bend_rz_deg,lens_rows_px,lens_tilt_deg,slope_change_deg,"
+    "speed_true_m_s,speed_m_s,speed_stddev_m_s,runway_width_m";
 
 /// Truth, estimate and the estimate's standard deviation in one unit.
 void quantity(CsvRow& row, double truth, double estimate, double variance, double unit) {
@@ -54,7 +54,8 @@ void CampaignCsv::write(const Sample& sample, const SimulatorParameters& drawn, 
   row.number(drawn.rig.bend_rx_deg).number(drawn.rig.bend_ry_deg).number(drawn.rig.bend_rz_deg);
   row.number(drawn.rig.lens_rows).number(drawn.rig.lens_tilt_deg);
   row.number(drawn.profile.slope_after_deg - drawn.profile.slope_before_deg);
-  row.number(truth.speed).number(drawn.runway.width);
+  quantity(row, truth.speed, landing.speed(), landing.speedVariance(), 1);
+  row.number(drawn.runway.width);
   file_ << '\n';
 }
 
