@@ -11,9 +11,10 @@ namespace uav_landing {
 /// What an autopilot may fuse: silent whenever there is nothing valid to say.
 ///
 /// Parameters: AutopilotParameters, which dynamic_reconfigure may change in flight, and the common ones of
-/// NodeParameters. Subscribes height (Range) and pose
-/// (PoseWithCovarianceStamped) of kalman_height. Publishes autopilot/range (Range, along the aircraft's down
-/// axis) and autopilot/pose (PoseWithCovarianceStamped, east-north-up), both with the image's stamp.
+/// NodeParameters. Subscribes height (Range), pose (PoseWithCovarianceStamped) and twist
+/// (TwistWithCovarianceStamped) of kalman_height. Publishes autopilot/range (Range, along the aircraft's down
+/// axis), autopilot/pose (PoseWithCovarianceStamped) and autopilot/velocity (TwistWithCovarianceStamped),
+/// both east-north-up; all with the image's stamp.
 class AutopilotNodelet : public StageNodelet {
  public:
   AutopilotNodelet() : StageNodelet("autopilot") {}
@@ -21,6 +22,9 @@ class AutopilotNodelet : public StageNodelet {
 
  private:
   using Inputs = Pairing<sensor_msgs::Range, geometry_msgs::PoseWithCovarianceStamped>;
+  // Apart, as pairs without a motion have a height and a pose all the same.
+  using Movements =
+      Pairing<geometry_msgs::TwistWithCovarianceStamped, geometry_msgs::PoseWithCovarianceStamped>;
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<AutopilotParameters>();
@@ -28,24 +32,33 @@ class AutopilotNodelet : public StageNodelet {
         getPrivateNodeHandle(), parameters_,
         [this](const AutopilotParameters& changed) { parameters_ = changed; });
     if (!headingKnown(parameters_))
-      NODELET_WARN("%s: sends the range alone and no pose: runway_heading_deg is not set", getName().c_str());
+      NODELET_WARN("%s: sends the range alone, no pose and no velocity: runway_heading_deg is not set",
+                   getName().c_str());
     pairing_ =
         std::make_unique<Inputs>(exactPairing(), resolved({"height", "pose"}),
                                  [this](const auto& height, const auto& pose) { work(*height, *pose); });
+    movements_ = std::make_unique<Movements>(
+        exactPairing(), resolved({"twist", "pose"}),
+        [this](const auto& twist, const auto& pose) { passVelocity(*twist, *pose); });
     // Under the names of this nodelet's namespace, to be remapped as a whole.
     range_publisher_ = getNodeHandle().advertise<sensor_msgs::Range>("autopilot/range", kStageQueue);
     pose_publisher_ =
         getNodeHandle().advertise<geometry_msgs::PoseWithCovarianceStamped>("autopilot/pose", kStageQueue);
+    velocity_publisher_ = getNodeHandle().advertise<geometry_msgs::TwistWithCovarianceStamped>(
+        "autopilot/velocity", kStageQueue);
   }
 
   bool wanted() const override { return true; }
   void subscribe() override {
     feed<0, sensor_msgs::Range>("height", *pairing_, subscribers_);
     feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *pairing_, subscribers_);
+    feed<0, geometry_msgs::TwistWithCovarianceStamped>("twist", *movements_, subscribers_);
+    feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *movements_, subscribers_);
   }
   void unsubscribe() override {
     subscribers_.clear();
     pairing_->reset();
+    movements_->reset();
   }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
@@ -75,12 +88,20 @@ class AutopilotNodelet : public StageNodelet {
       last_reason_ = missing;
   }
 
+  void passVelocity(const geometry_msgs::TwistWithCovarianceStamped& twist,
+                    const geometry_msgs::PoseWithCovarianceStamped& pose) {
+    if (!velocity_rate_.passes(twist.header.stamp, parameters_.max_rate)) return;
+    const auto velocity = autopilotVelocity(twist, pose, parameters_);
+    if (velocity) velocity_publisher_.publish(*velocity);
+  }
+
   AutopilotParameters parameters_;
   std::unique_ptr<ReconfigureServer<AutopilotParameters>> reconfigure_;
   std::unique_ptr<Inputs> pairing_;
+  std::unique_ptr<Movements> movements_;
   std::vector<ros::Subscriber> subscribers_;
-  ros::Publisher range_publisher_, pose_publisher_;
-  RateLimit rate_;
+  ros::Publisher range_publisher_, pose_publisher_, velocity_publisher_;
+  RateLimit rate_, velocity_rate_;
   bool sent_lately_ = false;
   std::string last_reason_;  // why nothing was sent
 };

@@ -1,5 +1,3 @@
-#include <geometry_msgs/PoseWithCovarianceStamped.h>
-#include <sensor_msgs/Range.h>
 #include <tf2_eigen/tf2_eigen.h>
 #include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -13,6 +11,7 @@
 #include "body_pose.h"
 #include "conversions.h"
 #include "landing_markers.h"
+#include "landing_messages.h"
 #include "pairing.h"
 #include "pose_covariance.h"
 #include "rig_frames.h"
@@ -32,8 +31,9 @@ namespace uav_landing {
 /// the output; /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate
 /// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
 /// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
-/// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. markers
-/// (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
+/// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. twist
+/// (TwistWithCovarianceStamped), of the child in its own axes: while the height is valid and the motion
+/// known. markers (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
 class KalmanHeightNodelet : public StageNodelet {
  public:
   KalmanHeightNodelet() : StageNodelet("kalman_height") {}
@@ -46,7 +46,6 @@ class KalmanHeightNodelet : public StageNodelet {
 
  private:
   using Inputs = Pairing<StereoDepth, ApproachAngle, sensor_msgs::CameraInfo, sensor_msgs::CameraInfo>;
-  static constexpr double kMaxRange = 10000;  // m
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<KalmanHeightParameters>();
@@ -61,6 +60,7 @@ class KalmanHeightNodelet : public StageNodelet {
     estimate_publisher_ = advertise<LandingEstimate>(kLandingEstimate, kStageQueue);
     range_publisher_ = advertise<sensor_msgs::Range>("height", kStageQueue);
     pose_publisher_ = advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", kStageQueue);
+    twist_publisher_ = advertise<geometry_msgs::TwistWithCovarianceStamped>("twist", kStageQueue);
     marker_publisher_ = advertise<visualization_msgs::MarkerArray>("markers", 1);
     broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
 
@@ -84,7 +84,8 @@ class KalmanHeightNodelet : public StageNodelet {
   bool wanted() const override {
     return node_.publish_tf ||
            estimate_publisher_.getNumSubscribers() + range_publisher_.getNumSubscribers() +
-                   pose_publisher_.getNumSubscribers() + marker_publisher_.getNumSubscribers() >
+                   pose_publisher_.getNumSubscribers() + twist_publisher_.getNumSubscribers() +
+                   marker_publisher_.getNumSubscribers() >
                0;
   }
   void subscribe() override {
@@ -195,7 +196,10 @@ class KalmanHeightNodelet : public StageNodelet {
     header.frame_id = node_.runway_frame;
     estimate_publisher_.publish(boost::make_shared<LandingEstimate>(
         toMessage(estimate, header, child.frame, stereo.skew, compute_ms)));
-    publishRange(estimate, stereo.header.stamp, child.frame);
+    range_publisher_.publish(heightMessage(estimate, stereo.header.stamp, child.frame));
+    const std::optional<BodyTwist> twist = bodyTwist(camera, step, rectified_from_child);
+    if (estimate.height_valid && twist)
+      twist_publisher_.publish(twistMessage(stereo.header.stamp, child.frame, *twist));
 
     const std::optional<RunwayPath::Position> place = path_.update(camera);
     const bool placed = place && estimate.height_valid;
@@ -204,7 +208,8 @@ class KalmanHeightNodelet : public StageNodelet {
       Eigen::Isometry3d runway_from_child = Eigen::Isometry3d::Identity();
       runway_from_child.linear() = runway_from_camera * rectified_from_child.linear();
       runway_from_child.translation() = place->position + runway_from_camera * lever_arm;
-      publishPose(header, runway_from_child, poseCovariance(camera, plane, lever_arm, place->variance));
+      pose_publisher_.publish(
+          poseMessage(header, runway_from_child, poseCovariance(camera, plane, lever_arm, place->variance)));
       if (child.may_broadcast) broadcast(header, child.frame, runway_from_child);
     }
     if (marker_publisher_.getNumSubscribers() > 0) {
@@ -218,27 +223,6 @@ class KalmanHeightNodelet : public StageNodelet {
                        path_.track(), path_.runwayWidth()));
     }
     return estimate;
-  }
-
-  void publishRange(const LandingResult& estimate, const ros::Time& stamp, const std::string& frame) {
-    const auto range = boost::make_shared<sensor_msgs::Range>();
-    range->header.stamp = stamp;
-    range->header.frame_id = frame;
-    range->radiation_type = sensor_msgs::Range::INFRARED;
-    range->min_range = 0;
-    range->max_range = kMaxRange;
-    range->range = static_cast<float>(estimate.height_valid ? estimate.height : kUnknown);
-    range_publisher_.publish(range);
-  }
-
-  void publishPose(const std_msgs::Header& header, const Eigen::Isometry3d& runway_from_child,
-                   const Matrix6d& covariance) {
-    const auto pose = boost::make_shared<geometry_msgs::PoseWithCovarianceStamped>();
-    pose->header = header;
-    pose->pose.pose = tf2::toMsg(runway_from_child);
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) pose->pose.covariance[6 * i + j] = covariance(i, j);
-    pose_publisher_.publish(pose);
   }
 
   void broadcast(const std_msgs::Header& header, const std::string& child_frame,
@@ -289,7 +273,7 @@ class KalmanHeightNodelet : public StageNodelet {
     const std::string child = stage_ ? frames_->find(left_frame_).frame : "";
     estimate_publisher_.publish(
         boost::make_shared<LandingEstimate>(toMessage(lost, header, child, kUnknown, 0)));
-    publishRange(lost, stamp, child);
+    range_publisher_.publish(heightMessage(lost, stamp, child));
     if (marker_publisher_.getNumSubscribers() > 0) {
       LandingScene scene = drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(),
                                        path_.track(), path_.runwayWidth());
@@ -314,7 +298,7 @@ class KalmanHeightNodelet : public StageNodelet {
   std::unique_ptr<Inputs> pairing_;
   std::vector<ros::Subscriber> subscribers_;
   ros::Subscriber tf_subscriber_, tf_static_subscriber_;
-  ros::Publisher estimate_publisher_, range_publisher_, pose_publisher_, marker_publisher_;
+  ros::Publisher estimate_publisher_, range_publisher_, pose_publisher_, twist_publisher_, marker_publisher_;
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;
   ros::WallTimer age_timer_;
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "cross_matrix.h"
+
 namespace uav_landing {
 namespace {
 
@@ -14,6 +16,7 @@ using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using CovarianceMap = Eigen::Map<const Covariance>;
 
 constexpr double kMinCosTilt = 0.5;
+constexpr double kMaxYawStddev = 0.1;  // rad; unknown before the runway is seen
 
 /// Of the up axis against the vertical.
 double cosTilt(const Eigen::Isometry3d& runway_from_aircraft) { return runway_from_aircraft.linear()(2, 2); }
@@ -23,6 +26,19 @@ double cosTilt(const geometry_msgs::PoseWithCovarianceStamped& pose) {
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
   return cosTilt(runway_from_aircraft);
+}
+
+// Angles count from east to the left, headings from north to the right.
+Eigen::Isometry3d enuFromRunway(const AutopilotParameters& parameters) {
+  const double angle = M_PI / 2 - parameters.runway_heading_deg * M_PI / 180;
+  return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+}
+
+/// Turns both halves of a pose's or a twist's covariance.
+Covariance turned(const Covariance& covariance, const Eigen::Matrix3d& rotation) {
+  Covariance turn = Covariance::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;
+  return turn * covariance * turn.transpose();
 }
 
 bool positiveDefinite(const Covariance& covariance) {
@@ -67,16 +83,12 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   const double known = parameters.max_position_stddev * parameters.max_position_stddev;
   if (!(in_runway(0, 0) <= known) || !(in_runway(1, 1) <= known)) return std::nullopt;
 
-  // Angles count from east to the left, headings from north to the right.
-  const double angle = M_PI / 2 - parameters.runway_heading_deg * M_PI / 180;
-  const Eigen::Isometry3d enu_from_runway(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+  const Eigen::Isometry3d enu_from_runway = enuFromRunway(parameters);
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
   if (!(cosTilt(runway_from_aircraft) >= kMinCosTilt)) return std::nullopt;
   const Eigen::Isometry3d enu_from_aircraft = enu_from_runway * runway_from_aircraft;
-  Covariance turn = Covariance::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = enu_from_runway.linear();
-  const Covariance covariance = turn * in_runway * turn.transpose();
+  const Covariance covariance = turned(in_runway, enu_from_runway.linear());
   if (!enu_from_aircraft.matrix().allFinite() || !positiveDefinite(covariance)) return std::nullopt;
 
   geometry_msgs::PoseWithCovarianceStamped enu;
@@ -84,6 +96,39 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   enu.header.frame_id = parameters.enu_frame;
   enu.pose.pose = tf2::toMsg(enu_from_aircraft);
   std::copy_n(covariance.data(), covariance.size(), enu.pose.covariance.begin());
+  return enu;
+}
+
+std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
+    const geometry_msgs::TwistWithCovarianceStamped& twist,
+    const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters) {
+  const CovarianceMap of_pose(pose.pose.covariance.data()), of_twist(twist.twist.covariance.data());
+  Eigen::Isometry3d runway_from_aircraft;
+  tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
+  if (!headingKnown(parameters) || !(of_pose(5, 5) <= kMaxYawStddev * kMaxYawStddev) ||
+      !(cosTilt(runway_from_aircraft) >= kMinCosTilt))
+    return std::nullopt;
+  const Eigen::Matrix3d enu_from_runway = enuFromRunway(parameters).linear();
+  const Eigen::Matrix3d enu_from_aircraft = enu_from_runway * runway_from_aircraft.linear();
+  Eigen::Vector3d linear, angular;
+  tf2::fromMsg(twist.twist.twist.linear, linear);
+  tf2::fromMsg(twist.twist.twist.angular, angular);
+  linear = enu_from_aircraft * linear;
+  angular = enu_from_aircraft * angular;
+  Eigen::Matrix<double, 6, 3> by_attitude;
+  by_attitude << -crossMatrix(linear), -crossMatrix(angular);
+  by_attitude *= enu_from_runway;
+  const Covariance covariance =
+      turned(of_twist, enu_from_aircraft) +
+      Covariance(by_attitude * of_pose.bottomRightCorner<3, 3>() * by_attitude.transpose());
+  if (!linear.allFinite() || !angular.allFinite() || !positiveDefinite(covariance)) return std::nullopt;
+
+  geometry_msgs::TwistWithCovarianceStamped enu;
+  enu.header.stamp = twist.header.stamp;
+  enu.header.frame_id = parameters.enu_frame;
+  tf2::toMsg(linear, enu.twist.twist.linear);
+  tf2::toMsg(angular, enu.twist.twist.angular);
+  std::copy_n(covariance.data(), covariance.size(), enu.twist.covariance.begin());
   return enu;
 }
 

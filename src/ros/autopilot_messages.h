@@ -1,6 +1,7 @@
 #pragma once
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/TwistWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
 
 #include <Eigen/Geometry>
@@ -26,10 +27,11 @@ struct AutopilotParameters {
     v.number("max_position_stddev", max_position_stddev, 0.01, 10000.0, "m",
              "no pose while 1 sigma of x or y is more: before the runway has been found its origin is "
              "arbitrary");
-    v.number(
-        "runway_heading_deg", runway_heading_deg, -1.0, 360.0, "deg",
-        "landing direction clockwise from north, for the pose; below 0 it is not known, and no pose is sent");
-    v.text("enu_frame", enu_frame, "frame of the pose: x east, y north, z up, origin on the threshold");
+    v.number("runway_heading_deg", runway_heading_deg, -1.0, 360.0, "deg",
+             "landing direction clockwise from north, for pose and velocity; below 0 it is not known, and "
+             "neither is sent");
+    v.text("enu_frame", enu_frame,
+           "frame of pose and velocity: x east, y north, z up, origin on the threshold");
   }
 };
 
@@ -48,6 +50,14 @@ std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::Po
 /// number is not finite, the covariance not positive definite, the place not known well enough, or tilted by
 /// more than 60 degrees: that is no aircraft but a camera, whose z axis is forward.
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
+    const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
+
+/// The aircraft's own movement (twist, in its axes) with east, north, up for axes; the uncertainty of the
+/// attitude turns with it. None without the runway's heading, before the runway's direction is seen (yaw
+/// known to 0.1 rad, 1 sigma), when a number is not finite, the covariance not positive definite, or tilted
+/// by more than 60 degrees.
+std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
+    const geometry_msgs::TwistWithCovarianceStamped& twist,
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
 /// Whether somebody said where the runway leads; else the range is all there is.

@@ -171,6 +171,7 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.yaw_variance = result.yaw_variance;
   toArray(result.foe, message.foe);
   toArray(result.velocity, message.velocity);
+  toArray(result.velocity_covariance, message.velocity_covariance);
   message.innovation = result.innovation;
   message.innovation_variance = result.innovation_variance;
   message.rejected = result.rejected;
@@ -225,6 +226,7 @@ LandingResult toResult(const LandingEstimate& message) {
   result.yaw_variance = message.yaw_variance;
   fromArray(message.foe, result.foe);
   fromArray(message.velocity, result.velocity);
+  fromArray(message.velocity_covariance, result.velocity_covariance);
   result.innovation = message.innovation;
   result.innovation_variance = message.innovation_variance;
   result.rejected = message.rejected;

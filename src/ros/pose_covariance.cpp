@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "body_pose.h"
+#include "cross_matrix.h"
 
 namespace uav_landing {
 namespace {
@@ -42,12 +43,6 @@ Matrix6d ofCamera(const LandingResult& camera, const GroundPlane& plane, const E
   covariance.block<3, 3>(2, 2) =
       ofCamera({camera.height_variance, camera.roll_variance, camera.pitch_variance}, plane);
   return covariance;
-}
-
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ import numpy as np
 import rosbag
 import rospy
 import yaml
-from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped, TwistWithCovarianceStamped
 from launch_test import INPUTS, SOURCE_DIR, Listener, Process, chain_is_connected, eventually
 from sensor_msgs.msg import Range
 from tf2_msgs.msg import TFMessage
@@ -50,8 +50,9 @@ class AutopilotTest(unittest.TestCase):
         with rosbag.Bag(str(cls.bag)) as bag:
             cls.truth = {m.header.stamp: m for _, m, _ in bag.read_messages(["/truth/landing_estimate"])}
             cls.frame = next(m.header.frame_id for _, m, _ in bag.read_messages(["/stereo/left/camera_info"]))
-        ranges, poses = (Listener("/mavros/distance_sensor/uav_landing_sub", Range),
-                         Listener("/mavros/vision_pose/pose_cov", PoseWithCovarianceStamped))
+        ranges, poses, velocities = (Listener("/mavros/distance_sensor/uav_landing_sub", Range),
+                                     Listener("/mavros/vision_pose/pose_cov", PoseWithCovarianceStamped),
+                                     Listener("/mavros/vision_speed/speed_twist_cov", TwistWithCovarianceStamped))
         estimates = Listener("/uav_landing/landing_estimate", LandingEstimate)
         static_publisher = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
         static_publisher.publish(lever_arm(cls.frame))
@@ -59,15 +60,16 @@ class AutopilotTest(unittest.TestCase):
                      "base_frame:=base_link") as stereo, \
                 Process("roslaunch", "uav_landing", "autopilot.launch", "runway_heading_deg:=60") as autopilot:
             assert eventually(chain_is_connected), stereo.text()
-            assert eventually(lambda: static_publisher.get_num_connections() and ranges.subscriber.get_num_connections() and
-                              poses.subscriber.get_num_connections()), autopilot.text()
+            assert eventually(lambda: static_publisher.get_num_connections() and
+                              all(listener.subscriber.get_num_connections() for listener in (ranges, poses, velocities))), \
+                autopilot.text()
             last = max(cls.truth)
             with Process("rosbag", "play", "--quiet", "--queue=1000", "--wait-for-subscribers", cls.bag,
                          "--topics", *INPUTS):
                 assert eventually(lambda: any(e.header.stamp == last for e in estimates.all())), stereo.text()
             assert eventually(lambda: all(any(m.header.stamp == last for m in listener.all())
-                                          for listener in (ranges, poses))), autopilot.text()
-        cls.ranges, cls.poses = ranges.all(), poses.all()
+                                          for listener in (ranges, poses, velocities))), autopilot.text()
+        cls.ranges, cls.poses, cls.velocities = ranges.all(), poses.all(), velocities.all()
         cls.valid = {e.header.stamp: e for e in estimates.all() if e.height_valid}
 
     @classmethod
@@ -98,6 +100,27 @@ class AutopilotTest(unittest.TestCase):
             heading = math.atan2(1 - 2 * (quaternion.y ** 2 + quaternion.z ** 2),
                                  2 * (quaternion.x * quaternion.y + quaternion.w * quaternion.z))
             self.assertAlmostEqual(heading, HEADING - truth.yaw, delta=math.radians(1))
+
+    def test_velocities_are_east_north_up_and_as_wrong_as_they_say(self):
+        self.assertGreater(len(self.velocities), 2 * RATE)
+        forward, up = np.array([math.sin(HEADING), math.cos(HEADING), 0]), np.array([0, 0, 1])
+        errors = []
+        for message in self.velocities:
+            truth = self.truth[message.header.stamp]
+            self.assertEqual(message.header.frame_id, "map")
+            linear = message.twist.twist.linear
+            velocity = np.array([linear.x, linear.y, linear.z])
+            covariance = np.reshape(message.twist.covariance, (6, 6))
+            speed = np.linalg.norm(truth.velocity)
+            # base_link swings with the camera's attitude by less than a hundredth of this.
+            error = [np.dot(velocity, forward) - speed * math.cos(truth.approach_angle),
+                     velocity[2] + speed * math.sin(truth.approach_angle)]
+            errors.append(np.array(error) / speed)
+            for value, axis in zip(error, (forward, up)):
+                stddev = math.sqrt(axis @ covariance[:3, :3] @ axis)
+                self.assertLess(abs(value), 5 * stddev + 0.01 * speed)
+                self.assertLess(stddev, 0.1 * speed)
+        np.testing.assert_array_less(np.abs(np.mean(errors, axis=0)), 0.01)
 
     def test_covariances_are_finite_and_positive_definite(self):
         self.assertTrue(self.poses)

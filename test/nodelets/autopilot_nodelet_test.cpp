@@ -2,6 +2,7 @@
 #include <dynamic_reconfigure/ConfigDescription.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/TwistWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
 
 #include "nodelets/nodelet_fixture.h"
@@ -9,6 +10,7 @@
 
 using namespace uav_landing::test;
 using geometry_msgs::PoseWithCovarianceStamped;
+using geometry_msgs::TwistWithCovarianceStamped;
 using sensor_msgs::Range;
 
 namespace {
@@ -19,8 +21,9 @@ class AutopilotNodeletTest : public NodeletTest {
     setParameter("autopilot", "runway_heading_deg", heading_deg);
     load("autopilot");
     ASSERT_TRUE(eventually([&] {
-      return height_.getNumSubscribers() > 0 && pose_.getNumSubscribers() > 0 && ranges_.connected() &&
-             poses_.connected();
+      return height_.getNumSubscribers() > 0 && pose_.getNumSubscribers() > 0 &&
+             twist_.getNumSubscribers() > 0 && ranges_.connected() && poses_.connected() &&
+             velocities_.connected();
     }));
   }
 
@@ -43,10 +46,22 @@ class AutopilotNodeletTest : public NodeletTest {
     pose_.publish(pose);
   }
 
+  /// Forward at 20 m/s.
+  void publishMovement(double t) {
+    TwistWithCovarianceStamped twist;
+    twist.header.stamp = ros::Time(1000 + t);
+    twist.header.frame_id = "base_link";
+    twist.twist.twist.linear.x = 20;
+    for (int i = 0; i < 6; ++i) twist.twist.covariance[7 * i] = 1e-2;
+    twist_.publish(twist);
+  }
+
   ros::Publisher height_ = handle_.advertise<Range>("/uav_landing/height", 1000);
   ros::Publisher pose_ = handle_.advertise<PoseWithCovarianceStamped>("/uav_landing/pose", 1000);
+  ros::Publisher twist_ = handle_.advertise<TwistWithCovarianceStamped>("/uav_landing/twist", 1000);
   Listener<Range> ranges_{"/uav_landing/autopilot/range"};
   Listener<PoseWithCovarianceStamped> poses_{"/uav_landing/autopilot/pose"};
+  Listener<TwistWithCovarianceStamped> velocities_{"/uav_landing/autopilot/velocity"};
 };
 
 TEST_F(AutopilotNodeletTest, PassesOnOnlyPairsWithAHeight) {
@@ -62,6 +77,20 @@ TEST_F(AutopilotNodeletTest, PassesOnOnlyPairsWithAHeight) {
   EXPECT_EQ(poses_.messages()[0]->header.frame_id, "map");
 }
 
+TEST_F(AutopilotNodeletTest, SendsTheVelocityOfPairsThatHaveAMotion) {
+  start(0);
+  publish(0.1, 5);
+  publish(0.2, 5);
+  publishMovement(0.2);
+  publishMovement(0.3);
+  publish(0.3, 5, 1e6);
+  ASSERT_TRUE(velocities_.waitFor(2) && ranges_.waitFor(3));
+  EXPECT_EQ(velocities_.messages()[0]->header.stamp, ros::Time(1000.2));
+  EXPECT_EQ(velocities_.messages()[1]->header.stamp, ros::Time(1000.3)) << "the place need not be known";
+  EXPECT_EQ(velocities_.messages()[0]->header.frame_id, "map");
+  EXPECT_NEAR(velocities_.messages()[0]->twist.twist.linear.y, 20, 1e-9) << "to the north";
+}
+
 TEST_F(AutopilotNodeletTest, SendsTheRangeAloneOfARunwayWhoseHeadingItWasNotTold) {
   start(-1);
   publish(0.1, 5);
@@ -69,7 +98,8 @@ TEST_F(AutopilotNodeletTest, SendsTheRangeAloneOfARunwayWhoseHeadingItWasNotTold
   publish(0.3, 3);
   ASSERT_TRUE(ranges_.waitFor(3));
   EXPECT_TRUE(poses_.messages().empty());
-  EXPECT_TRUE(logged("sends the range alone and no pose: runway_heading_deg is not set")) << wholeLog();
+  EXPECT_TRUE(logged("sends the range alone, no pose and no velocity: runway_heading_deg is not set"))
+      << wholeLog();
 }
 
 TEST_F(AutopilotNodeletTest, SendsNoMoreThanMaxRate) {

@@ -1,5 +1,6 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/TwistWithCovarianceStamped.h>
 #include <sensor_msgs/Range.h>
 #include <std_srvs/Empty.h>
 #include <tf2_msgs/TFMessage.h>
@@ -32,8 +33,8 @@ class KalmanHeightNodeletTest : public NodeletTest {
     ASSERT_TRUE(eventually([&] {
       return stereo_.getNumSubscribers() > 0 && approach_.getNumSubscribers() > 0 &&
              left_info_.getNumSubscribers() > 0 && right_info_.getNumSubscribers() > 0 &&
-             estimates_.connected() && ranges_.connected() && poses_.connected() && transforms_.connected() &&
-             static_.getNumSubscribers() > 0;
+             estimates_.connected() && ranges_.connected() && poses_.connected() && twists_.connected() &&
+             transforms_.connected() && static_.getNumSubscribers() > 0;
     }));
   }
 
@@ -138,6 +139,7 @@ class KalmanHeightNodeletTest : public NodeletTest {
   Listener<LandingEstimate> estimates_{"/uav_landing/landing_estimate"};
   Listener<sensor_msgs::Range> ranges_{"/uav_landing/height"};
   Listener<geometry_msgs::PoseWithCovarianceStamped> poses_{"/uav_landing/pose"};
+  Listener<geometry_msgs::TwistWithCovarianceStamped> twists_{"/uav_landing/twist"};
   Listener<tf2_msgs::TFMessage> transforms_{"/tf"};
 };
 
@@ -173,6 +175,14 @@ TEST_F(KalmanHeightNodeletTest, PublishesEstimateRangePoseAndTransformOfTheImage
               (poses.back()->header.stamp - poses.front()->header.stamp).toSec(), 0.01);
   EXPECT_GE(poses.back()->pose.covariance[0], 1e6) << "the place along the runway is not known";
   EXPECT_NEAR(poses.back()->pose.covariance[14], estimate.height_variance, 1e-9);
+  // In the camera's axes, which look 15 degrees down.
+  ASSERT_TRUE(twists_.waitFor([](const auto& m) { return m.header.stamp == PairPublisher::stampOf(0.4); }));
+  EXPECT_EQ(twists_.messages().size(), poses.size()) << "not before the height is valid";
+  const auto twist = *twists_.messages().back();
+  EXPECT_EQ(twist.header.frame_id, "left_optical_rect");
+  EXPECT_NEAR(twist.twist.twist.linear.z, std::cos(scene_.pitch), 0.01);
+  EXPECT_EQ(twist.twist.twist.linear.z, estimate.velocity[2]);
+  EXPECT_EQ(twist.twist.covariance[14], estimate.velocity_covariance[8]);
 }
 
 TEST_F(KalmanHeightNodeletTest, FailedPairsHaveTheirMessagesButNoTransform) {
@@ -256,6 +266,12 @@ TEST_F(KalmanHeightNodeletTest, BaseLinkOfTheStaticTfIsEstimatedWithItsLeverArm)
   // Nose down by 15 degrees is a positive rotation about y (left).
   EXPECT_NEAR(transform.rotation.y, std::sin(7.5 * M_PI / 180), 1e-3);
   EXPECT_NEAR(transform.rotation.w, std::cos(7.5 * M_PI / 180), 1e-3);
+  // Level flight at 1 m/s, in the axes of an aircraft whose nose is 15 degrees down.
+  ASSERT_TRUE(twists_.waitFor([](const auto& m) { return m.header.frame_id == "base_link"; }));
+  const auto linear = twists_.messages().back()->twist.twist.linear;
+  EXPECT_NEAR(linear.x, std::cos(15 * M_PI / 180), 0.02);
+  EXPECT_NEAR(linear.y, 0, 1e-9);
+  EXPECT_NEAR(linear.z, std::sin(15 * M_PI / 180), 0.02);
 }
 
 TEST_F(KalmanHeightNodeletTest, TheRotationOfRectificationTurnsTheLeverArm) {

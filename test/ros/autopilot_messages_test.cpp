@@ -158,4 +158,74 @@ TEST(AutopilotPose, IsSilentRatherThanWrong) {
   EXPECT_FALSE(autopilotPose(nowhere, parameters));
 }
 
+/// 20 m/s forward, 1 m/s down, turning left by 0.1 rad/s.
+geometry_msgs::TwistWithCovarianceStamped someMovement() {
+  geometry_msgs::TwistWithCovarianceStamped twist;
+  twist.header.stamp = ros::Time(12.5);
+  twist.header.frame_id = "base_link";
+  twist.twist.twist.linear.x = 20;
+  twist.twist.twist.linear.z = -1;
+  twist.twist.twist.angular.z = 0.1;
+  const double variances[6] = {0.04, 0.01, 0.02, 1e-6, 2e-6, 3e-6};
+  for (int i = 0; i < 6; ++i) twist.twist.covariance[7 * i] = variances[i];
+  return twist;
+}
+
+TEST(AutopilotVelocity, OfAnAircraftThatLandsSouthwardsPointsSouth) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 180;
+  const auto velocity = autopilotVelocity(someMovement(), someWhere(), parameters);
+  ASSERT_TRUE(velocity);
+  EXPECT_EQ(velocity->header.frame_id, "map");
+  EXPECT_EQ(velocity->header.stamp, ros::Time(12.5));
+  EXPECT_NEAR(velocity->twist.twist.linear.x, 0, 1e-9);
+  EXPECT_NEAR(velocity->twist.twist.linear.y, -20, 1e-9);
+  EXPECT_NEAR(velocity->twist.twist.linear.z, -1, 1e-9);
+  EXPECT_NEAR(velocity->twist.twist.angular.z, 0.1, 1e-9);
+}
+
+TEST(AutopilotVelocity, OfAnAircraftThatCrabsIsAlongItsPath) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 90;
+  auto pose = someWhere();
+  turn(pose, 2, 10 * kDegree);  // nose to the left, which is north
+  const auto velocity = autopilotVelocity(someMovement(), pose, parameters);
+  ASSERT_TRUE(velocity);
+  EXPECT_NEAR(velocity->twist.twist.linear.x, 20 * std::cos(10 * kDegree), 1e-9);
+  EXPECT_NEAR(velocity->twist.twist.linear.y, 20 * std::sin(10 * kDegree), 1e-9);
+}
+
+TEST(AutopilotVelocity, IsAsUncertainAcrossAsTheAttitudeTurnsIt) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 90;
+  const auto velocity = autopilotVelocity(someMovement(), someWhere(), parameters);
+  ASSERT_TRUE(velocity);
+  // To the north by the yaw over 20 m/s and by the roll over 1 m/s; upwards by the pitch.
+  EXPECT_NEAR(velocity->twist.covariance[0], 0.04 + 2e-6, 1e-9);
+  EXPECT_NEAR(velocity->twist.covariance[7], 0.01 + 400 * 3e-6 + 1e-6, 1e-9);
+  EXPECT_NEAR(velocity->twist.covariance[14], 0.02 + 400 * 2e-6, 1e-9);
+  EXPECT_NEAR(velocity->twist.covariance[2], 20 * 2e-6, 1e-9) << "nose down by a pitch that is wrong";
+}
+
+TEST(AutopilotVelocity, IsSilentRatherThanWrong) {
+  AutopilotParameters parameters;
+  EXPECT_FALSE(autopilotVelocity(someMovement(), someWhere(), parameters)) << "of no heading";
+  parameters.runway_heading_deg = 0;
+  auto unknown_place = someWhere();
+  unknown_place.pose.covariance[0] = 1e6;
+  EXPECT_TRUE(autopilotVelocity(someMovement(), unknown_place, parameters)) << "it needs none";
+  auto unknown_yaw = someWhere();
+  unknown_yaw.pose.covariance[35] = M_PI * M_PI;
+  EXPECT_FALSE(autopilotVelocity(someMovement(), unknown_yaw, parameters));
+  auto camera = someWhere();
+  turn(camera, 1, 90 * kDegree);
+  EXPECT_FALSE(autopilotVelocity(someMovement(), camera, parameters));
+  auto indefinite = someMovement();
+  indefinite.twist.covariance[7] = -1;
+  EXPECT_FALSE(autopilotVelocity(indefinite, someWhere(), parameters));
+  auto unfinished = someMovement();
+  unfinished.twist.twist.angular.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(autopilotVelocity(unfinished, someWhere(), parameters));
+}
+
 }  // namespace

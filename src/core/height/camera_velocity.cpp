@@ -3,7 +3,7 @@
 namespace uav_landing {
 
 CameraVelocity cameraVelocity(const ApproachAngleResult::Motion& step, double height, double height_variance,
-                    double duration_variance) {
+                              double duration_variance) {
   if (step.failure || !(step.duration > 0)) return {};
   const double rate = height / step.duration;
   const Eigen::Vector3d mean = rate * step.translation_over_height;

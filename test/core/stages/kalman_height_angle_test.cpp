@@ -77,6 +77,7 @@ TEST(KalmanHeightAngle, IsAsUncertainAsItChangesByAStepOfAPeriodTooLongWhileTheH
   }
   ASSERT_TRUE(result.angle_valid) << result.failure.message();
   EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
+  EXPECT_NEAR(result.speed(), 20, 0.1);
   const double off = std::atan2(0.01, 1) - std::atan2(0.01, 3);
   for (int i = 0; i < 20; ++i) {
     result = flight.fly(3, 0.01);
@@ -84,6 +85,7 @@ TEST(KalmanHeightAngle, IsAsUncertainAsItChangesByAStepOfAPeriodTooLongWhileTheH
     EXPECT_NEAR(stddevOf(result), std::hypot(off, kStddev), 0.02 * off) << i;
     EXPECT_NEAR(std::sqrt(result.raw_approach_angle_variance), std::hypot(off, kStddev), 0.02 * off) << i;
     EXPECT_TRUE(result.height_valid) << result.failure.message();
+    EXPECT_TRUE(result.velocity.array().isNaN().all()) << "three times as fast, " << i;
   }
 }
 

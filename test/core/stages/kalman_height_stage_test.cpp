@@ -212,7 +212,11 @@ TEST(KalmanHeightStage, ReportsTheVelocityInMetresPerSecond) {
   KalmanHeightStage stage(usualRig(), {});
   const LandingResult result = stage.process(stereoAt(0, 10, 0, 0), withStep(angleAt(0), 0.2));
   EXPECT_NEAR(result.velocity.y(), 2.0, 1e-9);
-  EXPECT_NEAR(result.velocity.norm(), 20.0, 1e-9);
+  EXPECT_NEAR(result.speed(), 20.0, 1e-9);
+  // A millimetre in 0.1 s, and as much as the height.
+  EXPECT_NEAR(result.speedVariance(), std::pow(0.01, 2) + std::pow(20.0 / 10, 2) * result.height_variance,
+              1e-9);
+  EXPECT_NEAR(result.velocity_covariance(0, 0), std::pow(0.01, 2), 1e-12);
 }
 
 TEST(KalmanHeightStage, LearnsTheVerticalSpeedFromTheMotion) {
