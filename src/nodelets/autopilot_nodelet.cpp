@@ -60,14 +60,22 @@ class AutopilotNodelet : public StageNodelet {
     pairing_->reset();
     movements_->reset();
   }
-  std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
+  std::vector<InputWatch::Input> inputs() const override {
+    std::vector<InputWatch::Input> all = pairing_->inputs();
+    all.push_back(movements_->inputs()[0]);
+    return all;
+  }
   std::string complaint() override { return pairing_->complaint(); }
   void complainMore() override {
     if (!sent_lately_ && !last_reason_.empty())
       NODELET_WARN("%s: nothing sent for %.3g s: %s", getName().c_str(), node_.complaint_period,
                    last_reason_.c_str());
-    sent_lately_ = false;
+    if (!velocity_sent_lately_ && !last_velocity_reason_.empty())
+      NODELET_WARN("%s: no velocity sent for %.3g s: %s", getName().c_str(), node_.complaint_period,
+                   last_velocity_reason_.c_str());
+    sent_lately_ = velocity_sent_lately_ = false;
     last_reason_.clear();
+    last_velocity_reason_.clear();
   }
 
   void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
@@ -92,7 +100,12 @@ class AutopilotNodelet : public StageNodelet {
                     const geometry_msgs::PoseWithCovarianceStamped& pose) {
     if (!velocity_rate_.passes(twist.header.stamp, parameters_.max_rate)) return;
     const auto velocity = autopilotVelocity(twist, pose, parameters_);
-    if (velocity) velocity_publisher_.publish(*velocity);
+    if (velocity) {
+      velocity_publisher_.publish(*velocity);
+      velocity_sent_lately_ = true;
+    } else if (headingKnown(parameters_)) {
+      last_velocity_reason_ = whyNoVelocity(pose);
+    }
   }
 
   AutopilotParameters parameters_;
@@ -102,8 +115,8 @@ class AutopilotNodelet : public StageNodelet {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher range_publisher_, pose_publisher_, velocity_publisher_;
   RateLimit rate_, velocity_rate_;
-  bool sent_lately_ = false;
-  std::string last_reason_;  // why nothing was sent
+  bool sent_lately_ = false, velocity_sent_lately_ = false;
+  std::string last_reason_, last_velocity_reason_;  // why nothing was sent
 };
 
 }  // namespace uav_landing

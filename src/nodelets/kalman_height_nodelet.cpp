@@ -197,7 +197,8 @@ class KalmanHeightNodelet : public StageNodelet {
     estimate_publisher_.publish(boost::make_shared<LandingEstimate>(
         toMessage(estimate, header, child.frame, stereo.skew, compute_ms)));
     range_publisher_.publish(heightMessage(estimate, stereo.header.stamp, child.frame));
-    const std::optional<BodyTwist> twist = bodyTwist(camera, step, rectified_from_child);
+    const std::optional<BodyTwist> twist =
+        bodyTwist(camera, step.duration, parameters_.acceleration_stddev, rectified_from_child);
     if (estimate.height_valid && twist)
       twist_publisher_.publish(twistMessage(stereo.header.stamp, child.frame, *twist));
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "cross_matrix.h"
+#include "uav_landing/geometry/cross_matrix.h"
 
 namespace uav_landing {
 namespace {
@@ -40,6 +40,8 @@ Covariance turned(const Covariance& covariance, const Eigen::Matrix3d& rotation)
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;
   return turn * covariance * turn.transpose();
 }
+
+bool yawKnown(const CovarianceMap& of_pose) { return of_pose(5, 5) <= kMaxYawStddev * kMaxYawStddev; }
 
 bool positiveDefinite(const Covariance& covariance) {
   return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
@@ -99,14 +101,19 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   return enu;
 }
 
+std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose) {
+  if (!(cosTilt(pose) >= kMinCosTilt)) return "the attitude is not that of an aircraft";
+  if (!yawKnown(CovarianceMap(pose.pose.covariance.data()))) return "the runway's direction is not seen";
+  return "it has no definite covariance";
+}
+
 std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
     const geometry_msgs::TwistWithCovarianceStamped& twist,
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters) {
   const CovarianceMap of_pose(pose.pose.covariance.data()), of_twist(twist.twist.covariance.data());
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  if (!headingKnown(parameters) || !(of_pose(5, 5) <= kMaxYawStddev * kMaxYawStddev) ||
-      !(cosTilt(runway_from_aircraft) >= kMinCosTilt))
+  if (!headingKnown(parameters) || !yawKnown(of_pose) || !(cosTilt(runway_from_aircraft) >= kMinCosTilt))
     return std::nullopt;
   const Eigen::Matrix3d enu_from_runway = enuFromRunway(parameters).linear();
   const Eigen::Matrix3d enu_from_aircraft = enu_from_runway * runway_from_aircraft.linear();

@@ -60,6 +60,9 @@ std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
     const geometry_msgs::TwistWithCovarianceStamped& twist,
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
+/// Why there is none, of a runway with a heading.
+std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose);
+
 /// Whether somebody said where the runway leads; else the range is all there is.
 bool headingKnown(const AutopilotParameters& parameters);
 

@@ -171,7 +171,8 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.yaw_variance = result.yaw_variance;
   toArray(result.foe, message.foe);
   toArray(result.velocity, message.velocity);
-  toArray(result.velocity_covariance, message.velocity_covariance);
+  toArray(result.angular_velocity, message.angular_velocity);
+  toArray(result.twist_covariance, message.twist_covariance);
   message.innovation = result.innovation;
   message.innovation_variance = result.innovation_variance;
   message.rejected = result.rejected;
@@ -226,7 +227,8 @@ LandingResult toResult(const LandingEstimate& message) {
   result.yaw_variance = message.yaw_variance;
   fromArray(message.foe, result.foe);
   fromArray(message.velocity, result.velocity);
-  fromArray(message.velocity_covariance, result.velocity_covariance);
+  fromArray(message.angular_velocity, result.angular_velocity);
+  fromArray(message.twist_covariance, result.twist_covariance);
   result.innovation = message.innovation;
   result.innovation_variance = message.innovation_variance;
   result.rejected = message.rejected;

@@ -44,7 +44,7 @@ uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter
 
 # height
 uav_landing_add_gtest(attitude_filter_test test/core/height/attitude_filter_test.cpp)
-uav_landing_add_gtest(camera_velocity_test test/core/height/camera_velocity_test.cpp)
+uav_landing_add_gtest(camera_twist_test test/core/height/camera_twist_test.cpp)
 uav_landing_add_gtest(height_filter_test test/core/height/height_filter_test.cpp)
 uav_landing_add_gtest(reconstruction_test test/core/height/reconstruction_test.cpp)
 uav_landing_add_gtest(runway_height_test test/core/height/runway_height_test.cpp)

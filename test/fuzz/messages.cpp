@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "body_pose.h"
+#include "body_twist.h"
 #include "fuzz/harnesses.h"
 #include "fuzz/input.h"
 #include "landing_markers.h"
@@ -46,6 +47,11 @@ void useResult(const ApproachMessages& messages, const LandingResult& camera) {
     const Matrix6d covariance = poseCovariance(camera, stereo.plane, arm, place->variance);
     require(covariance.rows() == 6, "a place has a covariance");
   }
+  const auto twist =
+      bodyTwist(camera, approach.step.duration, 1, Eigen::Isometry3d(Eigen::Translation3d(arm)));
+  if (twist && camera.height_valid)
+    require(twist->covariance.allFinite() && twist->covariance.diagonal().minCoeff() > 0,
+            "a velocity has a covariance");
   std::optional<DrawnAircraft> aircraft;
   if (place)
     aircraft = {

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """What reaches the inputs of mavros when autopilot.launch runs beside stereo.launch: frames, covariances, rates.
 
-mavros' vision_pose plugin takes east-north-up poses of base_link and the upper triangle of their covariance; its
-distance_sensor plugin takes metres that fit 16 bit of centimetres. Both pass on the stamp. PX4 asks for 30 to 50 poses a
+mavros' vision_pose plugin takes east-north-up poses of base_link and the upper triangle of their covariance, its vision_speed
+plugin velocities along the same axes; its distance_sensor plugin takes metres that fit 16 bit of centimetres. Both pass on the stamp. PX4 asks for 30 to 50 poses a
 second, ArduPilot for at least 4.
 """
 

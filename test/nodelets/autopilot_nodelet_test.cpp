@@ -43,6 +43,7 @@ class AutopilotNodeletTest : public NodeletTest {
     pose.pose.pose.orientation.x = std::sin(tilt / 2);
     pose.pose.pose.orientation.w = std::cos(tilt / 2);
     for (int i = 0; i < 6; ++i) pose.pose.covariance[7 * i] = i < 2 ? position_variance : 1e-4;
+    pose.pose.covariance[35] = yaw_variance_;
     pose_.publish(pose);
   }
 
@@ -56,6 +57,7 @@ class AutopilotNodeletTest : public NodeletTest {
     twist_.publish(twist);
   }
 
+  double yaw_variance_ = 1e-4;  // rad^2
   ros::Publisher height_ = handle_.advertise<Range>("/uav_landing/height", 1000);
   ros::Publisher pose_ = handle_.advertise<PoseWithCovarianceStamped>("/uav_landing/pose", 1000);
   ros::Publisher twist_ = handle_.advertise<TwistWithCovarianceStamped>("/uav_landing/twist", 1000);
@@ -89,6 +91,18 @@ TEST_F(AutopilotNodeletTest, SendsTheVelocityOfPairsThatHaveAMotion) {
   EXPECT_EQ(velocities_.messages()[1]->header.stamp, ros::Time(1000.3)) << "the place need not be known";
   EXPECT_EQ(velocities_.messages()[0]->header.frame_id, "map");
   EXPECT_NEAR(velocities_.messages()[0]->twist.twist.linear.y, 20, 1e-9) << "to the north";
+}
+
+TEST_F(AutopilotNodeletTest, SaysWhyNoVelocityIsSent) {
+  setParameter("autopilot", "complaint_period", 0.2);
+  start();
+  yaw_variance_ = M_PI * M_PI;
+  publish(0, 5);
+  publishMovement(0);
+  EXPECT_TRUE(
+      logged("/uav_landing/autopilot: no velocity sent for 0.2 s: the runway's direction is not seen"))
+      << wholeLog();
+  EXPECT_TRUE(velocities_.messages().empty());
 }
 
 TEST_F(AutopilotNodeletTest, SendsTheRangeAloneOfARunwayWhoseHeadingItWasNotTold) {

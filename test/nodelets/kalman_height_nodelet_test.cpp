@@ -182,7 +182,7 @@ TEST_F(KalmanHeightNodeletTest, PublishesEstimateRangePoseAndTransformOfTheImage
   EXPECT_EQ(twist.header.frame_id, "left_optical_rect");
   EXPECT_NEAR(twist.twist.twist.linear.z, std::cos(scene_.pitch), 0.01);
   EXPECT_EQ(twist.twist.twist.linear.z, estimate.velocity[2]);
-  EXPECT_EQ(twist.twist.covariance[14], estimate.velocity_covariance[8]);
+  EXPECT_GT(twist.twist.covariance[14], estimate.twist_covariance[14]) << "half a step later";
 }
 
 TEST_F(KalmanHeightNodeletTest, FailedPairsHaveTheirMessagesButNoTransform) {

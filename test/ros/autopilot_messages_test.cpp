@@ -217,12 +217,15 @@ TEST(AutopilotVelocity, IsSilentRatherThanWrong) {
   auto unknown_yaw = someWhere();
   unknown_yaw.pose.covariance[35] = M_PI * M_PI;
   EXPECT_FALSE(autopilotVelocity(someMovement(), unknown_yaw, parameters));
+  EXPECT_EQ(whyNoVelocity(unknown_yaw), "the runway's direction is not seen");
   auto camera = someWhere();
   turn(camera, 1, 90 * kDegree);
   EXPECT_FALSE(autopilotVelocity(someMovement(), camera, parameters));
+  EXPECT_EQ(whyNoVelocity(camera), "the attitude is not that of an aircraft");
   auto indefinite = someMovement();
   indefinite.twist.covariance[7] = -1;
   EXPECT_FALSE(autopilotVelocity(indefinite, someWhere(), parameters));
+  EXPECT_EQ(whyNoVelocity(someWhere()), "it has no definite covariance");
   auto unfinished = someMovement();
   unfinished.twist.twist.angular.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(autopilotVelocity(unfinished, someWhere(), parameters));

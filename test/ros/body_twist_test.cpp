@@ -14,19 +14,23 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// A step with errors that go together, and what a height that is exact makes of it.
 struct Case {
-  ApproachAngleResult::Motion step;
+  Matrix6d step_covariance;  // of (rotation of the ground, movement over the height)
   LandingResult camera;
 
   Case(const Eigen::Vector3d& rotation, const Eigen::Vector3d& t) {
-    step.duration = kT;
-    step.rotation = rotation;
-    step.translation_over_height = t;
     Matrix6d root = 1e-4 * Matrix6d::Identity();
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < i; ++j) root(i, j) = 1e-5 * (3 * i - 2 * j);
-    step.covariance = root * root.transpose();
+    step_covariance = root * root.transpose();
     camera.velocity = kHeight / kT * t;
-    camera.velocity_covariance = kHeight * kHeight / (kT * kT) * step.covariance.bottomRightCorner<3, 3>();
+    camera.angular_velocity = -rotation / kT;
+    Matrix6d by_step = Matrix6d::Zero();
+    by_step.topRightCorner<3, 3>().diagonal().setConstant(kHeight / kT);
+    by_step.bottomLeftCorner<3, 3>().diagonal().setConstant(-1 / kT);
+    camera.twist_covariance = by_step * step_covariance * by_step.transpose();
+  }
+  std::optional<BodyTwist> twist(const Eigen::Isometry3d& child, double acceleration = 0) const {
+    return bodyTwist(camera, kT, acceleration, child);
   }
 };
 
@@ -62,7 +66,7 @@ Eigen::Isometry3d someChild() {
 
 TEST(BodyTwist, OfTheCameraIsItsVelocityAndTheTurnOfTheGroundReversed) {
   const Case c({0, 0.01, 0}, {0, 0, 0.1});
-  const auto twist = bodyTwist(c.camera, c.step, Eigen::Isometry3d::Identity());
+  const auto twist = c.twist(Eigen::Isometry3d::Identity());
   ASSERT_TRUE(twist);
   EXPECT_NEAR((twist->linear - Eigen::Vector3d(0, 0, 16)).norm(), 0, 1e-12);
   // About y, down, the ground turns to the right: the camera to the left.
@@ -75,7 +79,7 @@ TEST(BodyTwist, OfAnAircraftBehindTheCameraSwingsOutOfATurn) {
   base.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
   base.translation() << 0, 0, -2;
   const Case c({0, 0.01, 0}, {0, 0, 0.1});
-  const auto twist = bodyTwist(c.camera, c.step, base);
+  const auto twist = c.twist(base);
   ASSERT_TRUE(twist);
   EXPECT_NEAR((twist->angular - Eigen::Vector3d(0, 0, 0.2)).norm(), 0, 1e-12) << "to the left";
   EXPECT_NEAR((twist->linear - Eigen::Vector3d(16, -0.4, 0)).norm(), 0, 1e-12) << "the tail to the right";
@@ -84,7 +88,7 @@ TEST(BodyTwist, OfAnAircraftBehindTheCameraSwingsOutOfATurn) {
 TEST(BodyTwist, IsHowPointsOfTheFrameMove) {
   const Eigen::Vector3d rotation(0.02, -0.03, 0.01), t(0.01, 0.02, 0.15);
   const Case c(rotation, t);
-  const auto twist = bodyTwist(c.camera, c.step, someChild());
+  const auto twist = c.twist(someChild());
   ASSERT_TRUE(twist);
   const Vector6d expected = byPoses(rotation, t, someChild());
   EXPECT_NEAR((twist->linear - expected.head<3>()).norm(), 0, 1e-2);
@@ -94,7 +98,7 @@ TEST(BodyTwist, IsHowPointsOfTheFrameMove) {
 TEST(BodyTwist, ErrsAsTheStepDoes) {
   const Eigen::Vector3d rotation(0.02, -0.03, 0.01), t(0.01, 0.02, 0.15);
   const Case c(rotation, t);
-  const auto twist = bodyTwist(c.camera, c.step, someChild());
+  const auto twist = c.twist(someChild());
   ASSERT_TRUE(twist);
   constexpr double kStep = 1e-5;
   Matrix6d by_step;
@@ -106,21 +110,26 @@ TEST(BodyTwist, ErrsAsTheStepDoes) {
     };
     by_step.col(i) = (at(1) - at(-1)) / (2 * kStep);
   }
-  const Matrix6d expected = by_step * c.step.covariance * by_step.transpose();
+  const Matrix6d expected = by_step * c.step_covariance * by_step.transpose();
   EXPECT_NEAR((twist->covariance - expected).norm(), 0, 2e-3 * expected.norm());
 }
 
-TEST(BodyTwist, IsNoneWithoutAVelocityOrAStep) {
+TEST(BodyTwist, MayHaveChangedSinceTheMiddleOfTheStep) {
+  const Case c({0, 0.01, 0}, {0, 0, 0.1});
+  const Matrix6d more = c.twist(someChild(), 2)->covariance - c.twist(someChild())->covariance;
+  // 2 m/s^2 for 25 ms, in all directions.
+  const Eigen::Matrix3d expected = 0.05 * 0.05 * Eigen::Matrix3d::Identity();
+  EXPECT_NEAR((more.topLeftCorner<3, 3>() - expected).norm(), 0, 1e-12);
+  EXPECT_NEAR(more.bottomRows<3>().norm(), 0, 1e-15);
+}
+
+TEST(BodyTwist, IsNoneWithoutAVelocity) {
   Case c({0, 0.01, 0}, {0, 0, 0.1});
   c.camera.velocity.setConstant(kUnknown);
-  EXPECT_FALSE(bodyTwist(c.camera, c.step, Eigen::Isometry3d::Identity()));
+  EXPECT_FALSE(c.twist(Eigen::Isometry3d::Identity()));
+  EXPECT_FALSE(bodyTwist(LandingResult(), kT, 1, Eigen::Isometry3d::Identity()));
   c = Case({0, 0.01, 0}, {0, 0, 0.1});
-  c.step.rotation.setConstant(kUnknown);
-  EXPECT_FALSE(bodyTwist(c.camera, c.step, Eigen::Isometry3d::Identity()));
-  c = Case({0, 0, 0}, {0, 0, 0});
-  const auto standing = bodyTwist(c.camera, c.step, Eigen::Isometry3d::Identity());
-  ASSERT_TRUE(standing) << "a camera that stands still has a twist";
-  EXPECT_TRUE(standing->covariance.allFinite());
+  EXPECT_FALSE(bodyTwist(c.camera, kUnknown, 1, Eigen::Isometry3d::Identity()));
 }
 
 }  // namespace

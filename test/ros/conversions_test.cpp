@@ -265,7 +265,8 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
     *number = next();
   fill(result.foe);
   fill(result.velocity);
-  fill(result.velocity_covariance);
+  fill(result.angular_velocity);
+  fill(result.twist_covariance);
   result.rejected = true;
   result.consecutive_rejections = 3;
   result.resets = 2;
@@ -296,7 +297,7 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_EQ(message.innovation_variance, result.innovation_variance);
   EXPECT_EQ(message.rig_rotation[2], result.rig_rotation.w.z());
   EXPECT_EQ(message.rig_rotation_covariance[1], result.rig_rotation.covariance(0, 1));
-  EXPECT_EQ(message.velocity_covariance[5], result.velocity_covariance(1, 2));
+  EXPECT_EQ(message.twist_covariance[8], result.twist_covariance(1, 2));
   EXPECT_EQ(message.skew, 0.002);
   EXPECT_EQ(message.compute_ms, 3.5);
   EXPECT_TRUE(message.x_known);

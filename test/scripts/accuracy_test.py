@@ -25,15 +25,16 @@ class SetsTest(unittest.TestCase):
             "height": {"mean": 0.0012, "median": 0.001, "percentile_95": 0.003, "worst": 0.0045, "within_claimed_95": 0.96},
             "approach_angle": {"mean": 0.05, "median": 0.04, "percentile_95": 0.12, "worst": 0.2, "signed_mean": -0.01,
                                "within_claimed_95": 0.9},
-            "pitch": {"percentile_95": 0.0504}, "roll": {"percentile_95": 0.07}}}
+            "pitch": {"percentile_95": 0.0504}, "roll": {"percentile_95": 0.07},
+            "speed": {"percentile_95": 0.0611, "within_claimed_95": 0.98}}}
         self.assertEqual(markdown.line(*sets.row("lab", scores)),
                          "| lab | 120 | 99.2% | 0.12 | 0.10 | 0.30 | 0.45 | 96% "
-                         "| 0.050 | 0.040 | 0.120 | 0.200 | -0.010 | 90% | 0.050 | 0.070 | 3.1 |")
+                         "| 0.050 | 0.040 | 0.120 | 0.200 | -0.010 | 90% | 0.050 | 0.070 | 0.061 | 98% | 3.1 |")
 
     def test_row_has_dashes_for_what_has_no_truth(self):
         row = sets.row("kitti_raw", {"frames": 30, "coverage": 0.5, "quantities": {
             "height": {"mean": 0.02, "median": 0.02, "percentile_95": 0.03, "worst": 0.04, "within_claimed_95": None}}})
-        self.assertEqual(row, ["kitti_raw", 30, "50.0%", "2.00", "2.00", "3.00", "4.00"] + 10 * ["–"])
+        self.assertEqual(row, ["kitti_raw", 30, "50.0%", "2.00", "2.00", "3.00", "4.00"] + 12 * ["–"])
         self.assertEqual(len(row), len(sets.HEADER))
 
 
@@ -130,7 +131,7 @@ class ConsistencyTest(unittest.TestCase):
             self.assertTrue(consistency.IMAGE.exists())
         rows = [line for line in text.splitlines() if line.startswith("| 3 m")]
         self.assertEqual(len(rows), 2)
-        self.assertEqual(cells(rows[0]), ["3 m", "1", "4", "75.0 (30.0–95.0); 1.25", "4"] + 3 * ["75.0 (30.0–95.0); 1.25"]
+        self.assertEqual(cells(rows[0]), ["3 m", "1", "4", "75.0 (30.0–95.0); 1.25", "4"] + 4 * ["75.0 (30.0–95.0); 1.25"]
                          + ["75.0 (30.0–95.0); 0.50", "–", "–"])
 
     def test_flat_ground_is_that_which_happens_not_to_bend_and_more(self):

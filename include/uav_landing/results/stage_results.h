@@ -185,9 +185,10 @@ struct LandingResult {
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
-  /// Mean of the last step, left camera frame now, m/s, m^2/s^2.
+  /// Mean of the last step, left camera frame now, m/s, rad/s; unknown where no step is believed.
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);
-  Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Constant(kUnknown);
+  Matrix6d twist_covariance = Matrix6d::Constant(kUnknown);      ///< of both, velocity first
   double speed() const { return velocity.norm(); }               ///< along the path, m/s
   double speedVariance() const;                                  ///< m^2/s^2
   double innovation = kUnknown, innovation_variance = kUnknown;  ///< of the raw height

@@ -2,16 +2,11 @@
 
 #include <Eigen/Geometry>
 
+#include "uav_landing/geometry/cross_matrix.h"
+
 namespace uav_landing {
 
 // Rotations by their vectors (axis times angle, rad), and directions by what is across them.
-
-/// The matrix of v x.
-inline Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& w) {
   const double angle = w.norm();

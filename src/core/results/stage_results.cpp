@@ -17,7 +17,7 @@ const char* toString(Status status) {
 }
 
 double LandingResult::speedVariance() const {
-  return velocity.dot(velocity_covariance * velocity) / velocity.squaredNorm();
+  return velocity.dot(twist_covariance.topLeftCorner<3, 3>() * velocity) / velocity.squaredNorm();
 }
 
 }  // namespace uav_landing

@@ -1,4 +1,4 @@
-// The part of KalmanHeightStage that says how far the approach angle is to be believed.
+// The part of KalmanHeightStage that says how far approach angle and velocity are to be believed.
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "geometry/rotation.h"
+#include "height/camera_twist.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {
@@ -105,6 +106,26 @@ double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction
   for (const OtherNormal& other : otherNormals(reconstruction, approach, used))
     variance = std::max(variance, other.angleVariance(used.n, motion));
   return variance;
+}
+
+void KalmanHeightStage::reportMotion(const ApproachAngleResult& approach,
+                                     const Reconstruction& reconstruction, LandingResult& result) const {
+  const ApproachAngleResult::Motion& step = approach.step;
+  // One that the velocity before contradicts may be of another period of a pattern, or of the other camera,
+  // and in an unusual turn nobody looks.
+  if (reconstruction.refused || reconstruction.tilted || tests_.failed(Consistency::kVelocity) ||
+      step.rotation.norm() > AttitudeFilter::kUnusualTurn * step.duration)
+    return;
+  const CameraTwist twist =
+      cameraTwist(step, result.height - reconstruction.bend, result.height_variance, stamps_.ofDuration());
+  result.velocity = twist.velocity;
+  result.angular_velocity = twist.angular_velocity;
+  result.twist_covariance = twist.covariance;
+  // Its vertical part is as uncertain as the angle by another normal.
+  const Eigen::Vector3d n = normalOfAngle(approach, step).n;
+  if (n.allFinite())
+    result.twist_covariance.topLeftCorner<3, 3>() +=
+        twist.velocity.squaredNorm() * varianceByNormals(reconstruction, approach, step) * n * n.transpose();
 }
 
 // jump: why the stamp says nothing of the time since the pair before, if so.

@@ -6,7 +6,6 @@
 
 #include "base/text.h"
 #include "height/attitude.h"
-#include "height/camera_velocity.h"
 #include "height/vertical_speed.h"
 #include "uav_landing/height/height_limit.h"
 #include "uav_landing/height/reconstruction.h"
@@ -69,13 +68,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, stereo.left_repeated, result);
-  // One that the velocity before contradicts may be of another period of a pattern, or of the other camera.
-  if (!tests_.failed(Consistency::kVelocity)) {
-    const CameraVelocity velocity = cameraVelocity(approach.step, result.height - reconstruction.bend,
-                                                   result.height_variance, stamps_.ofDuration());
-    result.velocity = velocity.mean;
-    result.velocity_covariance = velocity.covariance;
-  }
+  reportMotion(approach, reconstruction, result);
   {
     const ScopedTimer timer(timings_, "runway_filter");
     Eigen::Vector3d n = approach.n;

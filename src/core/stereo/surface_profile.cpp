@@ -73,19 +73,22 @@ struct Alternative {
   double log = 0;         // of its likelihood ratio
   Kinks mean, variances;  // of the bend
 };
-using Alternatives = std::array<Alternative, kBendShares.size()>;
+struct Alternatives {
+  std::array<Alternative, kBendShares.size()> each;
+  KinkMatrix to_kinks;  // from the axes
+};
 
 /// prior: of each alternative.
 Bend mixture(const Alternatives& alternatives, double prior) {
   double largest = 0;
-  for (const Alternative& one : alternatives) largest = std::max(largest, one.log);
+  for (const Alternative& one : alternatives.each) largest = std::max(largest, one.log);
   std::array<double, kBendShares.size()> weights;
   double sum = (1 - prior * kBendShares.size()) * std::exp(-largest);
   for (size_t i = 0; i < weights.size(); ++i)
-    sum += weights[i] = prior * std::exp(alternatives[i].log - largest);
+    sum += weights[i] = prior * std::exp(alternatives.each[i].log - largest);
   Bend result;
   for (size_t i = 0; i < weights.size(); ++i) {
-    const Alternative& one = alternatives[i];
+    const Alternative& one = alternatives.each[i];
     result.mean += weights[i] / sum * one.mean;
     result.covariance += weights[i] / sum * one.mean * one.mean.transpose();
     result.covariance.diagonal() += weights[i] / sum * one.variances;
@@ -159,22 +162,20 @@ class ProfileFit {
   }
 
   /// per_metre: variance of the curvature, 1/m^2, of which the alternatives have their shares.
-  Alternatives alternatives(double per_metre) {
+  Alternatives alternatives(double per_metre) const {
     const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(information_);
-    to_kinks_ = kinks_->root * axes.eigenvectors();
     const Kinks information = axes.eigenvalues().cwiseMax(0.0);
     const Kinks right = axes.eigenvectors().transpose() * right_;
     Alternatives all;
-    for (size_t i = 0; i < all.size(); ++i) {
+    all.to_kinks = kinks_->root * axes.eigenvectors();
+    for (size_t i = 0; i < all.each.size(); ++i) {
       const double variance = kBendShares[i] * kBendShares[i] * per_metre;
-      all[i].log = evidence(variance, information, right);
-      all[i].variances = (1 / variance + information.array()).inverse();
-      all[i].mean = all[i].variances.cwiseProduct(right);
+      all.each[i].log = evidence(variance, information, right);
+      all.each[i].variances = (1 / variance + information.array()).inverse();
+      all.each[i].mean = all.each[i].variances.cwiseProduct(right);
     }
     return all;
   }
-
-  Kinks changesOfSlope(const Bend& bend) const { return to_kinks_ * bend.mean; }
 
   /// Takes the bend off the disparities and fits the plane to what is left.
   bool flatten(const Kinks& bend, const PlaneLimits& limits, double bias_stddev) {
@@ -199,12 +200,12 @@ class ProfileFit {
     return std::max(1.0, (random * to_plane_).trace() / 3);
   }
 
-  SurfaceProfile profile(const Bend& bend) const {
+  SurfaceProfile profile(const Bend& bend, const KinkMatrix& to_kinks) const {
     SurfaceProfile result;
     result.below = plane_.plane;
-    const Eigen::Matrix<double, 3, kKinks> plane_by_bend = plane_by_kinks_ * to_kinks_;
+    const Eigen::Matrix<double, 3, kKinks> plane_by_bend = plane_by_kinks_ * to_kinks;
     result.below.covariance += plane_by_bend * bend.covariance * plane_by_bend.transpose();
-    const Kinks curvature = to_kinks_.colwise().sum() / kinks_->farthest;
+    const Kinks curvature = to_kinks.colwise().sum() / kinks_->farthest;
     result.curvature = curvature.dot(bend.mean);
     result.curvature_variance = curvature.dot(bend.covariance * curvature);
     return result;
@@ -259,7 +260,6 @@ class ProfileFit {
   Eigen::Matrix<double, kWaves, kWaves> wave_information_;
   KinkMatrix information_;  // of the changes of slope, in coordinates of root
   Kinks right_;
-  KinkMatrix to_kinks_;  // from a bend's axes
 };
 
 }  // namespace
@@ -284,8 +284,8 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   const Bend possible = mixture(alternatives, kBendChance);
   const Kinks missed = possible.mean - bend.mean;
   bend.covariance = possible.covariance + missed * missed.transpose();
-  if (!fit.flatten(fit.changesOfSlope(bend), limits, bias_stddev)) return std::nullopt;
-  return fit.profile(bend);
+  if (!fit.flatten(alternatives.to_kinks * bend.mean, limits, bias_stddev)) return std::nullopt;
+  return fit.profile(bend, alternatives.to_kinks);
 }
 
 }  // namespace uav_landing

@@ -52,7 +52,10 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   message.foe = {truth.foe.x(), truth.foe.y()};
   const Eigen::Vector3d velocity = velocityOf(truth, left);
   message.velocity = {velocity.x(), velocity.y(), velocity.z()};
-  message.velocity_covariance.assign(varianceOf(velocity.x()));
+  message.angular_velocity.assign(kUnknown);
+  message.twist_covariance.assign(kUnknown);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) message.twist_covariance[6 * i + j] = varianceOf(velocity.x());
   message.innovation = message.innovation_variance = kUnknown;
   message.x_known = !std::isnan(truth.x);
   message.y_known = !std::isnan(truth.y);

@@ -216,7 +216,7 @@ TEST(KalmanHeightStage, ReportsTheVelocityInMetresPerSecond) {
   // A millimetre in 0.1 s, and as much as the height.
   EXPECT_NEAR(result.speedVariance(), std::pow(0.01, 2) + std::pow(20.0 / 10, 2) * result.height_variance,
               1e-9);
-  EXPECT_NEAR(result.velocity_covariance(0, 0), std::pow(0.01, 2), 1e-12);
+  EXPECT_NEAR(result.twist_covariance(0, 0), std::pow(0.01, 2), 1e-12);
 }
 
 TEST(KalmanHeightStage, LearnsTheVerticalSpeedFromTheMotion) {
