@@ -18,6 +18,9 @@ constexpr double kStddev = 0.06 * kDegree;
 /// A camera that looks 4 degrees down and moves by so many metres ahead, down and aside; the angle is that.
 class Flight {
  public:
+  double turn = 0;       // about the camera's down axis, from pair to pair, rad
+  double agreement = 1;  // of the rows
+
   LandingResult fly(double ahead, double down, double aside = 0) {
     const double duration = pending_ + kT;
     pending_ = 0;
@@ -26,6 +29,7 @@ class Flight {
     stereo.stamp = stamp_;
     stereo.plane.g = normal_ / height_;
     stereo.plane.covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    stereo.row_agreement = agreement;
     stereo.points = test::matchesOn(test::usualRig(), stereo.plane.g);
     ApproachAngleResult approach;
     approach.stamp = stamp_;
@@ -33,7 +37,7 @@ class Flight {
     approach.n_covariance = stereo.plane.normalCovariance();
     ApproachAngleResult::Motion& step = approach.step;
     step.duration = duration;
-    step.rotation.setZero();
+    step.rotation = {0, turn, 0};
     const Eigen::Vector3d forward(0, -std::sin(4 * kDegree), std::cos(4 * kDegree));
     step.translation_over_height =
         (ahead * forward + down * normal_ + Eigen::Vector3d(aside, 0, 0)) / height_;
@@ -107,6 +111,23 @@ TEST(KalmanHeightAngle, IsNotValidForAsLongAsAStepAsideIsInItsWindow) {
   }
   EXPECT_NEAR(until * kT, kWindow, 1.01 * kT);
   EXPECT_NEAR(stddevOf(result), kStddev, 0.02 * kStddev);
+}
+
+TEST(KalmanHeightAngle, GivesNoVelocityWhereNobodyCanTellWhetherTheStepIsRight) {
+  Flight flight;
+  LandingResult result;
+  for (int i = 0; i < 10; ++i) result = flight.fly(1, 0.06);
+  EXPECT_NEAR(result.speed(), 20, 0.1);
+  EXPECT_TRUE(result.twist_covariance.allFinite());
+  flight.turn = 30 * kDegree * kT;
+  EXPECT_TRUE(std::isnan(flight.fly(1, 0.06).speed())) << "an unusual turn";
+  flight.turn = 10 * kDegree * kT;
+  EXPECT_NEAR(flight.fly(1, 0.06).speed(), 20, 0.1);
+  flight.agreement = 0;
+  result = flight.fly(1, 0.06);
+  ASSERT_EQ(failedTests(result.tests), "row_agreement");
+  EXPECT_TRUE(std::isnan(result.speed())) << "a pair that is left out";
+  EXPECT_TRUE(result.twist_covariance.array().isNaN().all());
 }
 
 TEST(KalmanHeightAngle, CountsTheTimeOfRepeatedPicturesOnce) {
