@@ -220,7 +220,8 @@ class KalmanHeightStage {
   HeightMemory memory_;
   SpeedMemory speed_;
   VelocityMemory velocity_;
-  double window_ = 0;      // of the angles of late, s
+  double window_ = 0;                                          // of the angles of late, s
+  Eigen::Vector3d velocity_change_ = Eigen::Vector3d::Zero();  // of the step compared last, m/s
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;

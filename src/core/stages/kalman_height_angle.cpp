@@ -111,20 +111,24 @@ double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction
 void KalmanHeightStage::reportMotion(const ApproachAngleResult& approach,
                                      const Reconstruction& reconstruction, LandingResult& result) const {
   const ApproachAngleResult::Motion& step = approach.step;
-  // One that the velocity before contradicts may be of another period of a pattern, or of the other camera,
-  // and in an unusual turn nobody looks.
-  if (reconstruction.refused || reconstruction.tilted || tests_.failed(Consistency::kVelocity) ||
-      step.rotation.norm() > AttitudeFilter::kUnusualTurn * step.duration)
-    return;
+  // A step that the velocity before contradicts may be of another period of a pattern, or of the other
+  // camera; before three have agreed, and in an unusual turn, nobody can tell.
+  const TestResult& compared = tests_.result(Consistency::kVelocity);
+  const bool agrees = !parameters_.integrity_monitor || (compared.possible() && !compared.failed());
+  if (reconstruction.refused || reconstruction.tilted || !agrees) return;
   const CameraTwist twist =
       cameraTwist(step, result.height - reconstruction.bend, result.height_variance, stamps_.ofDuration());
   result.velocity = twist.velocity;
   result.angular_velocity = twist.angular_velocity;
   result.twist_covariance = twist.covariance;
+  Eigen::Block<Matrix6d, 3, 3> of_velocity = result.twist_covariance.topLeftCorner<3, 3>();
+  // After a gap an aircraft may have become that fast, but a wrong step is as likely.
+  if (compared.ratio > AttitudeFilter::kDoubtful)
+    of_velocity += velocity_change_ * velocity_change_.transpose();
   // Its vertical part is as uncertain as the angle by another normal.
   const Eigen::Vector3d n = normalOfAngle(approach, step).n;
   if (n.allFinite())
-    result.twist_covariance.topLeftCorner<3, 3>() +=
+    of_velocity +=
         twist.velocity.squaredNorm() * varianceByNormals(reconstruction, approach, step) * n * n.transpose();
 }
 

@@ -209,7 +209,10 @@ void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approa
                                    height * step.translation_over_height, height * height * covariance,
                                    stamps_.ofDuration()};
   const std::optional<VelocityMemory::Innovation> innovation = velocity_.follow(known);
-  if (innovation) tests_.add(Consistency::kVelocity, innovation->difference, innovation->covariance);
+  if (innovation) {
+    tests_.add(Consistency::kVelocity, innovation->difference, innovation->covariance);
+    velocity_change_ = innovation->difference;
+  }
   const bool agrees = !tests_.failed(Consistency::kVelocity);
   if (!agrees) {
     const Eigen::Vector3d expected = known.way / known.duration - innovation->difference;

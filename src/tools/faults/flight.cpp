@@ -98,5 +98,6 @@ double trueHeight(const Flight& flight, double time) { return interpolate(flight
 double trueAngle(const Flight& flight, double time) {
   return interpolate(flight, time, &Truth::approach_angle);
 }
+double trueSpeed(const Flight& flight, double time) { return interpolate(flight, time, &Truth::speed); }
 
 }  // namespace uav_landing

@@ -46,9 +46,10 @@ std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn
 Flight readFlight(const std::string& folder);
 /// So many frames of it, from this one on.
 Flight cutFlight(const Flight& whole, int first, int frames);
-/// The true height, and approach angle, at any time between the frames, two at least: stamps and pictures may
-/// be those of others.
+/// The true height, approach angle, and speed at any time between the frames, two at least: stamps and
+/// pictures may be those of others.
 double trueHeight(const Flight& flight, double time);
 double trueAngle(const Flight& flight, double time);
+double trueSpeed(const Flight& flight, double time);
 
 }  // namespace uav_landing

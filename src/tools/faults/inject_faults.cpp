@@ -31,7 +31,7 @@ constexpr const char* kHeader =
 constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
     "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
-    "valid";
+    "valid,true_speed_m_s,speed_m_s,speed_stddev_m_s";
 
 std::string withoutCommas(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');
@@ -154,6 +154,7 @@ class Campaign {
     row.text(failedTests(said.tests));
     row.number(trueAngle(flight, pair_time) / kDegree).number(said.approach_angle / kDegree);
     row.number(std::sqrt(said.approach_angle_variance) / kDegree).flag(said.angle_valid);
+    row.number(trueSpeed(flight, pair_time)).number(said.speed()).number(std::sqrt(said.speedVariance()));
     trace_ << std::endl;
   }
 
