@@ -94,8 +94,8 @@ class KalmanHeightStage {
   void reportAngle(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
                    const Failure& jump, LandingResult& result) const;
   /// Velocity and turn by the step since the pair before, unless nobody can tell whether it is right.
-  void reportMotion(const ApproachAngleResult& approach, const Reconstruction& reconstruction,
-                    LandingResult& result) const;
+  void reportMotion(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
+                    const Reconstruction& reconstruction, LandingResult& result) const;
   /// What the pair measures without each source.
   void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction) const;

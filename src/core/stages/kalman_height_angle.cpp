@@ -21,6 +21,20 @@ double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
   return t.allFinite() ? t.dot(covariance * t) / t.squaredNorm() : covariance.trace();
 }
 
+/// By which share of itself the depth of the points on the plane is another one, in units of the height,
+/// where the ground has the normal b instead of a.
+double depthChange(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
+                   const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  double by_a = 0, by_b = 0;
+  for (const StereoDepthResult::Point& point : points) {
+    if (!point.on_plane) continue;
+    const Eigen::Vector3d ray = rig.ray(point.u, point.v);
+    by_a += a.dot(ray);
+    by_b += b.dot(ray);
+  }
+  return by_a > 0 && by_b > 0 ? by_a / by_b - 1 : 0;
+}
+
 }  // namespace
 
 // The normal that an angle of this motion is measured against: the one given with what the motion's own adds.
@@ -108,7 +122,7 @@ double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction
   return variance;
 }
 
-void KalmanHeightStage::reportMotion(const ApproachAngleResult& approach,
+void KalmanHeightStage::reportMotion(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                      const Reconstruction& reconstruction, LandingResult& result) const {
   const ApproachAngleResult::Motion& step = approach.step;
   // A step that the velocity before contradicts may be of another period of a pattern, or of the other
@@ -125,6 +139,11 @@ void KalmanHeightStage::reportMotion(const ApproachAngleResult& approach,
   // After a gap an aircraft may have become that fast, but a wrong step is as likely.
   if (compared.ratio > AttitudeFilter::kDoubtful)
     of_velocity += velocity_change_ * velocity_change_.transpose();
+  // Its lengths are by the depths of a normal that knows nothing of the rig's rotation.
+  if (reconstruction.plane.valid() && approach.n.allFinite()) {
+    const double share = depthChange(rig_, stereo.points, approach.n, reconstruction.plane.normal());
+    of_velocity += share * share * twist.velocity * twist.velocity.transpose();
+  }
   // Its vertical part is as uncertain as the angle by another normal.
   const Eigen::Vector3d n = normalOfAngle(approach, step).n;
   if (n.allFinite())

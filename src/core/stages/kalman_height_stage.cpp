@@ -68,7 +68,7 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   if (!stereo.left_repeated) doubtNormal(reconstruction, approach);
   reportAngle(approach, reconstruction, jump, result);
   reportPlane(reconstruction, approach, stereo.left_repeated, result);
-  reportMotion(approach, reconstruction, result);
+  reportMotion(stereo, approach, reconstruction, result);
   {
     const ScopedTimer timer(timings_, "runway_filter");
     Eigen::Vector3d n = approach.n;

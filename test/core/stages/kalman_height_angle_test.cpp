@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "support/degree.h"
@@ -20,6 +21,7 @@ class Flight {
  public:
   double turn = 0;       // about the camera's down axis, from pair to pair, rad
   double agreement = 1;  // of the rows
+  double misjudged = 0;  // by which the normal of the movement is nose up against the plane, rad
 
   LandingResult fly(double ahead, double down, double aside = 0) {
     const double duration = pending_ + kT;
@@ -33,7 +35,7 @@ class Flight {
     stereo.points = test::matchesOn(test::usualRig(), stereo.plane.g);
     ApproachAngleResult approach;
     approach.stamp = stamp_;
-    approach.n = normal_;
+    approach.n = Eigen::AngleAxisd(misjudged, Eigen::Vector3d::UnitX()) * normal_;
     approach.n_covariance = stereo.plane.normalCovariance();
     ApproachAngleResult::Motion& step = approach.step;
     step.duration = duration;
@@ -128,6 +130,22 @@ TEST(KalmanHeightAngle, GivesNoVelocityWhereNobodyCanTellWhetherTheStepIsRight) 
   ASSERT_EQ(failedTests(result.tests), "row_agreement");
   EXPECT_TRUE(std::isnan(result.speed())) << "a pair that is left out";
   EXPECT_TRUE(result.twist_covariance.array().isNaN().all());
+}
+
+TEST(KalmanHeightAngle, AVelocityByAnotherNormalIsAsUncertainAsItsDepths) {
+  const auto stddevAt = [](double misjudged) {
+    Flight flight;
+    flight.misjudged = misjudged;
+    LandingResult result;
+    for (int i = 0; i < 10; ++i) result = flight.fly(1, 0.06);
+    return std::sqrt(result.speedVariance()) / result.speed();
+  };
+  const double by_step = stddevAt(0),
+               by_normal = std::sqrt(std::pow(stddevAt(0.2 * kDegree), 2) - by_step * by_step);
+  // The depth at an angle e below the horizon is the height over tan e: matches lie some 5 to 20 degrees
+  // below.
+  EXPECT_GT(by_normal, 0.2 * kDegree / std::tan(25 * kDegree));
+  EXPECT_LT(by_normal, 0.2 * kDegree / std::tan(15 * kDegree));
 }
 
 TEST(KalmanHeightAngle, CountsTheTimeOfRepeatedPicturesOnce) {
