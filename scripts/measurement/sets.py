@@ -14,8 +14,8 @@ PRESETS = (("Default preset", "stereo", ()),
            ("For slow computers", "fast", ()),
            ("The paper's choices, also on frames that are not valid", "paper", ("--invalid-too",)))
 HEADER = ("set", "frames", "coverage", "height, cm: mean", "median", "95 %", "worst", "in 95 %",
-          "angle, °: mean", "median", "95 %", "worst", "signed", "in 95 %", "pitch, °: 95 %", "roll, °: 95 %", "speed, m/s: 95 %", "in 95 %",
-          "ms")
+          "angle, °: mean", "median", "95 %", "worst", "signed", "in 95 %", "pitch, °: 95 %", "roll, °: 95 %",
+          "speed, m/s: 95 %", "in 95 %", "ms")
 TEXT = """Each set goes through `dataset_to_bag` (or `simulate_approach`), `process_bag --config config/<preset>.yaml` and `evaluate`,
 with one parameter set for all. Scored are frames later than 1 s after the first on which `valid` is 1; *coverage* is their
 share. (The paper's choices are seldom certain enough to be valid; their errors are those of all frames that have a number.)

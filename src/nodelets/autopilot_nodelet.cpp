@@ -67,15 +67,20 @@ class AutopilotNodelet : public StageNodelet {
   }
   std::string complaint() override { return pairing_->complaint(); }
   void complainMore() override {
-    if (!sent_lately_ && !last_reason_.empty())
-      NODELET_WARN("%s: nothing sent for %.3g s: %s", getName().c_str(), node_.complaint_period,
-                   last_reason_.c_str());
-    if (!velocity_sent_lately_ && !last_velocity_reason_.empty())
-      NODELET_WARN("%s: no velocity sent for %.3g s: %s", getName().c_str(), node_.complaint_period,
-                   last_velocity_reason_.c_str());
-    sent_lately_ = velocity_sent_lately_ = false;
-    last_reason_.clear();
-    last_velocity_reason_.clear();
+    complainOf("nothing sent for", anything_);
+    complainOf("no velocity sent for", velocity_);
+  }
+
+  /// Of what was to be sent since the last complaint.
+  struct Sent {
+    bool lately = false;
+    std::string why_not;  // of the last that was not
+  };
+  void complainOf(const char* what, Sent& sent) {
+    if (!sent.lately && !sent.why_not.empty())
+      NODELET_WARN("%s: %s %.3g s: %s", getName().c_str(), what, node_.complaint_period,
+                   sent.why_not.c_str());
+    sent = {};
   }
 
   void work(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose) {
@@ -91,9 +96,9 @@ class AutopilotNodelet : public StageNodelet {
       missing = "no pose: the place along or across the runway is not known";
     report_.served(stamp, 0, missing);
     if (range || enu_pose)
-      sent_lately_ = true;
+      anything_.lately = true;
     else
-      last_reason_ = missing;
+      anything_.why_not = missing;
   }
 
   void passVelocity(const geometry_msgs::TwistWithCovarianceStamped& twist,
@@ -102,9 +107,9 @@ class AutopilotNodelet : public StageNodelet {
     const auto velocity = autopilotVelocity(twist, pose, parameters_);
     if (velocity) {
       velocity_publisher_.publish(*velocity);
-      velocity_sent_lately_ = true;
+      velocity_.lately = true;
     } else if (headingKnown(parameters_)) {
-      last_velocity_reason_ = whyNoVelocity(pose);
+      velocity_.why_not = whyNoVelocity(pose);
     }
   }
 
@@ -115,8 +120,7 @@ class AutopilotNodelet : public StageNodelet {
   std::vector<ros::Subscriber> subscribers_;
   ros::Publisher range_publisher_, pose_publisher_, velocity_publisher_;
   RateLimit rate_, velocity_rate_;
-  bool sent_lately_ = false, velocity_sent_lately_ = false;
-  std::string last_reason_, last_velocity_reason_;  // why nothing was sent
+  Sent anything_, velocity_;
 };
 
 }  // namespace uav_landing

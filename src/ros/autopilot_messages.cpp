@@ -3,10 +3,10 @@
 #include <tf2_eigen/tf2_eigen.h>
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "landing_messages.h"
 #include "uav_landing/geometry/cross_matrix.h"
 
 namespace uav_landing {
@@ -93,12 +93,9 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   const Covariance covariance = turned(in_runway, enu_from_runway.linear());
   if (!enu_from_aircraft.matrix().allFinite() || !positiveDefinite(covariance)) return std::nullopt;
 
-  geometry_msgs::PoseWithCovarianceStamped enu;
-  enu.header = pose.header;
-  enu.header.frame_id = parameters.enu_frame;
-  enu.pose.pose = tf2::toMsg(enu_from_aircraft);
-  std::copy_n(covariance.data(), covariance.size(), enu.pose.covariance.begin());
-  return enu;
+  std_msgs::Header header = pose.header;
+  header.frame_id = parameters.enu_frame;
+  return *poseMessage(header, enu_from_aircraft, covariance);
 }
 
 std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose) {
@@ -130,13 +127,7 @@ std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
       Covariance(by_attitude * of_pose.bottomRightCorner<3, 3>() * by_attitude.transpose());
   if (!linear.allFinite() || !angular.allFinite() || !positiveDefinite(covariance)) return std::nullopt;
 
-  geometry_msgs::TwistWithCovarianceStamped enu;
-  enu.header.stamp = twist.header.stamp;
-  enu.header.frame_id = parameters.enu_frame;
-  tf2::toMsg(linear, enu.twist.twist.linear);
-  tf2::toMsg(angular, enu.twist.twist.angular);
-  std::copy_n(covariance.data(), covariance.size(), enu.twist.covariance.begin());
-  return enu;
+  return *twistMessage(twist.header.stamp, parameters.enu_frame, {linear, angular, covariance});
 }
 
 }  // namespace uav_landing

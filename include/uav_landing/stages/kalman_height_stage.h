@@ -67,7 +67,8 @@ class KalmanHeightStage {
     double stereo_height = kUnknown, stereo_variance = kUnknown;  ///< m, m^2, before a known width is fused
     bool teaches_width = false;  ///< the runway's width may be learned from the height, when it is accepted
     bool refused = false;        ///< by a test of the pair: no angle that is made of it is believed either
-    SolutionSeparation::Measurements without;  ///< the height with each source left out
+    SolutionSeparation::Measurements without;                   ///< the height with each source left out
+    Eigen::Vector3d velocity_change = Eigen::Vector3d::Zero();  ///< against the pairs before, m/s
   };
   Reconstruction reconstruct(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   /// measured: the plane of stereo with the pair's skew in its covariance.
@@ -96,6 +97,11 @@ class KalmanHeightStage {
   /// Velocity and turn by the step since the pair before, unless nobody can tell whether it is right.
   void reportMotion(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                     const Reconstruction& reconstruction, LandingResult& result) const;
+  /// What the step does not know of the velocity's covariance. depth_change: by which share of itself lengths
+  /// were changed.
+  Eigen::Matrix3d doubtOfVelocity(const Eigen::Vector3d& velocity, double depth_change,
+                                  const ApproachAngleResult& approach,
+                                  const Reconstruction& reconstruction) const;
   /// What the pair measures without each source.
   void leaveOutSources(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                        Reconstruction& reconstruction) const;
@@ -115,7 +121,7 @@ class KalmanHeightStage {
   /// The step since the pair before against the velocity on those before that. Not of a picture that came
   /// once more: the next step is over the time of both. Only the angle is less certain for it: what is wrong
   /// in the direction of flight hardly changes a height.
-  void testVelocity(double T, const ApproachAngleResult& approach, const Reconstruction& reconstruction);
+  void testVelocity(double T, const ApproachAngleResult& approach, Reconstruction& reconstruction);
   /// Adds to the height's variance what it changes by between the stamp and the time of the images.
   void followStamps(const ApproachAngleResult::Motion& step, Reconstruction& reconstruction);
   /// The vertical speed by motion, uncertain by what the stamps are wrong by as well.
@@ -220,8 +226,7 @@ class KalmanHeightStage {
   HeightMemory memory_;
   SpeedMemory speed_;
   VelocityMemory velocity_;
-  double window_ = 0;                                          // of the angles of late, s
-  Eigen::Vector3d velocity_change_ = Eigen::Vector3d::Zero();  // of the step compared last, m/s
+  double window_ = 0;      // of the angles of late, s
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
   Recovery recovery_;

@@ -122,33 +122,40 @@ double KalmanHeightStage::varianceByNormals(const Reconstruction& reconstruction
   return variance;
 }
 
+Eigen::Matrix3d KalmanHeightStage::doubtOfVelocity(const Eigen::Vector3d& velocity, double depth_change,
+                                                   const ApproachAngleResult& approach,
+                                                   const Reconstruction& reconstruction) const {
+  Eigen::Matrix3d doubt = Eigen::Matrix3d::Zero();
+  // After a gap an aircraft may have become that fast, but a wrong step is as likely.
+  if (tests_.result(Consistency::kVelocity).ratio > AttitudeFilter::kDoubtful)
+    doubt += reconstruction.velocity_change * reconstruction.velocity_change.transpose();
+  doubt += depth_change * depth_change * velocity * velocity.transpose();
+  // The vertical part is as uncertain as the angle by another normal.
+  const Eigen::Vector3d n = normalOfAngle(approach, approach.step).n;
+  if (n.allFinite())
+    doubt += velocity.squaredNorm() * varianceByNormals(reconstruction, approach, approach.step) * n *
+             n.transpose();
+  return doubt;
+}
+
 void KalmanHeightStage::reportMotion(const StereoDepthResult& stereo, const ApproachAngleResult& approach,
                                      const Reconstruction& reconstruction, LandingResult& result) const {
-  const ApproachAngleResult::Motion& step = approach.step;
   // A step that the velocity before contradicts may be of another period of a pattern, or of the other
   // camera; before three have agreed, and in an unusual turn, nobody can tell.
   const TestResult& compared = tests_.result(Consistency::kVelocity);
   const bool agrees = !parameters_.integrity_monitor || (compared.possible() && !compared.failed());
   if (reconstruction.refused || reconstruction.tilted || !agrees) return;
-  const CameraTwist twist =
-      cameraTwist(step, result.height - reconstruction.bend, result.height_variance, stamps_.ofDuration());
+  // Its lengths are by the depths of a normal that knows nothing of the rig's rotation.
+  const bool another = reconstruction.plane.valid() && approach.n.allFinite();
+  const double change =
+      another ? depthChange(rig_, stereo.points, approach.n, reconstruction.plane.normal()) : 0;
+  const CameraTwist twist = cameraTwist(approach.step, (1 + change) * (result.height - reconstruction.bend),
+                                        result.height_variance, stamps_.ofDuration());
   result.velocity = twist.velocity;
   result.angular_velocity = twist.angular_velocity;
   result.twist_covariance = twist.covariance;
-  Eigen::Block<Matrix6d, 3, 3> of_velocity = result.twist_covariance.topLeftCorner<3, 3>();
-  // After a gap an aircraft may have become that fast, but a wrong step is as likely.
-  if (compared.ratio > AttitudeFilter::kDoubtful)
-    of_velocity += velocity_change_ * velocity_change_.transpose();
-  // Its lengths are by the depths of a normal that knows nothing of the rig's rotation.
-  if (reconstruction.plane.valid() && approach.n.allFinite()) {
-    const double share = depthChange(rig_, stereo.points, approach.n, reconstruction.plane.normal());
-    of_velocity += share * share * twist.velocity * twist.velocity.transpose();
-  }
-  // Its vertical part is as uncertain as the angle by another normal.
-  const Eigen::Vector3d n = normalOfAngle(approach, step).n;
-  if (n.allFinite())
-    of_velocity +=
-        twist.velocity.squaredNorm() * varianceByNormals(reconstruction, approach, step) * n * n.transpose();
+  result.twist_covariance.topLeftCorner<3, 3>() +=
+      doubtOfVelocity(twist.velocity, change, approach, reconstruction);
 }
 
 // jump: why the stamp says nothing of the time since the pair before, if so.

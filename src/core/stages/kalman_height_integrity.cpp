@@ -193,7 +193,7 @@ void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Moti
 }
 
 void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approach,
-                                     const Reconstruction& reconstruction) {
+                                     Reconstruction& reconstruction) {
   const ApproachAngleResult::Motion& step = approach.step;
   const double height = heightSoFar(reconstruction);
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
@@ -211,7 +211,7 @@ void KalmanHeightStage::testVelocity(double T, const ApproachAngleResult& approa
   const std::optional<VelocityMemory::Innovation> innovation = velocity_.follow(known);
   if (innovation) {
     tests_.add(Consistency::kVelocity, innovation->difference, innovation->covariance);
-    velocity_change_ = innovation->difference;
+    reconstruction.velocity_change = innovation->difference;
   }
   const bool agrees = !tests_.failed(Consistency::kVelocity);
   if (!agrees) {

@@ -21,7 +21,7 @@ class Flight {
  public:
   double turn = 0;       // about the camera's down axis, from pair to pair, rad
   double agreement = 1;  // of the rows
-  double misjudged = 0;  // by which the normal of the movement is nose up against the plane, rad
+  double misjudged = 0;  // by which the normal of the movement leans forward against the plane's, rad
 
   LandingResult fly(double ahead, double down, double aside = 0) {
     const double duration = pending_ + kT;
@@ -132,20 +132,22 @@ TEST(KalmanHeightAngle, GivesNoVelocityWhereNobodyCanTellWhetherTheStepIsRight) 
   EXPECT_TRUE(result.twist_covariance.array().isNaN().all());
 }
 
-TEST(KalmanHeightAngle, AVelocityByAnotherNormalIsAsUncertainAsItsDepths) {
-  const auto stddevAt = [](double misjudged) {
+TEST(KalmanHeightAngle, AVelocityIsByTheDepthsOfThePlaneAndAsUncertainAsThatChangesIt) {
+  const auto fly = [](double misjudged) {
     Flight flight;
     flight.misjudged = misjudged;
     LandingResult result;
     for (int i = 0; i < 10; ++i) result = flight.fly(1, 0.06);
-    return std::sqrt(result.speedVariance()) / result.speed();
+    return result;
   };
-  const double by_step = stddevAt(0),
-               by_normal = std::sqrt(std::pow(stddevAt(0.2 * kDegree), 2) - by_step * by_step);
-  // The depth at an angle e below the horizon is the height over tan e: matches lie some 5 to 20 degrees
-  // below.
-  EXPECT_GT(by_normal, 0.2 * kDegree / std::tan(25 * kDegree));
-  EXPECT_LT(by_normal, 0.2 * kDegree / std::tan(15 * kDegree));
+  const LandingResult right = fly(0), other = fly(0.2 * kDegree);
+  const double change = other.speed() / right.speed() - 1;
+  // The depth at an angle e below the horizon is the height over tan e: the middle of the matches is some 20
+  // degrees below. The movement's normal leans forward, so its plane rises ahead: its depths are too small.
+  EXPECT_GT(change, 0.2 * kDegree / std::tan(25 * kDegree));
+  EXPECT_LT(change, 0.2 * kDegree / std::tan(15 * kDegree));
+  EXPECT_NEAR(std::sqrt(other.speedVariance() - right.speedVariance()), change * right.speed(),
+              0.05 * change * right.speed());
 }
 
 TEST(KalmanHeightAngle, CountsTheTimeOfRepeatedPicturesOnce) {
