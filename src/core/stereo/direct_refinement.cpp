@@ -14,10 +14,10 @@
 namespace uav_landing {
 namespace {
 
-// Gauss-Newton steps at most, and the change of the largest disparity (pixels) that ends them: a step leaves
-// about a tenth of itself.
+// Gauss-Newton steps at most, and the change of the largest disparity that ends them, in pixels or as a share
+// of it, whichever is larger: a step leaves about a tenth of itself.
 constexpr int kSteps = 10;
-constexpr double kConverged = 0.01;
+constexpr double kConverged = 0.01, kConvergedShare = 5e-4;
 // By how much disparities of the first plane may be off, pixels.
 constexpr double kStartStddev = 0.3;
 // Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
@@ -160,11 +160,10 @@ struct DirectRefinement::Implementation {
                                   " blocks are on the plane: too few to tell which are ground"};
   }
 
-  // Largest change of disparity at the bottom of the image, where disparities are largest.
-  double change(const Eigen::Vector3d& before, const Eigen::Vector3d& after) const {
+  // Largest disparity at the bottom of the image, where they are largest, of a plane or of a change of it.
+  double largestDisparity(const Eigen::Vector3d& g) const {
     const double bottom = rig.size.height - 1, right = rig.size.width - 1;
-    const Eigen::Vector3d step = rig.fb() * (after - before);
-    return std::max(std::abs(step.dot(rig.ray(0, bottom))), std::abs(step.dot(rig.ray(right, bottom))));
+    return rig.fb() * std::max(std::abs(g.dot(rig.ray(0, bottom))), std::abs(g.dot(rig.ray(right, bottom))));
   }
 };
 
@@ -196,12 +195,13 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     if (!fit) return fit;
     if (own.agreeing < kLeastShare * own.disparities.informative())
       return tl::make_unexpected(own.tooFewOnThePlane());
-    const double change = own.change(g, fit->plane.g);
-    if (step + 1 == kSteps || (step > 0 && change < kConverged)) {
+    const double change = own.largestDisparity(fit->plane.g - g);
+    const double least = std::max(kConverged, kConvergedShare * own.largestDisparity(g));
+    if (step + 1 == kSteps || (step > 0 && change < least)) {
       fit->lasting_share = own.lastingShare(*fit);
       own.solveWithRows(priorOf(rows, noisy()), levelled_by + rows.w, bias_stddev, *fit);
       // What has not settled is known no better than it moves.
-      if (change > kConverged) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
+      if (change > least) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
     }
     g = fit->plane.g;
