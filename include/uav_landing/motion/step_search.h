@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "uav_landing/image/match_image.h"
@@ -18,6 +19,7 @@ struct StepImages {
   Eigen::Vector3d normal;                   ///< of the ground, unit, now
   Eigen::Matrix3d normal_covariance;        ///< rank 2
   const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
+  bool regular = false;                     ///< takes about as long as the step before
 };
 
 /// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
@@ -31,7 +33,10 @@ class StepSearch {
   Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
                                 std::vector<TemporalMatch>& matches);
   /// Other images come next: what earlier searches found does not matter.
-  void reset() { unsure_ = 0; }
+  void reset() {
+    unsure_ = 0;
+    steady_share_ = 0;
+  }
 
  private:
   TemporalMatchOptions options(int coarse_steps) const;
@@ -39,6 +44,13 @@ class StepSearch {
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,
                                    std::vector<TemporalMatch> memory = {}) const;
+  /// By a narrow search for all corners at once, and none when that does not find what it did before.
+  std::optional<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
+                                               std::vector<TemporalMatch>& matches);
+  void takeNote(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
+                const std::vector<TemporalMatch>& matches);
+  double farthestOff(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
+                     const std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
                                       std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
@@ -50,6 +62,9 @@ class StepSearch {
   cv::Mat mask_;
   ApproachAngleParameters parameters_;
   int unsure_ = 0;  // searches in a row that few corners agreed with
+  // Of the corners, that agreed with the last step, if that was near where it was predicted; else 0.
+  double steady_share_ = 0;
+  int steady_steps_ = 0;  // in a row that were not searched for
 };
 
 }  // namespace uav_landing

@@ -18,8 +18,21 @@ constexpr double kLeastShare = 0.35;
 // In how many searches in a row that few corners agree with all of them are compared.
 constexpr int kUnsureInterval = 10;
 
+// A prediction that was good to this for the last step, at any corner, makes one that needs no search before
+// the windows are refined; this one must be good to that, or it is searched for after all. Refinement finds
+// what is within two, pixels.
+constexpr double kSteadyOff = 0.75, kMostOff = 1.0;
+// Share of the corners that must agree with it, and of those that agreed before.
+constexpr double kLeastSteady = 0.5, kLeastKept = 0.9;
+// Steps in a row without a search: what it would show, a motion that agrees better, is to be seen soon.
+constexpr int kLookAround = 9;
+
 // Fewest matches that make a motion good enough to search from.
 constexpr int kFewestScouts = 6;
+
+double shareOf(const MotionEstimate& estimate, const StepImages& step) {
+  return estimate.inlier_count / static_cast<double>(step.corners.size());
+}
 
 // The rotation that the matches want is one that the prior allows.
 bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
@@ -63,9 +76,17 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * matches.size(); };
   for (const CameraMotion& predicted : predictions) {
+    if (std::optional<MotionEstimate> steady = followSteadily(step, predicted, matches)) {
+      takeNote(step, predicted, *steady, matches);
+      return std::move(*steady);
+    }
+    steady_steps_ = 0;
     estimate = followFrom(step, predicted, matches);
-    if (good()) return estimate;
+    if (!good()) continue;
+    takeNote(step, predicted, *estimate, matches);
+    return estimate;
   }
+  steady_share_ = 0;
   std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
   if (step.rotation != nullptr) rotations.insert(rotations.begin(), step.rotation->R);
   for (const Eigen::Matrix3d& R : rotations) {
@@ -73,6 +94,44 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
     if (good()) break;
   }
   return estimate;
+}
+
+std::optional<MotionEstimate> StepSearch::followSteadily(const StepImages& step,
+                                                         const CameraMotion& predicted,
+                                                         std::vector<TemporalMatch>& matches) {
+  if (!step.regular || steady_share_ <= 0 || steady_steps_ >= kLookAround) return std::nullopt;
+  ++steady_steps_;
+  matches = match(step, step.corners, predicted, 0, std::move(matches));
+  Expected<MotionEstimate> found = estimate(step, predicted, matches);
+  // Lines look alike wherever along them they are looked for, and agree with any speed. What else there is
+  // would be lost at a wrong one.
+  if (!found || shareOf(*found, step) < kLeastKept * steady_share_ ||
+      farthestOff(step, predicted, *found, matches) > kMostOff)
+    return std::nullopt;
+  return std::move(*found);
+}
+
+void StepSearch::takeNote(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
+                          const std::vector<TemporalMatch>& matches) {
+  const double share = shareOf(found, step);
+  const bool steady = share >= kLeastSteady && farthestOff(step, predicted, found, matches) <= kSteadyOff;
+  steady_share_ = steady ? share : 0;
+}
+
+// By how much the prediction put any of the corners that agree wrongly, pixels.
+double StepSearch::farthestOff(const StepImages& step, const CameraMotion& predicted,
+                               const MotionEstimate& found, const std::vector<TemporalMatch>& matches) const {
+  double farthest = 0;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (!found.inliers[i]) continue;
+    const TemporalMatch& match = matches[i];
+    const Eigen::Vector3d ray = rig_.Kinv() * match.now.homogeneous();
+    const double inverse_depth = match.on_plane ? step.normal.dot(ray) : match.inverse_depth;
+    const Eigen::Vector3d there = rig_.K() * found.motion.seenThen(ray, inverse_depth);
+    const Eigen::Vector3d expected = rig_.K() * predicted.seenThen(ray, inverse_depth);
+    farthest = std::max(farthest, (there.hnormalized() - expected.hnormalized()).norm());
+  }
+  return farthest;
 }
 
 Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const CameraMotion& predicted,

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "stereo/corner_plane.h"
+#include "stereo/plane_tracker.h"
 #include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
@@ -18,14 +19,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// Failing frames for which the last plane stays the first guess.
-constexpr int kKeepPlaneFor = 5;
 // In how many searches that find nothing one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
-// Share of the image's rows by which the horizon mostly moves less from pair to pair.
-constexpr double kSlack = 0.02;
-// Share of the corners on the last pair's ground that must be on that of this one to be used for it.
-constexpr double kKept = 0.8;
 // By how much corners may be more wrong than they claim where texture is hardly more than noise: gradients in
 // their windows are the noise's own then. Measured: 1.6 in a hundred pairs of one simulated scene.
 constexpr double kNoisyCorners = 2.0;
@@ -36,28 +31,25 @@ struct StereoDepthStage::Implementation {
   RigModel model;
   StereoDepthParameters parameters;
   PlaneLimits limits;
-  int corner_count;
+  PlaneTracker tracker;
   StereoLevel fine, coarse;
   MatchImage left, right;
+  std::vector<cv::Point> corners_found;  // of this pair
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images with their rows made level
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
-  Eigen::Vector3d last_g = Eigen::Vector3d::Zero();
-  std::vector<cv::Point> last_corners;  // on the ground of last_g, where they scouted
-  bool has_last = false;
-  double last_stamp = -INFINITY;
   RepeatedImage left_repeated, right_repeated;
-  int failures = 0, failed_searches = 0;
+  int failed_searches = 0;
   bool looks_swapped = false;
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p)
       : model(rig),
         parameters(p),
-        corner_count(cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
+        limits{p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance},
+        tracker(rig.rig, p, limits, cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
-    limits = {p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance};
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -69,8 +61,7 @@ struct StereoDepthStage::Implementation {
     timings.clear();
     StereoDepthResult result;
     result.stamp = stamp;
-    if (!(stamp > last_stamp)) has_last = false;
-    last_stamp = stamp;
+    tracker.begin(stamp);
     result.failure = checkPair(model, left_image, right_image);
     if (result.failure.reason != Reason::kInputInvalid) {
       result.left_repeated = left_repeated.check(left_image);
@@ -78,10 +69,10 @@ struct StereoDepthStage::Implementation {
     }
     if (!result.failure) estimate(left_image, right_image, result);
     if (!result.failure) {
-      remember(result.plane.g);
+      tracker.remember(result);
       failed_searches = 0;
-    } else {  // one bad pair does not make the last plane a bad guess; many do
-      has_last = has_last && ++failures < kKeepPlaneFor;
+    } else {
+      tracker.miss();
     }
     return result;
   }
@@ -89,39 +80,29 @@ struct StereoDepthStage::Implementation {
   // Width and height of corners' windows, pixels.
   int window() const { return 2 * parameters.window_radius + 1; }
 
-  // For the next pair to follow.
-  void remember(const Eigen::Vector3d& g) {
-    last_g = g;
-    has_last = true;
-    failures = 0;
-  }
-
   void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     {
       ScopedTimer timer(timings, "match_images");
       // Rows that are made level come from other rows.
-      const FirstRows first = has_last && rows.isLevel() ? groundRows(last_g, kSlack) : FirstRows();
+      const FirstRows first = tracker.hasLast() && rows.isLevel() ? tracker.lastGroundRows() : FirstRows();
       left.assign(left_image, first);
       right.assign(right_image, first);
     }
     fine.left = left.fine;
     coarse.left = left.coarse;
     levelRows();
-    const auto extend = [&](const FirstRows& first) {
-      ScopedTimer timer(timings, "match_images");
-      left.extend(left_image, first);
-      right.extend(right_image, first);
-    };
-    std::optional<Eigen::Vector3d> tracked = trackedPlane();
-    if (!tracked) extend({});
-    const Expected<Eigen::Vector3d> start = tracked ? *tracked : searchedPlane(result);
-    if (!start) {
-      result.failure = start.error();
-      return;
+    MatchedCorners corners;
+    if (!matchSteadily(corners, result)) {
+      const auto extend = [&](const FirstRows& first) {
+        ScopedTimer timer(timings, "match_images");
+        left.extend(left_image, first);
+        right.extend(right_image, first);
+      };
+      corners = searchAndMatch(extend, result);
     }
-    extend(groundRows(*start, 0));
-    const MatchedCorners corners = matchedCorners(*start, result);
-    if (result.failure || (direct && refineDirectly(left_image, right_image, result))) return;
+    if (result.failure) return;
+    measureRows(corners, result);
+    if (direct && refineDirectly(left_image, right_image, result)) return;
     keepPlaneOf(corners, result);
     if (result.from_search) waitForNextPair(result);
   }
@@ -129,7 +110,7 @@ struct StereoDepthStage::Implementation {
   // A search finds some plane in nothing but noise, too. One that no alignment of the images bears out counts
   // when the next pair's is there as well.
   void waitForNextPair(StereoDepthResult& result) {
-    remember(result.plane.g);
+    tracker.remember(result);
     StereoDepthResult waiting;
     waiting.stamp = result.stamp;
     waiting.failure = {Reason::kNotYet,
@@ -150,39 +131,31 @@ struct StereoDepthStage::Implementation {
     coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
-  // Where windows on the ground of this plane may reach.
-  FirstRows groundRows(const Eigen::Vector3d& g, double slack) const {
-    constexpr int kInterpolation = 8;  // px that they are moved, and that is interpolated from
-    const int above = parameters.window_radius + kInterpolation;
-    return firstGroundRows(model.rig, g, {above, above}, slack);
+  // By the plane as it moves on, unless the pair shows that it is elsewhere.
+  bool matchSteadily(MatchedCorners& corners, StereoDepthResult& result) {
+    const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(fine, timings);
+    if (!steady) return false;
+    corners = matchedCorners(*steady, result);
+    if (!result.failure && tracker.bearsOut(result)) return true;
+    result.failure = {};
+    result.points.clear();
+    return false;
   }
 
-  // A plane good to about a pixel of disparity: followed from the previous pair, by a few corners where they
-  // agree, ...
-  std::optional<Eigen::Vector3d> trackedPlane() {
-    last_corners.clear();
-    if (!has_last) return std::nullopt;
-    if (const std::optional<Eigen::Vector3d> scouted = scoutedPlane()) return scouted;
-    last_corners.clear();
-    ScopedTimer timer(timings, "feature_matching_coarse");
-    const Consensus tracked = trackPlane(coarse, last_g, parameters, limits);
-    if (!tracked.found) return std::nullopt;
-    return tracked.g;
-  }
-
-  std::optional<Eigen::Vector3d> scoutedPlane() {
-    {
-      ScopedTimer timer(timings, "harris_corners");
-      last_corners = findGroundCorners(fine, last_g, corner_count, parameters);
+  // By a plane that is followed from the previous pair, or searched. extend: gives the images more rows.
+  template <class Extend>
+  MatchedCorners searchAndMatch(const Extend& extend, StereoDepthResult& result) {
+    const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
+    if (!followed) extend(FirstRows());
+    const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(result);
+    if (!start) {
+      result.failure = start.error();
+      return {};
     }
-    ScopedTimer timer(timings, "feature_matching_coarse");
-    const Consensus scouted =
-        trackPlaneByScouts(coarse, last_corners, left.factor, last_g, parameters, limits);
-    if (!scouted.found) return std::nullopt;
-    return scouted.g;
+    extend(tracker.groundRows(*start));
+    return matchedCorners(*start, result);
   }
 
-  // ... or searched.
   Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
@@ -206,33 +179,21 @@ struct StereoDepthStage::Implementation {
     return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
   }
 
-  // Those that scouted, as long as the horizon has hardly moved since the last plane.
-  std::vector<cv::Point> cornersOn(const Eigen::Vector3d& g) const {
-    const int moved = groundRows(g, 0).fine - groundRows(last_g, 0).fine;
-    if (!last_corners.empty() && std::abs(moved) < kSlack * fine.rig.size.height) {
-      std::vector<cv::Point> corners = cornersOnGround(fine, last_corners, g);
-      if (corners.size() >= kKept * last_corners.size()) return corners;
-    }
-    return findGroundCorners(fine, g, corner_count, parameters);
-  }
-
   // With their plane, unless the result says why there is none.
   MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
-    std::vector<cv::Point> corners;
     MatchedCorners matched;
     {
       ScopedTimer timer(timings, "harris_corners");
-      corners = cornersOn(start);
+      corners_found = tracker.cornersOn(fine, start);
     }
-    result.corners = static_cast<int>(corners.size());
+    result.corners = static_cast<int>(corners_found.size());
     // A bent rig's rows must be level before anything is matched along them.
-    if (result.from_search && rows.search(fine, corners, start)) levelRows();
+    if (result.from_search && rows.search(fine, corners_found, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
-      matched.samples = matchCorners(fine, corners, start, parameters);
+      matched.samples = matchCorners(fine, corners_found, start, parameters);
     }
     fit(matched, result);
-    measureRows(corners, matched.samples, result);
     return matched;
   }
 
@@ -257,11 +218,10 @@ struct StereoDepthStage::Implementation {
     result.row_bias_stddev = parameters.row_bias_stddev;
   }
 
-  void measureRows(const std::vector<cv::Point>& corners, const std::vector<DisparitySample>& samples,
-                   StereoDepthResult& result) {
+  void measureRows(const MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
-    if (result.failure) return;
-    const RowAlignment::Measured measured = rows.measure(fine, corners, samples, result.plane.g);
+    const RowAlignment::Measured measured =
+        rows.measure(fine, corners_found, corners.samples, result.plane.g);
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
@@ -303,7 +263,8 @@ struct StereoDepthStage::Implementation {
   void keepPlaneOf(const MatchedCorners& corners, StereoDepthResult& result) {
     result.plane.covariance +=
         sharedCovariance(model.rig, corners, window(), parameters.disparity_bias_stddev);
-    bend(corners.samples, corners.fit, result.plane.covariance - corners.fit.plane.covariance, result);
+    bend(corners.samples, corners.fit, result.plane.covariance - corners.fit.plane.covariance,
+         result);
   }
 
   // flat: fit to the samples. besides: what these do not know of the covariance.
@@ -335,9 +296,9 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 }
 
 void StereoDepthStage::reset() {
-  implementation_->has_last = implementation_->looks_swapped = false;
-  implementation_->last_stamp = -INFINITY;
-  implementation_->failures = implementation_->failed_searches = 0;
+  implementation_->tracker.forget();
+  implementation_->looks_swapped = false;
+  implementation_->failed_searches = 0;
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();
   implementation_->left_repeated.reset();
