@@ -1,10 +1,12 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 #include "uav_landing/stereo/plane_consensus.h"
+#include "uav_landing/stereo/row_refinement.h"
 #include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
@@ -17,10 +19,21 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
                                        const Eigen::Vector3d& g);
 
+/// Corners that were found along their rows, in the order in which they were looked for.
+struct RowMatches {
+  std::vector<DisparitySample> samples;
+  /// Where each is when its row may move as well; of those that vertical disparities are measured by.
+  std::vector<std::optional<RowRefinement::Across>> across;
+};
+
+/// Vertical disparities are measured by so many corners, spread as these are: enough, as the filter behind
+/// averages over frames.
+constexpr size_t kCornersAcross = 240;
+
 /// Matches corners along their rows around the disparity that g predicts: gain and offset free
 /// correlation (or SSD), uniqueness, left-right check, sub-pixel. One disparity a sample.
-std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                          const Eigen::Vector3d& g, const StereoDepthParameters& parameters);
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters);
 
 /// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,

@@ -22,16 +22,16 @@ struct VerticalDisparities {
   double agreement = kUnknown;
 };
 
-/// corners: all that were looked for along the rows; samples: those of them that were found, in the same
-/// order, with their disparities. The right row of a few of the corners is measured to sub-pixel (gain and
+/// corners: all that were looked for along the rows; matches: those of them that were found, in the same
+/// order. The right row of a few of the corners is measured to sub-pixel (gain and
 /// offset free, within 2 rows), then the rotation and the direction of the baseline fitted with redescending
 /// weights. Those that were not found count where the plane g (1/m) has them: found are the ones that noise
 /// happens to keep in their rows, and by them alone rows seem to move by less than they do. g tells as well
 /// how windows are sheared.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
-                                               const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius);
+                                               const RowMatches& matches, const Eigen::Vector3d& g,
+                                               int window_radius);
 
 /// The rotation with nothing matched yet: looks for corners around the places that a rough plane predicts,
 /// within 3 columns and 3 rows of whole pixels first.
@@ -82,8 +82,8 @@ class RowAlignment {
   };
   /// By the rows of the corners (see measureVerticalDisparities); adapts level() for the next pair. The level
   /// is one whose right image is from level().
-  Measured measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                   const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g);
+  Measured measure(const StereoLevel& level, const std::vector<cv::Point>& corners, const RowMatches& matches,
+                   const Eigen::Vector3d& g);
   /// What vertical disparities the pair measured last has after level(): averaged over the last twenty pairs
   /// or so, with what the calibration leads to expect, as long as the two do not contradict each other.
   RigRotation residual(const StereoRig& rig) const;

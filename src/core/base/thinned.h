@@ -5,6 +5,21 @@
 
 namespace uav_landing {
 
+/// Which of so many values remain when they are thinned, asked for one after the other.
+class ThinnedPlaces {
+ public:
+  ThinnedPlaces(size_t values, size_t count) : values_(values), count_(count) {}
+  bool has(size_t place) {
+    if (values_ <= count_) return true;
+    if (next_ >= count_ || place != next_ * values_ / count_) return false;
+    ++next_;
+    return true;
+  }
+
+ private:
+  size_t values_, count_, next_ = 0;
+};
+
 /// At most count of the values, spread as the values are.
 template <class Value>
 std::vector<Value> thinned(const std::vector<Value>& values, size_t count) {

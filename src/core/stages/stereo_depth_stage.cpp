@@ -191,7 +191,7 @@ struct StereoDepthStage::Implementation {
     if (result.from_search && rows.search(fine, corners_found, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
-      matched.samples = matchCorners(fine, corners_found, start, parameters);
+      matched.matches = matchCorners(fine, corners_found, start, parameters);
     }
     fit(matched, result);
     return matched;
@@ -199,7 +199,7 @@ struct StereoDepthStage::Implementation {
 
   void fit(MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
-    const std::vector<DisparitySample>& samples = corners.samples;
+    const std::vector<DisparitySample>& samples = corners.matches.samples;
     for (const DisparitySample& sample : samples)
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     Expected<PlaneFit> plane =
@@ -221,7 +221,7 @@ struct StereoDepthStage::Implementation {
   void measureRows(const MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     const RowAlignment::Measured measured =
-        rows.measure(fine, corners_found, corners.samples, result.plane.g);
+        rows.measure(fine, corners_found, corners.matches, result.plane.g);
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
@@ -263,7 +263,7 @@ struct StereoDepthStage::Implementation {
   void keepPlaneOf(const MatchedCorners& corners, StereoDepthResult& result) {
     result.plane.covariance +=
         sharedCovariance(model.rig, corners, window(), parameters.disparity_bias_stddev);
-    bend(corners.samples, corners.fit, result.plane.covariance - corners.fit.plane.covariance,
+    bend(corners.matches.samples, corners.fit, result.plane.covariance - corners.fit.plane.covariance,
          result);
   }
 

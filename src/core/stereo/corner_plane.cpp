@@ -57,7 +57,8 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
 
 Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,
                                  double bias_stddev) {
-  const auto& [samples, fit] = corners;
+  const std::vector<DisparitySample>& samples = corners.matches.samples;
+  const PlaneFit& fit = corners.fit;
   const Eigen::Matrix3d independent = independentCovariance(rig, samples, fit);
   ClusterCovariance<3> parts;
   for (size_t i = 0; i < samples.size(); ++i) {

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "uav_landing/stereo/plane_fit.h"
+#include "uav_landing/stereo/stereo_matching.h"
 
 namespace uav_landing {
 
 /// What the corners of a pair say.
 struct MatchedCorners {
-  std::vector<DisparitySample> samples;
+  RowMatches matches;
   PlaneFit fit;  ///< the plane of most of them, where there is one
 };
 

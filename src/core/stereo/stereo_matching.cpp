@@ -43,17 +43,18 @@ class CornerMatcher {
   // Touches the right mask where the match of a corner is expected.
   void touch(int u, int v) const { touchPixel(level_.right_mask, u - shift_.at(u, v), v); }
 
-  // Column in the right image and its stddev; false when there is no trustworthy match.
-  bool match(int u, int v, double* column, double* stddev) {
+  // Column in the right image and its stddev; not converged when there is no trustworthy match. across:
+  // whether its row may move as well.
+  RowRefinement match(int u, int v, bool across) {
     const double predicted = u - shift_.at(u, v);
-    if (!forward_.run(u, v, predicted, steps_, forward_warp_)) return false;
+    if (!forward_.run(u, v, predicted, steps_, forward_warp_)) return {};
     double second = 0;
     const RowCandidate best = forward_.best(&second);
-    if (best.score < parameters_.min_zncc || second > parameters_.uniqueness * best.score) return false;
+    if (best.score < parameters_.min_zncc || second > parameters_.uniqueness * best.score) return {};
     // A peak at the end of the range is not known to be a peak.
-    if (std::abs(best.position - predicted) > (steps_ - 0.5) * forward_warp_.scale) return false;
-    if (!isSet(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return false;
-    return subpixel(u, v, best.position, column, stddev);
+    if (std::abs(best.position - predicted) > (steps_ - 0.5) * forward_warp_.scale) return {};
+    if (!isSet(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return {};
+    return subpixel(u, v, best.position, across);
   }
 
  private:
@@ -65,18 +66,19 @@ class CornerMatcher {
     return std::abs(back.position - expected) <= parameters_.left_right_tolerance;
   }
 
-  bool subpixel(int u, int v, double found, double* column, double* stddev) {
+  RowRefinement subpixel(int u, int v, double found, bool across) {
     if (!parameters_.warp_window) {
-      *column = found;
-      *stddev = kParabolaStddev;
-      return true;
+      RowRefinement parabola;
+      parabola.converged = true;
+      parabola.position = found;
+      parabola.stddev = kParabolaStddev;
+      return parabola;
     }
-    const RowRefinement refined =
-        refineAlongRow(level_.left, level_.right, u, v, found, forward_warp_, parameters_.window_radius);
-    if (!refined.converged || refined.score < parameters_.min_zncc) return false;
-    *column = refined.position;
-    *stddev = std::hypot(refined.stddev, kStddevFloor);
-    return true;
+    RowRefinement refined = refineAlongRow(level_.left, level_.right, u, v, found, forward_warp_,
+                                           parameters_.window_radius, across);
+    refined.converged &= refined.score >= parameters_.min_zncc;
+    refined.stddev = std::hypot(refined.stddev, kStddevFloor);
+    return refined;
   }
 
   const StereoLevel& level_;
@@ -87,21 +89,28 @@ class CornerMatcher {
   RowWarp forward_warp_, backward_warp_;
 };
 
-std::vector<DisparitySample> matchAll(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                      const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
-                                      int steps) {
+// most_across: corners of which it is wanted, spread as the corners are.
+RowMatches matchAll(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g,
+                    const StereoDepthParameters& parameters, int steps, size_t most_across) {
   CornerMatcher matcher(level, g, parameters, steps);
-  std::vector<DisparitySample> samples;
-  samples.reserve(corners.size());
+  RowMatches matches;
+  matches.samples.reserve(corners.size());
+  matches.across.reserve(corners.size());
   // All at once, as each is in another line of the cache.
   for (const cv::Point& corner : corners) matcher.touch(corner.x, corner.y);
-  for (const cv::Point& corner : corners) {
-    double column, stddev;
-    if (!matcher.match(corner.x, corner.y, &column, &stddev)) continue;
-    samples.push_back(
-        {double(corner.x), double(corner.y), stddev, {corner.x - column - level.rig.principalOffset()}});
+  ThinnedPlaces chosen(corners.size(), most_across);
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const cv::Point& corner = corners[i];
+    const bool across = chosen.has(i);
+    const RowRefinement match = matcher.match(corner.x, corner.y, across);
+    if (!match.converged) continue;
+    matches.samples.push_back({double(corner.x),
+                               double(corner.y),
+                               match.stddev,
+                               {corner.x - match.position - level.rig.principalOffset()}});
+    matches.across.push_back(across && parameters.warp_window ? std::optional(match.across) : std::nullopt);
   }
-  return samples;
+  return matches;
 }
 
 // Columns to both sides of the predicted place that are scored where a plane is followed.
@@ -224,9 +233,10 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
                      parameters.harris_k);
 }
 
-std::vector<DisparitySample> matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                          const Eigen::Vector3d& g, const StereoDepthParameters& parameters) {
-  return matchAll(level, corners, g, parameters, kFineSteps);
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters) {
+  return matchAll(level, corners, g, parameters, kFineSteps,
+                  parameters.vertical_disparities ? kCornersAcross : 0);
 }
 
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
@@ -244,7 +254,7 @@ Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
   constexpr double kLeastShare = 0.2;
   const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters);
   const std::vector<DisparitySample> samples =
-      matchAll(level, corners, predicted, parameters, trackingSteps(parameters));
+      matchAll(level, corners, predicted, parameters, trackingSteps(parameters), 0).samples;
   Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr);
   consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
   return consensus;
@@ -260,7 +270,7 @@ Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Poi
   constexpr double kLeastShare = 0.5;
   const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
   const std::vector<DisparitySample> samples =
-      matchAll(level, scouts, predicted, parameters, trackingSteps(parameters));
+      matchAll(level, scouts, predicted, parameters, trackingSteps(parameters), 0).samples;
   Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr, true);
   consensus.found &= consensus.support >=
                      std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/interpolation.h"
 #include "base/multiversion.h"
@@ -19,8 +20,7 @@ namespace {
 using row_fit::RowFit;
 using row_fit::RowShift;
 
-// Corners measured: enough, as the filter behind averages over frames.
-constexpr size_t kMeasured = 240, kSearched = 80;
+constexpr size_t kSearched = 80;  // corners
 // Error of a row that its residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
 constexpr double kMinScore = 0.8;
@@ -37,43 +37,54 @@ struct PlacedCorner {
   cv::Point corner;
   double disparity;
   bool matched;
+  std::optional<RowRefinement::Across> across;
 };
 
 std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Point>& corners,
-                                 const std::vector<DisparitySample>& samples, const Eigen::Vector3d& g) {
+                                 const RowMatches& matches, const Eigen::Vector3d& g) {
   std::vector<PlacedCorner> all;
   all.reserve(corners.size());
-  auto sample = samples.begin();
+  size_t next = 0;
   for (const cv::Point& corner : corners) {
-    const bool matched = sample != samples.end() && sample->u == corner.x && sample->v == corner.y;
-    const double disparity = matched ? sample->disparity : rig.fb() * g.dot(rig.ray(corner.x, corner.y));
-    if (matched) ++sample;
-    all.push_back({corner, disparity, matched});
+    const bool matched = next < matches.samples.size() && matches.samples[next].u == corner.x &&
+                         matches.samples[next].v == corner.y;
+    if (matched) {
+      all.push_back({corner, matches.samples[next].disparity, true, matches.across[next]});
+      ++next;
+    } else {
+      all.push_back({corner, rig.fb() * g.dot(rig.ray(corner.x, corner.y)), false, std::nullopt});
+    }
   }
   return all;
 }
 
+// Where the window around a corner is in the right image, looked for from start on.
+RowRefinement::Across lookAcross(const StereoLevel& level, const cv::Point& corner,
+                                 const Eigen::Vector2d& start, const Eigen::Matrix2d& warp, int radius) {
+  const PatchRefinement place = refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius);
+  if (!place.converged) return {};
+  const Eigen::Matrix2d covariance = place.covariance();
+  return {true, place.position, covariance(0, 0), covariance(1, 1), place.score};
+}
+
 // Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
-bool isBeside(const PatchRefinement& place, double column) {
+bool isBeside(const RowRefinement::Across& found, double column) {
   constexpr double kSigmas = 3, kPlane = 0.1;  // the latter pixels
-  const double off = place.position.x() - column;
-  return off * off > kSigmas * kSigmas * (place.claim().covariance(0, 0) + kPlane * kPlane);
+  const double off = found.place.x() - column;
+  return off * off > kSigmas * kSigmas * (found.column_variance + kPlane * kPlane);
 }
 
 // disparity: of the corner, as known so far. False when it has no row.
-bool addRow(const StereoLevel& level, int u, int v, double disparity, const Eigen::Vector2d& start,
-            const Eigen::Matrix2d& warp, int radius, bool on_plane, std::vector<RowShift>& rows) {
-  const PatchRefinement place = refinePatch(level.left, level.right, u, v, start, warp, radius);
-  if (!place.converged || place.score < kMinScore) return false;
-  if (on_plane && isBeside(place, start.x())) return false;
-  const double stddev = std::hypot(std::sqrt(place.claim().covariance(1, 1)), kStddevFloor);
+bool addRow(const StereoRig& rig, const cv::Point& corner, double disparity,
+            const RowRefinement::Across& across, std::vector<RowShift>& rows) {
+  if (!across.found || across.score < kMinScore) return false;
   RowShift row;
-  row.by << verticalDisparityByRotation(level.rig, place.position.x(), place.position.y()),
-      verticalDisparityByBaseline(level.rig, disparity, v);
-  row.shift = place.position.y() - v;
-  row.stddev = stddev;
-  row.below_centre = v - level.rig.cy;
-  row.cell = imageCell(level.rig, u, v);
+  row.by << verticalDisparityByRotation(rig, across.place.x(), across.place.y()),
+      verticalDisparityByBaseline(rig, disparity, corner.y);
+  row.shift = across.place.y() - corner.y;
+  row.stddev = std::sqrt(across.row_variance + kStddevFloor * kStddevFloor);
+  row.below_centre = corner.y - rig.cy;
+  row.cell = imageCell(rig, corner.x, corner.y);
   rows.push_back(row);
   return true;
 }
@@ -130,19 +141,20 @@ cv::Mat levelled(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& 
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
-                                               const std::vector<DisparitySample>& samples,
-                                               const Eigen::Vector3d& g, int window_radius) {
+                                               const RowMatches& matches, const Eigen::Vector3d& g,
+                                               int window_radius) {
   const Eigen::Matrix2d warp = windowWarp(level.rig, g);
-  const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, samples, g), kMeasured);
+  const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, matches, g), kCornersAcross);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
   int matched = 0, again = 0;
   for (const PlacedCorner& at : some) {
-    const double column = at.corner.x - at.disparity - level.rig.principalOffset();
-    if (!at.matched && !isSet(level.right_mask, column, at.corner.y)) continue;
-    const Eigen::Vector2d start(column, at.corner.y);
-    const bool found =
-        addRow(level, at.corner.x, at.corner.y, at.disparity, start, warp, window_radius, !at.matched, rows);
+    const Eigen::Vector2d start(at.corner.x - at.disparity - level.rig.principalOffset(), at.corner.y);
+    if (!at.matched && !isSet(level.right_mask, start.x(), at.corner.y)) continue;
+    const RowRefinement::Across across =
+        at.across ? *at.across : lookAcross(level, at.corner, start, warp, window_radius);
+    if (!at.matched && across.found && isBeside(across, start.x())) continue;
+    const bool found = addRow(level.rig, at.corner, at.disparity, across, rows);
     matched += at.matched ? 1 : 0;
     again += at.matched && found ? 1 : 0;
   }
@@ -167,7 +179,8 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
     const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
     const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
     if (best.found)
-      addRow(level, corner.x, corner.y, disparity, best.position, warp, window_radius, false, rows);
+      addRow(level.rig, corner, disparity, lookAcross(level, corner, best.position, warp, window_radius),
+             rows);
   }
   return fitRotation(rows);
 }
@@ -222,11 +235,10 @@ bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>
 }
 
 RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                             const std::vector<DisparitySample>& samples,
-                                             const Eigen::Vector3d& g) {
+                                             const RowMatches& matches, const Eigen::Vector3d& g) {
   if (!enabled_) return {};
   levelled_by_ = taken_out_;
-  const VerticalDisparities found = measureVerticalDisparities(level, corners, samples, g, window_radius_);
+  const VerticalDisparities found = measureVerticalDisparities(level, corners, matches, g, window_radius_);
   Measured measured{{}, found.baseline, found.agreement};
   if (!found.rotation) return measured;
   measured.rotation = *found.rotation;

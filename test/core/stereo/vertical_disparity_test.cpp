@@ -225,14 +225,14 @@ struct NoisyRows {
     level.right = right.fine;
     const Eigen::Vector3d g = test::exactPlane(scene.pose, 0, 0).g;
     const std::vector<cv::Point> corners = findGroundCorners(level, g, parameters.corner_count, parameters);
-    const std::vector<DisparitySample> samples = matchCorners(level, corners, g, parameters);
+    const RowMatches matches = matchCorners(level, corners, g, parameters);
     std::vector<cv::Point> found;
-    for (const DisparitySample& sample : samples)
+    for (const DisparitySample& sample : matches.samples)
       found.emplace_back(static_cast<int>(sample.u), static_cast<int>(sample.v));
     EXPECT_LT(found.size(), 0.9 * corners.size()) << "all are found, so that noise chooses nothing";
     const auto off = [&](const std::vector<cv::Point>& some) {
       const Expected<RigRotation> rows =
-          measureVerticalDisparities(level, some, samples, g, parameters.window_radius).rotation;
+          measureVerticalDisparities(level, some, matches, g, parameters.window_radius).rotation;
       return rows ? (rows->w - scene.ground.bend).x() * scene.rig.fy : kUnknown;
     };
     matched = off(found);
