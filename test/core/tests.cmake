@@ -66,6 +66,8 @@ uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_
 uav_landing_add_gtest(refined_rows_test test/core/stereo/refined_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(corner_plane_test test/core/stereo/corner_plane_test.cpp)
+uav_landing_add_gtest(plane_tracker_test test/core/stereo/plane_tracker_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_tracking_test test/core/stereo/plane_tracking_test.cpp

@@ -79,6 +79,42 @@ TEST(MotionTracker, FollowsMotionThatChangesFromStepToStep) {
     expectStep(scene.process(0.1 * static_cast<double>(i), poses[i]), poses[i - 1], poses[i]);
 }
 
+/// Flies on as before for a while, and then otherwise.
+void expectJolt(Scene& scene, const Pose& jolt) {
+  const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t); };
+  double t = 0;
+  for (int i = 0; i < 6; ++i, t += 0.05) scene.process(t, at(t));
+  Pose now = at(t);
+  now.position += jolt.position;
+  now.pitch += jolt.pitch;
+  now.yaw += jolt.yaw;
+  expectStep(scene.process(t, now), at(t - 0.05), now);
+}
+
+TEST(MotionTracker, FindsWhereAJoltLeadsAfterSteadyFlight) {
+  for (const double turned : {0.05, 0.15, 0.3, 0.6, 1.2})
+    for (const double sign : {-1, 1}) {
+      SCOPED_TRACE(sign * turned);
+      Scene pitched, yawed;
+      expectJolt(pitched, makePose(0, 0, sign * turned));
+      expectJolt(yawed, makePose(0, 0, 0, sign * turned));
+    }
+}
+
+TEST(MotionTracker, FindsThatTheSpeedChangedWhereMostOfWhatIsSeenAreLines) {
+  for (const double farther : {-0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.15, 0.3, 0.4, 0.5}) {
+    SCOPED_TRACE(farther);
+    Scene scene;
+    scene.ground.contrast = 8;
+    scene.ground.line_offset = 0.5;
+    scene.ground.bar_period = 0.6;
+    scene.ground.bar_from = -10;
+    scene.ground.bar_to = 30;
+    scene.ground.bar_reach = 1.5;
+    expectJolt(scene, makePose(farther, 0, 0));
+  }
+}
+
 TEST(MotionTracker, ScalesItsPredictionWithTheTimeBetweenFrames) {
   Scene scene;
   const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t, -8 + 3 * t); };

@@ -14,11 +14,12 @@ namespace {
 
 constexpr int kWidth = 240, kHeight = 200, kRadius = 5;
 
-/// A pair of which the right image shows the left pixel (u, v) at column u - shift(u, v), as smoothed as the
-/// stages smooth their images.
+/// A pair of which the right image shows the left pixel (u, v) at column u - shift(u, v) of the row v + down,
+/// as smoothed as the stages smooth their images.
 struct Pair {
   struct Look {
     double a = 0, b = 0, c = 20;  ///< shift = a u + b v + c
+    double down = 0;
     double gain = 1, offset = 0, noise = 0;
     double detail = 3;  ///< lattice spacing of the texture, pixels
     unsigned seed = 1;
@@ -37,10 +38,10 @@ struct Pair {
     for (int v = 0; v < kHeight; ++v)
       for (int u = 0; u < kWidth; ++u) {
         // Column u of the right image shows the left column x with x - shift(x, v) = u.
-        const double x = (u + look.b * v + look.c) / (1 - look.a);
+        const double y = v - look.down, x = (u + look.b * y + look.c) / (1 - look.a);
         first.at<uchar>(v, u) = cv::saturate_cast<uchar>(light(u, v) + look.noise * normal(random));
         second.at<uchar>(v, u) =
-            cv::saturate_cast<uchar>(look.gain * light(x, v) + look.offset + look.noise * normal(random));
+            cv::saturate_cast<uchar>(look.gain * light(x, y) + look.offset + look.noise * normal(random));
       }
     left.assign(first);
     right.assign(second);
@@ -250,6 +251,55 @@ TEST(RefineAlongRow, ClaimsTheScatterItHas) {
       EXPECT_GT(errors.normalisedRms(), 0.5) << noise << " " << detail;
       EXPECT_LT(errors.normalisedRms(), 2.0) << noise << " " << detail;
     }
+}
+
+/// Rows of matches on a grid that are found across them, about what they are off by.
+Errors refineAcross(const Pair& pair) {
+  Errors result;
+  const double down = pair.look.down;
+  for (int v = 20; v < kHeight - 20; v += 6)
+    for (int u = 50; u < kWidth - 20; u += 6) {
+      const RowRefinement refined = refineAlongRow(pair.left.fine, pair.right.fine, u, v, pair.column(u, v),
+                                                   pair.warp(), kRadius, true);
+      ++result.tried;
+      if (!refined.across.found || refined.across.score < 0.8) continue;
+      const double error = refined.across.place.y() - v - down;
+      result.errors.push_back(error);
+      result.normalised.push_back(error / std::sqrt(refined.across.row_variance));
+    }
+  return result;
+}
+
+TEST(RefineAlongRow, FindsHowFarTheRowHasMoved) {
+  for (const double down : {0.0, 0.04, -0.3, 0.7, -1.2}) {
+    Pair::Look look = shifted(20.3);
+    look.noise = 3;
+    look.gain = 0.9;
+    look.down = down;
+    const Errors errors = refineAcross(Pair(look));
+    EXPECT_GT(errors.errors.size(), 0.9 * errors.tried) << down;
+    EXPECT_LT(errors.rms(), 0.1) << down;
+    EXPECT_GT(errors.normalisedRms(), 0.5) << down;
+    EXPECT_LT(errors.normalisedRms(), 1.5) << down;
+    double mean = 0;
+    for (const double error : errors.errors) mean += error / static_cast<double>(errors.errors.size());
+    EXPECT_NEAR(mean, 0, 0.01) << down;
+  }
+}
+
+TEST(RefineAlongRow, SaysNoWhereTheRowIsFarAway) {
+  Pair::Look look = shifted(20.3);
+  look.down = 4;
+  const Errors errors = refineAcross(Pair(look));
+  EXPECT_LT(errors.errors.size(), 0.02 * errors.tried);
+}
+
+TEST(RefineAlongRow, LooksAcrossWhenAskedOnly) {
+  const Pair pair(shifted(20.3));
+  const RowRefinement refined =
+      refineAlongRow(pair.left.fine, pair.right.fine, 100, 100, pair.column(100, 100), {}, kRadius);
+  EXPECT_TRUE(refined.converged);
+  EXPECT_FALSE(refined.across.found);
 }
 
 TEST(RowMatching, SaysNoWithoutContrastAndOutsideTheImage) {
