@@ -44,7 +44,7 @@ struct PatchRefinement {
   /// noise_variance: of a pixel of either image; at most half of the residuals'.
   Claim claim(double noise_variance) const;
   Claim claim() const { return claim(0.5 * residual_variance); }
-  /// The claim's covariance alone, for which the evidence needs no distances.
+  /// The claim's covariance alone, pixels^2, for which the evidence needs no distances.
   Eigen::Matrix2d covariance(double noise_variance) const;
   Eigen::Matrix2d covariance() const { return covariance(0.5 * residual_variance); }
 
@@ -61,14 +61,14 @@ struct PatchRefinement {
 /// for those with other images that may follow. Sums are about their means.
 struct OwnTexture {
   bool known = false, usable = false;
-  double mean = 0;                         ///< grey level, less the one in the middle
-  Eigen::Vector2d gradient_mean;           ///< of the gradient
-  Eigen::Matrix2d gradient, inverse;       ///< sums of the products of its components; their inverse
-  Eigen::Vector2d right;                   ///< of its products with the grey levels
-  double energy = 0;                       ///< of the squares of the grey levels
-  bool distances_known = false;            ///< what follows is found when a comparison succeeds
-  std::array<Eigen::Matrix2d, 2> moments;  ///< as PatchRefinement::Evidence has them
-  Eigen::Matrix2d growth;
+  double mean = 0;                    ///< grey level, less the one in the middle
+  Eigen::Vector2d gradient_mean;      ///< of the gradient
+  Eigen::Matrix2d gradient, inverse;  ///< sums of the products of its components; their inverse
+  Eigen::Vector2d right;              ///< of its products with the grey levels
+  double energy = 0;                  ///< of the squares of the grey levels
+  bool distances_known = false;       ///< what follows is found when a comparison succeeds
+  std::array<Eigen::Matrix2d, 2> moments = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  Eigen::Matrix2d growth = Eigen::Matrix2d::Zero();  ///< both as PatchRefinement::Evidence has them
 };
 
 /// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient. own: of this very window.

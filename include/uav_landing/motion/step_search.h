@@ -1,9 +1,9 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <optional>
 #include <vector>
 
+#include "uav_landing/base/steadiness.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/motion/ego_motion.h"
 #include "uav_landing/motion/temporal_matching.h"
@@ -19,7 +19,7 @@ struct StepImages {
   Eigen::Vector3d normal;                   ///< of the ground, unit, now
   Eigen::Matrix3d normal_covariance;        ///< rank 2
   const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
-  bool regular = false;                     ///< takes about as long as the step before
+  bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
 };
 
 /// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
@@ -35,7 +35,7 @@ class StepSearch {
   /// Other images come next: what earlier searches found does not matter.
   void reset() {
     unsure_ = 0;
-    steady_share_ = 0;
+    steadiness_.lose();
   }
 
  private:
@@ -44,11 +44,9 @@ class StepSearch {
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,
                                    std::vector<TemporalMatch> memory = {}) const;
-  /// By a narrow search for all corners at once, and none when that does not find what it did before.
-  std::optional<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
-                                               std::vector<TemporalMatch>& matches);
-  void takeNote(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
-                const std::vector<TemporalMatch>& matches);
+  /// By a narrow search for all corners at once; fails unless what it finds is as predicted.
+  Expected<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
+                                          std::vector<TemporalMatch>& matches);
   double farthestOff(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
                      const std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
@@ -62,9 +60,7 @@ class StepSearch {
   cv::Mat mask_;
   ApproachAngleParameters parameters_;
   int unsure_ = 0;  // searches in a row that few corners agreed with
-  // Of the corners, that agreed with the last step, if that was near where it was predicted; else 0.
-  double steady_share_ = 0;
-  int steady_steps_ = 0;  // in a row that were not searched for
+  Steadiness steadiness_;
 };
 
 }  // namespace uav_landing

@@ -14,7 +14,7 @@ struct RowRefinement {
   double stddev = 0;  ///< 1 sigma of the position from residuals and gradient, pixels
   double score = 0;   ///< correlation after refinement
 
-  /// Where it is when it may move across the row as well.
+  /// Where it is when it may move across the row as well, within two pixels of where it was seen along it.
   struct Across {
     bool found = false;
     Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< in the other image, pixels
@@ -25,7 +25,7 @@ struct RowRefinement {
 
 /// Of the window around (u, v) of the reference, from this column of the other image on. Both images CV_32F
 /// of the same size. Not converged where the window leaves an image, has no contrast along the row, or is not
-/// found within 1.5 px. across_too: whether that is wanted.
+/// found within 1.5 px. across_too: whether to find `across`, too.
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
                              const RowWarp& warp, int radius, bool across_too = false);
 

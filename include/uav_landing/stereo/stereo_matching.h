@@ -22,7 +22,8 @@ std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vect
 /// Corners that were found along their rows, in the order in which they were looked for.
 struct RowMatches {
   std::vector<DisparitySample> samples;
-  /// Where each is when its row may move as well; of those that vertical disparities are measured by.
+  /// For each sample, where it is when its row may move as well; none where that was not looked for, as
+  /// vertical disparities are measured by some of the corners only.
   std::vector<std::optional<RowRefinement::Across>> across;
 };
 

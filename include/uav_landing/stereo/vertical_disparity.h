@@ -4,7 +4,6 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/results/disparity_sample.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/stereo/stereo_matching.h"
 
@@ -23,11 +22,11 @@ struct VerticalDisparities {
 };
 
 /// corners: all that were looked for along the rows; matches: those of them that were found, in the same
-/// order. The right row of a few of the corners is measured to sub-pixel (gain and
-/// offset free, within 2 rows), then the rotation and the direction of the baseline fitted with redescending
-/// weights. Those that were not found count where the plane g (1/m) has them: found are the ones that noise
-/// happens to keep in their rows, and by them alone rows seem to move by less than they do. g tells as well
-/// how windows are sheared.
+/// order. The right row of a few of the corners is known to sub-pixel by the matches, or is measured (gain
+/// and offset free, within 2 rows); then the rotation and the direction of the baseline are fitted with
+/// redescending weights. Those that were not found count where the plane g (1/m) has them: found are the ones
+/// that noise happens to keep in their rows, and by them alone rows seem to move by less than they do. g
+/// tells as well how windows of this radius are sheared.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
                                                const RowMatches& matches, const Eigen::Vector3d& g,

@@ -5,7 +5,8 @@
 
 namespace uav_landing {
 
-/// Which of so many values remain when they are thinned, asked for one after the other.
+/// Which of so many values remain when they are thinned to at most count, spread as the values are. To be
+/// asked for each, in their order.
 class ThinnedPlaces {
  public:
   ThinnedPlaces(size_t values, size_t count) : values_(values), count_(count) {}
@@ -20,13 +21,14 @@ class ThinnedPlaces {
   size_t values_, count_, next_ = 0;
 };
 
-/// At most count of the values, spread as the values are.
 template <class Value>
 std::vector<Value> thinned(const std::vector<Value>& values, size_t count) {
   if (values.size() <= count) return values;
   std::vector<Value> some;
   some.reserve(count);
-  for (size_t i = 0; i < count; ++i) some.push_back(values[i * values.size() / count]);
+  ThinnedPlaces places(values.size(), count);
+  for (size_t i = 0; i < values.size(); ++i)
+    if (places.has(i)) some.push_back(values[i]);
   return some;
 }
 

@@ -24,9 +24,6 @@ constexpr size_t kMostAtOnce = 17;
 // Of the height, that a step is predicted to sink.
 constexpr double kMostSunk = 0.5;
 
-// Up to so much longer than the last one, a step is known as well beforehand.
-constexpr double kLongestRegular = 1.5;
-
 // Stamps may be off by this much for a frame still to be in the window, s.
 constexpr double kWindowSlack = 0.05;
 
@@ -156,9 +153,9 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const Eigen::Matrix3d& covariance, const Corners& corners,
                                  const RotationPrior* rotation, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
-  const bool regular = last_step_ && duration < kLongestRegular * last_duration_;
-  const StepImages step{now.image, past_.back().image, corners, textures_, normal, covariance, rotation,
-                        regular};
+  const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
+  const StepImages step{now.image, past_.back().image, corners,  textures_,
+                        normal,    covariance,         rotation, regular};
   const Expected<MotionEstimate> estimate =
       search_.find(step, predictions(duration, rotation), step_matches_);
   result.step = describe(estimate, duration, step_matches_.size(), result.step_angle);

@@ -18,14 +18,9 @@ constexpr double kLeastShare = 0.35;
 // In how many searches in a row that few corners agree with all of them are compared.
 constexpr int kUnsureInterval = 10;
 
-// A prediction that was good to this for the last step, at any corner, makes one that needs no search before
-// the windows are refined; this one must be good to that, or it is searched for after all. Refinement finds
-// what is within two, pixels.
+// By how much the prediction is off at any corner, pixels, see Steadiness: refinement finds what is within
+// two.
 constexpr double kSteadyOff = 0.75, kMostOff = 1.0;
-// Share of the corners that must agree with it, and of those that agreed before.
-constexpr double kLeastSteady = 0.5, kLeastKept = 0.9;
-// Steps in a row without a search: what it would show, a motion that agrees better, is to be seen soon.
-constexpr int kLookAround = 9;
 
 // Fewest matches that make a motion good enough to search from.
 constexpr int kFewestScouts = 6;
@@ -54,7 +49,7 @@ std::vector<CameraMotion> guesses(const Eigen::Vector3d& normal, const Eigen::Ma
 }  // namespace
 
 StepSearch::StepSearch(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters)
-    : rig_(rig), mask_(std::move(mask)), parameters_(parameters) {}
+    : rig_(rig), mask_(std::move(mask)), parameters_(parameters), steadiness_(kSteadyOff, kMostOff) {}
 
 int StepSearch::wideSteps() const { return static_cast<int>(std::ceil(parameters_.search_radius)); }
 
@@ -75,18 +70,18 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           std::vector<TemporalMatch>& matches) {
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * matches.size(); };
+  if (!predictions.empty() && step.regular && steadiness_.goesWithout()) {
+    estimate = followSteadily(step, predictions.front(), matches);
+    if (estimate) return estimate;
+  }
+  steadiness_.searched();
   for (const CameraMotion& predicted : predictions) {
-    if (std::optional<MotionEstimate> steady = followSteadily(step, predicted, matches)) {
-      takeNote(step, predicted, *steady, matches);
-      return std::move(*steady);
-    }
-    steady_steps_ = 0;
     estimate = followFrom(step, predicted, matches);
     if (!good()) continue;
-    takeNote(step, predicted, *estimate, matches);
+    steadiness_.note(shareOf(*estimate, step), farthestOff(step, predicted, *estimate, matches));
     return estimate;
   }
-  steady_share_ = 0;
+  steadiness_.lose();
   std::vector<Eigen::Matrix3d> rotations{Eigen::Matrix3d::Identity()};
   if (step.rotation != nullptr) rotations.insert(rotations.begin(), step.rotation->R);
   for (const Eigen::Matrix3d& R : rotations) {
@@ -96,26 +91,16 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
   return estimate;
 }
 
-std::optional<MotionEstimate> StepSearch::followSteadily(const StepImages& step,
-                                                         const CameraMotion& predicted,
-                                                         std::vector<TemporalMatch>& matches) {
-  if (!step.regular || steady_share_ <= 0 || steady_steps_ >= kLookAround) return std::nullopt;
-  ++steady_steps_;
+Expected<MotionEstimate> StepSearch::followSteadily(const StepImages& step, const CameraMotion& predicted,
+                                                    std::vector<TemporalMatch>& matches) {
   matches = match(step, step.corners, predicted, 0, std::move(matches));
   Expected<MotionEstimate> found = estimate(step, predicted, matches);
-  // Lines look alike wherever along them they are looked for, and agree with any speed. What else there is
-  // would be lost at a wrong one.
-  if (!found || shareOf(*found, step) < kLeastKept * steady_share_ ||
-      farthestOff(step, predicted, *found, matches) > kMostOff)
-    return std::nullopt;
-  return std::move(*found);
-}
-
-void StepSearch::takeNote(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
-                          const std::vector<TemporalMatch>& matches) {
-  const double share = shareOf(found, step);
-  const bool steady = share >= kLeastSteady && farthestOff(step, predicted, found, matches) <= kSteadyOff;
-  steady_share_ = steady ? share : 0;
+  if (!found) return found;
+  const double share = shareOf(*found, step), off = farthestOff(step, predicted, *found, matches);
+  if (!steadiness_.bearsOut(share, off))
+    return tl::make_unexpected(Failure{Reason::kMotionInconsistent, "the step is not as predicted"});
+  steadiness_.note(share, off);
+  return found;
 }
 
 // By how much the prediction put any of the corners that agree wrongly, pixels.

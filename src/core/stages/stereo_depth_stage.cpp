@@ -69,7 +69,6 @@ struct StereoDepthStage::Implementation {
     }
     if (!result.failure) estimate(left_image, right_image, result);
     if (!result.failure) {
-      tracker.remember(result);
       failed_searches = 0;
     } else {
       tracker.miss();
@@ -91,26 +90,25 @@ struct StereoDepthStage::Implementation {
     fine.left = left.fine;
     coarse.left = left.coarse;
     levelRows();
+    const auto extend = [&](const FirstRows& first) {
+      ScopedTimer timer(timings, "match_images");
+      left.extend(left_image, first);
+      right.extend(right_image, first);
+    };
     MatchedCorners corners;
-    if (!matchSteadily(corners, result)) {
-      const auto extend = [&](const FirstRows& first) {
-        ScopedTimer timer(timings, "match_images");
-        left.extend(left_image, first);
-        right.extend(right_image, first);
-      };
-      corners = searchAndMatch(extend, result);
-    }
+    if (!matchSteadily(extend, corners, result)) corners = searchAndMatch(extend, result);
     if (result.failure) return;
     measureRows(corners, result);
-    if (direct && refineDirectly(left_image, right_image, result)) return;
-    keepPlaneOf(corners, result);
-    if (result.from_search) waitForNextPair(result);
+    const bool refined = direct && refineDirectly(left_image, right_image, result);
+    if (!refined) keepPlaneOf(corners, result);
+    // Images that speak against a plane call for another look around in the next pair.
+    tracker.remember(result, refined || !direct);
+    if (!refined && result.from_search) waitForNextPair(result);
   }
 
   // A search finds some plane in nothing but noise, too. One that no alignment of the images bears out counts
   // when the next pair's is there as well.
   void waitForNextPair(StereoDepthResult& result) {
-    tracker.remember(result);
     StereoDepthResult waiting;
     waiting.stamp = result.stamp;
     waiting.failure = {Reason::kNotYet,
@@ -131,18 +129,21 @@ struct StereoDepthStage::Implementation {
     coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
-  // By the plane as it moves on, unless the pair shows that it is elsewhere.
-  bool matchSteadily(MatchedCorners& corners, StereoDepthResult& result) {
-    const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(fine, timings);
+  // By the plane as it moves on, unless the pair shows that it is elsewhere. extend: gives the images more
+  // rows.
+  template <class Extend>
+  bool matchSteadily(const Extend& extend, MatchedCorners& corners, StereoDepthResult& result) {
+    const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(timings);
     if (!steady) return false;
-    corners = matchedCorners(*steady, result);
-    if (!result.failure && tracker.bearsOut(result)) return true;
-    result.failure = {};
-    result.points.clear();
-    return false;
+    extend(tracker.groundRows(*steady));
+    StereoDepthResult attempt = result;
+    corners = matchedCorners(*steady, attempt);
+    if (attempt.failure || !tracker.bearsOut(attempt)) return false;
+    result = std::move(attempt);
+    return true;
   }
 
-  // By a plane that is followed from the previous pair, or searched. extend: gives the images more rows.
+  // By a plane that is followed from the previous pair, or searched.
   template <class Extend>
   MatchedCorners searchAndMatch(const Extend& extend, StereoDepthResult& result) {
     const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
@@ -182,10 +183,7 @@ struct StereoDepthStage::Implementation {
   // With their plane, unless the result says why there is none.
   MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
     MatchedCorners matched;
-    {
-      ScopedTimer timer(timings, "harris_corners");
-      corners_found = tracker.cornersOn(fine, start);
-    }
+    corners_found = tracker.cornersOn(fine, start, timings);
     result.corners = static_cast<int>(corners_found.size());
     // A bent rig's rows must be level before anything is matched along them.
     if (result.from_search && rows.search(fine, corners_found, start)) levelRows();

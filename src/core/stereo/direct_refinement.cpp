@@ -15,7 +15,8 @@ namespace uav_landing {
 namespace {
 
 // Gauss-Newton steps at most, and the change of the largest disparity that ends them, in pixels or as a share
-// of it, whichever is larger: a step leaves about a tenth of itself.
+// of it, whichever is larger. A step leaves about a tenth of itself, so that such a share moves the height by
+// 5e-5 of itself; in noise, where less is sure, the share does not count.
 constexpr int kSteps = 10;
 constexpr double kConverged = 0.01, kConvergedShare = 5e-4;
 // By how much disparities of the first plane may be off, pixels.
@@ -196,7 +197,8 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     if (own.agreeing < kLeastShare * own.disparities.informative())
       return tl::make_unexpected(own.tooFewOnThePlane());
     const double change = own.largestDisparity(fit->plane.g - g);
-    const double least = std::max(kConverged, kConvergedShare * own.largestDisparity(g));
+    const double share = noisy() ? 0 : kConvergedShare * own.largestDisparity(g);
+    const double least = std::max(kConverged, share);
     if (step + 1 == kSteps || (step > 0 && change < least)) {
       fit->lasting_share = own.lastingShare(*fit);
       own.solveWithRows(priorOf(rows, noisy()), levelled_by + rows.w, bias_stddev, *fit);

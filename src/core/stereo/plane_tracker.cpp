@@ -15,16 +15,8 @@ constexpr int kKeepPlaneFor = 5;
 constexpr double kSlack = 0.02;
 // Share of the corners on the last pair's ground that must be on that of this one to be used for it.
 constexpr double kKept = 0.8;
-// A plane that was where the ones before lead, to so many pixels of disparity for all of its corners, needs
-// no search in the next pair, unless that one's is off by more: corners are looked for within two and a half.
+// Of disparities, see Steadiness: corners are looked for within two and a half pixels.
 constexpr double kSteadyOff = 1.0, kMostOff = 1.5;
-// Share of the corners that must be on it: with the majority on a plane no other has as many. And share of
-// those that were, that must be again.
-constexpr double kLeastShare = 0.5, kLeastKept = 0.9;
-// Up to so much longer than the last time from pair to pair, what the plane moves is known as well.
-constexpr double kLongestRegular = 1.5;
-// Pairs in a row without a search: what it would show, a plane that agrees better, is to be seen soon.
-constexpr int kLookAround = 9;
 
 // Of the corners looked for, those on the plane.
 double agreeingShare(const StereoDepthResult& result) {
@@ -37,14 +29,19 @@ double agreeingShare(const StereoDepthResult& result) {
 
 PlaneTracker::PlaneTracker(const StereoRig& rig, const StereoDepthParameters& parameters,
                            const PlaneLimits& limits, int corner_count)
-    : rig_(rig), parameters_(parameters), limits_(limits), corner_count_(corner_count) {}
+    : rig_(rig),
+      parameters_(parameters),
+      limits_(limits),
+      corner_count_(corner_count),
+      steadiness_(kSteadyOff, kMostOff) {}
 
 void PlaneTracker::begin(double stamp) {
   if (!(stamp > stamp_)) forget();
+  const double duration = stamp - stamp_;
+  if (duration > Steadiness::kLongestRegular * duration_) steadiness_.lose();
+  duration_ = duration;
   stamp_ = stamp;
-  const double duration = stamp - last_stamp_;
-  expected_ = last_ + duration * rate_;
-  if (duration > kLongestRegular * last_duration_) steady_share_ = 0;
+  expected_ = last_ + (stamp - last_stamp_) * rate_;
   corners_.clear();
 }
 
@@ -52,21 +49,23 @@ void PlaneTracker::forget() {
   stamp_ = -INFINITY;
   has_last_ = false;
   failures_ = 0;
-  steady_share_ = 0;
+  steadiness_.lose();
 }
 
 void PlaneTracker::miss() {
   has_last_ = has_last_ && ++failures_ < kKeepPlaneFor;
-  steady_share_ = 0;
+  steadiness_.lose();
 }
 
-void PlaneTracker::remember(const StereoDepthResult& result) {
+void PlaneTracker::remember(const StereoDepthResult& result, bool certain) {
   const Eigen::Vector3d& g = result.plane.g;
   const bool follows = has_last_ && !result.from_search;
-  last_duration_ = stamp_ - last_stamp_;
-  const double share = agreeingShare(result);
-  steady_share_ = follows && share >= kLeastShare && farthestOff(result) <= kSteadyOff ? share : 0;
-  rate_ = follows ? Eigen::Vector3d((g - last_) / last_duration_) : Eigen::Vector3d::Zero();
+  if (follows && certain) {
+    steadiness_.note(agreeingShare(result), farthestOff(result));
+  } else {
+    steadiness_.lose();
+  }
+  rate_ = follows ? Eigen::Vector3d((g - last_) / (stamp_ - last_stamp_)) : Eigen::Vector3d::Zero();
   last_ = g;
   last_stamp_ = stamp_;
   has_last_ = true;
@@ -84,27 +83,21 @@ double PlaneTracker::farthestOff(const StereoDepthResult& result) const {
 }
 
 bool PlaneTracker::bearsOut(const StereoDepthResult& result) const {
-  return agreeingShare(result) >= kLeastKept * steady_share_ && farthestOff(result) <= kMostOff;
+  return steadiness_.bearsOut(agreeingShare(result), farthestOff(result));
 }
 
-void PlaneTracker::findCorners(const StereoLevel& fine, const Eigen::Vector3d& g, Timings& timings) {
-  ScopedTimer timer(timings, "harris_corners");
-  corners_ = findGroundCorners(fine, g, corner_count_, parameters_);
-  corners_of_ = g;
-}
-
-std::optional<Eigen::Vector3d> PlaneTracker::steadyPlane(const StereoLevel& fine, Timings& timings) {
-  if (steady_share_ <= 0 || steady_pairs_ >= kLookAround) return std::nullopt;
-  ++steady_pairs_;
-  findCorners(fine, expected_, timings);
+std::optional<Eigen::Vector3d> PlaneTracker::steadyPlane(Timings& timings) {
+  // Instead of the search by a few corners.
+  ScopedTimer timer(timings, "feature_matching_coarse");
+  if (!steadiness_.goesWithout()) return std::nullopt;
   return expected_;
 }
 
 std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, const StereoLevel& coarse,
                                                     int factor, Timings& timings) {
-  steady_pairs_ = 0;
+  steadiness_.searched();
   if (!has_last_) return std::nullopt;
-  findCorners(fine, last_, timings);
+  if (corners_.empty()) cornersOn(fine, last_, timings);
   ScopedTimer timer(timings, "feature_matching_coarse");
   const Consensus scouted = trackPlaneByScouts(coarse, corners_, factor, last_, parameters_, limits_);
   if (scouted.found) return scouted.g;
@@ -114,13 +107,17 @@ std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, con
   return tracked.g;
 }
 
-std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g) const {
+std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g,
+                                               Timings& timings) {
+  ScopedTimer timer(timings, "harris_corners");
   const int moved = groundRows(g).fine - groundRows(corners_of_).fine;
   if (!corners_.empty() && std::abs(moved) < kSlack * rig_.size.height) {
     std::vector<cv::Point> corners = cornersOnGround(fine, corners_, g);
     if (corners.size() >= kKept * corners_.size()) return corners;
   }
-  return findGroundCorners(fine, g, corner_count_, parameters_);
+  corners_ = findGroundCorners(fine, g, corner_count_, parameters_);
+  corners_of_ = g;
+  return corners_;
 }
 
 FirstRows PlaneTracker::rowsOf(const Eigen::Vector3d& g, double slack) const {

@@ -44,7 +44,7 @@ class CornerMatcher {
   void touch(int u, int v) const { touchPixel(level_.right_mask, u - shift_.at(u, v), v); }
 
   // Column in the right image and its stddev; not converged when there is no trustworthy match. across:
-  // whether its row may move as well.
+  // whether to find where it is when its row may move, besides.
   RowRefinement match(int u, int v, bool across) {
     const double predicted = u - shift_.at(u, v);
     if (!forward_.run(u, v, predicted, steps_, forward_warp_)) return {};
@@ -89,7 +89,7 @@ class CornerMatcher {
   RowWarp forward_warp_, backward_warp_;
 };
 
-// most_across: corners of which it is wanted, spread as the corners are.
+// most_across: corners that are looked for across their rows, too, spread as the corners are.
 RowMatches matchAll(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g,
                     const StereoDepthParameters& parameters, int steps, size_t most_across) {
   CornerMatcher matcher(level, g, parameters, steps);

@@ -237,6 +237,7 @@ ByPerspective movedByPerspective(const Pair& pair) {
           refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, pair.warp(u, v), kRadius);
       if (!refined.converged) continue;
       const Eigen::Vector2d error = refined.position - wanted;
+      EXPECT_TRUE(refined.covariance().isApprox(refined.claim().covariance));
       const Eigen::Vector2d told = -refined.claim().by_perspective * pair.perspective(u, v);
       moved.error += error;
       moved.told += told;

@@ -115,6 +115,22 @@ TEST(MotionTracker, FindsThatTheSpeedChangedWhereMostOfWhatIsSeenAreLines) {
   }
 }
 
+TEST(MotionTracker, KeepsUpWithASpeedThatGrowsWhereMostOfWhatIsSeenAreLines) {
+  Scene scene;
+  scene.ground.contrast = 4;
+  scene.ground.line_offset = 0.5;
+  scene.ground.bar_period = 0.6;
+  scene.ground.bar_from = -10;
+  scene.ground.bar_to = 30;
+  scene.ground.bar_reach = 2.5;
+  const auto at = [](double t) { return makePose(0.5 * t + 1.2 * t * t, 1.8 - 0.1 * t); };
+  scene.process(0, at(0));
+  for (int i = 1; i < 25; ++i) {
+    SCOPED_TRACE(i);
+    expectStep(scene.process(0.05 * i, at(0.05 * i)), at(0.05 * (i - 1)), at(0.05 * i));
+  }
+}
+
 TEST(MotionTracker, ScalesItsPredictionWithTheTimeBetweenFrames) {
   Scene scene;
   const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t, -8 + 3 * t); };

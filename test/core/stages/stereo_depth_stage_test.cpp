@@ -340,6 +340,40 @@ TEST(StereoDepthStage, FindsThePlaneAgainAfterAJump) {
   expectPose(stage.process(2, low.left, low.right), pose, "jump");
 }
 
+/// Sinks for half a second in which the plane moves on as expected.
+double sinkSteadily(const Scene& scene, StereoDepthStage& stage) {
+  double stamp = 1;
+  for (int i = 0; i < 6; ++i, stamp += 0.1) {
+    const Pose pose = makePose(2.1 - 0.02 * i, -8, 0);
+    const Pair pair = scene.render(pose);
+    expectPose(stage.process(stamp, pair.left, pair.right), pose, "steady");
+  }
+  return stamp;
+}
+
+TEST(StereoDepthStage, FindsThePlaneAgainAfterAJumpFromSteadyFlight) {
+  const Scene scene(14);
+  for (const double height : {2.05, 1.9, 1.6, 0.7}) {
+    StereoDepthStage stage(scene.model, scene.parameters);
+    const double stamp = sinkSteadily(scene, stage);
+    const Pose pose = makePose(height, -9, 1);
+    const Pair pair = scene.render(pose);
+    expectPose(stage.process(stamp, pair.left, pair.right), pose, "jump");
+  }
+}
+
+TEST(StereoDepthStage, HasNoPlaneOfAPairThatDoesNotMatchAfterSteadyFlight) {
+  const Scene scene(14), elsewhere(99);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const double stamp = sinkSteadily(scene, stage);
+  const Pose pose = makePose(1.98, -8, 0);
+  const StereoDepthResult result =
+      stage.process(stamp, scene.render(pose).left, elsewhere.render(pose).right);
+  EXPECT_TRUE(result.failure);
+  EXPECT_FALSE(result.plane.valid());
+  for (const StereoDepthResult::Point& point : result.points) EXPECT_FALSE(point.on_plane);
+}
+
 TEST(StereoDepthStage, RefusesAnotherSize) {
   const Scene scene(15);
   const Pair pair = scene.render(makePose(1.6, -8, 0));

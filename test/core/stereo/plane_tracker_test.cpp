@@ -26,14 +26,14 @@ class Flight {
     const cv::Mat left = GroundRenderer(5).left(model_.rig, test::makePose(2, -10, 0));
     image_.assign(left);
     level_ = reduceLevel(model_, 1, parameters_.window_radius + 2);
-    level_.left = image_.fine;
+    level_.left = level_.right = image_.fine;
   }
 
   /// A plane at this height, some of whose corners agree.
   void see(double stamp, double height, int agreeing = kPoints, bool from_search = false) {
     tracker.begin(stamp);
-    tracker.steadyPlane(level_, timings_);
-    tracker.remember(result(height, agreeing, from_search));
+    if (!tracker.steadyPlane(timings_)) tracker.follow(level_, level_, 1, timings_);
+    tracker.remember(result(height, agreeing, from_search), true);
   }
   void miss(double stamp) {
     tracker.begin(stamp);
@@ -41,7 +41,7 @@ class Flight {
   }
   std::optional<Eigen::Vector3d> steady(double stamp) {
     tracker.begin(stamp);
-    return tracker.steadyPlane(level_, timings_);
+    return tracker.steadyPlane(timings_);
   }
   StereoDepthResult result(double height, int agreeing = kPoints, bool from_search = false) const {
     StereoDepthResult result;
@@ -62,9 +62,6 @@ class Flight {
     return model_.rig.fb() * plane(height).dot(model_.rig.ray(0, 130 + kPoints - 1));
   }
   static Eigen::Vector3d plane(double height) { return test::makePose(height, -10, 0).down() / height; }
-
-  const StereoLevel& level() const { return level_; }
-  Timings& timings() { return timings_; }
 };
 
 TEST(PlaneTracker, IsSteadyOncePlanesFollowEachOther) {
@@ -136,21 +133,27 @@ TEST(PlaneTracker, ForgetsAllWhenTheClockIsSetBack) {
   EXPECT_FALSE(flight.tracker.hasLast());
 }
 
-TEST(PlaneTracker, LooksAroundEverySoOften) {
+TEST(PlaneTracker, IsNotSteadyAfterAGapThatIsLongForPairs) {
   Flight flight;
-  int steady = 0, searched = 0;
-  for (int i = 0; i < 42; ++i) {
-    const double stamp = 1 + 0.1 * i;
-    if (flight.steady(stamp)) {
-      ++steady;
-    } else {
-      ++searched;
-      flight.tracker.follow(flight.level(), flight.level(), 1, flight.timings());
-    }
-    flight.tracker.remember(flight.result(2));
-  }
-  EXPECT_EQ(searched, 2 + 4) << "the first two, and each tenth";
-  EXPECT_EQ(steady, 36);
+  for (const double t : {1.0, 1.1}) flight.see(t, 2);
+  for (const double t : {1.2, 1.3, 1.4}) flight.miss(t);
+  flight.see(1.5, 2);
+  flight.see(1.6, 2);
+  ASSERT_TRUE(flight.steady(1.7));
+  flight.miss(1.8);
+  flight.miss(1.9);
+  flight.see(2.0, 2);
+  EXPECT_FALSE(flight.steady(2.3)) << "pairs come each tenth of a second, planes did not";
+}
+
+TEST(PlaneTracker, IsNotSteadyOnAPlaneThatSomethingSpeaksAgainst) {
+  Flight flight;
+  for (const double t : {1.0, 1.1, 1.2}) flight.see(t, 2);
+  ASSERT_TRUE(flight.steady(1.3));
+  flight.tracker.remember(flight.result(2), false);
+  EXPECT_FALSE(flight.steady(1.4));
+  flight.see(1.5, 2);
+  EXPECT_TRUE(flight.steady(1.6));
 }
 
 TEST(PlaneTracker, IsBorneOutByCornersThatAgreeAndAPlaneThatIsNear) {
