@@ -122,7 +122,7 @@ def plot(cells):
         upper.axhline(95, color="green", linewidth=0.8)
         lower.axhline(1, color="green", linewidth=0.8)
         for i, cell in enumerate(cells):
-            scores = cell["quantities"][name]
+            scores = cell["quantities"].get(name)  # an older result may lack it
             if scores is None:
                 continue
             share, (low, high) = 100 * scores["share"], scores["interval"]
@@ -146,7 +146,7 @@ def render(results):
     header = ["height", "noise", "n", TITLES["height"], "n", *(TITLES[name] for name in OVER_FLAT), "height, flat ground", "n",
               TITLES["y"]]
     rows = [[f"{cell['height']} m", cell["noise"], count(cell["quantities"]["height"]), entry(cell["quantities"]["height"]),
-             count(cell["flat_height"]), *(entry(cell["quantities"][name]) for name in OVER_FLAT), entry(cell["flat_height"]),
+             count(cell["flat_height"]), *(entry(cell["quantities"].get(name)) for name in OVER_FLAT), entry(cell["flat_height"]),
              count(cell["quantities"]["y"]), entry(cell["quantities"]["y"])]
             for cell in results["cells"]]
     return TEXT.format(**results) + table(header, rows)
