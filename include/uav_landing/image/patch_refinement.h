@@ -47,14 +47,6 @@ struct PatchRefinement {
   /// The claim's covariance alone, pixels^2, for which the evidence needs no distances.
   Eigen::Matrix2d covariance(double noise_variance) const;
   Eigen::Matrix2d covariance() const { return covariance(0.5 * residual_variance); }
-
- private:
-  /// The gradient's products without those of noise, and these.
-  struct Texture {
-    Eigen::Matrix2d inverse, noise;
-  };
-  Texture texture(double noise_variance) const;
-  Eigen::Matrix2d covarianceBy(const Eigen::Matrix2d& inverse) const;
 };
 
 /// What a window of the reference is by itself, whatever it is compared with: found by the first comparison,

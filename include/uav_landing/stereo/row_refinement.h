@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "uav_landing/image/patch_refinement.h"
 #include "uav_landing/stereo/row_warp.h"
 
 namespace uav_landing {
@@ -16,6 +17,9 @@ struct RowRefinement {
 
   /// Where it is when it may move across the row as well, within two pixels of where it was seen along it.
   struct Across {
+    Across() = default;
+    explicit Across(const PatchRefinement& refined);
+
     bool found = false;
     Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< in the other image, pixels
     double column_variance = 0, row_variance = 0;     ///< pixels^2

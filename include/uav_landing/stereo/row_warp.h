@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 namespace uav_landing {
 
 /// How a small window of the reference image appears in the other one: the pixel at (dx, dy) from the
@@ -8,6 +10,9 @@ namespace uav_landing {
 struct RowWarp {
   double scale = 1.0;
   double shear = 0.0;
+
+  /// From (dx, dy) to the displacement in the other image.
+  Eigen::Matrix2d matrix() const { return (Eigen::Matrix2d() << scale, shear, 0, 1).finished(); }
 };
 
 }  // namespace uav_landing

@@ -46,16 +46,21 @@ bool windowInside(const cv::Mat& image, int u, int v, int radius) {
   return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
 }
 
-}  // namespace
+// The gradient's products without those of noise, inverted, and these.
+struct Texture {
+  Eigen::Matrix2d inverse, noise;
+};
 
 // Noise has a gradient, too, but it says nothing: along a line, where there is no other, it would be believed
 // to hold the match where it was looked for.
-PatchRefinement::Texture PatchRefinement::texture(double noise_variance) const {
+Texture textureOf(const PatchRefinement& refined, double noise_variance) {
+  const PatchRefinement::Evidence& evidence = refined.evidence;
   // Variance of the gradient over that of the smoothed noise: (1 - its correlation two pixels on) / 2.
   constexpr double kNoiseGradient = 0.45;
   // Least share of the gradients' energy that can be told from none, given its scatter.
   constexpr double kLeastTexture = 0.1;
-  const double of_noise = evidence.count * kNoiseGradient * std::min(noise_variance, 0.5 * residual_variance);
+  const double of_noise =
+      evidence.count * kNoiseGradient * std::min(noise_variance, 0.5 * refined.residual_variance);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(evidence.gradient);
   const Eigen::Array2d seen = axes.eigenvalues();
@@ -65,7 +70,10 @@ PatchRefinement::Texture PatchRefinement::texture(double noise_variance) const {
           V * (seen * (1 - share)).matrix().asDiagonal() * V.transpose()};
 }
 
-Eigen::Matrix2d PatchRefinement::covarianceBy(const Eigen::Matrix2d& inverse) const {
+// inverse: of the gradient's products without those of noise.
+Eigen::Matrix2d covarianceOf(const PatchRefinement& refined, const Eigen::Matrix2d& inverse) {
+  const PatchRefinement::Evidence& evidence = refined.evidence;
+  const Eigen::Matrix2d& warp = refined.warp;
   // The images are smoothed, so neighbouring residuals are not independent; share of independent ones. One in
   // 5.5 where gradients are the same all over the window, one in 4 where they change within 3 px.
   constexpr double kIndependent = 0.2;
@@ -74,20 +82,22 @@ Eigen::Matrix2d PatchRefinement::covarianceBy(const Eigen::Matrix2d& inverse) co
   const double independent = kIndependent * 2 / (1 + 1 / std::min(1.0, std::abs(warp.determinant())));
   const Eigen::Matrix2d unit =
       inverse * evidence.gradient * inverse + coupled * coupled.transpose() / evidence.contrast;
-  return residual_variance / independent * warp * unit * warp.transpose();
+  return refined.residual_variance / independent * warp * unit * warp.transpose();
 }
 
+}  // namespace
+
 Eigen::Matrix2d PatchRefinement::covariance(double noise_variance) const {
-  return covarianceBy(texture(noise_variance).inverse);
+  return covarianceOf(*this, textureOf(*this, noise_variance).inverse);
 }
 
 PatchRefinement::Claim PatchRefinement::claim(double noise_variance) const {
-  const Texture alone = texture(noise_variance);
+  const Texture alone = textureOf(*this, noise_variance);
   const Eigen::Matrix2d there = warp * alone.inverse, back = warp.inverse();
   // Noise grows, too: its gradient has this share in it, as it is the same all over the window.
   const double mean_square_distance = (evidence.count - 1) / 12.0;
   const Eigen::Matrix2d growth = evidence.growth - mean_square_distance * alone.noise;
-  return {covarianceBy(alone.inverse),
+  return {covarianceOf(*this, alone.inverse),
           {there * evidence.moments[0] * back, there * evidence.moments[1] * back},
           there * growth,
           warp * evidence.by_gain};

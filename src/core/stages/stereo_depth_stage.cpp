@@ -34,7 +34,6 @@ struct StereoDepthStage::Implementation {
   PlaneTracker tracker;
   StereoLevel fine, coarse;
   MatchImage left, right;
-  std::vector<cv::Point> corners_found;  // of this pair
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images with their rows made level
   std::unique_ptr<DirectRefinement> direct;
@@ -90,13 +89,9 @@ struct StereoDepthStage::Implementation {
     fine.left = left.fine;
     coarse.left = left.coarse;
     levelRows();
-    const auto extend = [&](const FirstRows& first) {
-      ScopedTimer timer(timings, "match_images");
-      left.extend(left_image, first);
-      right.extend(right_image, first);
-    };
-    MatchedCorners corners;
-    if (!matchSteadily(extend, corners, result)) corners = searchAndMatch(extend, result);
+    std::optional<MatchedCorners> steady = matchSteadily(left_image, right_image, result);
+    const MatchedCorners corners =
+        steady ? std::move(*steady) : searchAndMatch(left_image, right_image, result);
     if (result.failure) return;
     measureRows(corners, result);
     const bool refined = direct && refineDirectly(left_image, right_image, result);
@@ -129,31 +124,37 @@ struct StereoDepthStage::Implementation {
     coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
-  // By the plane as it moves on, unless the pair shows that it is elsewhere. extend: gives the images more
-  // rows.
-  template <class Extend>
-  bool matchSteadily(const Extend& extend, MatchedCorners& corners, StereoDepthResult& result) {
+  // What is matched needs these rows of the images, too.
+  void extend(const cv::Mat& left_image, const cv::Mat& right_image, const FirstRows& first) {
+    ScopedTimer timer(timings, "match_images");
+    left.extend(left_image, first);
+    right.extend(right_image, first);
+  }
+
+  // By the plane as it moves on, unless the pair shows that it is elsewhere.
+  std::optional<MatchedCorners> matchSteadily(const cv::Mat& left_image, const cv::Mat& right_image,
+                                              StereoDepthResult& result) {
     const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(timings);
-    if (!steady) return false;
-    extend(tracker.groundRows(*steady));
+    if (!steady) return std::nullopt;
+    extend(left_image, right_image, tracker.groundRows(*steady));
     StereoDepthResult attempt = result;
-    corners = matchedCorners(*steady, attempt);
-    if (attempt.failure || !tracker.bearsOut(attempt)) return false;
+    MatchedCorners corners = matchedCorners(*steady, attempt);
+    if (attempt.failure || !tracker.bearsOut(attempt)) return std::nullopt;
     result = std::move(attempt);
-    return true;
+    return corners;
   }
 
   // By a plane that is followed from the previous pair, or searched.
-  template <class Extend>
-  MatchedCorners searchAndMatch(const Extend& extend, StereoDepthResult& result) {
+  MatchedCorners searchAndMatch(const cv::Mat& left_image, const cv::Mat& right_image,
+                                StereoDepthResult& result) {
     const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
-    if (!followed) extend(FirstRows());
+    if (!followed) extend(left_image, right_image, FirstRows());
     const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(result);
     if (!start) {
       result.failure = start.error();
       return {};
     }
-    extend(tracker.groundRows(*start));
+    extend(left_image, right_image, tracker.groundRows(*start));
     return matchedCorners(*start, result);
   }
 
@@ -183,13 +184,13 @@ struct StereoDepthStage::Implementation {
   // With their plane, unless the result says why there is none.
   MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
     MatchedCorners matched;
-    corners_found = tracker.cornersOn(fine, start, timings);
-    result.corners = static_cast<int>(corners_found.size());
+    matched.corners = tracker.cornersOn(fine, start, timings);
+    result.corners = static_cast<int>(matched.corners.size());
     // A bent rig's rows must be level before anything is matched along them.
-    if (result.from_search && rows.search(fine, corners_found, start)) levelRows();
+    if (result.from_search && rows.search(fine, matched.corners, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
-      matched.matches = matchCorners(fine, corners_found, start, parameters);
+      matched.matches = matchCorners(fine, matched.corners, start, parameters);
     }
     fit(matched, result);
     return matched;
@@ -219,7 +220,7 @@ struct StereoDepthStage::Implementation {
   void measureRows(const MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
     const RowAlignment::Measured measured =
-        rows.measure(fine, corners_found, corners.matches, result.plane.g);
+        rows.measure(fine, corners.corners, corners.matches, result.plane.g);
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;

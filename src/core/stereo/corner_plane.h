@@ -10,6 +10,7 @@ namespace uav_landing {
 
 /// What the corners of a pair say.
 struct MatchedCorners {
+  std::vector<cv::Point> corners;  ///< that were looked for
   RowMatches matches;
   PlaneFit fit;  ///< the plane of most of them, where there is one
 };

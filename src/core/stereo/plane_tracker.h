@@ -64,7 +64,7 @@ class PlaneTracker {
   double last_stamp_ = 0;
   int failures_ = 0;                                    // pairs in a row
   Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  // in this pair
-  // Corners of this pair, on the ground of that plane.
+  // Corners of this pair, and the plane on whose ground they are.
   std::vector<cv::Point> corners_;
   Eigen::Vector3d corners_of_ = Eigen::Vector3d::Zero();
   Steadiness steadiness_;

@@ -41,20 +41,24 @@ struct RowStep {
 // Where the window is when rows may move as well: followed from where it was looked at along the row.
 RowRefinement::Across across(const ReferenceWindow& window, const cv::Mat& other,
                              const WindowPlanes::OtherSums& sums, const Eigen::Vector2d& looked_at,
-                             const RowWarp& row_warp) {
-  RowRefinement::Across result;
-  if (!window.usable()) return result;
+                             const RowWarp& warp) {
+  if (!window.usable()) return {};
   const GainShift first = window.solve(sums);
-  if (!first.solved) return result;
-  Eigen::Matrix2d warp;
-  warp << row_warp.scale, row_warp.shear, 0, 1;
-  const PatchRefinement place = refineWindow(window, other, looked_at, warp, &first, false);
-  if (!place.converged) return result;
-  const Eigen::Matrix2d covariance = place.covariance();
-  return {true, place.position, covariance(0, 0), covariance(1, 1), place.score};
+  if (!first.solved) return {};
+  return RowRefinement::Across(refineWindow(window, other, looked_at, warp.matrix(), &first, false));
 }
 
 }  // namespace
+
+RowRefinement::Across::Across(const PatchRefinement& refined) {
+  if (!refined.converged) return;
+  const Eigen::Matrix2d covariance = refined.covariance();
+  found = true;
+  place = refined.position;
+  column_variance = covariance(0, 0);
+  row_variance = covariance(1, 1);
+  score = refined.score;
+}
 
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
                              const RowWarp& warp, int radius, bool across_too) {

@@ -9,6 +9,7 @@
 #include "base/multiversion.h"
 #include "base/thinned.h"
 #include "stereo/row_fit.h"
+#include "stereo/shift_model.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"
 #include "uav_landing/image/patch_refinement.h"
@@ -24,13 +25,6 @@ constexpr size_t kSearched = 80;  // corners
 // Error of a row that its residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
 constexpr double kMinScore = 0.8;
-
-// How the ground's window appears in the right image.
-Eigen::Matrix2d windowWarp(const StereoRig& rig, const Eigen::Vector3d& g) {
-  Eigen::Matrix2d warp;
-  warp << 1 - rig.fb() * g.x() / rig.fx, -rig.fb() * g.y() / rig.fy, 0, 1;
-  return warp;
-}
 
 // A corner with its disparity: as found along the row, or the plane's.
 struct PlacedCorner {
@@ -61,10 +55,7 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
 // Where the window around a corner is in the right image, looked for from start on.
 RowRefinement::Across lookAcross(const StereoLevel& level, const cv::Point& corner,
                                  const Eigen::Vector2d& start, const Eigen::Matrix2d& warp, int radius) {
-  const PatchRefinement place = refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius);
-  if (!place.converged) return {};
-  const Eigen::Matrix2d covariance = place.covariance();
-  return {true, place.position, covariance(0, 0), covariance(1, 1), place.score};
+  return RowRefinement::Across(refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius));
 }
 
 // Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
@@ -143,7 +134,7 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
                                                const RowMatches& matches, const Eigen::Vector3d& g,
                                                int window_radius) {
-  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
   const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, matches, g), kCornersAcross);
   std::vector<RowShift> rows;
   rows.reserve(some.size());
@@ -169,7 +160,7 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
                                                 const std::vector<cv::Point>& corners,
                                                 const Eigen::Vector3d& g, int window_radius) {
   constexpr int kSteps = 4;  // a peak on the border does not count
-  const Eigen::Matrix2d warp = windowWarp(level.rig, g);
+  const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
   const std::vector<cv::Point> some = thinned(corners, kSearched);
   PatchSearch search(level.left, level.right, window_radius);
   std::vector<RowShift> rows;

@@ -101,28 +101,28 @@ TEST(MotionTracker, FindsWhereAJoltLeadsAfterSteadyFlight) {
     }
 }
 
+/// Along the path, up to so far to both sides, over texture of this contrast.
+void paintLines(Scene& scene, double contrast, double reach) {
+  scene.ground.contrast = contrast;
+  scene.ground.line_offset = 0.5;
+  scene.ground.bar_period = 0.6;
+  scene.ground.bar_from = -10;
+  scene.ground.bar_to = 30;
+  scene.ground.bar_reach = reach;
+}
+
 TEST(MotionTracker, FindsThatTheSpeedChangedWhereMostOfWhatIsSeenAreLines) {
   for (const double farther : {-0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.15, 0.3, 0.4, 0.5}) {
     SCOPED_TRACE(farther);
     Scene scene;
-    scene.ground.contrast = 8;
-    scene.ground.line_offset = 0.5;
-    scene.ground.bar_period = 0.6;
-    scene.ground.bar_from = -10;
-    scene.ground.bar_to = 30;
-    scene.ground.bar_reach = 1.5;
+    paintLines(scene, 8, 1.5);
     expectJolt(scene, makePose(farther, 0, 0));
   }
 }
 
 TEST(MotionTracker, KeepsUpWithASpeedThatGrowsWhereMostOfWhatIsSeenAreLines) {
   Scene scene;
-  scene.ground.contrast = 4;
-  scene.ground.line_offset = 0.5;
-  scene.ground.bar_period = 0.6;
-  scene.ground.bar_from = -10;
-  scene.ground.bar_to = 30;
-  scene.ground.bar_reach = 2.5;
+  paintLines(scene, 4, 2.5);
   const auto at = [](double t) { return makePose(0.5 * t + 1.2 * t * t, 1.8 - 0.1 * t); };
   scene.process(0, at(0));
   for (int i = 1; i < 25; ++i) {

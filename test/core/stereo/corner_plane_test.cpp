@@ -38,7 +38,7 @@ std::vector<DisparitySample> corners(std::mt19937& random, double step, double c
 
 MatchedCorners fitted(std::vector<DisparitySample> samples) {
   PlaneFit fit = fitCorners(rig(), samples, static_cast<int>(samples.size()), limits(), kBias).value();
-  return {{std::move(samples), {}}, std::move(fit)};
+  return {{}, {std::move(samples), {}}, std::move(fit)};
 }
 
 /// Of the plane without the bias.
