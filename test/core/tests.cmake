@@ -3,6 +3,7 @@
 # base
 uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
 uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
+uav_landing_add_gtest(convergence_test test/core/base/convergence_test.cpp)
 uav_landing_add_gtest(steadiness_test test/core/base/steadiness_test.cpp)
 
 # parameters

@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 
+#include "base/convergence.h"
 #include "geometry/rotation.h"
 #include "image/image_cells.h"
 #include "image/window_overlap.h"
@@ -139,7 +140,6 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, const RotationPrior* rotation) {
   constexpr int kIterations = 8;
-  constexpr double kConverged = 1e-5;  // rad and shares of the height: a hundredth of a pixel
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
                                                                    " corners followed, at least " +
@@ -154,6 +154,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d information;
   const double overlap = overlapFactor(matches);
   double factor = 1;
+  Convergence convergence;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
     MotionNormal sums = rows.accumulate(result.inliers);
@@ -174,7 +175,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     information = sums.information.selfadjointView<Eigen::Lower>();
     const Vector9d step = information.ldlt().solve(sums.right);
     state = state.apply(step);
-    if (step.norm() < kConverged) break;
+    if (convergence.reached(std::sqrt(step.dot(information * step)))) break;
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "base/convergence.h"
 #include "base/lanes.h"
 #include "base/median.h"
 #include "base/multiversion.h"
@@ -179,12 +180,12 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
   constexpr int kIterations = 6;
-  constexpr double kConverged = 1e-5;  // of the height, and rad: far less than what pixels tell
   Eigen::Vector3d g = start;
   double scale = 1;
   static thread_local PlaneProblem problem;
   problem.assign(rig, samples);
   NormalEquations sums;
+  Convergence convergence;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     problem.expect(g);
     scale = problem.residualScale(limits.tolerance);
@@ -196,7 +197,7 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
     }
     const Eigen::Vector3d before = g;
     g = sums.information.ldlt().solve(sums.right);
-    if ((g - before).norm() < kConverged * g.norm()) break;
+    if (convergence.reached(std::sqrt((g - before).dot(sums.information * (g - before))) / scale)) break;
   }
   if (!isPlausibleGround(g, limits)) {
     return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});

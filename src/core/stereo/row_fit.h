@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/convergence.h"
 #include "base/median.h"
 #include "image/image_cells.h"
 #include "uav_landing/base/failure.h"
@@ -117,6 +118,7 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
   RowFit<N> fit;
   fit.value.setZero();
   fit.value[0] = medianOf(shifts);
+  Convergence convergence;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const double scale = residualScale<N>(rows, fit.value);
     Matrix information = prior;
@@ -132,7 +134,9 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
     }
     if (fit.count < kFewest) return few(fit.count);
     fit.covariance = information.inverse();
+    const Eigen::Matrix<double, N, 1> before = fit.value;
     fit.value = fit.covariance * right;
+    if (convergence.reached(std::sqrt((fit.value - before).dot(information * (fit.value - before))))) break;
   }
   const double scale = residualScale<N>(rows, fit.value);
   fit.weights.reserve(rows.size());

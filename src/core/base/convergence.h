@@ -1,0 +1,25 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+
+/// Ends iterations of which each leaves about the same share of what the one before left, as those of
+/// reweighted least squares do, when what is left is little beside what is known at all.
+class Convergence {
+ public:
+  /// step: the one just made, in standard deviations of what is sought.
+  bool reached(double step) {
+    constexpr double kLittle = 0.05;
+    constexpr double kFirstShare = 0.5, kLargestShare = 0.99;
+    const double share = last_ > 0 ? std::min(step / last_, kLargestShare) : kFirstShare;
+    last_ = step;
+    return step * share / (1 - share) < kLittle;
+  }
+
+ private:
+  double last_ = 0;
+};
+
+}  // namespace uav_landing
