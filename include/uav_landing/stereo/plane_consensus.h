@@ -25,4 +25,8 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
                     const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range,
                     bool until_sure = false);
 
+/// Whether so many of the samples are close to a plausible plane that no other one has more support.
+bool isBeyondDoubt(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                   const PlaneLimits& limits, const Eigen::Vector3d& g);
+
 }  // namespace uav_landing

@@ -22,6 +22,8 @@ namespace uav_landing {
 namespace {
 
 constexpr int kRansacIterations = 80;
+// Where so many of the matches are close to the start, what else any of them agree with has fewer.
+constexpr double kMostlyClose = 0.8;
 // Share of what matches claim that they are taken to be wrong by at least, however well they agree: what is
 // the same all over the image no residual shows.
 constexpr double kLeastScale = 0.5;
@@ -50,6 +52,7 @@ bool solveTriple(MotionRows& triple, MotionState& state) {
 MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
   MotionState best = start;
   MotionSupport most = all.support(start);
+  if (most.close >= kMostlyClose * all.size()) return start;
   static thread_local MotionRows triple;  // kept for its memory
   std::mt19937 random(20100602u);
   double needed = triplesNeeded(double(most.close) / all.size());

@@ -192,17 +192,17 @@ struct StereoDepthStage::Implementation {
       ScopedTimer timer(timings, "feature_matching");
       matched.matches = matchCorners(fine, matched.corners, start, parameters);
     }
-    fit(matched, result);
+    fit(start, matched, result);
     return matched;
   }
 
-  void fit(MatchedCorners& corners, StereoDepthResult& result) {
+  void fit(const Eigen::Vector3d& expected, MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
     const std::vector<DisparitySample>& samples = corners.matches.samples;
     for (const DisparitySample& sample : samples)
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     Expected<PlaneFit> plane =
-        fitCorners(model.rig, samples, result.corners, limits, parameters.disparity_bias_stddev);
+        fitCorners(model.rig, samples, result.corners, expected, limits, parameters.disparity_bias_stddev);
     if (!plane) {
       result.failure = plane.error();
       return;

@@ -39,7 +39,8 @@ double overlapFactor(const std::vector<DisparitySample>& samples, const PlaneFit
 }  // namespace
 
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
-                              const PlaneLimits& limits, double bias_stddev) {
+                              const Eigen::Vector3d& expected, const PlaneLimits& limits,
+                              double bias_stddev) {
   constexpr int kTrials = 200;
   if (static_cast<int>(samples.size()) < limits.min_points) {
     return tl::make_unexpected(
@@ -47,6 +48,8 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
                 std::to_string(samples.size()) + " matches of " + std::to_string(corners) +
                     " corners, at least " + std::to_string(limits.min_points) + " needed"});
   }
+  if (isBeyondDoubt(rig, samples, limits, expected))
+    return refinePlane(rig, samples, expected, limits, bias_stddev);
   const Consensus consensus = findPlane(rig, samples, limits, kTrials, nullptr, true);
   if (!consensus.found) {
     return tl::make_unexpected(Failure{

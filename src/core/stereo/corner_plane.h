@@ -16,9 +16,9 @@ struct MatchedCorners {
 };
 
 /// The plane that most disparities of corners agree on, fitted to these. corners: that were looked for.
-/// bias_stddev: as for refinePlane. Fails when there are too few, or no plane.
+/// expected: where they were. bias_stddev: as for refinePlane. Fails when there are too few, or no plane.
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
-                              const PlaneLimits& limits, double bias_stddev);
+                              const Eigen::Vector3d& expected, const PlaneLimits& limits, double bias_stddev);
 
 /// What the covariance of that plane leaves out, 1/m^2: noise of pixels that several windows are of, and
 /// errors that are alike in a part of the image (image_cells.h), in the directions in which they move the

@@ -226,4 +226,11 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   return best;
 }
 
+bool isBeyondDoubt(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                   const PlaneLimits& limits, const Eigen::Vector3d& g) {
+  constexpr double kShare = 0.8;  // of all votes
+  return isPlausibleGround(g, limits) && Voters{rig, samples}.votesFor(g, limits.tolerance).net() >=
+                                             kShare * static_cast<double>(samples.size());
+}
+
 }  // namespace uav_landing

@@ -101,6 +101,18 @@ TEST(EstimateMotion, IgnoresThirtyPercentOutliers) {
   }
 }
 
+TEST(EstimateMotion, FindsThatOfMostMatchesWhereOthersAreAsExpected) {
+  const Step step = Step::make();
+  std::vector<TemporalMatch> matches = Matcher(step, 5).ground(150, 0.1);
+  // Of what stands still in the picture: a part of the camera, or what the expected motion was found by.
+  for (size_t i = 0; i < matches.size(); i += 3) matches[i].then = matches[i].now;
+  const Expected<MotionEstimate> found =
+      estimateMotion(rig(), matches, step.n, Eigen::Matrix3d::Identity() * 1e-6, CameraMotion(), 12);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_LT((found->motion.t - step.t).norm(), 0.1 * step.t.norm());
+  EXPECT_NEAR(found->inlier_count, 100, 10);
+}
+
 TEST(EstimateMotion, ClaimsTheScatterItHas) {
   constexpr int kRuns = 300;
   const Step step = Step::make();

@@ -37,7 +37,8 @@ std::vector<DisparitySample> corners(std::mt19937& random, double step, double c
 }
 
 MatchedCorners fitted(std::vector<DisparitySample> samples) {
-  PlaneFit fit = fitCorners(rig(), samples, static_cast<int>(samples.size()), limits(), kBias).value();
+  PlaneFit fit =
+      fitCorners(rig(), samples, static_cast<int>(samples.size()), kPlane, limits(), kBias).value();
   return {{}, {std::move(samples), {}}, std::move(fit)};
 }
 
@@ -97,13 +98,31 @@ TEST(CornerPlane, WindowsThatOverlapAreClaimedFor) {
   EXPECT_NEAR((shared - without).trace() / ownCovariance(found.fit).trace(), factor - 1, 0.1);
 }
 
+TEST(CornerPlane, IsThatOfMostCornersWhereverItWasExpected) {
+  std::mt19937 random(4);
+  const std::vector<DisparitySample> samples = corners(random, 20, 0);
+  const auto count = static_cast<int>(samples.size());
+  const Eigen::Vector3d there = fitCorners(rig(), samples, count, kPlane, limits(), kBias)->plane.g;
+  for (const double factor : {0.5, 0.9, 1.02, 1.5}) {
+    const Expected<PlaneFit> found = fitCorners(rig(), samples, count, factor * kPlane, limits(), kBias);
+    ASSERT_TRUE(found) << factor;
+    EXPECT_LT((found->plane.g - there).norm(), 0.1 * std::sqrt(found->plane.covariance.trace())) << factor;
+  }
+  // A third of the corners on the plane expected does not keep it there.
+  std::vector<DisparitySample> mixed = samples;
+  for (size_t i = 0; i < mixed.size(); i += 3) mixed[i].disparity *= 0.8;
+  const Expected<PlaneFit> found = fitCorners(rig(), mixed, count, 0.8 * kPlane, limits(), kBias);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->plane.g - kPlane).norm(), 0.01 * kPlane.norm());
+}
+
 TEST(CornerPlane, SaysThatThereIsNone) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anything(1, 60);
   std::vector<DisparitySample> samples = corners(random, 20, 0);
   for (DisparitySample& sample : samples) sample.disparity = anything(random);
   const auto reason = [&](int corners) {
-    return fitCorners(rig(), samples, corners, limits(), kBias).error().reason;
+    return fitCorners(rig(), samples, corners, kPlane, limits(), kBias).error().reason;
   };
   EXPECT_EQ(reason(500), Reason::kNoPlane);
   samples.resize(19);
