@@ -46,6 +46,7 @@ class PathAngleFilter {
   };
 
   struct Equations;
+  class Regression;
   void add(double stamp, const Measurement& step);
   Equations equations(const Measurement& chord) const;
 

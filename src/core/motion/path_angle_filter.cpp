@@ -22,53 +22,24 @@ constexpr double kMemory = 2.0;          // s, after which a measurement hardly 
 constexpr double kStampRounding = 1e-3;  // s
 constexpr size_t kMostSteps = 50;        // however short they are: the time taken grows with their cube
 
-// The angles of all steps under one model: prior covariance of the process.
-Eigen::MatrixXd pathCovariance(const std::vector<double>& middles, double rate_stddev) {
+// Covariance of the angles of all steps by a rate with a stddev of 1 rad/s, from where the first one is.
+Eigen::MatrixXd unitCovariance(const std::vector<double>& middles) {
   const int n = static_cast<int>(middles.size());
-  // angle_i = start + sum over the gaps before i of rate x gap.
   Eigen::MatrixXd rates(n, n), integral = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      rates(i, j) =
-          rate_stddev * rate_stddev * std::exp(-std::abs(middles[i] - middles[j]) / kCorrelationTime);
+      rates(i, j) = std::exp(-std::abs(middles[i] - middles[j]) / kCorrelationTime);
+      // angle_i = start + sum over the gaps before i of rate x gap.
       if (j < i) integral(i, j) = middles[j + 1] - middles[j];
     }
   }
-  return integral * rates * integral.transpose() +
-         Eigen::MatrixXd::Constant(n, n, kStartStddev * kStartStddev);
+  return integral * rates * integral.transpose();
 }
 
 struct Posterior {
-  double log_evidence = 0, mean = 0, variance = 0;
-  double log_evidence_before = 0;  // of the earlier measurements alone
+  double log_evidence = 0;  // of the newest measurements, given the earlier ones
+  double mean = 0, variance = 0;
 };
-
-// Of the first so many measurements, by the Cholesky factor of the covariance of all: it begins with theirs.
-double logEvidence(const Eigen::MatrixXd& factor, const Eigen::VectorXd& y, Eigen::Index count) {
-  const auto L = factor.topLeftCorner(count, count);
-  Eigen::VectorXd solved = y.head(count);
-  L.triangularView<Eigen::Lower>().solveInPlace(solved);
-  L.triangularView<Eigen::Lower>().transpose().solveInPlace(solved);
-  return -0.5 * y.head(count).dot(solved) - L.diagonal().array().log().sum();
-}
-
-// Gaussian posterior of the last angle given measurements y = H angles + noise, of which so many are earlier
-// ones.
-Posterior condition(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& H, const Eigen::VectorXd& y,
-                    const Eigen::MatrixXd& noise, Eigen::Index earlier) {
-  Posterior posterior;
-  const int last = static_cast<int>(prior.rows()) - 1;
-  posterior.variance = prior(last, last);
-  Eigen::MatrixXd S = H * prior * H.transpose();
-  S += noise;
-  const Eigen::LLT<Eigen::MatrixXd> llt(S);
-  const Eigen::VectorXd by_last = H * prior.col(last), gain = llt.solve(by_last);
-  posterior.mean = gain.dot(y);
-  posterior.variance -= gain.dot(by_last);
-  posterior.log_evidence = logEvidence(llt.matrixLLT(), y, y.size());
-  if (earlier > 0) posterior.log_evidence_before = logEvidence(llt.matrixLLT(), y, earlier);
-  return posterior;
-}
 
 // Mean and variance of the models' posteriors; rate_stddev of the one with the most weight.
 PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& posteriors,
@@ -102,12 +73,50 @@ struct PathAngleFilter::Equations {
   Eigen::MatrixXd noise;
   double reference = 0;    // that y is relative to, rad
   bool has_chord = false;  // one that is a measurement of its own
+};
 
-  /// By the first so many rows.
-  Posterior condition(const Eigen::MatrixXd& prior, Eigen::Index rows, Eigen::Index earlier) const {
-    return uav_landing::condition(prior, H.topRows(rows), y.head(rows), noise.topLeftCorner(rows, rows),
-                                  earlier);
+// Those of them that are measurements, as every model needs them.
+class PathAngleFilter::Regression {
+ public:
+  explicit Regression(const Equations& all)
+      : rows_(all.y.size() - (all.has_chord ? 0 : 1)),
+        y_(all.y.head(rows_)),
+        noise_(all.noise.topLeftCorner(rows_, rows_)) {
+    const auto H = all.H.topRows(rows_);
+    const Eigen::MatrixXd unit = unitCovariance(all.middles);
+    variance_of_last_ = unit(unit.rows() - 1, unit.cols() - 1);
+    with_last_ = H * unit.col(unit.cols() - 1);
+    of_rate_ = H * unit * H.transpose();
+    by_start_ = H.rowwise().sum();
+    noise_ += kStartStddev * kStartStddev * by_start_ * by_start_.transpose();
   }
+
+  // Gaussian posterior of the last angle under one model. earlier: how many of the measurements are.
+  Posterior condition(double rate_stddev, Eigen::Index earlier) const {
+    constexpr double kStart = kStartStddev * kStartStddev;
+    const double rate = rate_stddev * rate_stddev;
+    const Eigen::LLT<Eigen::MatrixXd> llt(rate * of_rate_ + noise_);
+    Eigen::MatrixXd solved(rows_, 2);  // the measurements, and what they have in common with the last angle
+    solved << y_, rate * with_last_ + kStart * by_start_;
+    llt.matrixL().solveInPlace(solved);
+    Posterior posterior;
+    posterior.mean = solved.col(1).dot(solved.col(0));
+    posterior.variance = rate * variance_of_last_ + kStart - solved.col(1).squaredNorm();
+    // As the Cholesky factor of the covariance of all begins with that of the earlier ones.
+    const Eigen::Index newest = rows_ - earlier;
+    posterior.log_evidence = -0.5 * solved.col(0).tail(newest).squaredNorm() -
+                             llt.matrixLLT().diagonal().tail(newest).array().log().sum();
+    return posterior;
+  }
+
+ private:
+  Eigen::Index rows_;
+  Eigen::VectorXd y_;
+  Eigen::MatrixXd noise_;  // with that of where the path starts
+  double variance_of_last_;
+  Eigen::VectorXd with_last_;  // covariance of the measurements with the last angle, by a rate of 1 rad/s
+  Eigen::MatrixXd of_rate_;    // and of the measurements
+  Eigen::VectorXd by_start_;
 };
 
 void PathAngleFilter::reset() {
@@ -166,14 +175,13 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
                                                   const Measurement& chord) {
   add(stamp, step);
   const Equations all = equations(chord);
-  const auto steps = static_cast<Eigen::Index>(steps_.size()), rows = all.has_chord ? steps + 1 : steps;
+  const Regression regression(all);
+  const auto steps = static_cast<Eigen::Index>(steps_.size());
   const double forget = std::exp(-step.duration / kMemory);
   std::array<Posterior, kModels> posteriors;
   for (int m = 0; m < kModels; ++m) {
-    const Eigen::MatrixXd prior = pathCovariance(all.middles, kRates[m]);
-    posteriors[m] = all.condition(prior, rows, steps - 1);
-    log_weights_[m] =
-        forget * log_weights_[m] + posteriors[m].log_evidence - posteriors[m].log_evidence_before;
+    posteriors[m] = regression.condition(kRates[m], steps - 1);
+    log_weights_[m] = forget * log_weights_[m] + posteriors[m].log_evidence;
   }
   const double largest = *std::max_element(log_weights_.begin(), log_weights_.end());
   for (double& weight : log_weights_) weight -= largest;
