@@ -13,6 +13,9 @@ namespace uav_landing {
 /// is left out.
 inline void touchWindow(const cv::Mat& image, double u, double v, int across, int down) {
   constexpr int kStep = 64 / sizeof(float);  // columns of a cache line
+  constexpr size_t kNear =
+      400000 / sizeof(float);  // pixels of an image that is near the processor as a whole
+  if (image.total() < kNear) return;
   if (!(u >= 0 && v >= 0 && u < image.cols && v < image.rows)) return;
   const int first = std::max(static_cast<int>(u) - across, 0);
   const int last = std::min(static_cast<int>(u) + across, image.cols - 1);

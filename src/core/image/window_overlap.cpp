@@ -1,47 +1,69 @@
 #include "image/window_overlap.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 
+#include "base/lanes.h"
+#include "base/multiversion.h"
+
 namespace uav_landing {
+namespace {
+
+struct Window {
+  float u, v, extent;
+};
+
+// Sum of the shares that windows from a whole block on up to the last one before count have of one.
+UAV_LANDING_MULTIVERSION float sharedWith(const float* us, const float* vs, size_t first, size_t count,
+                                          const Window& window) {
+  const float at_u = window.u, at_v = window.v, share = 1 / window.extent;
+  const Lanes none{};
+  Lanes sums{}, index;
+  progress(0, 1, index);
+  index -= static_cast<float>(count - first);  // below zero where it counts
+  for (size_t i = first; i < count; i += kLanes, index += kLanes) {
+    Lanes u, v;
+    load(us + i, u);
+    load(vs + i, v);
+    u -= at_u;
+    v -= at_v;
+    const Lanes across = 1 - share * (u < 0 ? -u : u), down = 1 - share * (v < 0 ? -v : v);
+    sums += (across > 0) & (down > 0) & (index < 0) ? across * down : none;
+  }
+  return sum(sums);
+}
+
+}  // namespace
 
 WindowOverlap::WindowOverlap(size_t count) {
-  for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->reserve(count);
+  const auto filled = static_cast<size_t>(wholeLanes(static_cast<int>(count)));
+  for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->resize(filled);
 }
 
 void WindowOverlap::add(double u, double v, double extent) {
-  u_.push_back(static_cast<float>(u));
-  v_.push_back(static_cast<float>(v));
-  extents_.push_back(static_cast<float>(extent));
-  lowest_.push_back(lowest_.empty() ? v_.back() : std::max(lowest_.back(), v_.back()));
+  u_[count_] = static_cast<float>(u);
+  v_[count_] = static_cast<float>(v);
+  extents_[count_] = static_cast<float>(extent);
+  lowest_[count_] = count_ == 0 ? v_[0] : std::max(lowest_[count_ - 1], v_[count_]);
+  ++count_;
 }
 
 double WindowOverlap::factor() const {
-  if (u_.empty()) return 1;
+  if (count_ == 0) return 1;
   double sum = 0;
-  for (size_t i = 0; i < u_.size(); ++i)
+  for (size_t i = 0; i < count_; ++i)
     if (extents_[i] > 0) sum += 2 * shared(i);
-  return 1 + sum / static_cast<double>(u_.size());
+  return 1 + sum / static_cast<double>(count_);
 }
 
 // Sum of the shares that the windows before have of this one.
 float WindowOverlap::shared(size_t i) const {
-  using Array = Eigen::Map<const Eigen::ArrayXf>;
-  const size_t first = firstNear(i);
-  const float share = 1 / extents_[i];
-  const auto inside = [&](const std::vector<float>& places) {
-    const Array before(places.data() + first, static_cast<Eigen::Index>(i - first));
-    return (1 - share * (before - places[i]).abs()).max(0.0F).eval();
-  };
-  return (inside(u_) * inside(v_)).sum();
+  return sharedWith(u_.data(), v_.data(), firstNear(i), i, {u_[i], v_[i], extents_[i]});
 }
 
-// All before it are too far above. Whole blocks, so that sums are rounded as those over all.
+// All before it are too far above.
 size_t WindowOverlap::firstNear(size_t i) const {
-  constexpr size_t kBlock = 8;
-  const float far = v_[i] - extents_[i] - 1;
   const auto end = lowest_.begin() + static_cast<std::ptrdiff_t>(i);
-  return static_cast<size_t>(std::lower_bound(lowest_.begin(), end, far) - lowest_.begin()) / kBlock * kBlock;
+  return static_cast<size_t>(std::lower_bound(lowest_.begin(), end, v_[i] - extents_[i]) - lowest_.begin());
 }
 
 }  // namespace uav_landing

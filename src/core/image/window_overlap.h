@@ -8,6 +8,7 @@ namespace uav_landing {
 /// Windows of an image that share pixels, and with them noise.
 class WindowOverlap {
  public:
+  /// count: windows at most.
   explicit WindowOverlap(size_t count);
 
   /// u, v: the window's middle. extent: its width and height, pixels; 0 when it shares nothing. Windows from
@@ -22,8 +23,9 @@ class WindowOverlap {
   float shared(size_t i) const;
   size_t firstNear(size_t i) const;
 
-  std::vector<float> u_, v_, extents_;
-  std::vector<float> lowest_;  // of the windows up to each: those far above one are all at the front
+  size_t count_ = 0;
+  std::vector<float> u_, v_, extents_;  // filled up to whole lanes
+  std::vector<float> lowest_;           // of the windows up to each: those far above one are all at the front
 };
 
 }  // namespace uav_landing

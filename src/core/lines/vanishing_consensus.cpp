@@ -99,10 +99,10 @@ class Score {
         continue;
       }
       const double turn = turns_[i] * lines_.all()[i].towards(V).norm() * per_pixel;
-      if (turn >= kLikelyTurn) continue;
+      if (turn >= kLikelyTurn) continue;  // what is left is hardly more than its arc tangent
       length_ += lines_.all()[i].half;
       double& best = agreeing_[edge_[i]];
-      best = std::max(best, fit_[i] * evidence(2 / M_PI * std::atan(turn)));
+      best = std::max(best, fit_[i] * evidence(2 / M_PI * turn));
     }
     return std::accumulate(agreeing_.begin(), agreeing_.end(), -impossible);
   }
