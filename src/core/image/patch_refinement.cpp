@@ -1,6 +1,5 @@
 #include "uav_landing/image/patch_refinement.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -26,10 +25,10 @@ class SecantSteps {
     ++count_;
     return made_;
   }
-  // The place is good to about 0.005 px, little beside what matches are known to: a single step leaves a
-  // tenth of itself, a secant step much less.
+  // The place is good to about 0.01 px, little beside what matches are known to: a single step leaves a tenth
+  // or two of itself, in any direction, a secant step much less.
   bool converged() const {
-    constexpr double kShort = 0.02, kShortSingle = 0.05, kShortSecant = 0.1;
+    constexpr double kShort = 0.02, kShortSingle = 0.07, kShortSecant = 0.1;
     const double length = wanted_.norm();
     return length < kShortSingle ||
            (count_ > 1 && length < kShortSecant && (made_ - wanted_).norm() < kShort);
@@ -38,7 +37,7 @@ class SecantSteps {
  private:
   int count_ = 0;
   // Of the distance, that a step moves; short ones about as much where textures are smoothed alike.
-  double share_ = 0.97;
+  double share_ = 1;
   Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
 };
 
@@ -61,13 +60,17 @@ Texture textureOf(const PatchRefinement& refined, double noise_variance) {
   constexpr double kLeastTexture = 0.1;
   const double of_noise =
       evidence.count * kNoiseGradient * std::min(noise_variance, 0.5 * refined.residual_variance);
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-  axes.computeDirect(evidence.gradient);
-  const Eigen::Array2d seen = axes.eigenvalues();
-  const Eigen::Array2d share = (1 - of_noise / seen).max(kLeastTexture);  // of it that is of the texture
-  const Eigen::Matrix2d& V = axes.eigenvectors();
-  return {V * (1 / (seen * share)).matrix().asDiagonal() * V.transpose(),
-          V * (seen * (1 - share)).matrix().asDiagonal() * V.transpose()};
+  const auto of_texture = [&](double seen) { return std::max(seen - of_noise, kLeastTexture * seen); };
+  const Eigen::Matrix2d& A = evidence.gradient;
+  const double mean = 0.5 * A.trace(),
+               off = std::sqrt(0.25 * std::pow(A(0, 0) - A(1, 1), 2) + A(1, 0) * A(1, 0));
+  const double most = of_texture(mean + off), least = of_texture(mean - off);
+  // Any function of a matrix with two eigenvalues is linear in it: no eigenvectors are needed.
+  const auto of_matrix = [&](double of_most, double of_least) -> Eigen::Matrix2d {
+    const double slope = off > 0 ? 0.5 * (of_most - of_least) / off : 0;
+    return slope * A + (0.5 * (of_most + of_least) - slope * mean) * Eigen::Matrix2d::Identity();
+  };
+  return {of_matrix(1 / most, 1 / least), of_matrix(mean + off - most, mean - off - least)};
 }
 
 // inverse: of the gradient's products without those of noise.
