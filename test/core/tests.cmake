@@ -28,6 +28,7 @@ uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(mask_bounds_test test/core/image/mask_bounds_test.cpp)
 uav_landing_add_gtest(patch_matching_test test/core/image/patch_matching_test.cpp)
+uav_landing_add_gtest(patch_refinement_test test/core/image/patch_refinement_test.cpp)
 uav_landing_add_gtest(rectification_test test/core/image/rectification_test.cpp)
 uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
 
@@ -93,6 +94,8 @@ uav_landing_add_gtest(ego_motion_test test/core/motion/ego_motion_test.cpp
 uav_landing_add_gtest(focus_of_expansion_test test/core/motion/focus_of_expansion_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(imu_buffer_test test/core/motion/imu_buffer_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(motion_rows_test test/core/motion/motion_rows_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(motion_tracker_test test/core/motion/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(own_normal_test test/core/motion/own_normal_test.cpp

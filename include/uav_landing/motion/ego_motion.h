@@ -59,11 +59,11 @@ struct RotationPrior {
   Eigen::Matrix3d covariance;  ///< of its rotation vector, in the frame now, rad^2
 };
 
-/// Robust motion: RANSAC over triples from the start, then Gauss-Newton with redescending weights over
-/// rotation, translation and normal, the latter with its prior covariance (rank 2), and with the rotation
-/// prior when there is one. Covariances are less than the matches claim where these agree better (the
-/// variance factor a posteriori of least squares), and more where their windows overlap. Fixed seed. Fails
-/// when fewer than min_matches agree.
+/// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then
+/// Gauss-Newton with redescending weights over rotation, translation and normal, the latter with its prior
+/// covariance (rank 2), and with the rotation prior when there is one. Covariances are less than the matches
+/// claim where these agree better (the variance factor a posteriori of least squares), and more where their
+/// windows overlap. Fixed seed. Fails when fewer than min_matches agree.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,

@@ -11,10 +11,11 @@
 namespace uav_landing {
 
 /// Weighted least squares with redescending (Tukey) weights around a first plane: points above the ground
-/// do not pull it. Covariance from the normal matrix, scaled by the residuals where these are larger than
-/// the claimed stddevs, and by how much they are alike in neighbouring points. agrees: per sample, 1 when on
-/// the plane. bias_stddev: error common to all disparities, pixels; it does not average out and is added to
-/// the covariance.
+/// do not pull it. start: among most of the points; the weights see nothing that is off by more than four
+/// times what it claims. Covariance from the normal matrix, scaled by the residuals where these are larger
+/// than the claimed stddevs, and by how much they are alike in neighbouring points. agrees: per sample, 1
+/// when on the plane. bias_stddev: error common to all disparities, pixels; it does not average out and is
+/// added to the covariance.
 struct PlaneFit {
   GroundPlane plane;
   std::vector<char> agrees;

@@ -10,12 +10,11 @@ namespace uav_landing {
 /// their rows are waited for all at once, while the work on another corner goes on; read by the work itself,
 /// one after the other. A prefetch instruction would not do: it comes to nothing where the address of the
 /// page is not at hand either, as is usual here. across, down: pixels to each side; what is outside the image
-/// is left out.
+/// is left out. A small image is near the processor as a whole, and left alone.
 inline void touchWindow(const cv::Mat& image, double u, double v, int across, int down) {
   constexpr int kStep = 64 / sizeof(float);  // columns of a cache line
-  constexpr size_t kNear =
-      400000 / sizeof(float);  // pixels of an image that is near the processor as a whole
-  if (image.total() < kNear) return;
+  constexpr size_t kSmall = 400000;          // bytes
+  if (image.total() * sizeof(float) < kSmall) return;
   if (!(u >= 0 && v >= 0 && u < image.cols && v < image.rows)) return;
   const int first = std::max(static_cast<int>(u) - across, 0);
   const int last = std::min(static_cast<int>(u) + across, image.cols - 1);

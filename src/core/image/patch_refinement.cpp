@@ -9,9 +9,9 @@
 namespace uav_landing {
 namespace {
 
-// Gauss-Newton steps, which all fall short by about the same share: how far one moves the place is seen by
-// the next, and each is made longer by that (secant method). Then few are needed, and what the last one
-// leaves has no direction of its own.
+// Gauss-Newton steps. Those of a window fall short by about the same share: how far one moves the place is
+// seen by the next, and each is made longer by that (secant method). Then few are needed, and what the last
+// one leaves has no direction of its own.
 class SecantSteps {
  public:
   // The step to make where Gauss-Newton wants this one.
@@ -26,7 +26,7 @@ class SecantSteps {
     return made_;
   }
   // The place is good to about 0.01 px, little beside what matches are known to: a single step leaves a tenth
-  // or two of itself, in any direction, a secant step much less.
+  // of itself in the median, up to a third and in any direction, a secant step much less.
   bool converged() const {
     constexpr double kShort = 0.02, kShortSingle = 0.07, kShortSecant = 0.1;
     const double length = wanted_.norm();
@@ -36,7 +36,7 @@ class SecantSteps {
 
  private:
   int count_ = 0;
-  // Of the distance, that a step moves; short ones about as much where textures are smoothed alike.
+  // Of the distance, that a step moves; short ones, of many windows, all of it on the average.
   double share_ = 1;
   Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
 };

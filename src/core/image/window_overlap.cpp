@@ -40,6 +40,8 @@ WindowOverlap::WindowOverlap(size_t count) {
 }
 
 void WindowOverlap::add(double u, double v, double extent) {
+  if (count_ == u_.size())
+    for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->resize(count_ + kLanes);
   u_[count_] = static_cast<float>(u);
   v_[count_] = static_cast<float>(v);
   extents_[count_] = static_cast<float>(extent);
@@ -60,10 +62,11 @@ float WindowOverlap::shared(size_t i) const {
   return sharedWith(u_.data(), v_.data(), firstNear(i), i, {u_[i], v_[i], extents_[i]});
 }
 
-// All before it are too far above.
+// All before it are too far above. Whole blocks, so that they end where the columns do.
 size_t WindowOverlap::firstNear(size_t i) const {
   const auto end = lowest_.begin() + static_cast<std::ptrdiff_t>(i);
-  return static_cast<size_t>(std::lower_bound(lowest_.begin(), end, v_[i] - extents_[i]) - lowest_.begin());
+  const auto near = std::lower_bound(lowest_.begin(), end, v_[i] - extents_[i]);
+  return static_cast<size_t>(near - lowest_.begin()) / kLanes * kLanes;
 }
 
 }  // namespace uav_landing

@@ -8,7 +8,7 @@ namespace uav_landing {
 /// Windows of an image that share pixels, and with them noise.
 class WindowOverlap {
  public:
-  /// count: windows at most.
+  /// count: windows that memory is taken for.
   explicit WindowOverlap(size_t count);
 
   /// u, v: the window's middle. extent: its width and height, pixels; 0 when it shares nothing. Windows from

@@ -99,7 +99,7 @@ class Score {
         continue;
       }
       const double turn = turns_[i] * lines_.all()[i].towards(V).norm() * per_pixel;
-      if (turn >= kLikelyTurn) continue;  // what is left is hardly more than its arc tangent
+      if (turn >= kLikelyTurn) continue;  // it is its arc tangent to 0.2 %
       length_ += lines_.all()[i].half;
       double& best = agreeing_[edge_[i]];
       best = std::max(best, fit_[i] * evidence(2 / M_PI * turn));

@@ -22,8 +22,9 @@ namespace uav_landing {
 namespace {
 
 constexpr int kRansacIterations = 80;
-// Where so many of the matches are close to the start, what else any of them agree with has fewer.
+// Where so many of the matches that tell a motion are close to the start, a quite different one has fewer.
 constexpr double kMostlyClose = 0.8;
+constexpr int kFewestTelling = 20;
 // Share of what matches claim that they are taken to be wrong by at least, however well they agree: what is
 // the same all over the image no residual shows.
 constexpr double kLeastScale = 0.5;
@@ -52,7 +53,7 @@ bool solveTriple(MotionRows& triple, MotionState& state) {
 MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
   MotionState best = start;
   MotionSupport most = all.support(start);
-  if (most.close >= kMostlyClose * all.size()) return start;
+  if (most.telling >= kFewestTelling && most.telling_close >= kMostlyClose * most.telling) return start;
   static thread_local MotionRows triple;  // kept for its memory
   std::mt19937 random(20100602u);
   double needed = triplesNeeded(double(most.close) / all.size());
@@ -119,12 +120,14 @@ double overlapFactor(const std::vector<TemporalMatch>& matches) {
 }
 
 // What matches of a part of the image share, with the residuals that they have at their own normal. factor:
-// by which own.covariance is larger than that of independent matches.
+// by which own.covariance is larger than that of independent matches. last: step to the motion found from
+// where the rows were linearised.
 Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                const MotionRows& rows, const std::vector<char>& inliers, const OwnNormal& own,
-                               double factor) {
+                               double factor, const Vector9d& last) {
   Vector9d step;
   step << own.by_it * own.step, own.step;
+  step += last;
   Eigen::Matrix<double, 3, 9> by_scores;
   by_scores << own.covariance * own.by_it.transpose(), own.covariance;
   by_scores /= factor;
@@ -158,6 +161,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const double overlap = overlapFactor(matches);
   double factor = 1;
   Convergence convergence;
+  Vector9d step;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
     MotionNormal sums = rows.accumulate(result.inliers);
@@ -176,7 +180,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     sums.right.tail<3>() += prior * (normal - state.n);
     if (rotation != nullptr) addRotation(*rotation, state, sums);
     information = sums.information.selfadjointView<Eigen::Lower>();
-    const Vector9d step = information.ldlt().solve(sums.right);
+    step = information.ldlt().solve(sums.right);
     state = state.apply(step);
     if (convergence.reached(std::sqrt(step.dot(information * step)))) break;
   }
@@ -198,7 +202,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
     result.own_normal_covariance =
-        own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor);
+        own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor, step);
   }
   return result;
 }

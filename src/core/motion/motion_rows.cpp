@@ -32,7 +32,7 @@ UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, siz
   constexpr double kClose = 0.0625;  // ratio of a match that misses by a quarter of the tolerance
   constexpr double kSquare = MotionRows::kTolerance * MotionRows::kTolerance;
   const DoubleLanes none{}, one = none + 1, last = none + static_cast<double>(count);
-  DoubleLanes votes{}, close{}, index{0, 1, 2, 3};
+  DoubleLanes votes{}, close{}, telling{}, telling_close{}, index{0, 1, 2, 3};
   for (size_t i = 0; i < padded; i += kDoubleLanes, index += kDoubleLanes) {
     Seen at;
     const double* in = inputs + i;
@@ -46,16 +46,22 @@ UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, siz
     load(in + MotionRows::kXX * padded, xx);
     load(in + MotionRows::kXY * padded, xy);
     load(in + MotionRows::kYY * padded, yy);
+    const Mask tells = (index < last) & (xx + yy < kSquare);
     xx += kSquare;
     yy += kSquare;
     const DoubleLanes ratio =
         (yy * error_u * error_u - 2 * xy * error_u * error_v + xx * error_v * error_v) / (xx * yy - xy * xy);
     const Mask counts = at.seen & (index < last) & (ratio < 1);
     votes += counts ? 1 - ratio : none;
-    close += (counts & (ratio < kClose)) ? one : none;
+    const Mask fits = counts & (ratio < kClose);
+    close += fits ? one : none;
+    telling += tells ? one : none;
+    telling_close += (fits & tells) ? one : none;
   }
   support.votes = sum(votes);
   support.close = static_cast<int>(sum(close));
+  support.telling = static_cast<int>(sum(telling));
+  support.telling_close = static_cast<int>(sum(telling_close));
 }
 
 // outputs: columns of both rows, squares, ratio.

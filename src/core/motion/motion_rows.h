@@ -19,10 +19,12 @@ struct MotionState {
   MotionState apply(const Vector9d& step) const;
 };
 
-/// How well a motion is supported: votes weighted by closeness, and how many matches it fits well.
+/// How well a motion is supported: votes weighted by closeness, and how many matches it fits well. Telling
+/// are matches that know both of their coordinates; others, as along a line, fit nearly any motion well.
 struct MotionSupport {
   double votes = 0;
   int close = 0;
+  int telling = 0, telling_close = 0;
 };
 
 /// Sums of the normal equations by (rotation, t, n).

@@ -113,10 +113,11 @@ class PathAngleFilter::Regression {
   Eigen::Index rows_;
   Eigen::VectorXd y_;
   Eigen::MatrixXd noise_;  // with that of where the path starts
+  // By a rate of 1 rad/s: variance of the last angle, covariances of the measurements with it and of these.
   double variance_of_last_;
-  Eigen::VectorXd with_last_;  // covariance of the measurements with the last angle, by a rate of 1 rad/s
-  Eigen::MatrixXd of_rate_;    // and of the measurements
-  Eigen::VectorXd by_start_;
+  Eigen::VectorXd with_last_;
+  Eigen::MatrixXd of_rate_;
+  Eigen::VectorXd by_start_;  // of the measurements, by the angle at the start
 };
 
 void PathAngleFilter::reset() {

@@ -48,9 +48,7 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
                 std::to_string(samples.size()) + " matches of " + std::to_string(corners) +
                     " corners, at least " + std::to_string(limits.min_points) + " needed"});
   }
-  if (isBeyondDoubt(rig, samples, limits, expected))
-    return refinePlane(rig, samples, expected, limits, bias_stddev);
-  const Consensus consensus = findPlane(rig, samples, limits, kTrials, nullptr, true);
+  const Consensus consensus = findPlane(rig, samples, limits, kTrials, nullptr, true, &expected);
   if (!consensus.found) {
     return tl::make_unexpected(Failure{
         Reason::kNoPlane, "no plausible ground plane in " + std::to_string(samples.size()) + " matches"});

@@ -198,15 +198,29 @@ double drawsNeeded(double share) {
 
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                     const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range,
-                    bool until_sure) {
+                    bool until_sure, const Eigen::Vector3d* expected) {
   // Implausible triples cost next to nothing, so that many may be drawn for each that is counted.
   constexpr int kDrawsPerIteration = 20;
+  constexpr double kBeyondDoubt = 0.8;  // of the votes if all samples were exactly on the plane
   Consensus best;
   if (samples.size() < 3) return best;
   const Voters voters{rig, samples};
+  const auto all = static_cast<double>(samples.size());
+  double needed = iterations;
+  const auto consider = [&](const Eigen::Vector3d& g) {
+    const Votes votes = voters.votesFor(g, limits.tolerance);
+    if (best.found && votes.net() <= best.score) return;
+    best = {g, votes.agreeing, votes.net(), true};
+    improve(voters, limits, best);
+    // Penalties only take away: a better plane has at least the votes that are left of this one's.
+    if (until_sure) needed = std::min<double>(iterations, drawsNeeded(best.score / all));
+  };
+  if (expected != nullptr && isPlausibleGround(*expected, limits)) {
+    consider(*expected);
+    if (best.score >= kBeyondDoubt * all) return best;
+  }
   std::mt19937 random(20100601u);
   int counted = 0;
-  double needed = iterations;
   for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < needed; ++draw) {
     const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
                                             : throughTwo(rig, samples, limits.max_roll, random);
@@ -215,22 +229,9 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     if (slope_range && !(slope >= slope_range->x() && slope <= slope_range->y())) continue;
     if (!isPlausibleGround(g, limits)) continue;
     ++counted;
-    const Votes votes = voters.votesFor(g, limits.tolerance);
-    if (best.found && votes.net() <= best.score) continue;
-    best = {g, votes.agreeing, votes.net(), true};
-    improve(voters, limits, best);
-    // Penalties only take away: a better plane has at least the votes that are left of this one's.
-    if (until_sure)
-      needed = std::min<double>(iterations, drawsNeeded(best.score / static_cast<double>(samples.size())));
+    consider(g);
   }
   return best;
-}
-
-bool isBeyondDoubt(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                   const PlaneLimits& limits, const Eigen::Vector3d& g) {
-  constexpr double kShare = 0.8;  // of all votes
-  return isPlausibleGround(g, limits) && Voters{rig, samples}.votesFor(g, limits.tolerance).net() >=
-                                             kShare * static_cast<double>(samples.size());
 }
 
 }  // namespace uav_landing

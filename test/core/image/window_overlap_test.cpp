@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -39,6 +41,26 @@ TEST(WindowOverlap, IsThatOfSumsOverTheirPixels) {
   const double independent = static_cast<double>(corners.size()) * kExtent * kExtent;
   EXPECT_NEAR(windows.factor(), variance / independent, 1e-5);
   EXPECT_GT(windows.factor(), 1.3);
+}
+
+TEST(WindowOverlap, OfAnyNumberOfWindowsInAnyOrderIsThatOfAllPairs) {
+  constexpr double kExtent = 11;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> place(0, 60);
+  for (size_t count = 1; count <= 40; ++count) {
+    std::vector<std::array<double, 2>> corners(count);
+    for (auto& [u, v] : corners) u = place(random), v = 3 * place(random);
+    if (count % 3 != 0)  // mostly from the top down, as corners come
+      std::sort(corners.begin(), corners.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+    WindowOverlap windows(count % 2 == 0 ? count : 0);
+    double shared = 0;
+    for (const auto& [u, v] : corners) {
+      windows.add(u, v, kExtent);
+      for (const auto& [x, y] : corners)
+        shared += std::max(0.0, 1 - std::abs(u - x) / kExtent) * std::max(0.0, 1 - std::abs(v - y) / kExtent);
+    }
+    EXPECT_NEAR(windows.factor(), shared / static_cast<double>(count), 1e-5) << count;
+  }
 }
 
 TEST(WindowOverlap, WindowsOfNoExtentShareNothing) {
