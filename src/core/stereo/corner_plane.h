@@ -16,7 +16,8 @@ struct MatchedCorners {
 };
 
 /// The plane that most disparities of corners agree on, fitted to these. corners: that were looked for.
-/// expected: the plane that they were looked for by. bias_stddev: as for refinePlane. Fails when there are too few, or no plane.
+/// expected: the plane that they were looked for by. bias_stddev: as for refinePlane. Fails when there are
+/// too few, or no plane.
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
                               const Eigen::Vector3d& expected, const PlaneLimits& limits, double bias_stddev);
 
