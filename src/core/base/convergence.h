@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +19,11 @@ class Convergence {
     const double share = last_ > 0 ? std::clamp(step / last_, kLeastShare, kLargestShare) : kFirstShare;
     last_ = step;
     return step * share / (1 - share) < kLittle;
+  }
+  /// The same by the step itself and the information (inverse covariance) of what is sought.
+  template <int N>
+  bool reached(const Eigen::Matrix<double, N, 1>& step, const Eigen::Matrix<double, N, N>& information) {
+    return reached(std::sqrt(step.dot(information * step)));
   }
 
  private:

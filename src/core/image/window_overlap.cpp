@@ -35,8 +35,7 @@ UAV_LANDING_MULTIVERSION float sharedWith(const float* us, const float* vs, size
 }  // namespace
 
 WindowOverlap::WindowOverlap(size_t count) {
-  const auto filled = static_cast<size_t>(wholeLanes(static_cast<int>(count)));
-  for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->resize(filled);
+  for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->reserve(count + kLanes);
 }
 
 void WindowOverlap::add(double u, double v, double extent) {

@@ -12,9 +12,8 @@ namespace {
 /// within the tolerance at its ends. Texture seen at a grazing angle looks like lines along the horizon, so
 /// these pass near every point of it and say next to nothing; lines that rise towards it say much.
 double chance(const VanishingLines& lines, const VanishingCandidate& line, const Eigen::Vector3d& V) {
-  const double turn =
-      lines.toleranceOf(line) / line.half * lines.perTurn(line) * line.towards(V).norm() * lines.perPixel(V);
-  return std::min(1.0, 2 / M_PI * std::atan(turn));  // turn: on the ground, rad
+  return chanceWithin(lines.toleranceOf(line) / line.half * lines.perTurn(line) * line.towards(V).norm() *
+                      lines.perPixel(V));
 }
 
 /// Log of Chernoff's bound of the probability that random lines with these chances pass as tellingly.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "lines/vanishing_lines.h"
@@ -9,6 +10,10 @@ namespace uav_landing {
 
 /// Chance from which on a line that passes says nothing.
 constexpr double kLikelyChance = 0.05;
+
+/// Chance that a line of random direction on the ground passes as near as within this angle of it, rad. It is
+/// small where it matters: larger ones say nothing.
+inline double chanceWithin(double turn) { return 2 / M_PI * turn; }
 
 /// How many meeting points as well supported as this one are expected of lines of random direction on the
 /// ground. used: indices of the lines that pass, in order. meetings: pairs of lines that meet along the

@@ -86,7 +86,6 @@ class Score {
   /// not count, however many they are; of the pieces of one edge only the best does.
   double of(const Eigen::Vector3d& direction) {
     length_ = 0;
-    static const double kLikelyTurn = std::tan(0.5 * M_PI * kLikelyChance);
     const Eigen::Vector3d V = lines_.K() * direction;
     fitLines(columns_, V.x(), V.y(), V.z(), lines_.count(), fit_.data());
     const double per_pixel = lines_.perPixel(V);
@@ -98,11 +97,11 @@ class Score {
         impossible += impossible_[i];
         continue;
       }
-      const double turn = turns_[i] * lines_.all()[i].towards(V).norm() * per_pixel;
-      if (turn >= kLikelyTurn) continue;  // it is its arc tangent to 0.2 %
+      const double chance = chanceWithin(turns_[i] * lines_.all()[i].towards(V).norm() * per_pixel);
+      if (chance >= kLikelyChance) continue;
       length_ += lines_.all()[i].half;
       double& best = agreeing_[edge_[i]];
-      best = std::max(best, fit_[i] * evidence(2 / M_PI * turn));
+      best = std::max(best, fit_[i] * evidence(chance));
     }
     return std::accumulate(agreeing_.begin(), agreeing_.end(), -impossible);
   }

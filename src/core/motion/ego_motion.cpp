@@ -182,7 +182,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     information = sums.information.selfadjointView<Eigen::Lower>();
     step = information.ldlt().solve(sums.right);
     state = state.apply(step);
-    if (convergence.reached(std::sqrt(step.dot(information * step)))) break;
+    if (convergence.reached(step, information)) break;
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {

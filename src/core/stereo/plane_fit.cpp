@@ -197,7 +197,7 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
     }
     const Eigen::Vector3d before = g;
     g = sums.information.ldlt().solve(sums.right);
-    if (convergence.reached(std::sqrt((g - before).dot(sums.information * (g - before))) / scale)) break;
+    if (convergence.reached<3>((g - before) / scale, sums.information)) break;
   }
   if (!isPlausibleGround(g, limits)) {
     return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});

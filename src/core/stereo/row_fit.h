@@ -136,7 +136,7 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
     fit.covariance = information.inverse();
     const Eigen::Matrix<double, N, 1> before = fit.value;
     fit.value = fit.covariance * right;
-    if (convergence.reached(std::sqrt((fit.value - before).dot(information * (fit.value - before))))) break;
+    if (convergence.reached<N>(fit.value - before, information)) break;
   }
   const double scale = residualScale<N>(rows, fit.value);
   fit.weights.reserve(rows.size());
