@@ -226,7 +226,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
   std::vector<TemporalMatch> matches = std::move(memory);
   matches.clear();
   matches.reserve(corners.size());
-  static thread_local std::vector<Found> found;  // kept for its memory
+  static thread_local std::vector<Found> kept;  // for its memory
+  std::vector<Found>& found = kept;             // where that is takes a call to find
   found.clear();
   LocalWarp local, next;
   bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);

@@ -182,7 +182,8 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   constexpr int kIterations = 6;
   Eigen::Vector3d g = start;
   double scale = 1;
-  static thread_local PlaneProblem problem;
+  static thread_local PlaneProblem memory;
+  PlaneProblem& problem = memory;  // where that is takes a call to find
   problem.assign(rig, samples);
   NormalEquations sums;
   Convergence convergence;
