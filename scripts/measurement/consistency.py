@@ -36,8 +36,8 @@ seen and the ground below.
 Roll is claimed a little too cautiously at 10 m: most of what pairs of a second have in common is what rows may be off by (up to
 8° of roll for a pixel), and a row of a single match is claimed to 0.04 px at best, of which the simulator's lenses, which have
 no errors but a shift and an inclination of the rows, show half; with half of it the heights of the cars' recordings, which real
-lenses made, were less often within their claims. Under noise of 5 grey levels roll from 3 m and pitch from 10 m claim an eighth
-to a sixth too little. Height from 30 m under little noise is wrong by what bends more than expected.
+lenses made, were less often within their claims. Under noise of 5 grey levels roll and speed from 3 m and pitch from 10 m
+claim an eighth to a fifth too little. Height from 30 m under little noise is wrong by what bends more than expected.
 Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
