@@ -15,9 +15,9 @@ void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& k
     const double rest = b * v + c;
     // Kept are the columns first..last - 1.
     int first = 0, last = mask.cols;
-    if (a > 0 && rest < 0) first = static_cast<int>(std::clamp(std::ceil(-rest / a), 0.0, double(mask.cols)));
+    if (a > 0 && rest < 0) first = static_cast<int>(std::min(std::ceil(-rest / a), double(mask.cols)));
     if (a < 0 && rest + a * (mask.cols - 1) < 0)
-      last = static_cast<int>(std::clamp(std::floor(-rest / a) + 1, 0.0, double(mask.cols)));
+      last = static_cast<int>(std::max(std::floor(-rest / a) + 1, 0.0));
     if (a == 0 && rest < 0) last = 0;
     last = std::max(first, last);
     uchar* row = kept.ptr<uchar>(v);

@@ -18,15 +18,15 @@ double heightOverPoint(double y_c, double z_c, double theta) {
 
 AveragedHeight averageHeight(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                              double theta, double roll, bool only_on_plane) {
-  // Eq (5) is linear, so what it makes of the camera's axes is all that the points need.
-  const Eigen::Vector3d axes(heightOverPoint(0, std::sin(roll), theta),
-                             heightOverPoint(0, std::cos(roll), theta), heightOverPoint(1, 0, theta));
+  // Eq (5) is linear, so the heights of the camera's unit vectors are all that the points need.
+  const Eigen::Vector3d of_axes(heightOverPoint(0, std::sin(roll), theta),
+                                heightOverPoint(0, std::cos(roll), theta), heightOverPoint(1, 0, theta));
   // Welford's recursion: keeps its accuracy where the scatter is small against the height.
   double mean = 0, squares = 0;
   AveragedHeight averaged;
   for (const StereoDepthResult::Point& point : points) {
     if (!(point.disparity > 0) || (only_on_plane && !point.on_plane)) continue;
-    const double height = depthFromDisparity(rig, point.disparity) * axes.dot(rig.ray(point.u, point.v));
+    const double height = depthFromDisparity(rig, point.disparity) * of_axes.dot(rig.ray(point.u, point.v));
     const double deviation = height - mean;
     mean += deviation / ++averaged.points;
     squares += deviation * (height - mean);

@@ -151,8 +151,8 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                                                    " corners followed, at least " +
                                                                    std::to_string(min_matches) + " needed"});
   }
-  static thread_local MotionRows memory;  // kept, as they are large
-  MotionRows& rows = memory;              // where that is takes a call to find
+  static thread_local MotionRows kept;  // as they are large
+  MotionRows& rows = kept;              // where that is takes a call to find
   rows.assign(rig, matches);
   MotionState state = bestByConsensus(rows, {start.R.transpose(), start.t, normal});
   const Eigen::Matrix3d prior = priorInformation(normal, normal_covariance);

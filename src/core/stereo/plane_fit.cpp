@@ -182,8 +182,8 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   constexpr int kIterations = 6;
   Eigen::Vector3d g = start;
   double scale = 1;
-  static thread_local PlaneProblem memory;
-  PlaneProblem& problem = memory;  // where that is takes a call to find
+  static thread_local PlaneProblem kept;  // for its memory
+  PlaneProblem& problem = kept;           // where that is takes a call to find
   problem.assign(rig, samples);
   NormalEquations sums;
   Convergence convergence;
