@@ -10,3 +10,4 @@ uav_landing_add_python_test(test/scripts/fault_campaign_test.py DEPENDENCIES inj
 uav_landing_add_python_test(test/scripts/soak_test.py SERIAL
   DEPENDENCIES process_bag simulate_approach uav_landing_nodelets)
 uav_landing_add_python_test(test/scripts/flightgear_test.py)
+uav_landing_add_python_test(test/scripts/mutation_test.py)

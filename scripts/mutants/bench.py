@@ -1,0 +1,140 @@
+"""Builds mutants and lets the tests judge them: one core builds the next one while the other tests the one before."""
+
+import queue
+import shutil
+import threading
+
+from .results import file_fingerprint, folder_fingerprint
+from .workshop import LONGEST
+
+SHORTEST = 20  # s, that a test may take at least
+SLOWER = 10  # times as long as without a mutant: it hangs
+AHEAD = 2  # mutants that wait for their tests
+
+
+def is_of_core_alone(path):
+    """Whether a mutant of this file changes nothing but the core library, so that no test has to be built anew."""
+    return path.startswith("src/core/") and path.endswith(".cpp")
+
+
+class Bench:
+    def __init__(self, workshop, concern, results, patience, report):
+        """patience: s of tests that a mutant has to survive. report: called with each result."""
+        self._workshop, self._concern, self._results = workshop, concern, results
+        self._patience, self._report = patience, report
+        self._tests = folder_fingerprint(workshop.tree / "test")
+        self._sources = {}
+        self._building = threading.Lock()
+        self._times = {}  # s of each test without a mutant; None: it fails without one
+        self._untouched = None  # folder of the library without a mutant
+        self._errors = []
+
+    def known(self, mutant):
+        """The result of an earlier run that still holds, or None."""
+        return self._results.of(mutant, self._source(mutant.path), self._tests)
+
+    def _source(self, path):
+        """Fingerprint of a source file without a mutant: it is asked for first by known()."""
+        if path not in self._sources:
+            self._sources[path] = file_fingerprint(self._workshop.tree / path)
+        return self._sources[path]
+
+    def judge(self, mutants):
+        """All of them; the quickest to build first."""
+        with self._building:
+            if not self._workshop.build("uav_landing_core"):
+                raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
+            self._untouched = self._workshop.keep_library("untouched")
+        self._judge_core([mutant for mutant in mutants if is_of_core_alone(mutant.path)])
+        others = [mutant for mutant in mutants if not is_of_core_alone(mutant.path)]
+        for mutant in sorted(others, key=lambda mutant: (mutant.path.endswith(".h"), mutant.path)):
+            self._judge_in_place(mutant)
+
+    def _judge_core(self, mutants):
+        waiting = queue.Queue(AHEAD)
+        tester = threading.Thread(target=self._test_waiting, args=(waiting,), daemon=True)
+        tester.start()
+        for mutant in mutants:
+            with self._building, self._workshop.changed(mutant):
+                built = self._workshop.build("uav_landing_core")
+                library = self._workshop.keep_library(mutant.name) if built else None
+            if built:
+                waiting.put((mutant, library))
+            else:
+                self._note(mutant, "broken", "", 0)
+            if self._errors:
+                break
+        waiting.put(None)
+        tester.join()
+        if self._errors:
+            raise self._errors[0]
+
+    def _test_waiting(self, waiting):
+        while True:
+            item = waiting.get()
+            if item is None:
+                return
+            if self._errors:
+                continue
+            try:
+                mutant, library = item
+                self._face_tests(mutant, library, self._is_ready)
+                shutil.rmtree(library)
+            except Exception as error:  # told to the thread that builds
+                self._errors.append(error)
+
+    def _judge_in_place(self, mutant):
+        """A mutant that tests or programs are built with."""
+        targets = ["uav_landing_core", "uav_landing_ros", "uav_landing_nodelets", "uav_landing_tools"]
+        tests = self._concern.tests_of(mutant.path)
+        for test in tests:  # before the change: how long they take without it
+            if sum(self._times.get(done) or 0 for done in tests) > self._patience:
+                break
+            self._is_ready(test, with_programs=True)
+        with self._workshop.changed(mutant):
+            built = self._workshop.build(*(targets[:1] if mutant.path.startswith(("src/core/", "include/")) else targets))
+            if not built:
+                return self._note(mutant, "broken", "", 0)
+            self._face_tests(mutant, None, self._is_built)
+
+    def _is_ready(self, test, with_programs=False):
+        """Builds a test without a mutant, and sees it pass."""
+        if test not in self._times:
+            with self._building:
+                built = self._workshop.build(*self._targets(test, with_programs))
+            passed, seconds = self._workshop.run(test, self._untouched) if built else (False, 0)
+            self._times[test] = seconds if passed else None
+            if not passed:
+                print(f"{test.name}: {'fails' if built else 'cannot be built'} without a mutant, left out", flush=True)
+        return self._times[test] is not None
+
+    def _is_built(self, test):
+        """Builds a test with the mutant. One that cannot be built refuses it."""
+        return self._times.get(test) is not None and self._workshop.build(*self._targets(test, True))
+
+    @staticmethod
+    def _targets(test, with_programs):
+        if test.program:
+            return [test.target]
+        return [test.target, "uav_landing_nodelets"] if test.target else ["all"] if with_programs else []
+
+    def _face_tests(self, mutant, library, is_ready):
+        spent = 0
+        for test in self._concern.tests_of(mutant.path):
+            if spent > self._patience:
+                break
+            if not is_ready(test):
+                continue
+            deadline = min(LONGEST, max(SHORTEST, SLOWER * self._times[test]))
+            passed, seconds = self._workshop.run(test, library, deadline)
+            spent += seconds
+            # What waits for others may fail once by itself.
+            if not passed and not test.program:
+                passed, seconds = self._workshop.run(test, library, deadline)
+                spent += seconds
+            if not passed:
+                return self._note(mutant, "killed", test.name, spent)
+        return self._note(mutant, "survived", "", spent)
+
+    def _note(self, mutant, outcome, by, seconds):
+        self._report(self._results.add(mutant, outcome, by, seconds, self._source(mutant.path), self._tests))

@@ -1,0 +1,46 @@
+"""What became of each mutant, kept as it comes, so that a run goes on where it was stopped."""
+
+import hashlib
+import json
+
+
+def file_fingerprint(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+
+def folder_fingerprint(folder):
+    """Of the contents of all files below it."""
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and "__pycache__" not in path.parts:
+            digest.update(path.relative_to(folder).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+class Results:
+    """The last outcome of each mutant: killed, survived, or broken (it could not be compiled)."""
+
+    def __init__(self, path):
+        self._path = path
+        self._by_name = {}
+        if path.is_file():
+            for line in path.read_text(encoding="utf-8").splitlines():
+                result = json.loads(line)
+                self._by_name[result["name"]] = result
+
+    def add(self, mutant, outcome, by, seconds, source, tests):
+        """by: the test that killed it. source, tests: fingerprints of the file and of the tests then."""
+        result = {**mutant._asdict(), "outcome": outcome, "by": by, "seconds": round(seconds, 1), "source": source, "tests": tests}
+        self._by_name[mutant.name] = result
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        with self._path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(result) + "\n")
+        return result
+
+    def of(self, mutant, source, tests):
+        """The result that still holds. One that survived has to face new tests; one that was killed stays so while its
+        file is the same."""
+        result = self._by_name.get(mutant.name)
+        if not result or result["source"] != source:
+            return None
+        return result if result["outcome"] != "survived" or result["tests"] == tests else None

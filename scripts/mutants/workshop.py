@@ -1,0 +1,121 @@
+"""The copy of the tree that mutants are built and tested in; the tree itself is only read."""
+
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import time
+from contextlib import contextmanager
+
+from .concern import Test
+
+MOST_MEMORY = 16 << 30  # bytes of address space: what a mutant allocates without end is killed by it
+LONGEST = 300  # s, of one test
+
+
+def _limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+
+
+class Workshop:
+    """Files in `work`/tree, its build in `work`/tree/build."""
+
+    def __init__(self, root, work):
+        self._root, self._work = root, work
+        self.tree = work / "tree"
+        self.build_folder = self.tree / "build"
+        self.environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"], CCACHE_BASEDIR=str(self.tree),
+                                GTEST_FAIL_FAST="1", ROS_HOME=str(work / "ros_home"))
+        self.environment.setdefault("UAV_LANDING_DATA", str((root.parent / "shared/data").resolve()))
+
+    def refresh(self):
+        """Makes the copy what the tree is now. Files that are the same keep their times, and are not built again."""
+        listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=self._root,
+                                stdout=subprocess.PIPE, check=True).stdout.decode().split("\0")
+        wanted = {name for name in listed if name and (self._root / name).is_file()}
+        for name in wanted:
+            source, copy = self._root / name, self.tree / name
+            if copy.is_file() and copy.read_bytes() == source.read_bytes():
+                continue
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, copy)
+        for copy in self.tree.rglob("*"):
+            name = copy.relative_to(self.tree).as_posix()
+            if copy.is_file() and name not in wanted and not name.startswith(("build/", "bin/")):
+                copy.unlink()
+
+    def configure(self):
+        """What cmake says when it fails, else None."""
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+        # A mutant of the library is no reason to link a test anew.
+        made = subprocess.run(["cmake", "-S", ".", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3", *launcher,
+                               "-DUAV_LANDING_BENCHMARK=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"], cwd=self.tree,
+                              env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return made.stdout if made.returncode else None
+
+    def build(self, *targets):
+        """Whether they could be built."""
+        with (self._work / "build.log").open("w") as log:
+            return subprocess.run(["cmake", "--build", "build", f"-j{os.cpu_count()}", "--target", *targets], cwd=self.tree,
+                                  env=self.environment, stdout=log, stderr=subprocess.STDOUT).returncode == 0
+
+    @contextmanager
+    def changed(self, mutant):
+        """The copy with one line changed, and as it was afterwards."""
+        path = self.tree / mutant.path
+        original = path.read_text(encoding="utf-8")
+        lines = original.split("\n")
+        assert lines[mutant.line - 1] == mutant.before, mutant
+        lines[mutant.line - 1] = mutant.after
+        path.write_text("\n".join(lines), encoding="utf-8")
+        try:
+            yield
+        finally:
+            path.write_text(original, encoding="utf-8")
+
+    def tests(self):
+        """All tests of ctest."""
+        listed = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.build_folder, env=self.environment,
+                                stdout=subprocess.PIPE, check=True).stdout
+        found = []
+        for test in json.loads(listed)["tests"]:
+            name = test["name"]
+            gtest = re.search(r"_gtest_(\w+)$", name)
+            nodelet = re.search(r"_rostest_test_nodelets_(\w+)\.test$", name)
+            target = gtest.group(1) if gtest else f"{nodelet.group(1)}_test" if nodelet else None
+            found.append(Test(name, target, bool(gtest)))
+        return found
+
+    def sources_of(self, target):
+        """Source files of a target, by the files that cmake has made for it."""
+        made = self.build_folder / f"CMakeFiles/{target}.dir/build.make"
+        if not made.is_file():
+            return set()
+        return set(re.findall(r"^CMakeFiles/[^/]+\.dir/(\S+\.cpp)\.o: \S+\.cpp$", made.read_text(), re.MULTILINE))
+
+    def keep_library(self, name):
+        """Puts the library as it is now aside; returns the folder that it is in."""
+        folder = self._work / "libraries" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        shutil.copy(self.build_folder / "devel/lib/libuav_landing_core.so", folder)
+        return folder
+
+    def run(self, test, library=None, deadline=LONGEST):
+        """Whether a test passes, and its seconds. library: the folder of the one to use instead of that of the build."""
+        environment = dict(self.environment)
+        if test.program:
+            command = [self.build_folder / "devel/lib/uav_landing" / test.target]
+            places = [str(library)] if library else []
+            environment["LD_LIBRARY_PATH"] = ":".join(places + [str(self.build_folder / "devel/lib")])
+        else:
+            command = ["ctest", "--timeout", str(int(deadline)), "-R", f"^{re.escape(test.name)}$"]
+            deadline += 60
+        begun = time.monotonic()
+        try:
+            done = subprocess.run(list(map(str, command)), cwd=self.build_folder, env=environment, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL, timeout=deadline, preexec_fn=_limit_memory).returncode == 0
+        except subprocess.TimeoutExpired:
+            done = False
+        return done, time.monotonic() - begun
