@@ -61,6 +61,8 @@ sensor_msgs::ImageConstPtr toMessage(const cv::Mat& image) {
 Expected<Measurement> measure(const Sequence& sequence, const Parameters& parameters) {
   Expected<Pipeline> chain = Pipeline::create(sequence.left, sequence.right, parameters);
   if (!chain) return tl::make_unexpected(chain.error());
+  for (const std::string& warning : chain->warnings())
+    std::cerr << "benchmark: " << sequence.name << ": " << warning << '\n';
   PaperPipeline paper(chain->rig().rig, sequence.left, sequence.right);
   StereoImageProcPeer block(sequence, StereoImageProcPeer::Processor::BM);
   StereoImageProcPeer semi_global(sequence, StereoImageProcPeer::Processor::SGBM);

@@ -152,6 +152,8 @@ Failure run(const Options& options) {
     return {Reason::kInputInvalid, sequence->name + " has too few pairs"};
   Expected<Pipeline> chain = Pipeline::create(sequence->left, sequence->right, Parameters());
   if (!chain) return chain.error();
+  for (const std::string& warning : chain->warnings())
+    std::cerr << "nodelet_benchmark: " << sequence->name << ": " << warning << '\n';
   if (!ros::master::check())
     return {Reason::kInputInvalid,
             "no ROS master: start roscore, or use roslaunch uav_landing nodelet_benchmark.launch"};

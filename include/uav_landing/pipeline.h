@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/stages/approach_angle_stage.h"
@@ -12,6 +14,7 @@ namespace uav_landing {
 /// The whole chain for one pair after another, as the nodelets run it.
 class Pipeline {
  public:
+  /// Refuses what parameters.rig does not let through.
   static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
                                    const Parameters& parameters);
 
@@ -29,6 +32,8 @@ class Pipeline {
                         const AttitudePrior& imu = {});
 
   const RigModel& rig() const { return rig_; }
+  /// What is unlikely about the calibrations (see rigWarnings()).
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   Pipeline(RigModel rig, Rectifier left, Rectifier right, const Parameters& parameters);
@@ -36,6 +41,7 @@ class Pipeline {
   void addTimings(const char* stage, const Timings& parts);
 
   RigModel rig_;
+  std::vector<std::string> warnings_;
   Rectifier left_rectifier_, right_rectifier_;
   StereoDepthStage stereo_;
   ApproachAngleStage approach_;

@@ -1,17 +1,21 @@
 #include "uav_landing/pipeline.h"
 
-#include <string>
+#include "uav_landing/geometry/rig_check.h"
 
 namespace uav_landing {
 Expected<Pipeline> Pipeline::create(const CameraCalibration& left, const CameraCalibration& right,
                                     const Parameters& parameters) {
+  const Expected<StereoRig> checked = makeStereoRig(left, right, parameters.rig);
+  if (!checked) return tl::unexpected<Failure>(checked.error());
   Expected<RigModel> rig = makeRigModel(left, right);
   if (!rig) return tl::unexpected<Failure>(rig.error());
   Expected<Rectifier> left_rectifier = Rectifier::create(left);
   if (!left_rectifier) return tl::unexpected<Failure>(left_rectifier.error());
   Expected<Rectifier> right_rectifier = Rectifier::create(right);
   if (!right_rectifier) return tl::unexpected<Failure>(right_rectifier.error());
-  return Pipeline(std::move(*rig), std::move(*left_rectifier), std::move(*right_rectifier), parameters);
+  Pipeline pipeline(std::move(*rig), std::move(*left_rectifier), std::move(*right_rectifier), parameters);
+  pipeline.warnings_ = rigWarnings(left, right, parameters.rig);
+  return pipeline;
 }
 
 Pipeline::Pipeline(RigModel rig, Rectifier left, Rectifier right, const Parameters& parameters)

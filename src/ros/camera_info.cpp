@@ -7,6 +7,8 @@ namespace {
 template <int kRows, int kColumns>
 using RowMajor = Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>;
 
+constexpr const char* kCameraInfo = "camera_info: ";
+
 }  // namespace
 
 CameraCalibration toCalibration(const sensor_msgs::CameraInfo& info) {
@@ -44,6 +46,12 @@ sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const
   return info;
 }
 
-Failure ofCameraInfo(const Failure& failure) { return {failure.reason, "camera_info: " + failure.detail}; }
+Failure ofCameraInfo(const Failure& failure) { return {failure.reason, kCameraInfo + failure.detail}; }
+
+std::vector<std::string> ofCameraInfo(const std::vector<std::string>& warnings) {
+  std::vector<std::string> named;
+  for (const std::string& warning : warnings) named.push_back(kCameraInfo + warning);
+  return named;
+}
 
 }  // namespace uav_landing

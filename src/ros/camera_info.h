@@ -2,6 +2,9 @@
 
 #include <sensor_msgs/CameraInfo.h>
 
+#include <string>
+#include <vector>
+
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -16,5 +19,7 @@ sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const
 /// What is wrong with the calibrations of a rig, in the words of all nodelets and programs:
 /// "camera_info: right P[3]: 0, expected ...".
 Failure ofCameraInfo(const Failure& failure);
+/// The same for what is unlikely about them (see rigWarnings()).
+std::vector<std::string> ofCameraInfo(const std::vector<std::string>& warnings);
 
 }  // namespace uav_landing

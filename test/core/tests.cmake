@@ -14,6 +14,7 @@ uav_landing_add_gtest(bad_calibrations_test test/core/geometry/bad_calibrations_
 uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
 uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
 uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
+uav_landing_add_gtest(rig_check_test test/core/geometry/rig_check_test.cpp)
 
 # results
 uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)

@@ -5,6 +5,7 @@
 #include "fuzz/harnesses.h"
 #include "fuzz/input.h"
 #include "fuzz/memory_file.h"
+#include "uav_landing/geometry/rig_check.h"
 #include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
@@ -51,6 +52,9 @@ void useCalibrations(const CameraCalibration& left, const CameraCalibration& rig
     require(!rectifier->rectify(cv::Mat(size, CV_8UC1, cv::Scalar(100)), rectified),
             "an image of the announced size is rectified");
   }
+  const Expected<StereoRig> likely = makeStereoRig(left, right, RigParameters());
+  require(likely || !likely.error().detail.empty(), "a refused rig says why");
+  require(likely || rigWarnings(left, right, RigParameters()).empty(), "nobody warns of what is refused");
   const Expected<StereoRig> rig = makeStereoRig(left, right);
   if (!rig) return;
   require(rig->baseline > 0 && std::isfinite(rig->baseline) && rig->fx > 0 && std::isfinite(rig->fb()),

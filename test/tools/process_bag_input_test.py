@@ -266,6 +266,49 @@ class CameraInfoTest(ProcessBagTest):
             frame.right_info.P = frame.left_info.P
         self.assert_refused(self.process_with(change), "camera_info", "right", "P[3]")
 
+    def process_scaled(self, factor, *options):
+        """With the K of a picture that is larger by a factor."""
+        frames = noise_frames()
+        for frame in frames:
+            for info in (frame.left_info, frame.right_info):
+                info.K = [factor * k for k in info.K[:8]] + [1]
+        return self.process_frames(frames, *options)
+
+    def test_calibration_of_another_picture_size_is_refused(self):
+        self.assert_refused(self.process_scaled(2), f"{self.bag}: no usable image pair: camera_info: left K[2]: 160, expected "
+                            "48 to 112 in a picture 160 px wide: is this the calibration of another picture size? If the "
+                            "picture is cropped off the middle, raise rig/max_principal_point_offset\n")
+
+    def test_picture_cropped_off_the_middle_is_let_through_by_the_config(self):
+        config = self.folder / "config.yaml"
+        config.write_text("rig: {max_principal_point_offset: 1.1}")
+        result = self.process_scaled(2, "--config", config)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_unlikely_principal_point_is_warned_about_once(self):
+        result = self.process_scaled(1.25)
+        self.assertEqual(result.returncode, 0)
+        self.assertEqual(result.stderr, "".join(
+            f"process_bag: camera_info: {side} K[2]: 100, 12.5 % of the picture's width off its middle: is this the "
+            "calibration of another picture size?\n" for side in ("left", "right")))
+
+    def process_with_baseline(self, metres):
+        def change(frame):
+            frame.right_info.P = frame.right_info.P[:3] + [-150 * metres] + frame.right_info.P[4:]
+        return self.process_with(change)
+
+    def test_baseline_in_millimetres_is_refused(self):
+        self.assert_refused(self.process_with_baseline(500), "camera_info: baseline 500 m, expected at most 50 m: is right "
+                            "P[3] in metres (-fx times the baseline)? If it is, raise rig/max_baseline\n")
+
+    def test_unlikely_baseline_is_warned_about_once(self):
+        for metres in (0.005, 20):
+            with self.subTest(metres=metres):
+                result = self.process_with_baseline(metres)
+                self.assertEqual(result.returncode, 0)
+                self.assertEqual(result.stderr, f"process_bag: camera_info: baseline {metres} m: is right P[3] in metres "
+                                 "(-fx times the baseline)?\n")
+
     def test_change_in_mid_stream_is_reported_and_followed(self):
         frames = noise_frames(4)
         for frame in frames[2:]:

@@ -4,6 +4,7 @@
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/parameters/overlay_parameters.h"
 #include "uav_landing/parameters/rectify_parameters.h"
+#include "uav_landing/parameters/rig_parameters.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
 namespace uav_landing {
@@ -16,6 +17,7 @@ namespace uav_landing {
 
 /// One parameter set for the whole chain; each member is a section of config/*.yaml.
 struct Parameters {
+  RigParameters rig;
   RectifyParameters rectify;
   StereoDepthParameters stereo_depth;
   ApproachAngleParameters approach_angle;
@@ -25,6 +27,7 @@ struct Parameters {
   /// Calls v(section name, parameter struct) for every section.
   template <class Visitor>
   void visitSections(Visitor&& v) {
+    v("rig", rig);
     v("rectify", rectify);
     v("stereo_depth", stereo_depth);
     v("approach_angle", approach_angle);

@@ -23,6 +23,7 @@ Expected<Parameters> agreeing(Expected<Parameters> parameters, const std::string
 
 }  // namespace
 
+template Failure loadSection(const YAML::Node&, const std::string&, RigParameters&);
 template Failure loadSection(const YAML::Node&, const std::string&, RectifyParameters&);
 template Failure loadSection(const YAML::Node&, const std::string&, StereoDepthParameters&);
 template Failure loadSection(const YAML::Node&, const std::string&, ApproachAngleParameters&);
@@ -39,7 +40,8 @@ Expected<Parameters> loadParameterFile(const std::string& path) {
 
 std::string parameterTable() {
   std::ostringstream out;
-  out << "# Parameters\n\nAll parameters of the chain, section by section as in `config/stereo.yaml`.\n";
+  out << "# Parameters\n\nAll parameters of the chain, section by section as in `config/stereo.yaml`. "
+         "All stages share `rig`; the other\nsections belong to the nodelet of their name.\n";
   Parameters parameters;
   parameters.visitSections(
       [&](const char* section, auto& values) { values.visit(TableWriter(out, section)); });

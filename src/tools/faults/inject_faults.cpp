@@ -12,6 +12,7 @@
 #include "faults/fault_flight.h"
 #include "pending_file.h"
 #include "progress_bar.h"
+#include "uav_landing/geometry/rig_check.h"
 
 namespace {
 
@@ -57,6 +58,8 @@ class Campaign {
 
   void run() {
     const Flight recorded = options_.dataset.empty() ? Flight() : readFlight(options_.dataset);
+    for (const std::string& warning : rigWarnings(recorded.left, recorded.right, parameters_.rig))
+      std::cerr << "inject_faults: " << warning << '\n';
     ProgressBar progress(static_cast<unsigned long>(options_.count));
     for (uint64_t seed = options_.first; seed < options_.first + options_.count; ++seed) {
       if (options_.dataset.empty())

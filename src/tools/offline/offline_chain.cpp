@@ -96,7 +96,9 @@ void OfflineChain::followCalibration(const CameraCalibration& left, const Camera
   pipeline_.reset();
   Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters_);
   calibration_failure_ = pipeline ? Failure() : ofCameraInfo(pipeline.error());
-  if (pipeline) pipeline_.emplace(std::move(*pipeline));
+  if (!pipeline) return;
+  pipeline_.emplace(std::move(*pipeline));
+  for (const std::string& warning : ofCameraInfo(pipeline_->warnings())) complain_(warning);
 }
 
 Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right,

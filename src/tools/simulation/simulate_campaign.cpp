@@ -44,6 +44,8 @@ void fly(const SimulatorParameters& drawn, const Parameters& parameters, const s
     pipelines.push_back(orThrow(
         Pipeline::create(simulator.rig().left.calibration, simulator.rig().right.calibration, parameters),
         sample.seed));
+  for (const std::string& warning : pipelines.front().warnings())
+    std::cerr << "simulate_campaign: seed " << sample.seed << ": " << warning << '\n';
   for (sample.frame = 0; sample.frame < simulator.frames(); ++sample.frame) {
     const ApproachSimulator::Light light = simulator.light(sample.frame);
     const double time = simulator.timeOf(sample.frame);

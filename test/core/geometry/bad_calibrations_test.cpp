@@ -3,7 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "support/bad_configurations.h"
-#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/rig_check.h"
 
 namespace uav_landing {
 namespace {
@@ -50,15 +50,35 @@ void change(const YAML::Node& fields, CameraCalibration& camera) {
   }
 }
 
+struct Pair {
+  CameraCalibration left = goodCamera(false), right = goodCamera(true);
+};
+
+Pair changedBy(const std::string& yaml) {
+  Pair pair;
+  const YAML::Node given = YAML::Load(yaml);
+  if (given["left"]) change(given["left"], pair.left);
+  if (given["right"]) change(given["right"], pair.right);
+  return pair;
+}
+
+std::string refusalOf(const Pair& pair) {
+  const auto rig = makeStereoRig(pair.left, pair.right, RigParameters());
+  return rig ? "accepted" : rig.error().detail;
+}
+
 TEST(BadCalibrations, AreRefusedInTheWordsOfTheDocumentation) {
-  ASSERT_TRUE(makeStereoRig(goodCamera(false), goodCamera(true)));
-  for (const test::BadConfiguration& row : test::badConfigurations("Calibrations")) {
-    CameraCalibration left = goodCamera(false), right = goodCamera(true);
-    const YAML::Node given = YAML::Load(row.given);
-    if (given["left"]) change(given["left"], left);
-    if (given["right"]) change(given["right"], right);
-    const auto rig = makeStereoRig(left, right);
-    EXPECT_EQ(rig ? "accepted" : rig.error().detail, row.message) << row.given;
+  ASSERT_EQ(refusalOf(Pair()), "accepted");
+  for (const test::BadConfiguration& row : test::badConfigurations("Calibrations"))
+    EXPECT_EQ(refusalOf(changedBy(row.given)), row.message) << row.given;
+}
+
+TEST(UnlikelyCalibrations, AreWarnedAboutInTheWordsOfTheDocumentation) {
+  for (const test::BadConfiguration& row : test::badConfigurations("Unlikely calibrations")) {
+    const Pair pair = changedBy(row.given);
+    EXPECT_EQ(refusalOf(pair), "accepted") << row.given;
+    EXPECT_EQ(rigWarnings(pair.left, pair.right, RigParameters()), std::vector<std::string>{row.message})
+        << row.given;
   }
 }
 
