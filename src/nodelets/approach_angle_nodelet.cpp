@@ -172,7 +172,7 @@ class ApproachAngleNodelet : public StageNodelet {
     AttitudePrior imu;
     if (imu_) imu = imu_->at(left->header.stamp, left_info.header.frame_id, toCalibration(left_info).R);
     ApproachAngleResult result = attempt<ApproachAngleResult>([&] {
-      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,
+      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, rig_, parameters_,
                         [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
                           auto processed = stage.process(stamp, left_view, right_view, stereo, imu);
                           compute_ms = stage.timings().total();
@@ -182,6 +182,7 @@ class ApproachAngleNodelet : public StageNodelet {
     result.stamp = stamp;
     noteImu(result.imu);
     warnOf(result.failure);
+    warnOfRig(stage_.warnings());
     report_.served(left->header.stamp, compute_ms, result.failure.message());
     publisher_.publish(boost::make_shared<ApproachAngle>(toMessage(result, left->header, compute_ms)));
   }

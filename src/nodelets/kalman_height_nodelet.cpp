@@ -165,7 +165,8 @@ class KalmanHeightNodelet : public StageNodelet {
   Failure prepare(const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
     if (cameras_.changed(left_info, right_info)) {
       stage_.reset();
-      const auto rig = makeStereoRig(cameras_.left(), cameras_.right());
+      const auto rig = makeStereoRig(cameras_.left(), cameras_.right(), rig_);
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
       rig_failure_ = rig ? Failure() : ofCameraInfo(rig.error());
       if (rig) stage_.emplace(*rig, parameters_);
     }

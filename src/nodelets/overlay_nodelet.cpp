@@ -67,9 +67,12 @@ class OverlayNodelet : public StageNodelet {
   void process(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfo& left_info,
                const sensor_msgs::CameraInfo& right_info, const StereoDepth& stereo,
                const ApproachAngle& approach, const LandingEstimate& landing) {
-    if (rig_.changed(left_info, right_info)) stereo_rig_ = makeStereoRig(rig_.left(), rig_.right());
+    if (cameras_.changed(left_info, right_info)) {
+      stereo_rig_ = makeStereoRig(cameras_.left(), cameras_.right(), rig_);
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
+    }
     if (!stereo_rig_) return refuse(ofCameraInfo(stereo_rig_.error()).detail);
-    const auto view = toMono8(left, rig_.left(), kLeftImage);
+    const auto view = toMono8(left, cameras_.left(), kLeftImage);
     if (!view) return refuse(view.error().detail);
     Timings timings;
     cv::Mat picture;
@@ -89,7 +92,7 @@ class OverlayNodelet : public StageNodelet {
   image_transport::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<Inputs> pairing_;
-  RigWatch rig_;
+  RigWatch cameras_;
   Expected<StereoRig> stereo_rig_;
 };
 

@@ -14,6 +14,7 @@
 #include "image_pool.h"
 #include "pairing.h"
 #include "pairs_in_flight.h"
+#include "rig_watch.h"
 #include "stage_nodelet.h"
 #include "uav_landing/base/timings.h"
 #include "uav_landing/image/rectification.h"
@@ -177,6 +178,8 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void process(const Job& job) {
+    if (cameras_.changed(*job.left_info, *job.right_info))
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
     Timings timings;
     sensor_msgs::ImagePtr left, right;
     {
@@ -211,6 +214,10 @@ class RectifyNodelet : public StageNodelet {
     const auto mono = toMono8(raw, calibration, view.topic);
     if (!mono) {
       refuse(mono.error().detail);
+      return nullptr;
+    }
+    if (const Failure failure = checkPrincipalPoint(calibration, rig_)) {
+      refuse(view, failure);
       return nullptr;
     }
     if (calibration != view.calibration) {
@@ -267,6 +274,7 @@ class RectifyNodelet : public StageNodelet {
   uint32_t input_queue_ = 1;
   std::unique_ptr<image_transport::ImageTransport> transport_;
   View left_, right_;
+  RigWatch cameras_;
   ros::Publisher skew_publisher_;
   std::unique_ptr<StereoPairing> pairing_;
   std::shared_ptr<PairsInFlight> in_flight_;

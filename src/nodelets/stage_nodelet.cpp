@@ -95,6 +95,11 @@ void StageNodelet::warnOf(const Failure& failure) {
     refuse(failure.message());
 }
 
+void StageNodelet::warnOfRig(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : report_.warned(warnings))
+    NODELET_WARN("%s: %s", getName().c_str(), warning.c_str());
+}
+
 void StageNodelet::stop() {
   reset_service_.shutdown();
   start_timer_.stop();

@@ -56,13 +56,15 @@ class StageNodelet : public nodelet::Nodelet {
   /// Values of its own for the diagnostics; called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
-  /// Reads the private parameters, also into node_. Throws with the parameter's name, so that the nodelet is
-  /// not loaded.
+  /// Reads the private parameters, also into node_, and those that the nodelets share into rig_. Throws with
+  /// the parameter's name, so that the nodelet is not loaded.
   template <class Section>
   Section loadParametersOrThrow() {
     Section parameters;
     const Failure failure = loadParameters(getPrivateNodeHandle(), section_, parameters, node_);
     if (failure) refuseToLoad(failure.detail);
+    const Failure rig_failure = loadRigParameters(getNodeHandle(), rig_);
+    if (rig_failure) refuseToLoad(rig_failure.detail);
     return parameters;
   }
 
@@ -102,6 +104,10 @@ class StageNodelet : public nodelet::Nodelet {
   /// Puts a failure that a person has to mend (wrong input, cameras swapped) in the log, as refuse() does.
   void warnOf(const Failure& failure);
 
+  /// What is unlikely about the calibrations, from now on: in the diagnostics as long as it holds, in the log
+  /// once.
+  void warnOfRig(const std::vector<std::string>& warnings);
+
   /// How everything behind rectify is paired: that has left out what was late.
   static RectifyParameters exactPairing() {
     RectifyParameters parameters;
@@ -129,6 +135,7 @@ class StageNodelet : public nodelet::Nodelet {
   void stop();
 
   NodeParameters node_;
+  RigParameters rig_;
   StageReport report_;
 
  private:

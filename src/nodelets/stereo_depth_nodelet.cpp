@@ -65,7 +65,7 @@ class StereoDepthNodelet : public StageNodelet {
     const double skew = secondsBetween(left->header.stamp, time.time_ref);
     double compute_ms = 0;
     StereoDepthResult result = attempt<StereoDepthResult>([&] {
-      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, parameters_,
+      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, rig_, parameters_,
                         [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
                           auto processed = stage.process(stamp, left_view, right_view, skew);
                           compute_ms = stage.timings().total();
@@ -75,6 +75,7 @@ class StereoDepthNodelet : public StageNodelet {
     result.stamp = stamp;
     result.skew = skew;
     warnOf(result.failure);
+    warnOfRig(stage_.warnings());
     report_.served(left->header.stamp, compute_ms, result.failure.message());
     publisher_.publish(boost::make_shared<StereoDepth>(toMessage(result, left->header, compute_ms)));
   }

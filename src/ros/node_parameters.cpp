@@ -80,6 +80,22 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
   return own_failure;
 }
 
+Failure loadRigParameters(const ros::NodeHandle& handle, RigParameters& parameters) {
+  constexpr const char* kSection = "rig";
+  XmlRpc::XmlRpcValue given;
+  if (!handle.getParam(kSection, given)) return {};
+  if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+    return {Reason::kInputInvalid, std::string(kSection) + ": expected a map of names and values"};
+  YAML::Node all(YAML::NodeType::Map);
+  for (auto& member : given) all[member.first] = toYaml(member.second);
+  SectionLoader loader(all, kSection);
+  RigParameters loaded = parameters;
+  loaded.visit(loader);
+  const Failure failure = loader.finish();
+  if (!failure) parameters = loaded;
+  return failure;
+}
+
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, RectifyParameters&,
                                 NodeParameters&);
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, StereoDepthParameters&,

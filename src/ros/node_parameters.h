@@ -72,4 +72,7 @@ template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);
 
+/// Reads what all nodelets of a namespace share: its parameters rig/*. Defaults and failure as above.
+Failure loadRigParameters(const ros::NodeHandle& handle, RigParameters& parameters);
+
 }  // namespace uav_landing

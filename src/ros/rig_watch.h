@@ -3,9 +3,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "camera_info.h"
 #include "image_input.h"
+#include "uav_landing/geometry/rig_check.h"
 #include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
@@ -39,11 +41,12 @@ class RigStage {
   auto run(const sensor_msgs::ImageConstPtr& left, const std::string& left_topic,
            const sensor_msgs::CameraInfo& left_info, const sensor_msgs::ImageConstPtr& right,
            const std::string& right_topic, const sensor_msgs::CameraInfo& right_info,
-           const Parameters& parameters, Work&& work)
+           const RigParameters& limits, const Parameters& parameters, Work&& work)
       -> Expected<decltype(work(std::declval<Stage&>(), cv::Mat(), cv::Mat()))> {
     const CameraCalibration left_camera = toCalibration(left_info), right_camera = toCalibration(right_info);
     // In this order: images before a stage is made for their size, which takes memory.
-    const auto rig = makeStereoRig(left_camera, right_camera);
+    warnings_ = ofCameraInfo(rigWarnings(left_camera, right_camera, limits));
+    const auto rig = makeStereoRig(left_camera, right_camera, limits);
     if (!rig) return tl::make_unexpected(ofCameraInfo(rig.error()));
     const auto left_view = toMono8(left, left_camera, left_topic);
     if (!left_view) return tl::make_unexpected(left_view.error());
@@ -53,6 +56,9 @@ class RigStage {
     if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
+
+  /// What is unlikely about the cameras of the last pair.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// The next pair is the first again.
   void reset() {
@@ -74,6 +80,7 @@ class RigStage {
 
   RigWatch cameras_;
   Failure failure_;
+  std::vector<std::string> warnings_;
   std::optional<Stage> stage_;
 };
 

@@ -28,6 +28,15 @@ void StageReport::dropped(uint64_t count) {
   dropped_ += count;
 }
 
+std::vector<std::string> StageReport::warned(const std::vector<std::string>& warnings) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> news;
+  for (const std::string& warning : warnings)
+    if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) news.push_back(warning);
+  warnings_ = warnings;
+  return news;
+}
+
 void StageReport::refused(const std::string& problem) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++now_.refused;
@@ -68,6 +77,9 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
   } else {
     status.summary(DiagnosticStatus::OK, "running");
   }
+
+  if (subscribed)
+    for (const std::string& warning : warnings_) status.mergeSummary(DiagnosticStatus::WARN, warning);
 
   const auto count = static_cast<double>(std::max<uint64_t>(1, now_.served));
   status.addf("rate", "%.1f Hz", static_cast<double>(now_.served) / seconds);

@@ -21,6 +21,8 @@ class StageReport {
   void served(const ros::Time& stamp, double compute_ms, const std::string& reason);
   /// A pair was left out because newer ones were waiting.
   void dropped(uint64_t count = 1);
+  /// All that a person should know from now on, as long as it holds. Returns what was not there before.
+  std::vector<std::string> warned(const std::vector<std::string>& warnings);
   /// An input could not be used; what is wrong with it.
   void refused(const std::string& problem);
 
@@ -38,6 +40,7 @@ class StageReport {
 
   std::mutex mutex_;
   Counts now_;
+  std::vector<std::string> warnings_;
   uint64_t served_ = 0, dropped_ = 0, refused_ = 0;  // in all
   std::vector<uint64_t> received_before_;
   ros::WallTime since_ = ros::WallTime::now();

@@ -52,6 +52,8 @@ class ArgumentsTest(unittest.TestCase):
             roslaunch.xmlloader.XmlLoader().load(str(LAUNCH / f"{file}.launch"), config, verbose=False)
             for nodelet in nodelets:
                 self.assertIn(f"/uav_landing/{nodelet}/", config.clear_params)
+            if file == "stereo":
+                self.assertIn("/uav_landing/rig/", config.clear_params)
 
     def test_values_reach_the_nodelets(self):
         given = parameters("approximate_sync:=true", "max_skew:=0.02", "base_frame:=base_link", "bag:=/tmp/a.bag")

@@ -58,11 +58,16 @@ class BadConfigurationsTest : public NodeletTest {
     for (const BadConfiguration& row : badConfigurations(heading)) {
       SCOPED_TRACE(row.given);
       const YAML::Node given = YAML::Load(row.given);
-      const std::string nodelet = given.begin()->first.Scalar();
-      ros::param::set("/uav_landing/" + nodelet, toXmlRpc(given.begin()->second));
-      expectExactRefusal(nodelet, row.message);
-      ros::param::del("/uav_landing/" + nodelet);
+      const std::string section = given.begin()->first.Scalar();
+      ros::param::set("/uav_landing/" + section, toXmlRpc(given.begin()->second));
+      for (const std::string& nodelet : readersOf(section)) expectExactRefusal(nodelet, row.message);
+      ros::param::del("/uav_landing/" + section);
     }
+  }
+
+  static std::vector<std::string> readersOf(const std::string& section) {
+    if (section != "rig") return {section};
+    return {"rectify", "stereo_depth", "approach_angle", "kalman_height", "overlay", "autopilot"};
   }
 
   /// Topics and services under /uav_landing that this process has.

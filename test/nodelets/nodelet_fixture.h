@@ -1,5 +1,6 @@
 #pragma once
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <nodelet/loader.h>
 #include <ros/ros.h>
@@ -80,6 +81,23 @@ class Listener {
   ros::Subscriber subscriber_;
 };
 
+/// What /diagnostics says of the nodelets under /uav_landing.
+class Diagnostics {
+ public:
+  bool said(const std::string& nodelet, int level, const std::string& message) const {
+    for (const auto& array : listener_.messages())
+      for (const auto& status : array->status)
+        if (status.name.find("uav_landing/" + nodelet + ": ") != std::string::npos && status.level == level &&
+            status.message == message)
+          return true;
+    return false;
+  }
+  void clear() { listener_.clear(); }
+
+ private:
+  Listener<diagnostic_msgs::DiagnosticArray> listener_{"/diagnostics"};
+};
+
 /// Loads nodelets into the test's own process, under /uav_landing.
 class NodeletTest : public testing::Test {
  protected:
@@ -111,6 +129,12 @@ class NodeletTest : public testing::Test {
   bool logged(const std::string& text) {
     return log_.waitFor(
         [&](const rosgraph_msgs::Log& line) { return line.msg.find(text) != std::string::npos; });
+  }
+  /// How often the log has exactly this line.
+  size_t timesLogged(const std::string& text) const {
+    size_t count = 0;
+    for (const auto& line : log_.messages()) count += line->msg == text;
+    return count;
   }
   std::string wholeLog() const {
     std::string text;

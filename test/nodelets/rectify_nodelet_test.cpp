@@ -170,6 +170,37 @@ TEST_F(RectifyNodeletTest, AnUncalibratedCameraIsRefusedAsInTheListOfTroubles) {
   EXPECT_TRUE(logged("camera_info: right K[0]: 0, expected a positive focal length in pixels")) << wholeLog();
 }
 
+TEST_F(RectifyNodeletTest, ACameraInfoOfAnotherPictureSizeIsRefusedInLogAndDiagnostics) {
+  setParameter("rectify", "diagnostic_period", 0.2);
+  const Diagnostics diagnostics;
+  start();
+  const auto wrong = scene_.info(true);
+  wrong->K[2] = 320;
+  const std::string message =
+      "camera_info: right K[2]: 320, expected 96 to 224 in a picture 320 px wide: is this the calibration of "
+      "another picture size? If the picture is cropped off the middle, raise rig/max_principal_point_offset "
+      "(/stereo/right/camera_info)";
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    t += 0.1;
+    cameras_.publishLeft(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(false));
+    cameras_.publishRight(PairPublisher::stampOf(t), scene_.blank(0), wrong);
+    return diagnostics.said("rectify", diagnostic_msgs::DiagnosticStatus::ERROR, message);
+  }));
+  EXPECT_TRUE(logged("/uav_landing/rectify: " + message)) << wholeLog();
+  EXPECT_TRUE(left_->messages().empty());
+  cameras_.publish(scene_, t + 0.1);
+  EXPECT_TRUE(left_->waitFor(1)) << "goes on with the next";
+}
+
+TEST_F(RectifyNodeletTest, APictureCroppedOffTheMiddleIsLetThroughByTheSharedParameter) {
+  setParameter("rig", "max_principal_point_offset", 0.6);
+  start();
+  scene_.calibrated_scale = 2;
+  cameras_.publish(scene_, 0);
+  EXPECT_TRUE(left_->waitFor(1)) << wholeLog();
+}
+
 TEST_F(RectifyNodeletTest, ACameraInfoThatChangesIsFollowed) {
   start();
   cameras_.publish(scene_, 0);

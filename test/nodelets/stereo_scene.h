@@ -19,6 +19,7 @@ struct StereoScene {
   int width = 320, height = 240;
   double f = 260, baseline = 0.3;
   double pitch = -15 * M_PI / 180;
+  double calibrated_scale = 1;  // by which the picture that K is of is larger
   double start_height = 2.0, speed = 2.0, approach_angle = 6 * M_PI / 180;
 
   double heightAt(double t) const { return start_height - speed * std::sin(approach_angle) * t; }
@@ -58,7 +59,8 @@ struct StereoScene {
     info->height = static_cast<uint32_t>(height);
     info->distortion_model = "plumb_bob";
     info->D = {0, 0, 0, 0, 0};
-    info->K = {f, 0, 0.5 * width, 0, f, 0.5 * height, 0, 0, 1};
+    const double s = calibrated_scale;
+    info->K = {s * f, 0, s * 0.5 * width, 0, s * f, s * 0.5 * height, 0, 0, 1};
     info->R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     info->P = {f, 0, 0.5 * width, right ? -f * baseline : 0, 0, f, 0.5 * height, 0, 0, 0, 1, 0};
     return info;
