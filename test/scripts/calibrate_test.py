@@ -1,5 +1,6 @@
 import json
 import math
+import re
 import shutil
 import sys
 import tarfile
@@ -345,8 +346,13 @@ class ChecksTest(unittest.TestCase):
                 warned = [line for line in report.lines if line.startswith("warning")]
                 self.assertEqual(len(warned), questioned)
                 if questioned:
-                    self.assertIn(f"a baseline of {baseline:g} m is unlikely: is --square", warned[0])
+                    self.assertIn(f"baseline {baseline:g} m: is --square the side of one square in metres?", warned[0])
         self.assertEqual(report.faults, [])
+
+    def test_a_likely_baseline_is_what_it_is_for_the_chain(self):
+        header = (SOURCE_DIR / "include/uav_landing/geometry/rig_check.h").read_text()
+        limits = re.search(r"kShortestLikelyBaseline = ([\d.]+), kLongestLikelyBaseline = ([\d.]+);", header)
+        self.assertEqual(tuple(float(limit) for limit in limits.groups()), checks.LIKELY_BASELINE)
 
     def test_coverage_names_the_empty_parts(self):
         corners = np.array([[u, v] for u in range(5, 320, 10) for v in range(5, 160, 10)], float)

@@ -5,7 +5,7 @@ import numpy as np
 GOOD_PX, USABLE_PX = 0.25, 1.0  # rms
 GOOD_FOCAL_LENGTH, USABLE_FOCAL_LENGTH = 0.003, 0.02  # one sigma, share of it
 GOOD_BASELINE, USABLE_BASELINE = 0.005, 0.02  # share of the measured one
-LIKELY_BASELINE = (0.01, 10.0)  # m, between the cameras of an aircraft
+LIKELY_BASELINE = (0.01, 10.0)  # m, between the cameras of an aircraft; the chain has the same (geometry/rig_check.h)
 USABLE_EMPTY_PARTS = 4  # of nine
 # Default of kalman_height's max_height_error, which is three sigma: heights are valid up to this standard deviation.
 VALID_SHARE = 0.05 / 3
@@ -100,7 +100,7 @@ def make_report(calibrator, views, measured_baseline=None):
 
 def add_baseline(report, baseline, measured):
     if not LIKELY_BASELINE[0] <= baseline <= LIKELY_BASELINE[1]:
-        report.add("warning", f"a baseline of {baseline:.4g} m is unlikely: is --square the side of one square in metres?")
+        report.add("warning", f"baseline {baseline:.4g} m: is --square the side of one square in metres?")
     if measured is None:
         report.add("baseline", f"{baseline:.4f} m. Compare: a wrong --square is wrong in every height by as many per cent")
         return
