@@ -62,7 +62,7 @@ class RigCheckNodeletTest : public NodeletTest {
   /// Every nodelet behind rectify says so, and no height is valid.
   void expectRefused(const std::string& message) {
     const std::string reason = "input_invalid: " + message;
-    EXPECT_TRUE(feedUntil([&] {
+    ASSERT_TRUE(feedUntil([&] {
       return hasReason(depths_, reason) && hasReason(angles_, reason) && hasReason(estimates_, reason) &&
              diagnostics_.said("stereo_depth", DiagnosticStatus::ERROR, reason) &&
              diagnostics_.said("approach_angle", DiagnosticStatus::ERROR, reason) &&
@@ -107,7 +107,7 @@ TEST_F(RigCheckNodeletTest, APictureCroppedOffTheMiddleIsLetThroughByTheSharedPa
   setParameter("rig", "max_principal_point_offset", 1.1);
   startBehindRectify();
   scene_.calibrated_scale = 2;
-  EXPECT_TRUE(feedUntil([&] {
+  ASSERT_TRUE(feedUntil([&] {
     return hasReason(depths_, "") && hasReason(angles_, "") && !pictures_.messages().empty() &&
            estimates_.waitFor([](const auto& estimate) { return estimate.height_valid; },
                               std::chrono::milliseconds(1));
@@ -126,7 +126,7 @@ TEST_F(RigCheckNodeletTest, AnUnlikelyCalibrationIsWarnedAboutOnceAndInDiagnosti
       right =
           "camera_info: right K[2]: 200, 12.5 % of the picture's width off its middle: is "
           "this the calibration of another picture size?";
-  EXPECT_TRUE(feedUntil([&] {
+  ASSERT_TRUE(feedUntil([&] {
     for (const char* nodelet : nodelets)
       if (!diagnostics_.said(nodelet, DiagnosticStatus::WARN, left + "; " + right)) return false;
     return true;
@@ -142,7 +142,7 @@ TEST_F(RigCheckNodeletTest, AnUnlikelyCalibrationIsWarnedAboutOnceAndInDiagnosti
 
   scene_.calibrated_scale = 1;
   diagnostics_.clear();
-  EXPECT_TRUE(feedUntil([&] {
+  ASSERT_TRUE(feedUntil([&] {
     for (const char* nodelet : nodelets)
       if (!diagnostics_.said(nodelet, DiagnosticStatus::OK, "running")) return false;
     return true;
@@ -153,7 +153,7 @@ TEST_F(RigCheckNodeletTest, AnUnlikelyBaselineIsWarnedAboutByEveryNodelet) {
   startWholeChain();
   scene_.baseline = 15;
   const std::string warning = "camera_info: baseline 15 m: is right P[3] in metres (-fx times the baseline)?";
-  EXPECT_TRUE(feedUntil([&] {
+  ASSERT_TRUE(feedUntil([&] {
     for (const std::string nodelet :
          {"rectify", "stereo_depth", "approach_angle", "kalman_height", "overlay"})
       if (timesLogged("/uav_landing/" + nodelet + ": " + warning) != 1) return false;
