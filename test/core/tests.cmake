@@ -124,6 +124,7 @@ uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.c
   SOURCES test/support/ground_renderer.cpp)
 
 # integrity
+uav_landing_add_gtest(clock_watch_test test/core/integrity/clock_watch_test.cpp)
 uav_landing_add_gtest(consistency_tests_test test/core/integrity/consistency_tests_test.cpp)
 uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
 uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
@@ -144,6 +145,7 @@ uav_landing_add_gtest(approach_angle_stage_test test/core/stages/approach_angle_
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(kalman_height_angle_test test/core/stages/kalman_height_angle_test.cpp)
 uav_landing_add_gtest(kalman_height_attitude_test test/core/stages/kalman_height_attitude_test.cpp)
+uav_landing_add_gtest(kalman_height_clock_test test/core/stages/kalman_height_clock_test.cpp)
 uav_landing_add_gtest(kalman_height_motion_normal_test
   test/core/stages/kalman_height_motion_normal_test.cpp)
 uav_landing_add_gtest(kalman_height_ground_test test/core/stages/kalman_height_ground_test.cpp)

@@ -6,8 +6,8 @@ namespace uav_landing {
 
 /// What the stamp of a pair says, or of one camera's image, against those before. One that came a little
 /// late, after the one behind it, is of no use any more, and what is known stays. Larger steps back are those
-/// of a clock that was set back (a bag that loops, a restarted camera), and so are late ones only, many in a
-/// row: then everything starts anew.
+/// of a clock that was set back (a bag that loops, a restarted camera). So are late ones alone, many in a
+/// row, or three in a row that come in order: then everything starts anew.
 class StampOrder {
  public:
   enum class Arrival { kNext, kRepeated, kLate, kBackwards, kUnstamped };
@@ -24,9 +24,13 @@ class StampOrder {
   void reset();
 
  private:
-  int64_t max_late_;    // ns
-  int64_t newest_ = 0;  // ns; 0: none yet
-  int late_ = 0;        // in a row
+  void startAt(int64_t stamp);
+
+  int64_t max_late_;       // ns
+  int64_t newest_ = 0;     // ns; 0: none yet
+  int late_ = 0;           // in a row
+  int64_t last_late_ = 0;  // ns, of those
+  int in_order_ = 0;       // late ones in a row, each after the one before
 };
 
 }  // namespace uav_landing

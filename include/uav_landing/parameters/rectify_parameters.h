@@ -20,7 +20,8 @@ struct RectifyParameters {
     v.number(
         "max_late", max_late, 0.0, 10.0, "s",
         "an image that comes after newer ones is left out when its stamp is behind theirs by up to this; "
-        "by more the clock was set back, and everything starts anew; 0: at every step back");
+        "by more, or three times in a row and in order, the clock was set back, and everything starts anew; "
+        "0: at every step back");
   }
 };
 

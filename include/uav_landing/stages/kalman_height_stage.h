@@ -9,6 +9,7 @@
 #include "uav_landing/height/attitude_filter.h"
 #include "uav_landing/height/height_filter.h"
 #include "uav_landing/height/width_height.h"
+#include "uav_landing/integrity/clock_watch.h"
 #include "uav_landing/integrity/consistency_tests.h"
 #include "uav_landing/integrity/ground_memory.h"
 #include "uav_landing/integrity/height_memory.h"
@@ -40,7 +41,7 @@ class KalmanHeightStage {
   KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters);
 
   /// Results of the same pair. A stamp that does not increase, or that jumps ahead by more than
-  /// reset_timeout, resets the filter (reason time_jump).
+  /// reset_timeout, resets the filter (reason time_jump), and so does a clock that was set in between.
   LandingResult process(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
   /// What to say when no pair came for max_age: status lost, nothing valid. stamp: of now, s.
   LandingResult timeout(double stamp);
@@ -113,8 +114,8 @@ class KalmanHeightStage {
   void testRegions(const Reconstruction& reconstruction);
   /// The height known last or, without one, that of the pair.
   double heightSoFar(const Reconstruction& reconstruction) const;
-  std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step,
-                                       const Reconstruction& reconstruction) const;
+  /// height: of the pair, m.
+  static std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step, double height);
   /// The way since the pair before against the speed on those before that.
   void testStandstill(double T, const ApproachAngleResult::Motion& step,
                       const Reconstruction& reconstruction);
@@ -200,6 +201,10 @@ class KalmanHeightStage {
 
   LandingResult withoutStamp(LandingResult result) const;
   Failure followTime(double stamp);
+  /// Why everything starts anew, if the clock behind the stamps was set since the pair before: the camera's
+  /// way tells another time, and so does the height.
+  Failure followClock(const StereoDepthResult& stereo, const ApproachAngleResult::Motion& step,
+                      const Reconstruction& reconstruction);
   void filterHeight(double stamp, const Reconstruction& reconstruction,
                     const ApproachAngleResult::Motion& step, LandingResult& result);
   void updateHeight(double stamp, const Reconstruction& reconstruction,
@@ -229,6 +234,7 @@ class KalmanHeightStage {
   double window_ = 0;      // of the angles of late, s
   double path_doubt_ = 0;  // angle of the last steps that contradicted less the one expected, rad
   StampScatter stamps_;
+  ClockWatch clock_;
   Recovery recovery_;
   NormalDoubt doubt_, motion_doubt_;     // by the vanishing point, and by the images' motion
   int headings_held_ = 0;                // pairs in a row

@@ -5,8 +5,9 @@
 namespace uav_landing {
 namespace {
 
-// Late stamps in a row that are those of a clock set back by little: half a second of 20 Hz.
-constexpr int kMostLate = 10;
+// Late stamps in a row that are those of a clock set back by little: half a second of 20 Hz, or a few that
+// come in order, as those of a clock do.
+constexpr int kMostLate = 10, kMostInOrder = 3;
 
 }  // namespace
 
@@ -16,19 +17,22 @@ StampOrder::Arrival StampOrder::follow(int64_t stamp) {
   if (stamp == 0) return Arrival::kUnstamped;
   if (newest_ != 0 && stamp == newest_) return Arrival::kRepeated;
   if (newest_ != 0 && stamp < newest_) {
-    if (newest_ - stamp <= max_late_ && ++late_ < kMostLate) return Arrival::kLate;
-    newest_ = stamp;
-    late_ = 0;
+    in_order_ = late_ == 0 || stamp > last_late_ ? in_order_ + 1 : 1;
+    last_late_ = stamp;
+    ++late_;
+    if (newest_ - stamp <= max_late_ && late_ < kMostLate && in_order_ < kMostInOrder) return Arrival::kLate;
+    startAt(stamp);
     return Arrival::kBackwards;
   }
-  newest_ = stamp;
-  late_ = 0;
+  startAt(stamp);
   return Arrival::kNext;
 }
 
-void StampOrder::reset() {
-  newest_ = 0;
-  late_ = 0;
+void StampOrder::startAt(int64_t stamp) {
+  newest_ = stamp;
+  late_ = in_order_ = 0;
 }
+
+void StampOrder::reset() { startAt(0); }
 
 }  // namespace uav_landing

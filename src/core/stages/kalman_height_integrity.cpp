@@ -185,7 +185,7 @@ std::string KalmanHeightStage::problemOfPair() {
 
 void KalmanHeightStage::testStandstill(double T, const ApproachAngleResult::Motion& step,
                                        const Reconstruction& reconstruction) {
-  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  const std::optional<CameraStep> way = cameraStep(step, heightSoFar(reconstruction));
   if (!way) return speed_.skip(std::max(T, 0.0));
   const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(*way);
   if (shortfall) tests_.addOneSided(Consistency::kStandstill, shortfall->difference, shortfall->variance);

@@ -43,8 +43,14 @@ LandingResult KalmanHeightStage::process(const StereoDepthResult& given_stereo,
   result.stamp = stereo.stamp;
   if (!std::isfinite(stereo.stamp)) return withoutStamp(result);
   const double T = last_stamp_ ? stereo.stamp - *last_stamp_ : 0;
-  const Failure jump = result.failure = followTime(stereo.stamp);
+  Failure jump = followTime(stereo.stamp);
   Reconstruction reconstruction = reconstruct(stereo, approach);
+  if (!jump) {
+    jump = followClock(stereo, approach.step, reconstruction);
+    // What was learned of the rig goes with the rest.
+    if (jump) reconstruction = reconstruct(stereo, approach);
+  }
+  result.failure = jump;
   {
     const ScopedTimer timer(timings_, "kalman_filter");
     if (!stereo.left_repeated) {  // else the next motion is from the pair before
@@ -119,6 +125,7 @@ void KalmanHeightStage::reset() {
   velocity_.reset();
   window_ = 0;
   stamps_.reset();
+  clock_ = ClockWatch();
   recovery_.reset();
   doubt_.reset();
   motion_doubt_.reset();
@@ -171,6 +178,37 @@ Failure KalmanHeightStage::followTime(double stamp) {
     separation_.predict(T);
   }
   return {};
+}
+
+Failure KalmanHeightStage::followClock(const StereoDepthResult& stereo,
+                                       const ApproachAngleResult::Motion& step,
+                                       const Reconstruction& reconstruction) {
+  if (stereo.left_repeated) return {};  // the next step has the time of both
+  // By the pair's own height: the one expected is that of the wrong time.
+  const std::optional<CameraStep> way =
+      reconstruction.failure ? std::nullopt : cameraStep(step, reconstruction.height);
+  if (!way) {
+    clock_.skip();
+    return {};
+  }
+  const std::optional<double> by_way = clock_.follow(*way);
+  if (!by_way || !filter_.initialised()) return {};
+  // A way can be wrong, a period of a pattern too long for example. The height has to say the same.
+  constexpr double kTells = 2;  // sigma by which the height agrees better
+  const double off = reconstruction.height - filter_.state()[0];
+  const double off_by_way = off - filter_.state()[1] * (*by_way - step.duration);
+  const double gate = parameters_.gate * parameters_.gate;
+  const double sum = reconstruction.variance + filter_.covariance()(0, 0);
+  if (off * off - off_by_way * off_by_way < kTells * kTells * reconstruction.variance) return {};
+  if (off_by_way * off_by_way > gate * sum) return {};
+  // The next step of the clock is to be noticed as well.
+  const ClockWatch clock = clock_;
+  reset();
+  clock_ = clock;
+  last_stamp_ = stereo.stamp;
+  return {Reason::kTimeJump,
+          text("the stamp went ahead by ", rounded(step.duration), " s, the camera moved as far as in ",
+               rounded(*by_way), " s: the clock was set")};
 }
 
 void KalmanHeightStage::start(double stamp, const Reconstruction& reconstruction) {
@@ -266,9 +304,8 @@ double KalmanHeightStage::heightSoFar(const Reconstruction& reconstruction) cons
 // Whether the motion is certain enough for an angle does not matter here: that of a picture that stands still
 // is not.
 std::optional<CameraStep> KalmanHeightStage::cameraStep(const ApproachAngleResult::Motion& step,
-                                                        const Reconstruction& reconstruction) const {
+                                                        double height) {
   const Eigen::Vector3d& t = step.translation_over_height;
-  const double height = heightSoFar(reconstruction);
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0)) return std::nullopt;
   // Of any direction: the length of a vector that is nothing but noise has none.
@@ -277,7 +314,7 @@ std::optional<CameraStep> KalmanHeightStage::cameraStep(const ApproachAngleResul
 
 void KalmanHeightStage::followStamps(const ApproachAngleResult::Motion& step,
                                      Reconstruction& reconstruction) {
-  const std::optional<CameraStep> way = cameraStep(step, reconstruction);
+  const std::optional<CameraStep> way = cameraStep(step, heightSoFar(reconstruction));
   way ? stamps_.follow(*way) : stamps_.skip();
   if (!filter_.initialised() || !(step.duration > 0)) return;
   // A duration has the errors of two stamps in it.

@@ -44,9 +44,21 @@ TEST(StampOrder, WithoutALimitEveryStepBackIsThatOfAClock) {
 TEST(StampOrder, LateOnesAloneAreThoseOfAClockThatWasSetBack) {
   StampOrder order(0.3);
   order.follow(10000 * kMs);
-  for (int i = 0; i < 9; ++i) EXPECT_EQ(order.follow((9800 + 20 * (i % 5)) * kMs), Arrival::kLate) << i;
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(order.follow((9880 - 20 * (i % 5)) * kMs), Arrival::kLate) << i;
   EXPECT_EQ(order.follow(9880 * kMs), Arrival::kBackwards);
   EXPECT_EQ(order.follow(9900 * kMs), Arrival::kNext);
+}
+
+TEST(StampOrder, ThreeLateOnesInOrderAreThoseOfAClockThatWasSetBack) {
+  StampOrder order(0.3);
+  order.follow(10000 * kMs);
+  EXPECT_EQ(order.follow(9850 * kMs), Arrival::kLate);
+  EXPECT_EQ(order.follow(9900 * kMs), Arrival::kLate);
+  EXPECT_EQ(order.follow(9950 * kMs), Arrival::kBackwards);
+  EXPECT_EQ(order.follow(10000 * kMs), Arrival::kNext);
+  EXPECT_EQ(order.follow(9990 * kMs), Arrival::kLate) << "the count has begun anew";
+  EXPECT_EQ(order.follow(9970 * kMs), Arrival::kLate);
+  EXPECT_EQ(order.follow(9980 * kMs), Arrival::kLate) << "two of three are in order";
 }
 
 TEST(StampOrder, LateOnesBetweenOthersAreNoClock) {

@@ -1,0 +1,62 @@
+#include "uav_landing/integrity/clock_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/median.h"
+
+namespace uav_landing {
+namespace {
+
+// Regular steps that have to come before. Period and speed are their medians.
+constexpr size_t kSteps = 5;
+// Share by which the way of a regular step may differ from the one of its time: gusts and brakes.
+constexpr double kRegular = 0.15;
+// The same of a way that contradicts the stamps: the height that it is in units of is not exact either.
+constexpr double kContradicts = 0.25;
+// Frame periods that the way may be of: those of stamps that were left out as late (StampOrder), and one.
+constexpr int kMostPeriods = 4;
+// Share of a period within which the way has to be one of whole periods.
+constexpr double kWhole = 0.25;
+// Times that differ by less are those of stamps that jitter (StampScatter), s.
+constexpr double kLeastStep = 0.03;
+// 1 sigma of a way over itself: one that is known worse tells no time.
+constexpr double kLargestRelative = 0.08;
+
+}  // namespace
+
+std::optional<double> ClockWatch::follow(const CameraStep& step) {
+  const auto [duration, way, variance] = step;
+  if (!(duration > 0 && way > 0 && variance >= 0) || std::sqrt(variance) > kLargestRelative * way) {
+    skip();
+    return std::nullopt;
+  }
+  const bool enough = regular_.size() == kSteps;
+  double period = duration, speed = way / duration;
+  if (!regular_.empty()) {
+    std::vector<double> durations, speeds;
+    for (const Step& before : regular_) {
+      durations.push_back(before.duration);
+      speeds.push_back(before.speed);
+    }
+    period = medianOf(durations);
+    speed = medianOf(speeds);
+  }
+  const double by_way = way / speed;
+  const double off = std::abs(by_way - duration);
+  if (off <= kRegular * duration) {
+    regular_.push_back({duration, way / duration});
+    if (regular_.size() > kSteps) regular_.pop_front();
+    return std::nullopt;
+  }
+  const double periods = std::round(by_way / period);
+  const bool whole = periods >= 1 && periods <= kMostPeriods && std::abs(by_way / period - periods) <= kWhole;
+  if (enough && whole && off > std::max(kLeastStep, kContradicts * duration)) return periods * period;
+  regular_.assign(1, {duration, way / duration});
+  return std::nullopt;
+}
+
+void ClockWatch::skip() { regular_.clear(); }
+
+}  // namespace uav_landing
