@@ -52,6 +52,7 @@ uav_landing_add_gtest(camera_twist_test test/core/height/camera_twist_test.cpp)
 uav_landing_add_gtest(height_filter_test test/core/height/height_filter_test.cpp)
 uav_landing_add_gtest(reconstruction_test test/core/height/reconstruction_test.cpp)
 uav_landing_add_gtest(runway_height_test test/core/height/runway_height_test.cpp)
+uav_landing_add_gtest(vertical_speed_test test/core/height/vertical_speed_test.cpp)
 uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
@@ -152,6 +153,7 @@ uav_landing_add_gtest(kalman_height_ground_test test/core/stages/kalman_height_g
 uav_landing_add_gtest(kalman_height_integrity_test test/core/stages/kalman_height_integrity_test.cpp)
 uav_landing_add_gtest(kalman_height_reconstruction_test
   test/core/stages/kalman_height_reconstruction_test.cpp)
+uav_landing_add_gtest(kalman_height_reset_test test/core/stages/kalman_height_reset_test.cpp)
 uav_landing_add_gtest(kalman_height_stage_test test/core/stages/kalman_height_stage_test.cpp)
 uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)

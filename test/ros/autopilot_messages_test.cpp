@@ -207,6 +207,33 @@ TEST(AutopilotVelocity, IsAsUncertainAcrossAsTheAttitudeTurnsIt) {
   EXPECT_NEAR(velocity->twist.covariance[2], 20 * 2e-6, 1e-9) << "nose down by a pitch that is wrong";
 }
 
+TEST(AutopilotVelocity, HasItsCovarianceAlongEastAndNorth) {
+  AutopilotParameters parameters;
+  parameters.runway_heading_deg = 180;  // forward is south, left is east
+  const auto south = autopilotVelocity(someMovement(), someWhere(), parameters);
+  ASSERT_TRUE(south);
+  // To the east what is across, by the yaw over 20 m/s and by the roll over 1 m/s; to the north what is
+  // along.
+  EXPECT_NEAR(south->twist.covariance[0], 0.01 + 400 * 3e-6 + 1e-6, 1e-9);
+  EXPECT_NEAR(south->twist.covariance[7], 0.04 + 2e-6, 1e-9);
+  EXPECT_NEAR(south->twist.covariance[14], 0.02 + 400 * 2e-6, 1e-9);
+  EXPECT_NEAR(south->twist.covariance[6 * 1 + 2], -20 * 2e-6, 1e-9) << "forward is -y";
+  // The rotations' own, and what the attitude makes of 0.1 rad/s about the up axis: about east the pitch's
+  // was the roll's.
+  EXPECT_NEAR(south->twist.covariance[21], 2e-6 + 0.01 * 1e-6, 1e-12);
+  EXPECT_NEAR(south->twist.covariance[28], 1e-6 + 0.01 * 2e-6, 1e-12);
+  EXPECT_NEAR(south->twist.covariance[35], 3e-6, 1e-12);
+  // Half way between: 0.04 along and 0.01 across are alike to both, and go together.
+  parameters.runway_heading_deg = 45;
+  auto certain = someWhere();
+  for (int i = 3; i < 6; ++i) certain.pose.covariance[7 * i] = 1e-12;
+  const auto north_east = autopilotVelocity(someMovement(), certain, parameters);
+  ASSERT_TRUE(north_east);
+  EXPECT_NEAR(north_east->twist.covariance[0], 0.025, 1e-8);
+  EXPECT_NEAR(north_east->twist.covariance[7], 0.025, 1e-8);
+  EXPECT_NEAR(north_east->twist.covariance[1], 0.015, 1e-8);
+}
+
 TEST(AutopilotVelocity, IsSilentRatherThanWrong) {
   AutopilotParameters parameters;
   EXPECT_FALSE(autopilotVelocity(someMovement(), someWhere(), parameters)) << "of no heading";

@@ -49,6 +49,8 @@ class ConsistencyTests {
   bool failed(Consistency test) const { return tests_[static_cast<int>(test)].failed(); }
   /// Of this pair, with the failures in a row of the pairs before.
   const TestResult& result(Consistency test) const { return tests_[static_cast<int>(test)]; }
+  /// Forgets the failures of the pairs before.
+  void reset() { *this = ConsistencyTests(false_alarm_rate_); }
   /// Counts failures in a row. After the last test of the pair.
   std::vector<TestResult> finish();
 

@@ -118,6 +118,7 @@ void KalmanHeightStage::reset() {
   width_variance_ = rig_variance_ = 0;
   last_bend_.reset();
   rig_change_.reset();
+  tests_.reset();
   pairs_failed_ = pairs_passed_ = 0;
   if (filter_.initialised()) loseTrack();
   memory_.reset();

@@ -105,6 +105,15 @@ TEST(SpeedMemory, NothingIsSaidWhereItMayHaveStoppedUnseen) {
   EXPECT_TRUE(std::isnan(fly(memory, 0.1, 0))) << "1 m/s within 0.4 s";
 }
 
+TEST(SpeedMemory, AGapBeforeKnownStepsExcusesNoStandstillAfterThem) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.1, 1);
+  // 10 m/s may be lost in 3.4 s, but three steps have shown since that it was not.
+  memory.skip(5);
+  for (int i = 0; i < 3; ++i) fly(memory, 0.1, 1);
+  EXPECT_GT(fly(memory, 0.1, 0), 4.4);
+}
+
 StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// A pair of a flight of 20 m/s at 10 m, or of one whose picture stands still.

@@ -83,6 +83,9 @@ TEST_F(ImuBufferTest, ADelayShiftsTheStamps) {
   const AttitudePrior prior = filled(100, 2, 0.03).at(1.0, 0.9, mounting_);
   expectNormal(prior, 1.0, 1e-4);
   expectRotation(prior, 0.9, 1.0, 1e-4);
+  // The newest message bears the stamp 2.03 and is of 2.0.
+  EXPECT_TRUE(filled(100, 2, 0.03).covers(2.0));
+  EXPECT_FALSE(filled(100, 2, 0.03).covers(2.02));
   parameters.imu_delay = 0;
   const AttitudePrior late = filled(100, 2, 0.03).at(1.0, 0.9, mounting_);
   EXPECT_GT((late.normal - poseAt(1.0).down()).norm(), 3e-3) << "20 deg/s and more for 0.03 s";

@@ -169,6 +169,44 @@ TEST(PathAngleFilter, AfterAGapClaimsWhatThePathMayHaveDoneSince) {
   EXPECT_LT(error, 2 * std::sqrt(estimate.variance));
 }
 
+TEST(PathAngleFilter, ClaimsATrueVarianceAfterAGap) {
+  // Paths whose rate is one of the filter's own models: 3 deg/s, correlated over a second. A step's angle is
+  // the mean over it.
+  constexpr double kFine = 0.005, kUsual = 0.05, kGap = 0.4, kNoise = 0.02 * kDegree;
+  constexpr int kRuns = 1500;
+  double ratio = 0;
+  for (unsigned seed = 0; seed < kRuns; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> path{5 * kDegree};
+    double rate = 3 * kDegree * normal(random);
+    for (int i = 0; i * kFine < 2 + kGap; ++i) {
+      rate = rate * std::exp(-kFine) + 3 * kDegree * std::sqrt(1 - std::exp(-2 * kFine)) * normal(random);
+      path.push_back(path.back() + rate * kFine);
+    }
+    const auto mean = [&](double from, double to) {
+      double sum = 0;
+      int count = 0;
+      for (int i = static_cast<int>(std::lround(from / kFine)); i <= std::lround(to / kFine); ++i, ++count)
+        sum += path[i];
+      return sum / count;
+    };
+    PathAngleFilter filter(0.5);
+    PathAngleFilter::Estimate estimate;
+    const auto step = [&](double until, double duration) {
+      const PathAngleFilter::Measurement measured{mean(until - duration, until) + kNoise * normal(random),
+                                                  kNoise * kNoise, duration};
+      estimate = filter.update(until, measured, measured);
+    };
+    for (int k = 1; k <= 40; ++k) step(k * kUsual, kUsual);
+    step(2 + kGap, kGap);
+    const double truth = mean(2 + kGap - kUsual, 2 + kGap);
+    ratio += std::pow(estimate.angle - truth, 2) / estimate.variance / kRuns;
+  }
+  EXPECT_GT(ratio, 0.6);
+  EXPECT_LT(ratio, 1.6);
+}
+
 TEST(PathAngleFilter, GivesTheFirstStepAsItIs) {
   PathAngleFilter filter(0.5);
   const PathAngleFilter::Measurement step{0.07, 1e-6, 0.05};

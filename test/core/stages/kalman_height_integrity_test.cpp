@@ -120,6 +120,26 @@ TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
   EXPECT_GT(result.height_protection_level, std::abs(result.height - 20));
 }
 
+TEST(KalmanHeightIntegrity, WhatAllPointsHaveInCommonIsInTheHeightsWithoutARegion) {
+  // Of a rig that is not watched: what its rows may be wrong by is the same without any region.
+  KalmanHeightParameters parameters;
+  parameters.rig_watch = false;
+  const auto varianceOfRegions = [&](double row_stddev) {
+    KalmanHeightStage stage(test::usualRig(), parameters);
+    LandingResult result;
+    for (int i = 0; i < 5; ++i) {
+      StereoDepthResult stereo = stereoAt(1 + 0.05 * i, 10);
+      stereo.row_covariance(1, 1) = row_stddev * row_stddev;
+      stereo.plane.covariance += stereo.row_covariance;
+      result = stage.process(stereo, levelFlight(1 + 0.05 * i, 10));
+    }
+    return result.tests[static_cast<int>(Consistency::kImageRegions)].variance;
+  };
+  // dh = -h^2 n.dg, and g is wrong along y.
+  const double by_rows = std::pow(10 * 10 * std::cos(4 * kDegree) * 1e-3, 2);
+  EXPECT_NEAR(varianceOfRegions(1e-3) - varianceOfRegions(0), by_rows, 0.01 * by_rows);
+}
+
 TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThatSaysSo) {
   KalmanHeightParameters parameters;
   const auto fly = [&](double scatter) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "support/degree.h"
 #include "support/kalman_height_inputs.h"
@@ -101,6 +102,38 @@ TEST(KalmanHeightReconstruction, IsHardlyLessCertainByASinglePairThatLeavesTheBe
   EXPECT_GT(before.height_variance, 0.01 * 0.01);
   EXPECT_LT(result.height_variance, 0.25 * result.raw_height_variance);
   EXPECT_TRUE(result.height_valid);
+}
+
+TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
+  // A chart's width is wrong by 0.2 % (1 sigma), in all pairs of a flight alike. Each run is another runway.
+  constexpr double kHeight = 20, kWidth = 40;
+  constexpr int kRuns = 300, kPairs = 40;
+  KalmanHeightParameters parameters;
+  parameters.known_runway_width = kWidth;
+  parameters.height_model_error = 0;
+  parameters.acceleration_stddev = 0.05;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  double ratio = 0, share_of_width = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    KalmanHeightStage stage(usualRig(), parameters);
+    const double width = kWidth * (1 + 0.002 * normal(random));
+    LandingResult result;
+    for (int i = 0; i < kPairs; ++i) {
+      ApproachAngleResult approach = angleAt(i * kStep);
+      approach.runway.failure = {};
+      approach.runway.width = width / kHeight + 1e-4 * normal(random);
+      approach.runway.width_variance = 1e-8;
+      result =
+          stage.process(stereoAt(i * kStep, kHeight + 0.04 * normal(random), -0.1, 0.05, 0.04), approach);
+    }
+    ratio += std::pow(result.height - kHeight, 2) / result.height_variance / kRuns;
+    // Stereo has 0.04 m, the width 0.04 m: half of the width's error is in each pair.
+    share_of_width += std::pow(0.5 * 0.002 * kHeight, 2) / result.height_variance / kRuns;
+  }
+  EXPECT_GT(share_of_width, 0.5) << "the variance is of something else";
+  EXPECT_GT(ratio, 0.75);
+  EXPECT_LT(ratio, 1.25);
 }
 
 TEST(KalmanHeightReconstruction, AveragesThePointsOnRequest) {
