@@ -18,15 +18,16 @@ namespace uav_landing {
 /// Parameters: ApproachAngleParameters and the common ones of NodeParameters.
 /// Subscribes {left,right}/{image_rect, camera_info} of rectify and, unless use_stereo is false,
 /// stereo_depth, while somebody wants the output. Subscribes the topic of parameter imu (sensor_msgs/Imu) and
-/// /tf_static (its mounting) unless use_imu is false; while somebody publishes it, a pair waits up to
-/// imu_wait for the message after it. Publishes approach_angle (ApproachAngle): one message per pair, also
-/// without an angle.
+/// /tf_static (its mounting; /tf, to say what is missing there) unless use_imu is false; while somebody
+/// publishes it, a pair waits up to imu_wait for the message after it. Publishes approach_angle
+/// (ApproachAngle): one message per pair, also without an angle.
 class ApproachAngleNodelet : public StageNodelet {
  public:
   ApproachAngleNodelet() : StageNodelet("approach_angle") {}
   ~ApproachAngleNodelet() override {
     stop();
     tf_subscriber_.shutdown();
+    tf_static_subscriber_.shutdown();
   }
 
  private:
@@ -64,9 +65,12 @@ class ApproachAngleNodelet : public StageNodelet {
     }
     if (!parameters_.use_imu || node_.imu.empty()) return;
     imu_ = std::make_unique<ImuInput>(parameters_);
-    tf_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
+    tf_static_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
         "/tf_static", 100,
         [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addTransforms(*m); }); });
+    tf_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
+        "/tf", 100,
+        [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addMovingTransforms(*m); }); });
     // Recorded data is to be used completely.
     wait_ = ros::WallDuration(node_.drop_frames ? parameters_.imu_wait : kPatience);
     wait_timer_ = getNodeHandle().createWallTimer(
@@ -202,7 +206,7 @@ class ApproachAngleNodelet : public StageNodelet {
   RigStage<ApproachAngleStage, ApproachAngleParameters> stage_;
 
   std::unique_ptr<ImuInput> imu_;  // null: not to be used
-  ros::Subscriber imu_subscriber_, tf_subscriber_;
+  ros::Subscriber imu_subscriber_, tf_subscriber_, tf_static_subscriber_;
   std::deque<Waiting> waiting_;
   ros::WallDuration wait_;
   ros::WallTimer wait_timer_;

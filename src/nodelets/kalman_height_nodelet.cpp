@@ -97,6 +97,8 @@ class KalmanHeightNodelet : public StageNodelet {
   void unsubscribe() override {
     subscribers_.clear();
     pairing_->reset();
+    const std::lock_guard<std::mutex> lock(rig_mutex_);
+    frame_complaint_.clear();
   }
   void forget() override {
     cameras_ = RigWatch();
@@ -111,14 +113,24 @@ class KalmanHeightNodelet : public StageNodelet {
                    last_reason_.c_str());
     valid_lately_ = false;
     last_reason_.clear();
+    complainOfFrames();
     if (clockIsMissing())
       NODELET_WARN("%s: /use_sim_time is set and nobody publishes /clock", getName().c_str());
+  }
+
+  /// The estimate may be valid all the same, so this is not said each time.
+  void complainOfFrames() {
+    const std::lock_guard<std::mutex> lock(rig_mutex_);
+    if (frame_reminder_.due(frame_complaint_))
+      NODELET_WARN("%s: %s", getName().c_str(), frame_complaint_.c_str());
   }
 
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
     constexpr const char* kNames[] = {"rig pitch (deg)", "rig yaw (deg)", "rig roll (deg)"};
     constexpr double kDegrees = 180 / M_PI;
     const std::lock_guard<std::mutex> lock(rig_mutex_);
+    if (!frame_complaint_.empty())
+      status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, frame_complaint_);
     status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
                 protection_source_.c_str());
     status.add("filter resets", resets_);
@@ -192,6 +204,7 @@ class KalmanHeightNodelet : public StageNodelet {
       estimate.forgetPosition();
     }
     note(estimate);
+    noteFrames(child, stereo.header.frame_id);
 
     std_msgs::Header header = stereo.header;
     header.frame_id = node_.runway_frame;
@@ -295,6 +308,14 @@ class KalmanHeightNodelet : public StageNodelet {
     if (!estimate.valid()) last_reason_ = estimate.failure.message();
   }
 
+  /// image_frame: frame_id of the left image.
+  void noteFrames(const RigFrames::Child& child, const std::string& image_frame) {
+    const std::lock_guard<std::mutex> lock(rig_mutex_);
+    frame_complaint_ = child.complaint;
+    if (frame_complaint_.empty() && image_frame.empty())
+      frame_complaint_ = "the frame_id of the left image is empty, that of its camera_info is used";
+  }
+
   KalmanHeightParameters parameters_;
   std::unique_ptr<RigFrames> frames_;
   std::unique_ptr<Inputs> pairing_;
@@ -316,8 +337,9 @@ class KalmanHeightNodelet : public StageNodelet {
   RigRotation rig_rotation_;
   std::vector<TestResult> test_results_;
   double protection_level_ = kUnknown, alert_limit_ = kUnknown;
-  std::string protection_source_;
+  std::string protection_source_, frame_complaint_;
   int resets_ = 0;
+  Reminder frame_reminder_;
   bool valid_lately_ = false;
   std::string last_reason_;
 };

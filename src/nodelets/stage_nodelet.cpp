@@ -15,6 +15,15 @@ std::mutex topics_mutex;
 
 }  // namespace
 
+bool Reminder::due(const std::string& complaint) {
+  const ros::WallTime now = ros::WallTime::now();
+  const bool repeated = complaint == last_ && (now - said_).toSec() < kRepeatAfter;
+  last_ = complaint;
+  if (complaint.empty() || repeated) return false;
+  said_ = now;
+  return true;
+}
+
 void StageNodelet::onInit() {
   {
     // Subscribers may connect while the publishers are still being created.
@@ -115,14 +124,9 @@ void StageNodelet::complain() {
   const std::optional<double> subscribed = subscribedFor();
   if (!subscribed || *subscribed < node_.complaint_period) return;
   const std::string missing = complaint();
-  const ros::WallTime now = ros::WallTime::now();
-  const bool repeated = missing == last_complaint_ && (now - last_complaint_time_).toSec() < kRepeatAfter;
-  if (!missing.empty() && !repeated) {
+  if (complaint_reminder_.due(missing))
     NODELET_WARN("%s: nothing to work on for %.3g s: %s", getName().c_str(), node_.complaint_period,
                  missing.c_str());
-    last_complaint_time_ = now;
-  }
-  last_complaint_ = missing;
   complainMore();
 }
 

@@ -29,6 +29,17 @@ constexpr char kLandingEstimate[] = "landing_estimate";
 /// stages.
 constexpr uint32_t kStageQueue = 20;
 
+/// For a complaint that lasts: when to say it again.
+class Reminder {
+ public:
+  /// True when this is another complaint than at the last call, or was said a minute ago. "": there is none.
+  bool due(const std::string& complaint);
+
+ private:
+  std::string last_;
+  ros::WallTime said_;
+};
+
 /// What all nodelets of the chain share: parameters are checked before anything is subscribed; inputs are
 /// subscribed while somebody wants the output; a missing input is named in the log; diagnostics; no exception
 /// leaves a callback; topics between nodelets of one process are linked once.
@@ -153,8 +164,7 @@ class StageNodelet : public nodelet::Nodelet {
   std::unique_ptr<diagnostic_updater::Updater> updater_;
   ros::WallTimer complaint_timer_, diagnostic_timer_, start_timer_;
   ros::ServiceServer reset_service_;
-  std::string last_complaint_;
-  ros::WallTime last_complaint_time_;
+  Reminder complaint_reminder_;
   std::mutex refusal_mutex_;
   ros::WallTime last_refusal_;  // logged
 };

@@ -95,8 +95,8 @@ AttitudePrior ImuInput::at(const ros::Time& stamp, const std::string& left_frame
   }
   const std::optional<Eigen::Isometry3d> left_from_imu = frames_.leftFrom(left_frame, frame_);
   if (!left_from_imu) {
-    none.failure = {Reason::kTransformMissing,
-                    "no static transform between the imu's " + frame_ + " and " + left_frame};
+    none.failure = frames_.whyNotConnected(
+        left_frame, frame_, "no static transform between the imu's " + frame_ + " and " + left_frame);
     return none;
   }
   return buffer_.at(*before_, before, rectified_from_left * left_from_imu->linear());

@@ -31,6 +31,8 @@ class ImuInput {
 
   /// A message of /tf_static.
   void addTransforms(const tf2_msgs::TFMessage& message) { frames_.add(message, true); }
+  /// A message of /tf: not used, but the failure says so where the static transform is missing.
+  void addMovingTransforms(const tf2_msgs::TFMessage& message) { frames_.add(message, false); }
   /// Returns what is wrong with the message.
   Failure add(const sensor_msgs::Imu& message);
   /// There is a message at or after an image of this stamp.

@@ -3,13 +3,17 @@
 #include <tf2/exceptions.h>
 #include <tf2_eigen/tf2_eigen.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace uav_landing {
 namespace {
 
 constexpr size_t kMostFrames = 10000;     // of a whole robot there are hundreds
+constexpr size_t kMostLinks = 100;        // from a frame to the root
 constexpr double kUnitTolerance = 0.001;  // of a quaternion's length
+
+constexpr char kAircraft[] = "base_link";
 
 /// tf2 knows frames without a leading slash.
 std::string stripped(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
@@ -25,6 +29,11 @@ bool usable(const geometry_msgs::Transform& transform) {
 
 }  // namespace
 
+std::string rectifiedFrame(const std::string& left_frame) {
+  const std::string left = stripped(left_frame);
+  return left.empty() ? "" : left + "_rect";
+}
+
 RigFrames::RigFrames(const std::string& base_frame, const std::string& runway_frame)
     : base_frame_(stripped(base_frame)), runway_frame_(stripped(runway_frame)) {}
 
@@ -38,7 +47,10 @@ void RigFrames::add(const tf2_msgs::TFMessage& message, bool is_static) {
     // tf2 never forgets a name, be it of a parent or a child.
     if (names_.size() + 2 > kMostFrames && (names_.count(parent) == 0 || names_.count(child) == 0)) continue;
     names_.insert({parent, child});
-    parents_[child] = parent;
+    Link& link = parents_[child];
+    // What is on both topics is known, whichever came last.
+    link.is_static = is_static || (link.is_static && link.parent == parent);
+    link.parent = parent;
     if (is_static) static_transforms_.setTransform(transform, "tf_static", true);
   }
 }
@@ -46,24 +58,29 @@ void RigFrames::add(const tf2_msgs::TFMessage& message, bool is_static) {
 RigFrames::Child RigFrames::find(const std::string& left_frame) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::string left = stripped(left_frame);
-  const std::string base = base_frame_.empty() ? "base_link" : base_frame_;
+  const std::string base = base_frame_.empty() ? kAircraft : base_frame_;
   Child camera;
-  camera.frame = left + "_rect";
-  camera.may_broadcast = parents_.count(camera.frame) == 0;
+  camera.frame = rectifiedFrame(left);
+  camera.may_broadcast = !camera.frame.empty() && parents_.count(camera.frame) == 0;
 
   const std::optional<Eigen::Isometry3d> left_from_base = look(left, base);
+  const bool has_parent = parents_.count(base) > 0;
   if (!left_from_base) {
     if (!base_frame_.empty())
-      camera.failure = {Reason::kTransformMissing, "no static transform between " + base + " and " + left};
+      camera.failure = {Reason::kTransformMissing,
+                        whyUnknown(left, base, "no static transform between " + base + " and " + left)};
+    else if (left.empty() || (!has_parent && !movingLink(left, base).empty()))
+      camera.complaint = whyUnknown(left, base, "") + ": the left camera is estimated";
     return camera;
   }
-  const bool has_parent = parents_.count(base) > 0;
   // Not the root of the tree: without being told to, the estimate does not interfere with it.
   if (has_parent && base_frame_.empty()) return camera;
   Child child;
   child.frame = base;
   child.left_from_child = left_from_base;
   child.may_broadcast = !has_parent;
+  // A camera that calls itself base_link is meant to be the aircraft.
+  child.is_left_camera = base == left && base != kAircraft;
   return child;
 }
 
@@ -71,6 +88,44 @@ std::optional<Eigen::Isometry3d> RigFrames::leftFrom(const std::string& left_fra
                                                      const std::string& frame) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return look(stripped(left_frame), stripped(frame));
+}
+
+Failure RigFrames::whyNotConnected(const std::string& left_frame, const std::string& frame,
+                                   const std::string& otherwise) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {Reason::kTransformMissing, whyUnknown(stripped(left_frame), stripped(frame), otherwise)};
+}
+
+std::string RigFrames::whyUnknown(const std::string& left, const std::string& frame,
+                                  const std::string& otherwise) const {
+  if (left.empty()) return "the frame_id of the left camera_info is empty";
+  const std::string moving = movingLink(left, frame);
+  if (!moving.empty()) return moving + " is on /tf, only /tf_static is used for the rig";
+  return otherwise;
+}
+
+/// "parent -> child" of the first transform between two frames that is on /tf alone; "": there is none.
+std::string RigFrames::movingLink(const std::string& a, const std::string& b) const {
+  const std::vector<std::string> from_a = towardsRoot(a), from_b = towardsRoot(b);
+  const auto common = std::find_first_of(from_a.begin(), from_a.end(), from_b.begin(), from_b.end());
+  if (common == from_a.end()) return "";
+  for (const std::vector<std::string>* way : {&from_a, &from_b}) {
+    for (const std::string& child : *way) {
+      if (child == *common) break;
+      const Link& link = parents_.at(child);
+      if (!link.is_static) return link.parent + " -> " + child;
+    }
+  }
+  return "";
+}
+
+/// The frame, its parent, the parent's parent and so on.
+std::vector<std::string> RigFrames::towardsRoot(const std::string& frame) const {
+  std::vector<std::string> way{frame};
+  for (auto link = parents_.find(frame); link != parents_.end() && way.size() < kMostLinks;
+       link = parents_.find(way.back()))
+    way.push_back(link->second.parent);
+  return way;
 }
 
 std::optional<Eigen::Isometry3d> RigFrames::look(const std::string& target, const std::string& source) const {

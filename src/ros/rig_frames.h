@@ -9,10 +9,14 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "uav_landing/base/failure.h"
 
 namespace uav_landing {
+
+/// Name of the rectified left camera's frame; "" for a camera without a frame_id.
+std::string rectifiedFrame(const std::string& left_frame);
 
 /// Finds the frame that is estimated, and its lever arm, in the rig's own tf tree. Lever arms come from
 /// static tf only. Thread safe.
@@ -23,30 +27,47 @@ class RigFrames {
     /// Child frame seen from the left camera as it is mounted (its optical frame): x_left = T x_child. None:
     /// the child is the rectified left camera itself.
     std::optional<Eigen::Isometry3d> left_from_child;
-    bool may_broadcast = true;  ///< the frame has no other parent
+    bool may_broadcast = true;  ///< the frame has a name and no other parent
     Failure failure;            ///< the configured base frame is not known (yet)
+    std::string complaint;      ///< why it may be another frame than was meant, for the log; "": it is not
+    /// base_frame names the left camera's own frame, whose axes are those of a camera.
+    bool is_left_camera = false;
+    /// The frame is to have the axes of an aircraft: forward, left, up.
+    bool isAircraft() const { return left_from_child.has_value() && !is_left_camera; }
   };
 
   /// base_frame: the configured one, or "" for base_link if static tf knows it.
   RigFrames(const std::string& base_frame, const std::string& runway_frame);
 
-  /// A message of /tf_static or /tf. Transforms that are none (lengths or rotations that are no numbers) are
-  /// left out.
+  /// A message of /tf_static or /tf; of the latter only which frames it connects. Transforms that are none
+  /// (lengths or rotations that are no numbers) are left out.
   void add(const tf2_msgs::TFMessage& message, bool is_static);
 
   /// left_frame: frame_id of the left camera.
   Child find(const std::string& left_frame) const;
   /// x_left = T x_frame for any frame that static tf connects with the left camera; none: it does not.
   std::optional<Eigen::Isometry3d> leftFrom(const std::string& left_frame, const std::string& frame) const;
+  /// Why leftFrom() has nothing: a frame without a name, a transform that is on /tf, else the text given.
+  Failure whyNotConnected(const std::string& left_frame, const std::string& frame,
+                          const std::string& otherwise) const;
 
  private:
+  struct Link {
+    std::string parent;
+    bool is_static = false;
+  };
+
   std::optional<Eigen::Isometry3d> look(const std::string& target, const std::string& source) const;
+  std::string whyUnknown(const std::string& left, const std::string& frame,
+                         const std::string& otherwise) const;
+  std::string movingLink(const std::string& a, const std::string& b) const;
+  std::vector<std::string> towardsRoot(const std::string& frame) const;
 
   const std::string base_frame_, runway_frame_;
   mutable std::mutex mutex_;
   tf2::BufferCore static_transforms_;
-  std::map<std::string, std::string> parents_;  // of every frame on tf; our own transform aside
-  std::set<std::string> names_;                 // of all frames
+  std::map<std::string, Link> parents_;  // of every frame on tf; our own transform aside
+  std::set<std::string> names_;          // of all frames
 };
 
 }  // namespace uav_landing

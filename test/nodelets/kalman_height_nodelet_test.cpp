@@ -9,6 +9,8 @@
 #include <uav_landing/StereoDepth.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <Eigen/Geometry>
+
 #include "nodelets/nodelet_fixture.h"
 #include "nodelets/nodelet_test_main.h"
 #include "nodelets/stereo_scene.h"
@@ -45,13 +47,13 @@ class KalmanHeightNodeletTest : public NodeletTest {
       info->header.stamp = stamp;
       const double c = std::cos(rectifying_pitch_), s = std::sin(rectifying_pitch_);
       info->R = {1, 0, 0, 0, c, -s, 0, s, c};
-      info->header.frame_id = right ? "right_optical" : "left_optical";
+      info->header.frame_id = right ? "right_optical" : left_frame_;
       (right ? right_info_ : left_info_).publish(info);
     }
     const double h = 2, c = std::cos(scene_.pitch), s = std::sin(scene_.pitch);
     auto depth = boost::make_shared<StereoDepth>();
     depth->header.stamp = stamp;
-    depth->header.frame_id = "left_optical";
+    depth->header.frame_id = image_frame_;
     depth->row_agreement = kNan;
     depth->vertical_rotation.assign(kNan);
     depth->vertical_rotation_covariance.assign(kNan);
@@ -113,21 +115,45 @@ class KalmanHeightNodeletTest : public NodeletTest {
 
   /// A camera 1 m ahead of and 0.5 m below base_link, looking straight ahead (not pitched itself).
   void publishLeverArm(const std::string& parent, const std::string& child) {
+    // Forward-left-up to right-down-forward.
+    static_.publish(mounting(parent, child, {1, 0, -0.5}, {0.5, -0.5, 0.5, -0.5}));
+  }
+  static tf2_msgs::TFMessage mounting(const std::string& parent, const std::string& child,
+                                      const Eigen::Vector3d& arm, const Eigen::Quaterniond& rotation) {
     tf2_msgs::TFMessage message;
     message.transforms.resize(1);
     auto& transform = message.transforms[0];
     transform.header.frame_id = parent;
     transform.child_frame_id = child;
-    transform.transform.translation.x = 1;
-    transform.transform.translation.z = -0.5;
-    transform.transform.rotation.x = -0.5;  // forward-left-up to right-down-forward
-    transform.transform.rotation.y = 0.5;
-    transform.transform.rotation.z = -0.5;
-    transform.transform.rotation.w = 0.5;
-    static_.publish(message);
+    transform.transform.translation.x = arm.x();
+    transform.transform.translation.y = arm.y();
+    transform.transform.translation.z = arm.z();
+    transform.transform.rotation.w = rotation.w();
+    transform.transform.rotation.x = rotation.x();
+    transform.transform.rotation.y = rotation.y();
+    transform.transform.rotation.z = rotation.z();
+    return message;
+  }
+
+  /// Pairs until the log and the diagnostics have said so, with valid estimates all the same.
+  void expectComplaint(const std::string& complaint) {
+    Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
+    const auto said = [&] {
+      for (const auto& array : diagnostics.messages())
+        for (const auto& status : array->status)
+          if (status.message == complaint) return status.level == diagnostic_msgs::DiagnosticStatus::WARN;
+      return false;
+    };
+    double t = 0;
+    EXPECT_TRUE(eventually([&] {
+      publish(t += 0.1);
+      return waitFor(t) && estimateOf(t).valid && said();
+    }));
+    EXPECT_TRUE(logged("/uav_landing/kalman_height: " + complaint)) << wholeLog();
   }
 
   StereoScene scene_;
+  std::string left_frame_ = "left_optical", image_frame_ = "left_optical";  // frame_ids
   double rectifying_pitch_ = 0;  // rad, of R in camera_info: from the camera as mounted to the rectified one
   ros::Publisher stereo_ = handle_.advertise<StereoDepth>("/uav_landing/stereo_depth", 100);
   ros::Publisher approach_ = handle_.advertise<ApproachAngle>("/uav_landing/approach_angle", 100);
@@ -287,6 +313,59 @@ TEST_F(KalmanHeightNodeletTest, TheRotationOfRectificationTurnsTheLeverArm) {
   // The rectified camera looks 15 degrees down. R turns forward (z) towards up (-y): the mounted camera's
   // axis lies 10 degrees above the rectified one's, so the aircraft is pitched by -5 degrees only.
   EXPECT_NEAR(estimateOf(t).height, 2 + std::sin(5 * M_PI / 180) + 0.5 * std::cos(5 * M_PI / 180), 0.02);
+}
+
+TEST_F(KalmanHeightNodeletTest, ATransformOnTfInsteadOfTfStaticIsNotValid) {
+  const std::string reason =
+      "transform_missing: base_link -> left_optical is on /tf, only /tf_static is used for the rig";
+  const ros::Publisher moving = handle_.advertise<tf2_msgs::TFMessage>("/tf", 10, true);
+  setParameter("kalman_height", "base_frame", std::string("base_link"));
+  start();
+  moving.publish(mounting("base_link", "left_optical", {0, 0, -1}, {0.5, -0.5, 0.5, -0.5}));
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).reason == reason;
+  })) << estimateOf(t).reason;
+  EXPECT_TRUE(logged("kalman_height: no valid estimate for 0.2 s: " + reason)) << wholeLog();
+}
+
+TEST_F(KalmanHeightNodeletTest, ATransformOnTfInsteadOfTfStaticIsToldWhenNoneWasAskedFor) {
+  const ros::Publisher moving = handle_.advertise<tf2_msgs::TFMessage>("/tf", 10, true);
+  setParameter("kalman_height", "diagnostic_period", 0.2);
+  start();
+  moving.publish(mounting("base_link", "left_optical", {0, 0, -1}, {0.5, -0.5, 0.5, -0.5}));
+  expectComplaint(
+      "base_link -> left_optical is on /tf, only /tf_static is used for the rig: the left camera is "
+      "estimated");
+  EXPECT_EQ(estimates_.messages().back()->child_frame_id, "left_optical_rect");
+}
+
+TEST_F(KalmanHeightNodeletTest, AnEmptyFrameIdIsToldAndHasNoTransform) {
+  left_frame_ = image_frame_ = "";
+  setParameter("kalman_height", "diagnostic_period", 0.2);
+  start();
+  expectComplaint("the frame_id of the left camera_info is empty: the left camera is estimated");
+  EXPECT_EQ(estimates_.messages().back()->child_frame_id, "");
+  EXPECT_NEAR(estimates_.messages().back()->height, 2, 0.01);
+  EXPECT_TRUE(transforms_.messages().empty());
+}
+
+TEST_F(KalmanHeightNodeletTest, AnEmptyFrameIdOfTheImageIsTold) {
+  image_frame_ = "";
+  setParameter("kalman_height", "diagnostic_period", 0.2);
+  start();
+  expectComplaint("the frame_id of the left image is empty, that of its camera_info is used");
+  EXPECT_EQ(estimates_.messages().back()->child_frame_id, "left_optical_rect");
+}
+
+TEST_F(KalmanHeightNodeletTest, AnEmptyFrameIdHasNoLeverArm) {
+  left_frame_ = "";
+  setParameter("kalman_height", "base_frame", std::string("base_link"));
+  start();
+  publishSome(0, 5);
+  EXPECT_FALSE(estimateOf(0.4).valid);
+  EXPECT_EQ(estimateOf(0.4).reason, "transform_missing: the frame_id of the left camera_info is empty");
 }
 
 TEST_F(KalmanHeightNodeletTest, AConfiguredBaseFrameThatIsUnknownIsNotValid) {

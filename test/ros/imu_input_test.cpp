@@ -131,6 +131,11 @@ TEST(ImuInput, SaysWhichFrameIsMissing) {
   fill(input, level);
   EXPECT_EQ(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).failure.message(),
             "transform_missing: no static transform between the imu's imu_link and left");
+  EXPECT_EQ(input.at(ros::Time(100.5), "", Eigen::Matrix3d::Identity()).failure.message(),
+            "transform_missing: the frame_id of the left camera_info is empty");
+  input.addMovingTransforms(opticalFrame("imu_link", "left"));
+  EXPECT_EQ(input.at(ros::Time(100.5), "left", Eigen::Matrix3d::Identity()).failure.message(),
+            "transform_missing: imu_link -> left is on /tf, only /tf_static is used for the rig");
   input.addTransforms(opticalFrame("imu_link", "left"));
   EXPECT_EQ(input.at(ros::Time(100.6), "left", Eigen::Matrix3d::Identity()).failure.message(), "");
   sensor_msgs::Imu nameless = level(103);

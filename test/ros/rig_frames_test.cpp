@@ -61,6 +61,72 @@ TEST(RigFrames, LeverArmsThatMoveAreNotTaken) {
   EXPECT_EQ(frames.find("left").frame, "left_rect");
 }
 
+TEST(RigFrames, ATransformOnTfInsteadOfTfStaticIsNamed) {
+  RigFrames configured("base_link", "runway"), automatic("", "runway");
+  for (RigFrames* frames : {&configured, &automatic}) {
+    frames->add(transform("base_link", "mount", 1), false);
+    frames->add(transform("mount", "left", 1), true);
+  }
+  EXPECT_EQ(configured.find("left").failure.message(),
+            "transform_missing: base_link -> mount is on /tf, only /tf_static is used for the rig");
+  EXPECT_FALSE(automatic.find("left").failure);
+  EXPECT_EQ(
+      automatic.find("left").complaint,
+      "base_link -> mount is on /tf, only /tf_static is used for the rig: the left camera is estimated");
+  for (RigFrames* frames : {&configured, &automatic}) {
+    frames->add(transform("base_link", "mount", 1), true);
+    frames->add(transform("base_link", "mount", 1), false);
+    EXPECT_EQ(frames->find("left").frame, "base_link") << "on both is on /tf_static";
+    EXPECT_EQ(frames->find("left").complaint, "");
+  }
+}
+
+TEST(RigFrames, ATransformOnTfIsNamedFromEitherEnd) {
+  RigFrames frames("nose", "runway");
+  frames.add(transform("body", "left", 1), true);
+  frames.add(transform("body", "nose", 1), false);
+  frames.add(transform("odom", "body", 1), false);
+  EXPECT_EQ(frames.find("left").failure.detail,
+            "body -> nose is on /tf, only /tf_static is used for the rig");
+  EXPECT_EQ(frames.whyNotConnected("left", "elsewhere", "unknown").message(), "transform_missing: unknown");
+}
+
+TEST(RigFrames, FramesThatOnlyShareALoopOnTfAreNotConnected) {
+  RigFrames frames("base_link", "runway");
+  frames.add(transform("arm", "left", 1), false);
+  frames.add(transform("left", "arm", 1), false);
+  EXPECT_EQ(frames.find("left").failure.detail, "no static transform between base_link and left");
+}
+
+TEST(RigFrames, BaseLinkWithAParentIsNotMissedOnTfEither) {
+  RigFrames frames("", "runway");
+  frames.add(transform("odom", "base_link", 1), false);
+  frames.add(transform("base_link", "left", 1), false);
+  EXPECT_EQ(frames.find("left").complaint, "") << "it would be left alone all the same";
+}
+
+TEST(RigFrames, ACameraWithoutAFrameIdHasNoFrame) {
+  const RigFrames automatic("", "runway"), configured("base_link", "runway");
+  for (const char* name : {"", "/"}) {
+    const RigFrames::Child child = automatic.find(name);
+    EXPECT_EQ(child.frame, "");
+    EXPECT_FALSE(child.may_broadcast);
+    EXPECT_FALSE(child.failure);
+    EXPECT_EQ(child.complaint, "the frame_id of the left camera_info is empty: the left camera is estimated");
+    EXPECT_EQ(configured.find(name).failure.message(),
+              "transform_missing: the frame_id of the left camera_info is empty");
+  }
+}
+
+TEST(RigFrames, OnlyAFrameOfTheRigsOwnIsAnAircraft) {
+  RigFrames frames("", "runway");
+  EXPECT_FALSE(frames.find("left").isAircraft());
+  EXPECT_TRUE(frames.find("base_link").isAircraft()) << "a camera that calls itself so";
+  frames.add(transform("base_link", "left", 1), true);
+  EXPECT_TRUE(frames.find("left").isAircraft());
+  EXPECT_FALSE(RigFrames("left", "runway").find("left").isAircraft());
+}
+
 TEST(RigFrames, BaseLinkWithAParentIsLeftAlone) {
   RigFrames frames("", "runway");
   frames.add(transform("base_link", "left", 1), true);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "conversions.h"
+#include "rig_frames.h"
 
 namespace uav_landing {
 namespace {
@@ -35,8 +36,9 @@ void EstimateBag::take(const ProcessedPair& pair) {
              toMessage(output.stereo, image, millisecondsOf(output.stages, "stereo_depth")));
   bag_.write("/uav_landing/approach_angle", pair.stamp,
              toMessage(output.approach, image, millisecondsOf(output.stages, "approach_angle")));
-  bag_.write("/uav_landing/landing_estimate", pair.stamp,
-             toMessage(output.landing, runway, pair.left_frame + "_rect", pair.skew, output.stages.total()));
+  bag_.write(
+      "/uav_landing/landing_estimate", pair.stamp,
+      toMessage(output.landing, runway, rectifiedFrame(pair.left_frame), pair.skew, output.stages.total()));
 }
 
 void EstimateBag::finish() {
