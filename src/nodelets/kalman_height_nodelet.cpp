@@ -8,6 +8,7 @@
 #include <optional>
 #include <pluginlib/class_list_macros.hpp>
 
+#include "aircraft_tilt.h"
 #include "body_pose.h"
 #include "conversions.h"
 #include "landing_markers.h"
@@ -198,8 +199,8 @@ class KalmanHeightNodelet : public StageNodelet {
     const Eigen::Vector3d lever_arm = rectified_from_child.translation();
     LandingResult estimate =
         child.left_from_child ? referTo(lever_arm, camera, plane, step, parameters_) : camera;
-    if (child.failure) {
-      estimate.failure = child.failure;
+    if (const Failure failure = failureOfFrames(child, rectified_from_child.linear(), camera)) {
+      estimate.failure = failure;
       estimate.height_valid = estimate.angle_valid = false;
       estimate.forgetPosition();
     }
@@ -306,6 +307,13 @@ class KalmanHeightNodelet : public StageNodelet {
   void note(const LandingResult& estimate) {
     valid_lately_ = valid_lately_ || estimate.valid();
     if (!estimate.valid()) last_reason_ = estimate.failure.message();
+  }
+
+  Failure failureOfFrames(const RigFrames::Child& child, const Eigen::Matrix3d& rectified_from_child,
+                          const LandingResult& camera) const {
+    if (child.failure) return child.failure;
+    if (rig_failure_) return {};  // R of such a camera_info may be no rotation
+    return wrongTilt(child, rectified_from_child, camera, left_frame_);
   }
 
   /// image_frame: frame_id of the left image.

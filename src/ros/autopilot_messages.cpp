@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "aircraft_tilt.h"
 #include "landing_messages.h"
 #include "uav_landing/geometry/cross_matrix.h"
 
@@ -15,17 +16,13 @@ namespace {
 using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using CovarianceMap = Eigen::Map<const Covariance>;
 
-constexpr double kMinCosTilt = 0.5;
 constexpr double kMaxYawStddev = 0.1;  // rad; unknown before the runway is seen
 
-/// Of the up axis against the vertical.
-double cosTilt(const Eigen::Isometry3d& runway_from_aircraft) { return runway_from_aircraft.linear()(2, 2); }
-
 /// Of the pose's up axis against the vertical.
-double cosTilt(const geometry_msgs::PoseWithCovarianceStamped& pose) {
+double cosTiltOf(const geometry_msgs::PoseWithCovarianceStamped& pose) {
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  return cosTilt(runway_from_aircraft);
+  return cosTilt(runway_from_aircraft.linear());
 }
 
 // Angles count from east to the left, headings from north to the right.
@@ -52,7 +49,7 @@ bool positiveDefinite(const Covariance& covariance) {
 std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
                                                  const geometry_msgs::PoseWithCovarianceStamped& pose,
                                                  const AutopilotParameters& parameters) {
-  const double cos_tilt = cosTilt(pose);
+  const double cos_tilt = cosTiltOf(pose);
   const double distance = height.range / cos_tilt;
   if (!(cos_tilt >= kMinCosTilt) || !(distance >= 0) || !(distance <= parameters.max_range))
     return std::nullopt;
@@ -66,9 +63,9 @@ std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::Po
                        const AutopilotParameters& parameters) {
   if (!std::isfinite(height.range)) return "no valid height";
   std::ostringstream why;
-  const double cos_tilt = cosTilt(pose);
+  const double cos_tilt = cosTiltOf(pose);
   if (!(cos_tilt >= kMinCosTilt))
-    why << "what is estimated is tilted by " << std::round(std::acos(cos_tilt) * 180 / M_PI)
+    why << "what is estimated is tilted by " << tiltInDegrees(cos_tilt)
         << " deg, as a camera is and no aircraft: base_frame or its static tf is missing";
   else
     why << "the surface is not within 0 to " << parameters.max_range << " m (max_range), at a height of "
@@ -88,7 +85,7 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
   const Eigen::Isometry3d enu_from_runway = enuFromRunway(parameters);
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  if (!(cosTilt(runway_from_aircraft) >= kMinCosTilt)) return std::nullopt;
+  if (!(cosTilt(runway_from_aircraft.linear()) >= kMinCosTilt)) return std::nullopt;
   const Eigen::Isometry3d enu_from_aircraft = enu_from_runway * runway_from_aircraft;
   const Covariance covariance = turned(in_runway, enu_from_runway.linear());
   if (!enu_from_aircraft.matrix().allFinite() || !positiveDefinite(covariance)) return std::nullopt;
@@ -99,7 +96,7 @@ std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
 }
 
 std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose) {
-  if (!(cosTilt(pose) >= kMinCosTilt)) return "the attitude is not that of an aircraft";
+  if (!(cosTiltOf(pose) >= kMinCosTilt)) return "the attitude is not that of an aircraft";
   if (!yawKnown(CovarianceMap(pose.pose.covariance.data()))) return "the runway's direction is not seen";
   return "it has no definite covariance";
 }
@@ -110,7 +107,8 @@ std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
   const CovarianceMap of_pose(pose.pose.covariance.data()), of_twist(twist.twist.covariance.data());
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
-  if (!headingKnown(parameters) || !yawKnown(of_pose) || !(cosTilt(runway_from_aircraft) >= kMinCosTilt))
+  if (!headingKnown(parameters) || !yawKnown(of_pose) ||
+      !(cosTilt(runway_from_aircraft.linear()) >= kMinCosTilt))
     return std::nullopt;
   const Eigen::Matrix3d enu_from_runway = enuFromRunway(parameters).linear();
   const Eigen::Matrix3d enu_from_aircraft = enu_from_runway * runway_from_aircraft.linear();

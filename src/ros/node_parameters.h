@@ -43,10 +43,9 @@ struct NodeParameters {
         "config_file", config_file,
         "file that the launch file loaded the parameters from; it is checked as a whole, because a section "
         "that no nodelet has would go unnoticed");
-    v.text(
-        "base_frame", base_frame,
-        "frame of the aircraft that is estimated; empty: base_link if static tf knows it, else the rectified "
-        "left camera (kalman_height)");
+    v.text("base_frame", base_frame,
+           "frame of the aircraft (x forward, y left, z up) that is estimated; empty: base_link if static tf "
+           "knows it, else the rectified left camera (kalman_height)");
     v.text("runway_frame", runway_frame, "frame of the estimate (kalman_height)");
     v.flag("publish_tf", publish_tf,
            "broadcast runway_frame to the estimated frame; if not, the chain rests while nobody subscribes "

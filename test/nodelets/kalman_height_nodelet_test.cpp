@@ -135,6 +135,29 @@ class KalmanHeightNodeletTest : public NodeletTest {
     return message;
   }
 
+  /// With base_frame, a static transform from it to left_optical, and pairs until that has arrived. Nothing
+  /// is valid and nothing but the estimate and its range is published; the reason is the one given.
+  void expectNotValid(const std::string& base_frame, const Eigen::Quaterniond& rotation,
+                      const std::string& reason) {
+    setParameter("kalman_height", "base_frame", base_frame);
+    start();
+    static_.publish(mounting(base_frame, "left_optical", {0, 0, -1}, rotation));
+    double t = 0;
+    ASSERT_TRUE(eventually([&] {
+      publish(t += 0.1);
+      return waitFor(t) && estimateOf(t).reason == reason;
+    })) << estimateOf(t).reason;
+    publishSome(t + 0.1, 4);
+    const LandingEstimate estimate = estimateOf(t + 0.4);
+    EXPECT_EQ(estimate.reason, reason);
+    EXPECT_EQ(estimate.child_frame_id, base_frame);
+    EXPECT_FALSE(estimate.valid || estimate.height_valid || estimate.angle_valid);
+    EXPECT_FALSE(estimate.x_known || estimate.y_known);
+    EXPECT_TRUE(logged("kalman_height: no valid estimate for 0.2 s: " + reason)) << wholeLog();
+    for (const auto& range : ranges_.messages()) EXPECT_TRUE(std::isnan(range->range));
+    EXPECT_TRUE(transforms_.messages().empty() && poses_.messages().empty() && twists_.messages().empty());
+  }
+
   /// Pairs until the log and the diagnostics have said so, with valid estimates all the same.
   void expectComplaint(const std::string& complaint) {
     Listener<diagnostic_msgs::DiagnosticArray> diagnostics("/diagnostics");
@@ -168,6 +191,10 @@ class KalmanHeightNodeletTest : public NodeletTest {
   Listener<geometry_msgs::TwistWithCovarianceStamped> twists_{"/uav_landing/twist"};
   Listener<tf2_msgs::TFMessage> transforms_{"/tf"};
 };
+
+constexpr char kNoOpticalFrame[] =
+    " deg: the frame_id of camera_info must be an optical frame (z forward, x right, y down), in static tf "
+    "left_optical is not";
 
 TEST_F(KalmanHeightNodeletTest, PublishesEstimateRangePoseAndTransformOfTheImageStamp) {
   start();
@@ -313,6 +340,78 @@ TEST_F(KalmanHeightNodeletTest, TheRotationOfRectificationTurnsTheLeverArm) {
   // The rectified camera looks 15 degrees down. R turns forward (z) towards up (-y): the mounted camera's
   // axis lies 10 degrees above the rectified one's, so the aircraft is pitched by -5 degrees only.
   EXPECT_NEAR(estimateOf(t).height, 2 + std::sin(5 * M_PI / 180) + 0.5 * std::cos(5 * M_PI / 180), 0.02);
+}
+
+TEST_F(KalmanHeightNodeletTest, ACameraOneMetreBelowBaseLinkIsThatMuchLower) {
+  setParameter("kalman_height", "base_frame", std::string("base_link"));
+  scene_.pitch = -2 * M_PI / 180;
+  start();
+  static_.publish(mounting("base_link", "left_optical", {0, 0, -1}, {0.5, -0.5, 0.5, -0.5}));
+  double t = 0;
+  ASSERT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).valid;
+  })) << estimateOf(t).reason;
+  EXPECT_EQ(estimateOf(t).child_frame_id, "base_link");
+  EXPECT_NEAR(estimateOf(t).height, 2 + 1, 0.005);
+}
+
+// The camera looks 15 degrees down. Its z axis is taken for forward, so base_link's up axis is where that is.
+TEST_F(KalmanHeightNodeletTest, ABodyFrameAsFrameIdIsNotValid) {
+  expectNotValid("base_link", {1, 0, 0, 0},
+                 std::string("transform_invalid: base_link is tilted by 105") + kNoOpticalFrame);
+}
+
+TEST_F(KalmanHeightNodeletTest, AForwardRightDownFrameAsFrameIdIsNotValid) {
+  expectNotValid("base_link", {0, 1, 0, 0},
+                 std::string("transform_invalid: base_link is tilted by 75") + kNoOpticalFrame);
+}
+
+TEST_F(KalmanHeightNodeletTest, ABaseFrameAndAFrameIdThatAreForwardRightDownAreNotValid) {
+  expectNotValid("base_link_frd", {1, 0, 0, 0},
+                 std::string("transform_invalid: base_link_frd is tilted by 105") + kNoOpticalFrame);
+}
+
+TEST_F(KalmanHeightNodeletTest, ABaseFrameThatIsForwardRightDownIsNotValid) {
+  expectNotValid(
+      "base_link_frd", {0.5, 0.5, 0.5, 0.5},
+      "transform_invalid: base_link_frd is tilted by 165 deg: its z axis must be up (x forward, y left), "
+      "and the frame_id of camera_info an optical frame (z forward, x right, y down)");
+}
+
+TEST_F(KalmanHeightNodeletTest, AWrongFrameIsToldBeforeTheGroundIsSeen) {
+  setParameter("kalman_height", "base_frame", std::string("base_link"));
+  start();
+  static_.publish(mounting("base_link", "left_optical", {0, 0, -1}, {1, 0, 0, 0}));
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    publish(t += 0.1, false);
+    return waitFor(t) && estimateOf(t).reason ==
+                             std::string("transform_invalid: base_link is tilted by 90") + kNoOpticalFrame;
+  })) << estimateOf(t).reason;
+}
+
+TEST_F(KalmanHeightNodeletTest, ACameraThatCallsItselfBaseLinkIsNotValid) {
+  left_frame_ = image_frame_ = "base_link";
+  start();
+  publishSome(0, 5);
+  EXPECT_FALSE(estimateOf(0.4).valid);
+  EXPECT_EQ(estimateOf(0.4).reason,
+            "transform_invalid: base_link is tilted by 105 deg: the frame_id of camera_info must be an "
+            "optical frame (z forward, x right, y down), in static tf base_link is not");
+  EXPECT_TRUE(transforms_.messages().empty());
+}
+
+TEST_F(KalmanHeightNodeletTest, ACameraInfoThatCannotBeUsedIsToldBeforeItsFrame) {
+  setParameter("kalman_height", "base_frame", std::string("base_link"));
+  start();
+  static_.publish(mounting("base_link", "left_optical", {0, 0, -1}, {1, 0, 0, 0}));
+  scene_.baseline = 0;
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    publish(t += 0.1);
+    return waitFor(t) && estimateOf(t).reason.rfind("input_invalid: camera_info: right P[3]", 0) == 0;
+  })) << estimateOf(t).reason;
 }
 
 TEST_F(KalmanHeightNodeletTest, ATransformOnTfInsteadOfTfStaticIsNotValid) {

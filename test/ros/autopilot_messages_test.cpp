@@ -66,6 +66,7 @@ TEST(AutopilotRange, SaysWhyThereIsNone) {
       why(10, 85 * kDegree),
       "what is estimated is tilted by 85 deg, as a camera is and no aircraft: base_frame or its static tf "
       "is missing");
+  EXPECT_NE(why(10, M_PI).find("tilted by 180 deg"), std::string::npos) << why(10, M_PI);
 }
 
 TEST(AutopilotRange, IsLongerAlongTheAxisOfATiltedAircraft) {

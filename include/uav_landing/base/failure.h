@@ -25,6 +25,7 @@ enum class Reason {
   kTimeout,             ///< no measurement for too long
   kUncertain,           ///< there is a number, but its variance is too large to fly on
   kTransformMissing,    ///< the lever arm from tf is not known (yet)
+  kTransformInvalid,    ///< tf turns the aircraft as no aircraft flies: axes of a frame are wrong
   kInconsistent,        ///< a test of the sources of the height against each other failed; it is named
   kRigBent,             ///< the right camera has turned too far since the calibration
 };

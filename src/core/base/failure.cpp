@@ -40,6 +40,8 @@ const char* toString(Reason reason) {
       return "uncertain";
     case Reason::kTransformMissing:
       return "transform_missing";
+    case Reason::kTransformInvalid:
+      return "transform_invalid";
     case Reason::kInconsistent:
       return "inconsistent";
     case Reason::kRigBent:
