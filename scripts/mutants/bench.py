@@ -1,15 +1,14 @@
-"""Builds mutants and lets the tests judge them: one core builds the next one while the other tests the one before."""
+"""Builds mutants and lets the tests judge them."""
 
-import queue
 import shutil
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 from .results import file_fingerprint, folder_fingerprint
 from .workshop import LONGEST
 
 SHORTEST = 20  # s, that a test may take at least
 SLOWER = 10  # times as long as without a mutant: it hangs
-AHEAD = 2  # mutants that wait for their tests
 
 
 def is_of_core_alone(path):
@@ -18,16 +17,14 @@ def is_of_core_alone(path):
 
 
 class Bench:
-    def __init__(self, workshop, concern, results, patience, report):
-        """patience: s of tests that a mutant has to survive. report: called with each result."""
+    def __init__(self, workshop, concern, results, patience, jobs, report):
+        """patience: s of tests that a mutant has to survive. jobs: mutants side by side. report: called with each result."""
         self._workshop, self._concern, self._results = workshop, concern, results
-        self._patience, self._report = patience, report
+        self._patience, self._jobs, self._report = patience, jobs, report
         self._tests = folder_fingerprint(workshop.tree / "test")
         self._sources = {}
-        self._building = threading.Lock()
+        self._changing = threading.Lock()  # of the build and of what is known
         self._times = {}  # s of each test without a mutant; None: it fails without one
-        self._untouched = None  # folder of the library without a mutant
-        self._errors = []
 
     def known(self, mutant):
         """The result of an earlier run that still holds, or None."""
@@ -40,48 +37,21 @@ class Bench:
         return self._sources[path]
 
     def judge(self, mutants):
-        """All of them; the quickest to build first."""
-        with self._building:
-            if not self._workshop.build("uav_landing_core"):
-                raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
-            self._untouched = self._workshop.keep_library("untouched")
-        self._judge_core([mutant for mutant in mutants if is_of_core_alone(mutant.path)])
+        """All of them: those of the core's sources side by side, the others one by one, in the copy of the tree."""
+        if not self._workshop.build("uav_landing_core"):
+            raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
+        with ThreadPoolExecutor(self._jobs) as pool:
+            list(pool.map(self._judge_core, [mutant for mutant in mutants if is_of_core_alone(mutant.path)]))
         others = [mutant for mutant in mutants if not is_of_core_alone(mutant.path)]
         for mutant in sorted(others, key=lambda mutant: (mutant.path.endswith(".h"), mutant.path)):
             self._judge_in_place(mutant)
 
-    def _judge_core(self, mutants):
-        waiting = queue.Queue(AHEAD)
-        tester = threading.Thread(target=self._test_waiting, args=(waiting,), daemon=True)
-        tester.start()
-        for mutant in mutants:
-            with self._building, self._workshop.changed(mutant):
-                built = self._workshop.build("uav_landing_core")
-                library = self._workshop.keep_library(mutant.name) if built else None
-            if built:
-                waiting.put((mutant, library))
-            else:
-                self._note(mutant, "broken", "", 0)
-            if self._errors:
-                break
-        waiting.put(None)
-        tester.join()
-        if self._errors:
-            raise self._errors[0]
-
-    def _test_waiting(self, waiting):
-        while True:
-            item = waiting.get()
-            if item is None:
-                return
-            if self._errors:
-                continue
-            try:
-                mutant, library = item
-                self._face_tests(mutant, library, self._is_ready)
-                shutil.rmtree(library)
-            except Exception as error:  # told to the thread that builds
-                self._errors.append(error)
+    def _judge_core(self, mutant):
+        library = self._workshop.build_core_with(mutant)
+        if not library:
+            return self._note(mutant, "broken", "", 0)
+        self._face_tests(mutant, library, self._is_ready)
+        shutil.rmtree(library)
 
     def _judge_in_place(self, mutant):
         """A mutant that tests or programs are built with."""
@@ -99,13 +69,13 @@ class Bench:
 
     def _is_ready(self, test, with_programs=False):
         """Builds a test without a mutant, and sees it pass."""
-        if test not in self._times:
-            with self._building:
+        with self._changing:
+            if test not in self._times:
                 built = self._workshop.build(*self._targets(test, with_programs))
-            passed, seconds = self._workshop.run(test, self._untouched) if built else (False, 0)
-            self._times[test] = seconds if passed else None
-            if not passed:
-                print(f"{test.name}: {'fails' if built else 'cannot be built'} without a mutant, left out", flush=True)
+                passed, seconds = self._workshop.run(test) if built else (False, 0)
+                self._times[test] = seconds if passed else None
+                if not passed:
+                    print(f"{test.name}: {'fails' if built else 'cannot be built'} without a mutant, left out", flush=True)
         return self._times[test] is not None
 
     def _is_built(self, test):
@@ -137,4 +107,5 @@ class Bench:
         return self._note(mutant, "survived", "", spent)
 
     def _note(self, mutant, outcome, by, seconds):
-        self._report(self._results.add(mutant, outcome, by, seconds, self._source(mutant.path), self._tests))
+        with self._changing:
+            self._report(self._results.add(mutant, outcome, by, seconds, self._source(mutant.path), self._tests))

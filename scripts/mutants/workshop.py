@@ -4,6 +4,7 @@ import json
 import os
 import re
 import resource
+import shlex
 import shutil
 import subprocess
 import time
@@ -51,7 +52,8 @@ class Workshop:
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         # A mutant of the library is no reason to link a test anew.
         made = subprocess.run(["cmake", "-S", ".", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3", *launcher,
-                               "-DUAV_LANDING_BENCHMARK=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"], cwd=self.tree,
+                               "-DUAV_LANDING_BENCHMARK=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON",
+                               "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON"], cwd=self.tree,
                               env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         return made.stdout if made.returncode else None
 
@@ -66,10 +68,7 @@ class Workshop:
         """The copy with one line changed, and as it was afterwards."""
         path = self.tree / mutant.path
         original = path.read_text(encoding="utf-8")
-        lines = original.split("\n")
-        assert lines[mutant.line - 1] == mutant.before, mutant
-        lines[mutant.line - 1] = mutant.after
-        path.write_text("\n".join(lines), encoding="utf-8")
+        path.write_text(self._text_with(mutant), encoding="utf-8")
         try:
             yield
         finally:
@@ -95,12 +94,43 @@ class Workshop:
             return set()
         return set(re.findall(r"^CMakeFiles/[^/]+\.dir/(\S+\.cpp)\.o: \S+\.cpp$", made.read_text(), re.MULTILINE))
 
-    def keep_library(self, name):
-        """Puts the library as it is now aside; returns the folder that it is in."""
-        folder = self._work / "libraries" / name
+    def build_core_with(self, mutant):
+        """The core library with one line of one source changed, beside the build; None when it cannot be compiled.
+
+        Returns the folder that the library is in. The build and the copy of the tree stay as they are.
+        """
+        folder = self._work / "libraries" / mutant.name
         folder.mkdir(parents=True, exist_ok=True)
-        shutil.copy(self.build_folder / "devel/lib/libuav_landing_core.so", folder)
+        changed, made = folder / "mutant.cpp", folder / "mutant.o"
+        changed.write_text(self._text_with(mutant), encoding="utf-8")
+        commands = json.loads((self.build_folder / "compile_commands.json").read_text())
+        original = str(self.tree / mutant.path)
+        compiled = next(entry for entry in commands if entry["file"] == original)
+        words = shlex.split(compiled["command"])
+        object_file = words[words.index("-o") + 1]
+        compile_it = [str(made) if word == object_file else str(changed) if word == original else word for word in words]
+        # What it includes from its own folder.
+        compile_it += ["-iquote", str((self.tree / mutant.path).parent)]
+        link = shlex.split((self.build_folder / "CMakeFiles/uav_landing_core.dir/link.txt").read_text())
+        library = next(word for word in link if word.endswith("libuav_landing_core.so"))
+        link_it = [str(made) if word == object_file else str(folder / "libuav_landing_core.so") if word == library else word
+                   for word in link]
+        for command in (compile_it, link_it):
+            if self._quietly(command) != 0:
+                shutil.rmtree(folder)
+                return None
+        made.unlink()
         return folder
+
+    def _quietly(self, command):
+        return subprocess.run(command, cwd=self.build_folder, env=self.environment, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL).returncode
+
+    def _text_with(self, mutant):
+        lines = (self.tree / mutant.path).read_text(encoding="utf-8").split("\n")
+        assert lines[mutant.line - 1] == mutant.before, mutant
+        lines[mutant.line - 1] = mutant.after
+        return "\n".join(lines)
 
     def run(self, test, library=None, deadline=LONGEST):
         """Whether a test passes, and its seconds. library: the folder of the one to use instead of that of the build."""
