@@ -112,7 +112,7 @@ class Workshop:
         # What it includes from its own folder.
         compile_it += ["-iquote", str((self.tree / mutant.path).parent)]
         link = shlex.split((self.build_folder / "CMakeFiles/uav_landing_core.dir/link.txt").read_text())
-        library = next(word for word in link if word.endswith("libuav_landing_core.so"))
+        library = link[link.index("-o") + 1]
         link_it = [str(made) if word == object_file else str(folder / "libuav_landing_core.so") if word == library else word
                    for word in link]
         for command in (compile_it, link_it):

@@ -128,6 +128,33 @@ TEST(MatchImage, LeavesRowsOutUntilTheyAreAdded) {
   }
 }
 
+TEST(RepeatedImage, IsTheOneBeforeBitByBitAndNoOlderOne) {
+  RepeatedImage repeated;
+  const cv::Mat first = striped({80, 60});
+  cv::Mat second = first.clone();
+  second.at<uchar>(16, 40) ^= 1;  // one bit, in a row that is looked at
+  EXPECT_FALSE(repeated.check(first)) << "nothing was before it";
+  EXPECT_TRUE(repeated.check(first.clone()));
+  EXPECT_TRUE(repeated.check(first.clone())) << "a third time";
+  EXPECT_FALSE(repeated.check(second));
+  EXPECT_TRUE(repeated.check(second.clone()));
+  EXPECT_FALSE(repeated.check(first)) << "the one before the last";
+  EXPECT_FALSE(repeated.check(first.colRange(0, 40)));
+  EXPECT_FALSE(repeated.check(cv::Mat(60, 40, CV_16UC1, cv::Scalar(90))));
+  repeated.reset();
+  EXPECT_FALSE(repeated.check(first));
+  repeated.reset();
+  EXPECT_FALSE(repeated.check(first)) << "after a reset nothing was before it";
+}
+
+TEST(RepeatedImage, KeepsNoReferenceToTheBufferOfTheDriver) {
+  RepeatedImage repeated;
+  cv::Mat buffer = striped({80, 60});
+  repeated.check(buffer);
+  buffer.at<uchar>(8, 8) ^= 1;
+  EXPECT_FALSE(repeated.check(buffer)) << "the driver has filled the same buffer with the next image";
+}
+
 TEST(FirstGroundRows, AreAboveTheHorizonEverywhere) {
   StereoRig rig;
   rig.size = {640, 480};
