@@ -40,8 +40,11 @@ class Bench:
         """All of them: those of the core's sources side by side, the others one by one, in the copy of the tree."""
         if not self._workshop.build("uav_landing_core"):
             raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
+        of_core = [mutant for mutant in mutants if is_of_core_alone(mutant.path)]
+        # All at once, on all cores. One that cannot be built is left out when its turn comes.
+        self._workshop.build(*{test.target for mutant in of_core for test in self._concern.tests_of(mutant.path) if test.target})
         with ThreadPoolExecutor(self._jobs) as pool:
-            list(pool.map(self._judge_core, [mutant for mutant in mutants if is_of_core_alone(mutant.path)]))
+            list(pool.map(self._judge_core, of_core))
         others = [mutant for mutant in mutants if not is_of_core_alone(mutant.path)]
         for mutant in sorted(others, key=lambda mutant: (mutant.path.endswith(".h"), mutant.path)):
             self._judge_in_place(mutant)

@@ -60,7 +60,7 @@ class Workshop:
     def build(self, *targets):
         """Whether they could be built."""
         with (self._work / "build.log").open("w") as log:
-            return subprocess.run(["cmake", "--build", "build", f"-j{os.cpu_count()}", "--target", *targets], cwd=self.tree,
+            return subprocess.run(["cmake", "--build", "build", "--target", *targets, "--", "--keep-going", f"-j{os.cpu_count()}"], cwd=self.tree,
                                   env=self.environment, stdout=log, stderr=subprocess.STDOUT).returncode == 0
 
     @contextmanager
