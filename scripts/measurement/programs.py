@@ -35,10 +35,22 @@ def run(*command):
     return result.stdout
 
 
-def fingerprint(*files):
+def run_built(devel, program, *arguments):
+    """Runs a program of this build with its own libraries; stops with its message when it fails."""
+    # A sourced setup.bash puts the libraries of another build first, which would then be measured instead.
+    libraries = os.pathsep.join(filter(None, (str(devel / "lib"), os.environ.get("LD_LIBRARY_PATH"))))
+    command = [str(part) for part in (devel / "lib/uav_landing" / program, *arguments)]
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+                            timeout=DEADLINE, env={**os.environ, "LD_LIBRARY_PATH": libraries})
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(command)}\n{result.stdout}")
+    return result.stdout
+
+
+def fingerprint(*files, devel=None):
     """Short name of the contents of the core library and these files: results of other contents are not reused."""
     digest = hashlib.sha256()
-    for file in (DEVEL / "lib/libuav_landing_core.so", *files):
+    for file in ((devel or DEVEL) / "lib/libuav_landing_core.so", *files):
         digest.update(Path(file).read_bytes())
     return digest.hexdigest()[:12]
 
