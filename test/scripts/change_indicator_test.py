@@ -209,6 +209,13 @@ class SummaryTest(TemporaryFolder):
         self.assertNotIn("approach_angle", errors)
         self.assertAlmostEqual(indicator_summary.campaign_errors(rows, True)["approach_angle"]["mean"], 0.3)
 
+    def test_the_committed_summary_has_every_preset_and_every_approach_of_the_simulator(self):
+        _, lines = indicator_summary.read(SOURCE_DIR / "docs/change_indicator.csv")
+        tree = indicator_runs.Side("this tree", SOURCE_DIR, DEVEL_DIR)
+        names = [f"simulator/{file.stem}" for file in (SOURCE_DIR / "config/simulator").glob("*.yaml")]
+        self.assertEqual(set(), {(name, preset) for name in [*names, "lab", "photo_town", "snippets"]
+                                 for preset in tree.presets()} - set(lines))
+
 
 class BaseTest(TemporaryFolder):
     def git(self, *arguments):
@@ -282,6 +289,64 @@ class CommandLineTest(TemporaryFolder):
         result = self.indicate(UAV_LANDING_DEVEL_DIR=str(self.folder))
         self.assertEqual(result.returncode, 1)
         self.assertIn(f"{self.folder}/lib/uav_landing/process_bag is missing (build first", result.stderr)
+
+
+class CheckTest(TemporaryFolder):
+    """What is done with the summary."""
+
+    def setUp(self):
+        super().setUp()
+        self.script = load_script()
+        self.tree = indicator_runs.Side("this tree", SOURCE_DIR, DEVEL_DIR)
+        self.summary = self.folder / "summary.csv"
+        patch = mock.patch.object(self.script, "SUMMARY", self.summary)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def lines(self, *rows, presets=("stereo",)):
+        table = self.table(*rows)
+        return {("lab", preset): indicator_summary.line("lab", preset, table, {}, False) for preset in presets}
+
+    def renew(self, lines, whole=True):
+        with redirect_stdout(io.StringIO()) as text:
+            self.script.renew(lines, self.tree, whole)
+        return text.getvalue()
+
+    def check(self, lines, base=None, whole=True, differing=0):
+        """Exit status, what is said, and whether rows were compared."""
+        against_base = mock.Mock(return_value=differing)
+        with redirect_stdout(io.StringIO()) as text:
+            status = self.script.check(mock.Mock(base=base), lines, whole, self.tree, against_base)
+        return status, text.getvalue(), against_base.called
+
+    def test_status_is_0_when_the_summary_is_what_the_tree_gives(self):
+        self.renew(self.lines(*ROWS))
+        self.assertEqual(self.check(self.lines(*ROWS)), (0, "the summary is as committed (1 lines)\n", False))
+        self.assertEqual(self.check(self.lines(*ROWS), base="main")[::2], (0, True))
+
+    def test_status_is_1_when_it_is_not_and_rows_are_compared(self):
+        self.renew(self.lines(*ROWS))
+        status, text, compared = self.check(self.lines(*ROWS[1:]))
+        self.assertEqual((status, compared), (1, True))
+        self.assertIn("summary: lab, stereo: rows 3 -> 2; ", text)
+
+    def test_status_is_1_when_rows_differ_from_the_base(self):
+        self.renew(self.lines(*ROWS))
+        self.assertEqual(self.check(self.lines(*ROWS), base="main", differing=1)[0], 1)
+
+    def test_a_set_that_is_not_there_any_more_is_a_difference_of_a_whole_run_only(self):
+        self.renew(self.lines(*ROWS, presets=("stereo", "fast")))
+        status, text, _ = self.check(self.lines(*ROWS))
+        self.assertEqual(status, 1)
+        self.assertIn("lab, fast: in the summary, but there is no such set or preset here", text)
+        self.assertEqual(self.check(self.lines(*ROWS), whole=False)[0], 0)
+        self.assertIn("dropped: lab, fast", self.renew(self.lines(*ROWS)))
+
+    def test_a_partial_run_leaves_the_summary_alone(self):
+        self.assertIn("the summary is not renewed", self.renew(self.lines(*ROWS), whole=False))
+        self.assertFalse(self.summary.exists())
+        with self.assertRaisesRegex(base_build.Unusable, "summary.csv is not there yet"):
+            self.check(self.lines(*ROWS))
 
 
 class SmallRunTest(TemporaryFolder):
