@@ -11,9 +11,9 @@ SHORTEST = 20  # s, that a test may take at least
 SLOWER = 10  # times as long as without a mutant: it hangs
 
 
-def is_of_core_alone(path):
-    """Whether a mutant of this file changes nothing but the core library, so that no test has to be built anew."""
-    return path.startswith("src/core/") and path.endswith(".cpp")
+def is_of_shared_library(path):
+    """Whether a mutant of this file changes nothing but a shared library: gtest programs then need not be built anew."""
+    return path.startswith(("src/core/", "src/ros/")) and path.endswith(".cpp")
 
 
 class Bench:
@@ -37,38 +37,52 @@ class Bench:
         return self._sources[path]
 
     def judge(self, mutants):
-        """All of them: those of the core's sources side by side, the others one by one, in the copy of the tree."""
-        if not self._workshop.build("uav_landing_core"):
+        """All of them: those of libraries side by side as far as gtest programs tell, the others one by one in the copy."""
+        if not self._workshop.build("uav_landing_core", "uav_landing_ros"):
             raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
-        of_core = [mutant for mutant in mutants if is_of_core_alone(mutant.path)]
+        side_by_side = [mutant for mutant in mutants if is_of_shared_library(mutant.path)]
         # All at once, on all cores. One that cannot be built is left out when its turn comes.
-        self._workshop.build(*{test.target for mutant in of_core for test in self._concern.tests_of(mutant.path) if test.target})
+        programs = {test.target for mutant in side_by_side for test in self._concern.tests_of(mutant.path) if test.program}
+        if programs:
+            self._workshop.build(*programs)
         with ThreadPoolExecutor(self._jobs) as pool:
-            list(pool.map(self._judge_core, of_core))
-        others = [mutant for mutant in mutants if not is_of_core_alone(mutant.path)]
+            finished = set(pool.map(self._judge_beside, side_by_side))
+        others = [mutant for mutant in mutants if mutant not in finished]
         for mutant in sorted(others, key=lambda mutant: (mutant.path.endswith(".h"), mutant.path)):
             self._judge_in_place(mutant)
 
-    def _judge_core(self, mutant):
-        library = self._workshop.build_core_with(mutant)
+    def _judge_beside(self, mutant):
+        """Returns the mutant when gtest programs have judged it, None when other tests have to."""
+        tests = self._concern.tests_of(mutant.path)
+        programs = [test for test in tests if test.program]
+        library = self._workshop.build_library_with(mutant)
         if not library:
-            return self._note(mutant, "broken", "", 0)
-        self._face_tests(mutant, library, self._is_ready)
+            self._note(mutant, "broken", "", 0)
+            return mutant
+        killer, seconds = self._face_tests(programs, library, self._is_ready)
         shutil.rmtree(library)
+        if not killer and len(programs) < len(tests):
+            return None
+        self._note(mutant, "killed" if killer else "survived", killer, seconds)
+        return mutant
 
     def _judge_in_place(self, mutant):
-        """A mutant that tests or programs are built with."""
-        targets = ["uav_landing_core", "uav_landing_ros", "uav_landing_nodelets", "uav_landing_tools"]
+        """A mutant that tests or programs are built with, or that tests with a ROS master judge."""
         tests = self._concern.tests_of(mutant.path)
+        if is_of_shared_library(mutant.path):
+            tests = [test for test in tests if not test.program]
         for test in tests:  # before the change: how long they take without it
             if sum(self._times.get(done) or 0 for done in tests) > self._patience:
                 break
             self._is_ready(test, with_programs=True)
+        libraries = ["uav_landing_core"]
+        if not mutant.path.startswith(("src/core/", "include/")):
+            libraries += ["uav_landing_ros", "uav_landing_nodelets", "uav_landing_tools"]
         with self._workshop.changed(mutant):
-            built = self._workshop.build(*(targets[:1] if mutant.path.startswith(("src/core/", "include/")) else targets))
-            if not built:
+            if not self._workshop.build(*libraries):
                 return self._note(mutant, "broken", "", 0)
-            self._face_tests(mutant, None, self._is_built)
+            killer, seconds = self._face_tests(tests, None, self._is_built)
+        self._note(mutant, "killed" if killer else "survived", killer, seconds)
 
     def _is_ready(self, test, with_programs=False):
         """Builds a test without a mutant, and sees it pass."""
@@ -91,9 +105,10 @@ class Bench:
             return [test.target]
         return [test.target, "uav_landing_nodelets"] if test.target else ["all"] if with_programs else []
 
-    def _face_tests(self, mutant, library, is_ready):
+    def _face_tests(self, tests, library, is_ready):
+        """The name of the test that killed, or "", and the seconds that tests took."""
         spent = 0
-        for test in self._concern.tests_of(mutant.path):
+        for test in tests:
             if spent > self._patience:
                 break
             if not is_ready(test):
@@ -106,8 +121,8 @@ class Bench:
                 passed, seconds = self._workshop.run(test, library, deadline)
                 spent += seconds
             if not passed:
-                return self._note(mutant, "killed", test.name, spent)
-        return self._note(mutant, "survived", "", spent)
+                return test.name, spent
+        return "", spent
 
     def _note(self, mutant, outcome, by, seconds):
         with self._changing:

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import time
 from contextlib import contextmanager
+from pathlib import Path
 
 from .concern import Test
 
@@ -94,8 +95,8 @@ class Workshop:
             return set()
         return set(re.findall(r"^CMakeFiles/[^/]+\.dir/(\S+\.cpp)\.o: \S+\.cpp$", made.read_text(), re.MULTILINE))
 
-    def build_core_with(self, mutant):
-        """The core library with one line of one source changed, beside the build; None when it cannot be compiled.
+    def build_library_with(self, mutant):
+        """The shared library of a source with one line changed, beside the build; None when it cannot be compiled.
 
         Returns the folder that the library is in. The build and the copy of the tree stay as they are.
         """
@@ -111,9 +112,9 @@ class Workshop:
         compile_it = [str(made) if word == object_file else str(changed) if word == original else word for word in words]
         # What it includes from its own folder.
         compile_it += ["-iquote", str((self.tree / mutant.path).parent)]
-        link = shlex.split((self.build_folder / "CMakeFiles/uav_landing_core.dir/link.txt").read_text())
+        link = shlex.split((self.build_folder / object_file.split(".dir/")[0]).with_suffix(".dir").joinpath("link.txt").read_text())
         library = link[link.index("-o") + 1]
-        link_it = [str(made) if word == object_file else str(folder / "libuav_landing_core.so") if word == library else word
+        link_it = [str(made) if word == object_file else str(folder / Path(library).name) if word == library else word
                    for word in link]
         for command in (compile_it, link_it):
             if self._quietly(command) != 0:
