@@ -30,7 +30,7 @@ TEST_P(ClockSteps, AreNoticedByTheWayOfOnePeriod) {
   EXPECT_TRUE(clock.follow({kPeriod + GetParam(), kSpeed * kPeriod, kVariance}));
 }
 
-INSTANTIATE_TEST_SUITE_P(AheadAndBack, ClockSteps, testing::Values(-0.035, 0.035, 0.05, 0.1, 0.3, 0.9));
+INSTANTIATE_TEST_SUITE_P(AheadAndBack, ClockSteps, testing::Values(-0.047, 0.047, 0.1, 0.3, 0.9));
 
 TEST(ClockWatch, StampsThatWereLeftOutAsLateAreInTheWay) {
   // The clock was set back by three periods: two stamps were late, the third repeated, and the next one is a
@@ -74,7 +74,7 @@ TEST(ClockWatch, StampsThatJitterAreNoClock) {
     noticed += clock.follow({kPeriod + now - before, kSpeed * kPeriod, kVariance}).has_value();
     before = now;
   }
-  EXPECT_LT(noticed, 10);
+  EXPECT_EQ(noticed, 0) << "late by up to 40 ms";
 }
 
 TEST(ClockWatch, AClockThatRunsFastOrSlowByAFewPerCentIsNotSet) {
