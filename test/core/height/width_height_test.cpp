@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace uav_landing {
 namespace {
@@ -92,6 +93,37 @@ TEST(WidthHeight, NothingIsMadeOfNothing) {
   EXPECT_FALSE(width.height(std::nan(""), 1e-4));
   EXPECT_FALSE(width.height(3, std::nan("")));
   EXPECT_FALSE(width.height(0, 1e-4));
+}
+
+TEST(WidthHeight, AResetForgetsALearnedWidthAndKeepsAKnownOne) {
+  WidthHeight learned(0), known(kWidth);
+  for (int i = 0; i < 8; ++i) learned.learn(3, 1e-8, 15, 1e-4);
+  EXPECT_FALSE(known.isSame(42.6 / 15, 1e-8, 15, 1e-4));
+  EXPECT_FALSE(learned.isSame(42.6 / 15, 1e-8, 15, 1e-4));
+  learned.reset();
+  known.reset();
+  EXPECT_FALSE(learned.height(3, 1e-8));
+  EXPECT_TRUE(learned.isSame(42.6 / 15, 1e-8, 15, 1e-4)) << "there is nothing to differ from";
+  ASSERT_TRUE(known.height(3, 1e-8));
+  EXPECT_NEAR(known.height(3, 1e-8)->height, 15, 1e-9);
+  EXPECT_TRUE(known.isSame(42.6 / 15, 1e-8, 15, 1)) << "nor have other edges been seen";
+}
+
+TEST(WidthHeight, LearnedOnceIsAsUncertainAsHeightsBySamplesOfIt) {
+  // A width that is seen at 15 m to 0.1 m of height, and again at 10 m; both to 0.01 heights.
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  constexpr int kSamples = 20000;
+  double squares = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double width = (kWidth / 15 + 0.01 * normal(random)) * (15 + 0.1 * normal(random));
+    squares += std::pow(width / (kWidth / 10 + 0.01 * normal(random)) - 10, 2) / kSamples;
+  }
+  WidthHeight learned(0);
+  for (int i = 0; i < 5; ++i) learned.learn(kWidth / 15, 1e-4, 15, 0.01);
+  const auto estimate = learned.height(kWidth / 10, 1e-4);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->variance / squares, 1, 0.05);
 }
 
 }  // namespace

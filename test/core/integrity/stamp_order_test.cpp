@@ -69,5 +69,20 @@ TEST(StampOrder, LateOnesBetweenOthersAreNoClock) {
   }
 }
 
+TEST(StampOrder, AfterAResetAnyStampIsTheFirst) {
+  StampOrder order(0.3);
+  order.follow(10000 * kMs);
+  order.reset();
+  EXPECT_EQ(order.follow(9900 * kMs), Arrival::kNext);
+  order.reset();
+  EXPECT_EQ(order.follow(1), Arrival::kNext) << "the first nanosecond of a simulated clock";
+  // Nor are the late ones before it counted.
+  order.follow(10000 * kMs);
+  for (const int ms : {9850, 9900}) EXPECT_EQ(order.follow(ms * kMs), Arrival::kLate);
+  order.reset();
+  order.follow(10000 * kMs);
+  EXPECT_EQ(order.follow(9950 * kMs), Arrival::kLate);
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -360,5 +360,37 @@ TEST(KalmanHeightReconstruction, AKnownWidthThatAgreesImprovesTheHeight) {
   EXPECT_LT(both.raw_height_variance, 0.5 * alone.raw_height_variance);
 }
 
+/// On level ground this far below a level camera, or on something.
+StereoDepthResult::Point pointAt(double forward, double below, bool on_plane) {
+  return {320, 240 + 500 * below / forward, 500 / forward, 0.1, on_plane};
+}
+
+TEST(KalmanHeightReconstruction, AveragesThePointsOnThePlaneOrEveryDepthAsThePaperDoes) {
+  constexpr double kHeight = 10;
+  StereoDepthResult stereo = stereoAt(0, kHeight, 0, 0);
+  for (const double forward : {40.0, 60.0, 90.0}) stereo.points.push_back(pointAt(forward, kHeight, true));
+  stereo.points.push_back(pointAt(50, kHeight - 2, false));
+  KalmanHeightParameters parameters;
+  parameters.height_source = HeightSource::kPoints;
+  EXPECT_NEAR(KalmanHeightStage(usualRig(), parameters).process(stereo, angleAt(0)).raw_height, kHeight,
+              1e-9);
+  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
+  const double forward = (40.0 + 60.0 + 90.0 + 50.0) / 4, below = kHeight - 2.0 / 4;
+  EXPECT_NEAR(KalmanHeightStage(usualRig(), parameters).process(stereo, angleAt(0)).raw_height,
+              below * std::cos(5 * kDegree) + forward * std::sin(5 * kDegree), 1e-9);
+}
+
+TEST(KalmanHeightReconstruction, NamesTheMissingAngleWhereNothingElseHasFailed) {
+  StereoDepthResult stereo = stereoAt(0, 10, 0, 0);
+  for (const double forward : {40.0, 60.0}) stereo.points.push_back(pointAt(forward, 10, true));
+  ApproachAngleResult approach = angleAt(0);
+  approach.step = approach.window = {};
+  KalmanHeightParameters parameters;
+  parameters.height_source = HeightSource::kPoints;
+  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
+  const LandingResult result = KalmanHeightStage(usualRig(), parameters).process(stereo, approach);
+  EXPECT_EQ(result.failure.message(), "no_motion: no approach angle to reconstruct the height with");
+}
+
 }  // namespace
 }  // namespace uav_landing
