@@ -114,6 +114,35 @@ TEST(SpeedMemory, AGapBeforeKnownStepsExcusesNoStandstillAfterThem) {
   EXPECT_GT(fly(memory, 0.1, 0), 4.4);
 }
 
+TEST(SpeedMemory, APictureThatStandsStillForHalfAMinuteIsThatOfAnAircraftThatStands) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.125, 2.5);
+  for (int i = 0; i < 240; ++i) EXPECT_GT(fly(memory, 0.125, 0), 4.4) << i;
+  EXPECT_TRUE(memory.stands());
+  for (int i = 0; i < 4; ++i) fly(memory, 0.125, 0);
+  EXPECT_FALSE(memory.stands());
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(fly(memory, 0.125, 0) > 4.4) << i;
+}
+
+TEST(SpeedMemory, ForgetsAtAReset) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 5; ++i) fly(memory, 0.05, 1);
+  fly(memory, 0.05, 0);
+  ASSERT_TRUE(memory.stands());
+  memory.reset();
+  EXPECT_FALSE(memory.stands());
+  EXPECT_TRUE(std::isnan(fly(memory, 0.05, 0))) << "of a speed that was, nothing is known";
+}
+
+TEST(SpeedMemory, AShortfallIsAsUncertainAsTheWayAndTheSlowestSpeed) {
+  SpeedMemory memory(3);
+  for (int i = 0; i < 3; ++i) memory.learn({0.05, 1, 0.1 * 0.1}, true);  // 20 m/s to 2 m/s
+  const auto shortfall = memory.compare({0.1, 0.5, 0.03 * 0.03});
+  ASSERT_TRUE(shortfall);
+  EXPECT_NEAR(shortfall->difference, 0.3 * 0.1 * (20 - 0.3) - 0.5, 1e-9);
+  EXPECT_NEAR(std::sqrt(shortfall->variance), std::hypot(0.3 * 0.1 * 2, 0.03), 1e-9);
+}
+
 StereoRig makeRig() { return test::rigOf({640, 480}, 500, {320, 240}, 320, 1.0); }
 
 /// A pair of a flight of 20 m/s at 10 m, or of one whose picture stands still.

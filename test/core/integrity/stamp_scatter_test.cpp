@@ -15,7 +15,7 @@ constexpr double kStep = 0.05, kSpeed = 20;  // s, m/s
 
 /// Mean of what is said of the durations in a flight whose stamps are wrong by so much and whose ways are by
 /// the other. s, m.
-double scatterOf(double stamp_stddev, double way_stddev, double claimed_way_stddev) {
+double scatterOf(double stamp_stddev, double way_stddev, double claimed_way_stddev, double speed = kSpeed) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
   StampScatter scatter(3);
@@ -23,7 +23,7 @@ double scatterOf(double stamp_stddev, double way_stddev, double claimed_way_stdd
   constexpr int kSteps = 2000;
   for (int i = 0; i < kSteps; ++i) {
     const double late = stamp_stddev * normal(random);
-    scatter.follow({kStep + late - before, kSpeed * kStep + way_stddev * normal(random),
+    scatter.follow({kStep + late - before, speed * kStep + way_stddev * normal(random),
                     claimed_way_stddev * claimed_way_stddev});
     before = late;
     sum += scatter.ofDuration() / kSteps;
@@ -35,6 +35,44 @@ TEST(StampScatter, IsThatOfTheDurations) {
   // Each duration has two stamps in it.
   const double expected = 2 * std::pow(0.003 / kStep, 2);
   EXPECT_NEAR(scatterOf(0.003, 0, 1e-4) / expected, 1, 0.4);
+}
+
+TEST(StampScatter, OfTheDurationsIsWhatTheWaysDoNotExplain) {
+  // Ways of 3 m that are known to 5 %.
+  const double expected = 2 * std::pow(0.003 / kStep, 2);
+  EXPECT_NEAR(scatterOf(0.003, 0.15, 0.15, 60) / expected, 1, 0.4);
+}
+
+/// A flight whose stamps are wrong by 10 ms in turn.
+StampScatter scattered() {
+  StampScatter scatter(3);
+  for (int i = 0; i < 20; ++i) scatter.follow({kStep + (i % 2 == 0 ? 0.01 : -0.01), kSpeed * kStep, 1e-8});
+  EXPECT_GT(scatter.ofDuration(), 0.01);
+  return scatter;
+}
+
+TEST(StampScatter, IsForgottenAtAReset) {
+  StampScatter scatter = scattered();
+  scatter.reset();
+  EXPECT_EQ(scatter.ofDuration(), 0);
+  // Another aircraft flies at another speed, which is no wrong stamp either.
+  for (int i = 0; i < 20; ++i) scatter.follow({kStep, 3 * kSpeed * kStep, 1e-8});
+  EXPECT_EQ(scatter.ofDuration(), 0);
+}
+
+TEST(StampScatter, GoodStampsEndIt) {
+  StampScatter scatter = scattered();
+  for (int i = 0; i < 20; ++i) scatter.follow({kStep, kSpeed * kStep, 1e-8});
+  EXPECT_EQ(scatter.ofDuration(), 0);
+}
+
+TEST(StampScatter, ASpeedThatChangesInAGapIsNoWrongStamp) {
+  StampScatter scatter(3);
+  for (int i = 0; i < 40; ++i) {
+    scatter.follow({kStep, (i % 2 == 0 ? 1 : 1.5) * kSpeed * kStep, 1e-8});
+    scatter.skip();
+  }
+  EXPECT_EQ(scatter.ofDuration(), 0);
 }
 
 TEST(StampScatter, OfGoodStampsIsNextToNothing) {

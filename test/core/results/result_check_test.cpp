@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <string>
+
+#include "support/rigs.h"
 
 namespace uav_landing {
 namespace {
@@ -102,6 +106,181 @@ TEST(ResultCheck, ARotationOfTheRigFurtherThanAnyIsLeftOut) {
   EXPECT_FALSE(isKept(0.3, 0, 0));
   EXPECT_FALSE(isKept(0, 1e300, 0));
   EXPECT_FALSE(isKept(0, 0, -0.3));
+}
+
+/// Level ground 10 m below, with everything that a pair can say of it.
+StereoDepthResult possiblePair() {
+  StereoDepthResult result;
+  result.plane = {Eigen::Vector3d(0, 0.1, 0), 1e-8 * Eigen::Matrix3d::Identity()};
+  result.row_covariance = 1e-9 * Eigen::Matrix3d::Identity();
+  result.below = {Eigen::Vector3d(0, 0.101, 0), 2e-8 * Eigen::Matrix3d::Identity()};
+  result.disparity_bias_stddev = 0.02;
+  result.row_bias_stddev = 0.03;
+  result.lasting_share = 0.5;
+  result.surface_variance = 1e-3;
+  result.skew = 0.002;
+  result.points = {{320, 400, 50, 0.1, true}};
+  return result;
+}
+
+StereoDepthResult checkedPair(const std::function<void(StereoDepthResult&)>& change) {
+  StereoDepthResult result = possiblePair();
+  change(result);
+  return checked(test::usualRig(), result);
+}
+
+TEST(ResultCheck, APossiblePairKeepsItsPlane) {
+  const auto expectKept = [](const std::function<void(StereoDepthResult&)>& change) {
+    const StereoDepthResult kept = checkedPair(change);
+    EXPECT_FALSE(kept.failure) << kept.failure.message();
+    EXPECT_EQ(kept.plane.g, possiblePair().plane.g);
+    EXPECT_EQ(kept.points.size(), 1u);
+  };
+  expectKept([](StereoDepthResult&) {});
+  // What a pair need not know.
+  expectKept([](StereoDepthResult& r) { r.below = {}; });
+  expectKept([](StereoDepthResult& r) { r.lasting_share = kUnknown; });
+  expectKept([](StereoDepthResult& r) { r.surface_variance = kUnknown; });
+  expectKept([](StereoDepthResult& r) { r.row_covariance.setZero(); });
+  expectKept([](StereoDepthResult& r) { r.surface_variance = -0.5; });  // an unbiased one scatters around 0
+}
+
+struct BadField {
+  const char* field;
+  std::function<void(StereoDepthResult&)> change;
+};
+
+class ImpossiblePair : public testing::TestWithParam<BadField> {};
+
+TEST_P(ImpossiblePair, HasNoPlaneAndAReasonThatNamesTheField) {
+  const StereoDepthResult kept = checkedPair(GetParam().change);
+  EXPECT_EQ(kept.failure.reason, Reason::kInputInvalid);
+  EXPECT_EQ(kept.failure.detail.find(std::string(GetParam().field) + ":"), 0u) << kept.failure.detail;
+  EXPECT_FALSE(kept.plane.valid());
+}
+
+Eigen::Matrix3d asymmetric() {
+  Eigen::Matrix3d matrix = 1e-8 * Eigen::Matrix3d::Identity();
+  matrix(0, 1) = 1e-9;
+  return matrix;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ByField, ImpossiblePair,
+    testing::Values(
+        BadField{"plane",
+                 [](StereoDepthResult& r) {
+                   r.plane.g = {0, -0.1, 0};
+                 }},
+        BadField{"plane",
+                 [](StereoDepthResult& r) {
+                   r.plane.g = {0.1, 0.01, 0};
+                 }},
+        BadField{"plane",
+                 [](StereoDepthResult& r) {
+                   r.plane.g = {0, 1e4, 0};
+                 }},
+        BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance.setZero(); }},
+        BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance = asymmetric(); }},
+        BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance(0, 0) = -1e-8; }},
+        BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance(1, 1) = kUnknown; }},
+        BadField{"plane_row_covariance", [](StereoDepthResult& r) { r.row_covariance *= 100; }},
+        BadField{"disparity_bias_stddev", [](StereoDepthResult& r) { r.disparity_bias_stddev = 0.1; }},
+        BadField{"disparity_bias_stddev", [](StereoDepthResult& r) { r.disparity_bias_stddev = -0.01; }},
+        BadField{"row_bias_stddev", [](StereoDepthResult& r) { r.row_bias_stddev = 11; }},
+        BadField{"plane_lasting_share", [](StereoDepthResult& r) { r.lasting_share = 1.1; }},
+        BadField{"plane_lasting_share", [](StereoDepthResult& r) { r.lasting_share = 0; }},
+        BadField{"surface_variance", [](StereoDepthResult& r) { r.surface_variance = 101; }},
+        BadField{"surface_variance", [](StereoDepthResult& r) { r.surface_variance = -1.1; }},
+        BadField{"plane_below", [](StereoDepthResult& r) { r.below.g *= 3; }},
+        BadField{"plane_below", [](StereoDepthResult& r) { r.below.covariance.setZero(); }},
+        BadField{"skew", [](StereoDepthResult& r) { r.skew = 0.2; }},
+        BadField{"skew", [](StereoDepthResult& r) { r.skew = kUnknown; }}));
+
+TEST(ResultCheck, PointsThatNoImageHasAreLeftOut) {
+  const auto isKept = [](double u, double v, double disparity, double stddev) {
+    return !checkedPair([&](StereoDepthResult& r) {
+              r.points = {{u, v, disparity, stddev, true}};
+            }).points.empty();
+  };
+  EXPECT_TRUE(isKept(0, 0, -3, 0.1));
+  EXPECT_TRUE(isKept(639, 479, 600, 0.1));
+  EXPECT_FALSE(isKept(-1, 0, 50, 0.1));
+  EXPECT_FALSE(isKept(640, 0, 50, 0.1));
+  EXPECT_FALSE(isKept(0, 480, 50, 0.1));
+  EXPECT_FALSE(isKept(0, 0, 1e9, 0.1));
+  EXPECT_FALSE(isKept(0, 0, kUnknown, 0.1));
+  EXPECT_FALSE(isKept(0, 0, 50, 0));
+}
+
+TEST(ResultCheck, ABaselineFurtherThanAnyIsLeftOut) {
+  const auto isKept = [](double down, double variance) {
+    return checkedPair([&](StereoDepthResult& r) {
+             r.baseline_direction = {{down, 0.1}, variance * Eigen::Matrix2d::Identity()};
+           })
+        .baseline_direction.known();
+  };
+  EXPECT_TRUE(isKept(0.1, 1e-4));
+  EXPECT_FALSE(isKept(200, 1e-4));
+  EXPECT_FALSE(isKept(0.1, 0));
+}
+
+/// A runway that is seen from 2 heights to the side, 4 heights wide, 10 heights ahead.
+ApproachAngleResult::Runway checkedRunway(const std::function<void(ApproachAngleResult::Runway&)>& change) {
+  ApproachAngleResult result;
+  ApproachAngleResult::Runway& runway = result.runway;
+  runway.failure = runway.threshold_failure = {};
+  runway.y = 2;
+  runway.width = 4;
+  runway.x = -10;
+  runway.y_variance = runway.width_variance = runway.x_variance = 0.01;
+  runway.x_systematic_variance = 0.004;
+  change(runway);
+  return checked(result).runway;
+}
+
+TEST(ResultCheck, ARunwayLosesWhatIsNoLengthAndKeepsTheRest) {
+  using Runway = ApproachAngleResult::Runway;
+  const Runway kept = checkedRunway([](Runway&) {});
+  EXPECT_FALSE(kept.failure || kept.threshold_failure);
+  EXPECT_EQ(kept.x, -10);
+  EXPECT_EQ(kept.x_systematic_variance, 0.004);
+  const Runway without_y = checkedRunway([](Runway& r) { r.y_variance = -1; });
+  EXPECT_EQ(without_y.failure.detail.find("runway.y:"), 0u) << without_y.failure.detail;
+  EXPECT_TRUE(std::isnan(without_y.y) && std::isnan(without_y.y_variance));
+  EXPECT_EQ(without_y.x, -10);
+  for (const double width : {-4.0, 0.0, 1e5}) {
+    const Runway without_width = checkedRunway([&](Runway& r) { r.width = width; });
+    EXPECT_FALSE(without_width.failure);
+    EXPECT_TRUE(std::isnan(without_width.width) && std::isnan(without_width.width_variance)) << width;
+  }
+  // A part is not larger than the whole.
+  const Runway without_x = checkedRunway([](Runway& r) { r.x_systematic_variance = 0.02; });
+  EXPECT_EQ(without_x.threshold_failure.detail.find("runway.x:"), 0u) << without_x.threshold_failure.detail;
+  EXPECT_TRUE(std::isnan(without_x.x) && std::isnan(without_x.x_variance));
+  EXPECT_EQ(without_x.x_systematic_variance, 0);
+  EXPECT_FALSE(without_x.failure);
+}
+
+TEST(ResultCheck, AnImuKeepsAnAttitudeWithoutARotationAndARotationWithoutAnAttitude) {
+  ApproachAngleResult result;
+  result.imu.normal = {0, 1, 0};
+  result.imu.normal_covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  result.imu.rotation = {0, 0.01, 0};
+  result.imu.rotation_covariance = 1e-6 * Eigen::Matrix3d::Identity();
+  result.imu.duration = 0.05;
+  const AttitudePrior whole = checked(result).imu;
+  EXPECT_TRUE(whole.hasNormal() && whole.hasRotation());
+  ApproachAngleResult turned_too_far = result, not_a_direction = result;
+  turned_too_far.imu.rotation *= 1000;
+  not_a_direction.imu.normal *= 2;
+  const AttitudePrior without_rotation = checked(turned_too_far).imu;
+  EXPECT_TRUE(without_rotation.hasNormal());
+  EXPECT_FALSE(without_rotation.hasRotation());
+  EXPECT_TRUE(std::isnan(without_rotation.duration));
+  const AttitudePrior without_normal = checked(not_a_direction).imu;
+  EXPECT_FALSE(without_normal.hasNormal());
+  EXPECT_TRUE(without_normal.hasRotation());
 }
 
 }  // namespace

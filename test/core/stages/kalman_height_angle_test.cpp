@@ -164,5 +164,19 @@ TEST(KalmanHeightAngle, CountsTheTimeOfRepeatedPicturesOnce) {
   EXPECT_LE(pairs * kT, kWindow + 3.01 * kT);
 }
 
+TEST(KalmanHeightAngle, AVelocityThatHasChangedUnusuallyIsAsUncertainAsTheChange) {
+  const auto varianceAfter = [](double change) {
+    Flight flight;
+    for (int i = 0; i < 20; ++i) flight.fly(1, 0.06);
+    const LandingResult result = flight.fly(1 + change * kT, 0.06);
+    EXPECT_EQ(failedTests(result.tests), "") << change;
+    return result.speedVariance();
+  };
+  // 5 m/s^2 are 0.25 m/s from pair to pair, 1 sigma: two are usual, four are not yet a contradiction.
+  const double usual = varianceAfter(0);
+  EXPECT_NEAR(varianceAfter(0.5) / usual, 1, 0.1);
+  EXPECT_NEAR(std::sqrt(varianceAfter(1) - usual), 1, 0.05);
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -331,5 +331,24 @@ TEST(KalmanHeightStage, ReportsABentRigWithinTheLimitAndNoneWhenNotWatching) {
   EXPECT_FALSE(unwatched.rig_rotation.known());
 }
 
+TEST(KalmanHeightStage, LearnsTheVerticalSpeedByTheHeightThatTheMotionIsOf) {
+  // The surface bends down below: the camera is 11 m above it, but 10 m above the plane ahead, of which the
+  // motion is. It descends by 2 m/s.
+  KalmanHeightStage stage(usualRig(), {});
+  LandingResult result;
+  for (int i = 0; i < 2; ++i) {
+    const double height = 10 - 0.2 * i;
+    StereoDepthResult stereo = stereoAt(i * kStep, height, 0, 0, 0.05);
+    stereo.plane.covariance(0, 0) = stereo.plane.covariance(2, 2) = std::pow(1e-5, 2);
+    stereo.below = {Eigen::Vector3d(0, 1 / (height + 1), 0), stereo.plane.covariance};
+    ApproachAngleResult approach = withStep(angleAt(i * kStep), 0.2);
+    approach.step.translation_over_height *= 10 / height;
+    result = stage.process(stereo, approach);
+  }
+  EXPECT_NEAR(result.raw_height, 10.8, 0.01);
+  EXPECT_LT(std::sqrt(result.vertical_speed_variance), 0.12);
+  EXPECT_NEAR(result.vertical_speed, -2.0, 0.12);
+}
+
 }  // namespace
 }  // namespace uav_landing
