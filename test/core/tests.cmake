@@ -47,6 +47,7 @@ uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # height
+uav_landing_add_gtest(attitude_test test/core/height/attitude_test.cpp)
 uav_landing_add_gtest(attitude_filter_test test/core/height/attitude_filter_test.cpp)
 uav_landing_add_gtest(camera_twist_test test/core/height/camera_twist_test.cpp)
 uav_landing_add_gtest(height_filter_test test/core/height/height_filter_test.cpp)
@@ -157,3 +158,6 @@ uav_landing_add_gtest(kalman_height_reset_test test/core/stages/kalman_height_re
 uav_landing_add_gtest(kalman_height_stage_test test/core/stages/kalman_height_stage_test.cpp)
 uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+
+# the whole chain
+uav_landing_add_gtest(pipeline_test test/core/pipeline_test.cpp)

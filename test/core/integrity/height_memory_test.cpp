@@ -51,5 +51,37 @@ TEST(HeightMemory, KeepsTheOldHeightWhileTheNewOneContradictsUntilItIsOfNoUse) {
   EXPECT_LT(lasted, 25);
 }
 
+TEST(HeightMemory, ForgetsAtAReset) {
+  HeightMemory memory;
+  const auto fly = [&] {
+    memory.carry(0.05, 0, 1e-4, 20);
+    memory.refresh(settled(20, 0), true, 1);
+  };
+  for (int i = 0; i < 25; ++i) fly();
+  ASSERT_TRUE(memory.expected());
+  memory.reset();
+  EXPECT_FALSE(memory.expected());
+  for (int i = 0; i < 10; ++i) {
+    fly();
+    EXPECT_FALSE(memory.expected()) << "nor is the younger height older than half a second: " << i;
+  }
+}
+
+TEST(HeightMemory, IsAsUncertainAsTheHeightTheSpeedAndTheDirectionOfTheHorizontal) {
+  // Without random acceleration the height of t later is h + v t, with a variance of its own.
+  HeightFilter filter(0, 5, 5);
+  filter.initialise(20, 0.04);
+  filter.updateSpeed(0, 1e-4);
+  HeightMemory memory;
+  memory.refresh(filter, true, 10);
+  for (int i = 0; i < 8; ++i) memory.carry(0.125, std::nan(""), std::nan(""), 16);
+  memory.refresh(filter, true, 10);
+  ASSERT_TRUE(memory.expected());
+  EXPECT_NEAR(memory.expected()->height, 20, 1e-9);
+  // In a second: 0.2 m, 1 cm/s, and 0.15 degrees of 16 m.
+  const double variance = 0.04 + 1e-4 + std::pow(16 * 0.15 * M_PI / 180, 2);
+  EXPECT_NEAR(memory.expected()->variance / variance, 1, 1e-3);
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -126,5 +126,16 @@ TEST(VanishingMemory, ForgetsAtAReset) {
   EXPECT_FALSE(flight.see(-4));
 }
 
+TEST(VanishingMemory, ATurnThatNobodySawMakesTheDirectionAsUncertain) {
+  Flight flight = knownRunway();
+  ApproachAngleResult::Motion unknown = flight.turn(0);
+  unknown.failure = {Reason::kTooFewMatches, ""};
+  const Eigen::Matrix3d before = flight.memory.remembered()->covariance;
+  ASSERT_TRUE(flight.see(-40, unknown)) << "more than any turn of that time";
+  // 5 degrees per second for a tenth of a second.
+  const Eigen::Matrix3d grown = flight.memory.remembered()->covariance - before;
+  EXPECT_LT((grown - std::pow(0.5 * kDegree, 2) * Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace uav_landing

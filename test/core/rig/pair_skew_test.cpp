@@ -112,5 +112,42 @@ TEST(PairSkew, EnlargesTheCovarianceByTheErrorOfTheKnownMotion) {
   EXPECT_GT(std::sqrt(withSkew(rig, stereo, step).heightVariance()), std::abs(error));
 }
 
+TEST(PairSkew, ClaimsOfTheBaselineAFifthOfTheWayOrWhatASmallAircraftMoves) {
+  const StereoRig rig = makeRig();
+  StereoDepthResult stereo;
+  stereo.plane.g = kTruePlane;
+  stereo.skew = -0.004;
+  ApproachAngleResult::Motion step;
+  step.duration = 0.05;
+  step.translation_over_height = Eigen::Vector3d(0.02, 0.1, 1.0) / 12;
+  // 8 cm forward and 0.8 cm down on a baseline of 0.8 m; the way back, as the right image is the first.
+  const BaselineDirection known = baselineOfSkew(rig, stereo, step);
+  EXPECT_NEAR(known.t.y(), -0.1, 1e-3);
+  const double stddev = 0.2 * std::hypot(0.1, 0.01);
+  EXPECT_NEAR(std::sqrt(known.covariance(0, 0)), stddev, 1e-3 * stddev);
+  EXPECT_NEAR(std::sqrt(known.covariance(1, 1)), stddev, 1e-3 * stddev);
+  EXPECT_EQ(known.covariance(0, 1), 0);
+  // 2 m/s down or up, 20 m/s forward.
+  step.failure = {Reason::kNotYet, ""};
+  const BaselineDirection unknown = baselineOfSkew(rig, stereo, step);
+  EXPECT_EQ(unknown.t, Eigen::Vector2d(0, 0));
+  EXPECT_NEAR(std::sqrt(unknown.covariance(0, 0)), 2 * 0.004 / 0.8, 1e-12);
+  EXPECT_NEAR(std::sqrt(unknown.covariance(1, 1)), 20 * 0.004 / 0.8, 1e-12);
+}
+
+TEST(PairSkew, PointsOffThePlaneDoNotTellHowFarTheGroundIs) {
+  const StereoRig rig = makeRig();
+  StereoDepthResult stereo;
+  stereo.points = seePoints(rig, {{0, 0, 20}, {0, 0, 0}}, 0.003);
+  stereo.plane.g = fitPlane(rig, stereo.points);
+  stereo.plane.covariance = 1e-12 * Eigen::Matrix3d::Identity();
+  stereo.skew = 0.003;
+  ApproachAngleResult::Motion step;
+  step.failure = {Reason::kNotYet, ""};
+  const Eigen::Matrix3d with_ground = withSkew(rig, stereo, step).covariance;
+  for (int i = 0; i < 50; ++i) stereo.points.push_back({100, 100, 400, 0.1, false});
+  EXPECT_EQ(withSkew(rig, stereo, step).covariance, with_ground);
+}
+
 }  // namespace
 }  // namespace uav_landing

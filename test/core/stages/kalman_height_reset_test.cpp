@@ -1,5 +1,5 @@
-// A jump of the clock forgets everything: the stage is then as if it were new. Whatever state outlives its
-// flight shows here.
+// A reset, or a jump of the clock, forgets everything: the stage is then as if it were new. Whatever state
+// outlives its flight shows here.
 
 #include <gtest/gtest.h>
 
@@ -125,35 +125,43 @@ void expectSame(const LandingResult& a, const LandingResult& b) {
   }
 }
 
-class AfterAJump : public testing::TestWithParam<int> {};
-
-/// The first flight lasts a random time, so that it ends in other states; the second one is another
-/// aircraft's.
-TEST_P(AfterAJump, AFlightIsEstimatedAsIfNothingHadBeenBefore) {
-  std::mt19937 random(static_cast<unsigned>(GetParam()));
+/// Another aircraft's flight, of a random time, so that it ends in one of many states. Returns the stamp of
+/// the next pair.
+double flyBefore(int seed, KalmanHeightStage& stage) {
+  std::mt19937 random(static_cast<unsigned>(seed));
   const int pairs = std::uniform_int_distribution<int>(4, 90)(random);
-  KalmanHeightStage used(test::usualRig(), {}), fresh(test::usualRig(), {});
-  Flight first;
-  first.random = random;
-  first.spoiled = true;
-  first.speed = 35;
-  first.height = 25;
-  first.pitch = -7 * kDegree;
-  first.rig_pitch = 4e-4;
-  first.surface = 0.01;
+  Flight flight;
+  flight.random = random;
+  flight.spoiled = true;
+  flight.speed = 35;
+  flight.height = 25;
+  flight.pitch = -7 * kDegree;
+  flight.rig_pitch = 4e-4;
+  flight.surface = 0.01;
   StereoDepthResult stereo;
   ApproachAngleResult approach;
-  for (int i = 0; i < pairs; ++i) {
-    first.pair(500 + kT * i, i, stereo, approach);
-    used.process(stereo, approach);
+  double stamp = 500;
+  for (int i = 0; i < pairs; ++i, stamp += kT) {
+    flight.pair(stamp, i, stereo, approach);
+    stage.process(stereo, approach);
   }
-  // The last pairs of the first flight stand still or are a picture once more.
-  for (int i = 0; i < GetParam() % 4; ++i) {
-    first.way_factor = 1e-3;
-    first.pair(500 + kT * (pairs + i), pairs + i, stereo, approach);
-    stereo.left_repeated = GetParam() % 2 == 0;
-    used.process(stereo, approach);
+  // The last pairs stand still or are a picture once more.
+  for (int i = 0; i < seed % 4; ++i, stamp += kT) {
+    flight.way_factor = 1e-3;
+    flight.pair(stamp, pairs + i, stereo, approach);
+    stereo.left_repeated = seed % 2 == 0;
+    stage.process(stereo, approach);
   }
+  return stamp;
+}
+
+class AfterAJump : public testing::TestWithParam<int> {};
+
+TEST_P(AfterAJump, AFlightIsEstimatedAsIfNothingHadBeenBefore) {
+  KalmanHeightStage used(test::usualRig(), {}), fresh(test::usualRig(), {});
+  flyBefore(GetParam(), used);
+  StereoDepthResult stereo;
+  ApproachAngleResult approach;
   Flight of_used, of_fresh;
   of_used.random.seed(9);
   of_fresh.random.seed(9);
@@ -174,6 +182,27 @@ TEST_P(AfterAJump, AFlightIsEstimatedAsIfNothingHadBeenBefore) {
 }
 
 INSTANTIATE_TEST_SUITE_P(InManyStates, AfterAJump, testing::Range(0, 24));
+
+class AfterAReset : public testing::TestWithParam<int> {};
+
+/// Its stamps go on, so that nothing is forgotten for its age. It begins with a pair that contradicts itself.
+TEST_P(AfterAReset, AFlightIsEstimatedAsIfNothingHadBeenBefore) {
+  constexpr int kWildPair = 5;
+  KalmanHeightStage used(test::usualRig(), {}), fresh(test::usualRig(), {});
+  const double begin = flyBefore(GetParam(), used);
+  used.reset();
+  Flight flight;
+  flight.spoiled = true;
+  StereoDepthResult stereo;
+  ApproachAngleResult approach;
+  for (int i = 0; i < 30; ++i) {
+    flight.pair(begin + kT * i, kWildPair + i, stereo, approach);
+    expectSame(used.process(stereo, approach), fresh.process(stereo, approach));
+    if (HasFailure()) return;  // the pairs behind it say no more
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InManyStates, AfterAReset, testing::Range(0, 24));
 
 }  // namespace
 }  // namespace uav_landing
