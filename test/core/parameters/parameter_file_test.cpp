@@ -77,6 +77,13 @@ TEST(ParameterFile, RefusesValuesOutOfRangeWithTheRange) {
             "test.yaml: kalman_height/gate: inf is out of range, expected 1 to 20 sigma");
 }
 
+TEST(ParameterFile, NamesTheFirstOfSeveralMistakes) {
+  const std::string first = "test.yaml: stereo_depth/window_radius: 99 is out of range, expected 2 to 15 px";
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 99, min_zncc: 1.5, warp_window: 2}"), first);
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 99, window_raduis: 5}"), first);
+  EXPECT_EQ(errorOf("stereo_depth: {window_radius: 99}\nkalman_height: {gate: 99}\n"), first);
+}
+
 TEST(ParameterFile, AcceptsBothEndsOfTheRange) {
   EXPECT_EQ(errorOf("stereo_depth: {window_radius: 2}"), "accepted");
   EXPECT_EQ(errorOf("stereo_depth: {window_radius: 15}"), "accepted");

@@ -309,6 +309,39 @@ TEST(RigRotationFilter, VarianceOfThePlaneHasTheRigsShareInIt) {
   EXPECT_GT(corrected.plane.heightVariance(), common.heightVariance());
 }
 
+// Yaw and slope look the same, so that what is known of one is known of the other by its opposite.
+TEST(RigRotationFilter, APlaneOfARigWhoseYawWasSeenAgainstASlopeHasTheVarianceOfSamples) {
+  constexpr double kHeight = 20, kRigBias = 0.1;  // m, px
+  constexpr int kRuns = 3000, kFrames = 6;
+  Approach approach;
+  const double rig_stddev = kRigBias / approach.rig.fx;
+  double squares = 0, claimed = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    RigRotationFilter filter(approach.rig, 1e9);
+    filter.advance(0);
+    filter.setPrior(kRigBias, kRowBias);
+    approach.w = {0, approach.noise(rig_stddev), approach.noise(rig_stddev)};
+    // A tenth of the variance of a first direction is its noise, the rest is the slope.
+    const double slope = approach.noise(std::sqrt(0.9) * kStraight);
+    RigRotationFilter::Corrected corrected;
+    for (int i = 1; i <= kFrames; ++i) {
+      // Of lines that are the same ones for 5 s, a frame a second is learned from with that much less trust.
+      const double more = i < kFrames ? std::sqrt(5) : 1;
+      approach.slope = slope + more * approach.noise(std::sqrt(0.1) * kStraight);
+      GroundPlane seen = approach.seen(kHeight);
+      seen.g.z() += std::sqrt(more * more - 1) * approach.noise(kPlaneError) / kHeight;
+      RigRotationFilter::Others others;
+      others.vanishing = {approach.direction(), approach.directionCovariance()};
+      filter.advance(i);
+      corrected = filter.correct(seen, approach.A(), others, 10);
+      filter.settle(true);
+    }
+    squares += std::pow(pitchError(corrected.plane, approach.pitch), 2) / kRuns;
+    claimed += pitchVariance(corrected.plane.normal(), corrected.plane.normalCovariance()) / kRuns;
+  }
+  EXPECT_NEAR(claimed / squares, 1, 0.15);
+}
+
 TEST(RigRotationFilter, LeavesOutAVerticalRotationWithoutADefiniteCovariance) {
   Approach approach;
   const double variance = 1e-10;

@@ -42,10 +42,11 @@ struct Scene {
     left.push_back(line(from, to, true));
     right.push_back(line(from, to, false));
   }
-  std::optional<LinesAlong> find() const {
+  std::optional<LinesAlong> find() const { return find(pose.down(), kCovariance); }
+  std::optional<LinesAlong> find(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) const {
     Eigen::Matrix3d K_right = rig.K();
     K_right(0, 2) = rig.cx_right;
-    return findLinesAlong({{left, rig.K()}, {right, K_right}}, pose.down(), kCovariance, 30 * kDegree);
+    return findLinesAlong({{left, rig.K()}, {right, K_right}}, normal, covariance, 30 * kDegree);
   }
 };
 
@@ -79,6 +80,22 @@ TEST(GroundDirection, TwoDirectionsAreNotDecided) {
     scene.add({0, y}, {400, y + 60});
   }
   EXPECT_FALSE(scene.find());
+}
+
+// A normal that is wrong makes two edges diverge. Whether it may be that wrong, its pitch and roll tell
+// together: here it is uncertain in one direction only, half ahead and half aside.
+TEST(GroundDirection, EdgesMayDivergeAsFarAsTheNormalsErrorsMakeThemTogether) {
+  Scene scene;
+  scene.pose.yaw = 25 * kDegree;
+  scene.add({0, 22}, {400, 22});
+  scene.add({0, -22}, {500, -22});
+  const Eigen::Vector3d n = scene.pose.down(), runway = scene.pose.seen(Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d ahead = (Eigen::Vector3d::UnitZ() - n.z() * n).normalized(), left = ahead.cross(n);
+  const Eigen::Vector3d tip = (runway.dot(left) * ahead + runway.dot(ahead) * left).normalized();
+  constexpr double kTip = 1.5 * kDegree;
+  const Eigen::Vector3d wrong = (n + kTip * tip).normalized();
+  EXPECT_FALSE(scene.find(wrong, kCovariance)) << "wrong by far more than it claims";
+  EXPECT_TRUE(scene.find(wrong, kTip * kTip * tip * tip.transpose() + kCovariance));
 }
 
 }  // namespace

@@ -115,5 +115,29 @@ TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
   EXPECT_TRUE(matchEdges(axes, view(false, from_above), view(true, from_above)).empty());
 }
 
+TEST(GroundEdges, AreTheLongestFirstOfOneViewAndOfBoth) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const GroundAxes axes = axesOf(pose);
+  // Each view sees one edge that the other does not.
+  const auto edgesOf = [&](bool right) {
+    const double offset = right ? rig.baseline : 0;
+    return groundEdges(rig, axes,
+                       {seen(rig, pose, 0.4, 25, 40, offset, true), seen(rig, pose, 2, 25, 60, offset, true),
+                        seen(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
+                       {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+  };
+  const auto lateralsOf = [](const std::vector<GroundEdge>& edges) {
+    std::vector<double> places;  // across, m
+    for (const GroundEdge& edge : edges) places.push_back(std::round(80 * edge.lateral + 15) / 10);
+    return places;
+  };
+  const std::vector<GroundEdge> left = edgesOf(false), right = edgesOf(true);
+  EXPECT_EQ(lateralsOf(left), (std::vector<double>{9, 2, 0.4}));
+  EXPECT_EQ(lateralsOf(right), (std::vector<double>{2, -6, 0.4}));
+  EXPECT_EQ(lateralsOf(joinEdges(axes, left, right)), (std::vector<double>{9, 2, -6, 0.4}));
+  EXPECT_EQ(lateralsOf(matchEdges(axes, left, right)), (std::vector<double>{2, 0.4}));
+}
+
 }  // namespace
 }  // namespace uav_landing
