@@ -26,6 +26,9 @@ struct Flight {
   double rig_pitch = 0;   // rad, that vertical disparities show
   double way_factor = 1;  // of the motion that the images show
   double surface = 0;     // variance of the surface about its plane, m^2
+  double aside = 0.02;    // tangent of the runway's direction against the camera's
+  double tilt = 0;        // of the motion's own normal against the plane's, rad
+  double noise = 1e-3;    // of the height, over it
   bool spoiled = false;   // repeats pictures, loses planes, tilts and contradicts itself now and then
   std::mt19937 random{1};
 
@@ -36,7 +39,7 @@ struct Flight {
     const Eigen::Vector3d down = normalFromPitchRoll(pitch + (odd ? 1.5 * kDegree : 0), roll);
     stereo = {};
     stereo.stamp = stamp;
-    stereo.plane.g = down / (now * (1 + 1e-3 * normal(random)) * (wild ? 1.2 : 1));
+    stereo.plane.g = down / (now * (1 + noise * normal(random)) * (wild ? 1.2 : 1));
     const double along = 0.02 / (now * now);
     stereo.plane.covariance = along * along * Eigen::Matrix3d::Identity();
     stereo.below = stereo.plane;
@@ -58,7 +61,7 @@ struct Flight {
     approach.n = normalFromPitchRoll(pitch, roll);
     approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d p =
-        Eigen::Vector3d(0.02, 0, 1) - Eigen::Vector3d(0.02, 0, 1).dot(approach.n) * approach.n;
+        Eigen::Vector3d(aside, 0, 1) - Eigen::Vector3d(aside, 0, 1).dot(approach.n) * approach.n;
     approach.vanishing_direction = p.normalized();
     approach.vanishing_covariance =
         1e-6 * (Eigen::Matrix3d::Identity() -
@@ -73,7 +76,7 @@ struct Flight {
       motion->covariance = 1e-8 * Matrix6d::Identity();
       motion->angle = std::atan(sink / speed);
       motion->angle_variance = 1e-6;
-      motion->normal = approach.n;
+      motion->normal = normalFromPitchRoll(pitch + tilt, roll);
       motion->normal_covariance = 1e-7 * (Eigen::Matrix3d::Identity() - approach.n * approach.n.transpose());
     }
     approach.runway.failure = {};
@@ -95,6 +98,7 @@ void expectSame(const LandingResult& a, const LandingResult& b) {
   EXPECT_EQ(a.failure.message(), b.failure.message());
   EXPECT_EQ(a.height_valid, b.height_valid);
   EXPECT_EQ(a.angle_valid, b.angle_valid);
+  EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.rejected, b.rejected);
   EXPECT_EQ(a.consecutive_rejections, b.consecutive_rejections);
   EXPECT_EQ(a.protection_source, b.protection_source);
@@ -132,7 +136,12 @@ double flyBefore(int seed, KalmanHeightStage& stage) {
   const int pairs = std::uniform_int_distribution<int>(4, 90)(random);
   Flight flight;
   flight.random = random;
-  flight.spoiled = true;
+  flight.spoiled = seed % 3 != 0;
+  if (!flight.spoiled) {
+    flight.aside = 0.3;
+    flight.tilt = 0.02;
+    flight.noise = 2e-3;
+  }
   flight.speed = 35;
   flight.height = 25;
   flight.pitch = -7 * kDegree;
