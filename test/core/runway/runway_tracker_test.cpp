@@ -185,5 +185,38 @@ TEST(RunwayTracker, ForgetsOnReset) {
   EXPECT_EQ(approach.next().failure.reason, Reason::kNotYet);
 }
 
+TEST(RunwayTracker, SinglePairsWithoutEdgesDoNotAddUp) {
+  Approach approach;
+  for (int i = 0; i < 4; ++i) approach.next();
+  for (int i = 0; i < 5; ++i) {
+    approach.time += 0.4;  // five such pairs last longer than the edges may be out of sight at once
+    EXPECT_TRUE(approach.next(0, true).failure) << i;
+    EXPECT_FALSE(approach.next().failure) << i;
+  }
+}
+
+/// The lines are seen elsewhere from now on, m from their middle. Returns whether this pair has a width.
+bool seesWidth(Approach& approach, double line_offset) {
+  approach.ground.line_offset = line_offset;
+  return std::isfinite(approach.next().width);
+}
+
+TEST(RunwayTracker, TakesAWiderWidthThatThreePairsSawWhicheverOfItsLinesTheySaw) {
+  Approach approach;
+  for (int i = 0; i < 6; ++i) approach.next();
+  for (const double offset : {1.5, 1.58, 1.5}) EXPECT_FALSE(seesWidth(approach, offset)) << offset;
+  EXPECT_TRUE(seesWidth(approach, 1.5));
+}
+
+TEST(RunwayTracker, AWiderWidthIsTheSameInHeightsAsFarAsTheMovementIsNotKnown) {
+  Approach approach;
+  for (int i = 0; i < 6; ++i) approach.next();
+  EXPECT_FALSE(seesWidth(approach, 1.5));
+  approach.climbed = 0.22;  // a ninth less of it in heights, and no motion says so
+  approach.skip();
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(seesWidth(approach, 1.5)) << i;
+  EXPECT_TRUE(seesWidth(approach, 1.5));
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -273,5 +273,18 @@ TEST(ApproachAngleStage, MeasuresStepsOverALostPair) {
   expectMotion(result.step, Movement(path(0.2), path(0.4)), path(0.4).height(), "gap");
 }
 
+TEST(ApproachAngleStage, TimesAreThoseOfThisPair) {
+  const ApproachScene scene(41);
+  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  const auto process = [&](double t, const cv::Mat& left) {
+    stage.process(t, left, scene.ground.right(scene.rig, path(t)), scene.stereo(path(t), t));
+  };
+  process(0, scene.ground.left(scene.rig, path(0)));
+  EXPECT_FALSE(stage.timings().parts().empty());
+  process(0.1, cv::Mat());
+  EXPECT_TRUE(stage.timings().parts().empty()) << "nothing was done with it";
+}
+
 }  // namespace
 }  // namespace uav_landing
