@@ -286,5 +286,22 @@ TEST(ApproachAngleStage, TimesAreThoseOfThisPair) {
   EXPECT_TRUE(stage.timings().parts().empty()) << "nothing was done with it";
 }
 
+TEST(ApproachAngleStage, ForgetsTheRunwayAtAReset) {
+  ApproachScene scene(7);
+  scene.ground.contrast = 3;
+  const auto path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage(scene.model, scene.parameters);
+  const auto runwayAt = [&](int i) {
+    const double t = i * kPeriod;
+    return stage
+        .process(t, scene.ground.left(scene.rig, path(t)), scene.ground.right(scene.rig, path(t)),
+                 scene.stereo(path(t), t))
+        .runway.failure.reason;
+  };
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(runwayAt(i) == Reason::kNotYet, i < 2) << i;
+  stage.reset();
+  for (int i = 4; i < 7; ++i) EXPECT_EQ(runwayAt(i) == Reason::kNotYet, i < 6) << i;
+}
+
 }  // namespace
 }  // namespace uav_landing

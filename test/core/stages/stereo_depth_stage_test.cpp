@@ -248,6 +248,19 @@ TEST(StereoDepthStage, BelievesASearchWithoutDirectRefinementWithTheNextPair) {
   expectPose(stage.process(1.1, pair.left, pair.right), makePose(1.6, -8, 0), "the next pair");
 }
 
+TEST(StereoDepthStage, KnowsTheSurfaceBelowByCornersAlone) {
+  Scene scene(18);
+  scene.parameters.direct_refinement = false;
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  stage.process(1, pair.left, pair.right);
+  const StereoDepthResult result = stage.process(1.1, pair.left, pair.right);
+  ASSERT_FALSE(result.failure) << result.failure.message();
+  ASSERT_TRUE(result.below.valid());
+  EXPECT_NEAR(result.below.height(), 1.6, 3.5 * std::sqrt(result.below.heightVariance()));
+  EXPECT_NEAR(result.curvature, 0, 3.5 * std::sqrt(result.curvature_variance)) << "it is flat";
+}
+
 TEST(StereoDepthStage, NamesUniformBlackAndSaturatedImages) {
   const Scene scene(9);
   const Pair good = scene.render(makePose(1.6, -8, 0));
