@@ -342,6 +342,22 @@ TEST(StereoDepthStage, SearchesAnewWhenTheStampDoesNotIncrease) {
   EXPECT_TRUE(stage.process(2, pair.left, pair.right).from_search);
 }
 
+TEST(StereoDepthStage, AfterAResetAPairIsSeenAsByANewStage) {
+  const Scene scene(13);
+  const Pair pair = scene.render(makePose(1.6, -8, 0)), swapped{pair.right, pair.left};
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 3; ++i) stage.process(1 + 0.1 * i, swapped.left, swapped.right);
+  for (int i = 3; i < 8; ++i) stage.process(1 + 0.1 * i, pair.left, pair.right);
+  stage.reset();
+  const StereoDepthResult result = stage.process(1.8, pair.left, pair.right), first = scene.first(pair);
+  EXPECT_FALSE(result.left_repeated || result.right_repeated);
+  EXPECT_EQ(result.from_search, first.from_search);
+  EXPECT_EQ(result.plane.g, first.plane.g);
+  EXPECT_EQ(result.plane.covariance, first.plane.covariance);
+  EXPECT_EQ(result.row_covariance, first.row_covariance);
+  EXPECT_EQ(result.vertical_rotation.w, first.vertical_rotation.w);
+}
+
 TEST(StereoDepthStage, FindsThePlaneAgainAfterAJump) {
   // As when a bag is cut: the next pair shows another height with an increasing stamp.
   const Scene scene(14);
