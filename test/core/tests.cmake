@@ -79,6 +79,7 @@ uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
 uav_landing_add_gtest(plane_tracking_test test/core/stereo/plane_tracking_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(region_planes_test test/core/stereo/region_planes_test.cpp)
+uav_landing_add_gtest(row_fit_test test/core/stereo/row_fit_test.cpp)
 uav_landing_add_gtest(row_matching_test test/core/stereo/row_matching_test.cpp)
 uav_landing_add_gtest(sample_stddevs_test test/core/stereo/sample_stddevs_test.cpp
   SOURCES test/support/ground_renderer.cpp)

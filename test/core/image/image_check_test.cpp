@@ -122,6 +122,10 @@ TEST(MatchImage, LeavesRowsOutUntilTheyAreAdded) {
     EXPECT_TRUE(differ(match.coarse, all.coarse, 0, 47));
     match.extend(image, {120, 60});
     EXPECT_TRUE(differ(match.fine, all.fine, 0, fine));
+    EXPECT_EQ(match.first.fine, fine) << "fewer rows than there are take none away";
+    if (match.factor > 1) {
+      EXPECT_EQ(match.first.coarse, 47);
+    }
     match.extend(image, {});
     EXPECT_FALSE(differ(match.fine, all.fine, 0, size.height));
     EXPECT_FALSE(differ(match.coarse, all.coarse, 0, all.coarse.rows));

@@ -133,6 +133,44 @@ TEST(SampleParabolicRows, IsTheMeanOfBothParabolas) {
   }
 }
 
+/// The image at a place of a line that has this slope: down all columns that it crosses, then along it.
+double acrossColumnsAndAlong(const cv::Mat& image, const Eigen::Vector2d& start, double slope, double x) {
+  const int whole = static_cast<int>(x);
+  std::array<double, 4> crossings;
+  for (int k = 0; k < 4; ++k) {
+    const int column = whole - 1 + k;
+    const double y = start.y() + slope * (column - start.x());
+    const int top = static_cast<int>(y);
+    const auto grey = [&](int row) { return image.at<float>(row, column); };
+    crossings[k] = meanOfParabolas(grey(top - 1), grey(top), grey(top + 1), grey(top + 2), y - top);
+  }
+  return meanOfParabolas(crossings[0], crossings[1], crossings[2], crossings[3], x - whole);
+}
+
+// Places that a table would have to round are where they are: of the column in all windows, and also along
+// the line where its steps are near a pixel. Otherwise they are multiples of 1/256 here.
+TEST(SampleParabolicWindow, IsTheMeanOfBothParabolasAcrossColumnsAndAlongTheLine) {
+  cv::Mat image(60, 70, CV_32F);
+  cv::RNG(7).fill(image, cv::RNG::UNIFORM, 0, 255);
+  constexpr int kRadius = 5, kStride = 12;
+  for (const double step : {0.95, 1.0, 1.03, 1.25})
+    for (const double slope : {-0.04, 0.0, 0.03})
+      for (const double shear : {-0.25, 0.0, 0.25}) {
+        Eigen::Matrix2d warp;
+        warp << step, shear, slope * step, 1.07;
+        const Eigen::Vector2d at(31.25, 27.3713);
+        std::vector<float> out(kStride * (2 * kRadius + 1) + 8);
+        sampleParabolicWindow(image, at, warp, kRadius, kStride, out.data());
+        for (int j = 0; j <= 2 * kRadius; ++j)
+          for (int i = 0; i <= 2 * kRadius; ++i) {
+            const Eigen::Vector2d start = at + warp * Eigen::Vector2d(-kRadius, j - kRadius);
+            EXPECT_NEAR(out[j * kStride + i],
+                        acrossColumnsAndAlong(image, start, slope, start.x() + i * step), 0.02)
+                << step << ' ' << slope << ' ' << shear << ' ' << i << ' ' << j;
+          }
+      }
+}
+
 /// Leaves numbers behind that would be seen in everything that reads memory it never wrote.
 __attribute__((noinline)) float spoilStack() {
   volatile float left_over[20000];

@@ -156,6 +156,21 @@ TEST(RectifierMask, IsFullForAnImageThatIsAlreadyRectified) {
   EXPECT_EQ(cv::countNonZero(rectifier->mask()), 320 * 240);
 }
 
+TEST(RectifierMask, LeavesOutOnlyWhatLacksAPixelToInterpolateWith) {
+  // Half a pixel to the side: the last column lacks its right neighbour, but no row lacks one below; and the
+  // other way round.
+  CameraCalibration aside = ideal(), below = ideal();
+  aside.P.leftCols<3>() = below.P.leftCols<3>() = aside.K;
+  aside.P(0, 2) -= 0.5;
+  below.P(1, 2) -= 0.5;
+  const Expected<Rectifier> columns = Rectifier::create(aside), rows = Rectifier::create(below);
+  ASSERT_TRUE(columns && rows);
+  EXPECT_EQ(cv::countNonZero(columns->mask().colRange(0, 319)), 319 * 240);
+  EXPECT_EQ(cv::countNonZero(columns->mask().col(319)), 0);
+  EXPECT_EQ(cv::countNonZero(rows->mask().rowRange(0, 239)), 320 * 239);
+  EXPECT_EQ(cv::countNonZero(rows->mask().row(239)), 0);
+}
+
 TEST(RectifierMask, ExcludesWhereTheDistortionFoldsBackIntoThePicture) {
   // r (1 + k1 r^2) grows up to r = 1 / sqrt(-3 k1) = 1.054, and comes back to 0 at 1.826.
   CameraCalibration c = ideal();

@@ -159,6 +159,24 @@ TEST(FindLines, BothEdgesOfAThinStripeAreFoundApart) {
   EXPECT_LT(right->line.x(), -0.9);
 }
 
+// Long and short ones in turn, as both may be found first, and both sides of each, which run opposite ways.
+TEST(FindLines, PiecesOfOneEdgeThatAreFarApartAreLinesOfTheirOwn) {
+  const std::vector<cv::Rect> bars = {{200, 105, 12, 55}, {200, 200, 12, 130}, {200, 375, 12, 70}};
+  cv::Mat image(kSize, CV_8U, cv::Scalar(70));
+  for (const cv::Rect& bar : bars) image(bar).setTo(190);
+  const std::vector<LineSegment> lines = findLines(image, allGround(), {});
+  for (const cv::Rect& bar : bars)
+    for (const double u : {bar.x - 0.5, bar.x + bar.width - 0.5}) {
+      int count = 0;
+      for (const LineSegment& line : lines) {
+        const Eigen::Vector2d middle = line.middle();
+        count += std::abs(middle.x() - u) < 1 && std::abs(middle.y() - bar.y - bar.height / 2.0) < 3 &&
+                 line.length() > 0.85 * bar.height;
+      }
+      EXPECT_EQ(count, 1) << bar << " at " << u;
+    }
+}
+
 TEST(FindLines, DescribeThemselvesConsistently) {
   for (const LineSegment& line : findLines(render(runway(), 2, 0.8), allGround(), {})) {
     EXPECT_NEAR(line.line.head<2>().norm(), 1, 1e-12);

@@ -17,6 +17,7 @@ const Eigen::Vector3d kVanishing(210.3, 20.6, 1);
 /// meet in the vanishing point and cut the bottom row at two columns.
 struct Stripe {
   double from, to;  // columns in the bottom row
+  double brighter = 120;
 };
 
 cv::Mat picture(const std::vector<Stripe>& stripes, double blur) {
@@ -29,7 +30,8 @@ cv::Mat picture(const std::vector<Stripe>& stripes, double blur) {
       const double to = kVanishing.x() + share * (stripe.to - kVanishing.x());
       for (int u = 0; u < kSize.width; ++u) {
         const double covered = std::min(u + 0.5, to) - std::max(u - 0.5, from);
-        if (covered > 0) image.at<float>(v, u) += static_cast<float>(120 * std::min(covered, 1.0));
+        if (covered > 0)
+          image.at<float>(v, u) += static_cast<float>(stripe.brighter * std::min(covered, 1.0));
       }
     }
   }
@@ -86,6 +88,19 @@ TEST(StripeLine, SidesFarApartStayAsTheyAre) {
   for (size_t i = 0; i < lines.size(); ++i) {
     EXPECT_EQ(same[i].line, lines[i].line);
     EXPECT_EQ(same[i].angle_stddev, lines[i].angle_stddev);
+  }
+}
+
+// A worn part of the paint, a few pixels inside its edge, is eight times fainter than the edge.
+TEST(StripeLine, AFaintEdgeBesideALineIsNotItsOtherSide) {
+  const cv::Mat image = picture({{40, 110}, {43.7, 75, -15}}, 0.8);
+  const std::vector<LineSegment> both = findLines(picture({{40, 110}}, 0.8), ground(), {});
+  ASSERT_EQ(both.size(), 2U);
+  const std::vector<LineSegment> same = withoutStripeBias(image, ground(), both);
+  for (size_t i = 0; i < both.size(); ++i) {
+    EXPECT_EQ(same[i].line, both[i].line);
+    EXPECT_EQ(same[i].a, both[i].a);
+    EXPECT_EQ(same[i].angle_stddev, both[i].angle_stddev);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "support/ground_renderer.h"
 
@@ -186,6 +187,96 @@ TEST_F(ImuBufferTest, VariancesAreThoseOfTheMessageOrTheDefault) {
   EXPECT_NEAR(std::sqrt(rollVariance(known.normal, known.normal_covariance)), 1e-3, 1e-5);
   EXPECT_NEAR(std::sqrt(pitchVariance(known.normal, known.normal_covariance)), 2e-2, 1e-4);
   EXPECT_NEAR(known.rotation_covariance(0, 0), 0.01 * (1e-4 + std::pow(0.3 * kDegree, 2)), 1e-9);
+}
+
+/// Covariance of a vector over many draws, by a normal number for each axis.
+template <class Draw>
+Eigen::Matrix3d spreadOf(const Eigen::Vector3d& mean, const Draw& draw) {
+  constexpr int kSamples = 20000;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector3d axes(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d error = draw(axes) - mean;
+    spread += error * error.transpose() / kSamples;
+  }
+  return spread;
+}
+
+Eigen::Quaterniond smallTurn(const Eigen::Vector3d& w) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(w.norm(), w.normalized()));
+}
+
+// A sensor mounted askew that knows each of its axes differently well.
+TEST_F(ImuBufferTest, CovariancesAreThoseOfSamples) {
+  const Eigen::Vector3d attitude(2e-3, 8e-3, 4e-3), rate(3e-3, 1e-3, 9e-3);
+  parameters.imu_rate_bias_deg = 0;
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 100; ++i) {
+    ImuSample sample = sampleAt(0.01 * i);
+    sample.orientation_covariance = attitude.cwiseAbs2().asDiagonal();
+    sample.angular_velocity_covariance = rate.cwiseAbs2().asDiagonal();
+    buffer.add(sample);
+  }
+  const auto normalOf = [&](const Eigen::Quaterniond& orientation) -> Eigen::Vector3d {
+    return mounting_ * (orientation.conjugate() * Eigen::Vector3d(0, 0, -1));
+  };
+  const AttitudePrior prior = buffer.at(0.8, 0.7, mounting_);
+  const Eigen::Matrix3d normals = spreadOf(normalOf(orientationAt(0.8)), [&](const Eigen::Vector3d& axes) {
+    return normalOf(orientationAt(0.8) * smallTurn(attitude.cwiseProduct(axes)));
+  });
+  EXPECT_LT((prior.normal_covariance - normals).norm(), 0.05 * normals.norm());
+  // An error of the rate that stays the same turns by 0.1 s of it.
+  const Eigen::Matrix3d turns = spreadOf(Eigen::Vector3d::Zero(), [&](const Eigen::Vector3d& axes) {
+    return Eigen::Vector3d(mounting_ * (0.1 * rate.cwiseProduct(axes)));
+  });
+  EXPECT_LT((prior.rotation_covariance - turns).norm(), 0.05 * turns.norm());
+  // Ahead of the newest message it turns on by a rate that is wrong.
+  const AttitudePrior ahead = buffer.at(1.08, 1.0, mounting_);
+  const Eigen::Matrix3d extrapolated = [&] {
+    const Eigen::Vector3d stddev = (attitude.cwiseAbs2() + 0.08 * 0.08 * rate.cwiseAbs2()).cwiseSqrt();
+    return spreadOf(ahead.normal, [&](const Eigen::Vector3d& axes) -> Eigen::Vector3d {
+      const Eigen::Vector3d w = mounting_ * stddev.cwiseProduct(axes);
+      return smallTurn(w).conjugate() * ahead.normal;
+    });
+  }();
+  EXPECT_LT((ahead.normal_covariance - extrapolated).norm(), 0.05 * extrapolated.norm());
+}
+
+TEST_F(ImuBufferTest, BetweenMessagesOfDifferentCertaintyIsInBetween) {
+  ImuBuffer buffer(parameters);
+  parameters.imu_rate_bias_deg = 0;
+  for (int i = 0; i < 2; ++i) {
+    ImuSample sample = sampleAt(0.04 * i);
+    sample.orientation_covariance = (1e-4 + 4e-4 * i) * Eigen::Matrix3d::Identity();
+    sample.angular_velocity_covariance = (1e-4 + 4e-4 * i) * Eigen::Matrix3d::Identity();
+    buffer.add(sample);
+  }
+  // A quarter of the way: across the normal there are two directions.
+  const AttitudePrior prior = buffer.at(0.01, 0.0, mounting_);
+  EXPECT_NEAR(prior.normal_covariance.trace(), 2 * 2e-4, 1e-9);
+  EXPECT_LT((prior.normal - poseAt(0.01).down()).norm(), 1e-3);
+  EXPECT_NEAR(prior.rotation_covariance(0, 0), 1e-4 * (2e-4 + std::pow(0.1 * kDegree, 2)), 1e-12);
+}
+
+TEST_F(ImuBufferTest, SaysNothingOfTheTimeBeforeTheFirstMessageHoweverNear) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i <= 50; ++i) buffer.add(sampleAt(1 + 0.01 * i));
+  const AttitudePrior prior = buffer.at(0.98, 0.9, mounting_);
+  EXPECT_FALSE(prior.hasNormal());
+  EXPECT_FALSE(prior.hasRotation());
+  EXPECT_EQ(prior.failure.message(), "not_yet: the oldest imu message is 0.02 s after the image");
+  EXPECT_FALSE(buffer.at(1.2, 0.98, mounting_).hasRotation()) << "from before the first message";
+}
+
+TEST_F(ImuBufferTest, HasNothingOnceItIsCleared) {
+  ImuBuffer buffer = filled(100, 2);
+  ASSERT_TRUE(buffer.at(1, 0.9, mounting_).hasNormal());
+  buffer.clear();
+  EXPECT_TRUE(buffer.empty());
+  EXPECT_EQ(buffer.at(1, 0.9, mounting_).failure.message(), "not_yet: no imu message");
+  EXPECT_FALSE(buffer.covers(1));
 }
 
 TEST_F(ImuBufferTest, KeepsAMinute) {

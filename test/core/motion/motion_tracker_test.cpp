@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "support/counting_allocator.h"
@@ -165,6 +167,83 @@ TEST(MotionTracker, MeasuresTheStepFromWhereARepeatedImageFirstCame) {
   const MotionTracker::Result next = scene.process(0.5, at(0.5));
   EXPECT_NEAR(next.step.duration, 0.2, 1e-9);
   expectStep(next, at(0.3), at(0.5));
+}
+
+/// Largest difference of two results' motions; NaN when one of them has none.
+double difference(const ApproachAngleResult::Motion& a, const ApproachAngleResult::Motion& b) {
+  return (a.translation_over_height - b.translation_over_height).norm() + (a.rotation - b.rotation).norm() +
+         std::abs(a.angle - b.angle) + std::abs(a.angle_variance - b.angle_variance);
+}
+
+TEST(MotionTracker, IsAsNewAfterAResetOrAClockThatIsSetBack) {
+  const auto at = [](double t) { return makePose(1.5 * t, 1.8 - 0.2 * t); };
+  for (const bool reset : {true, false}) {
+    Scene used, fresh;
+    for (int i = 0; i < 6; ++i) used.process(10 + 0.05 * i, makePose(0.9 * i * i * 0.05, 2 - 0.02 * i));
+    if (reset) used.tracker.reset();
+    const MotionTracker::Result first = used.process(1, at(0));
+    EXPECT_EQ(first.step.failure.reason, Reason::kNotYet);
+    EXPECT_EQ(first.window.failure.reason, Reason::kNotYet);
+    EXPECT_TRUE(used.tracker.repeat(1.05).window.failure) << "of the motion before";
+    fresh.process(1, at(0));
+    for (int i = 1; i < 4; ++i) {
+      const MotionTracker::Result again = used.process(1 + 0.1 * i, at(0.1 * i)),
+                                  expected = fresh.process(1 + 0.1 * i, at(0.1 * i));
+      ASSERT_FALSE(expected.step.failure || expected.window.failure);
+      EXPECT_EQ(difference(again.step, expected.step), 0) << i;
+      EXPECT_EQ(difference(again.window, expected.window), 0) << i;
+    }
+    EXPECT_EQ(used.tracker.repeat(1.4).window.angle_variance,
+              fresh.tracker.repeat(1.4).window.angle_variance);
+  }
+}
+
+TEST(MotionTracker, ForgetsTheMotionBeforeAGapOfTheWindow) {
+  Scene scene;
+  const auto at = [](double t) { return makePose(0.2 * t, 1.8 - 0.02 * t); };
+  for (int i = 0; i < 4; ++i) scene.process(0.1 * i, at(0.1 * i));
+  const double later = 0.3 + scene.parameters.angle_window + 0.2;
+  const MotionTracker::Result result = scene.process(later, at(later));
+  ASSERT_FALSE(result.step.failure) << result.step.failure.message();
+  EXPECT_NEAR(result.step.duration, later - 0.3, 1e-9);
+  EXPECT_NEAR(result.window.duration, later - 0.3, 1e-9) << "the step alone";
+  expectStep(result, at(0.3), at(later));
+}
+
+TEST(MotionTracker, VariancesOfAStepAreThoseOfSamplesOfItsMotion) {
+  Scene scene;
+  scene.process(0, makePose(0, 1.8));
+  const MotionTracker::Result result = scene.process(0.1, makePose(0.15, 1.76));
+  ASSERT_TRUE(result.step_estimate && result.step_angle);
+  const MotionEstimate& estimate = *result.step_estimate;
+  EXPECT_EQ(result.step.covariance, (estimate.covariance.topLeftCorner<6, 6>()));
+  EXPECT_EQ(result.step.normal_covariance, estimate.own_normal_covariance);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  // The angle of the path to the ground, from what the images moved by to what that may be instead.
+  const auto spread = [&](const Eigen::Matrix<double, 9, 9>& covariance) {
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> axes(covariance.bottomRightCorner<6, 6>());
+    const Matrix6 root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    const auto angleOf = [](const Eigen::Vector3d& t, const Eigen::Vector3d& n) {
+      return std::asin(n.dot(t) / (n.norm() * t.norm()));
+    };
+    constexpr int kSamples = 20000;
+    double squares = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      Eigen::Matrix<double, 6, 1> draw;
+      for (double& one : draw) one = normal(random);
+      const Eigen::Matrix<double, 6, 1> off = root * draw;
+      const double angle = angleOf(estimate.motion.t + off.head<3>(), estimate.normal + off.tail<3>());
+      squares += std::pow(angle - angleOf(estimate.motion.t, estimate.normal), 2) / kSamples;
+    }
+    return squares;
+  };
+  const double all = spread(estimate.covariance), of_normal = spread(estimate.of_normal);
+  const PathAngleFilter::Measurement& step = *result.step_angle;
+  EXPECT_NEAR(result.step.angle_variance / all, 1, 0.05);
+  EXPECT_NEAR(step.by_normal * step.by_normal / of_normal, 1, 0.05);
+  EXPECT_NEAR((step.variance + step.by_normal * step.by_normal) / all, 1, 0.05);
 }
 
 TEST(MotionTracker, LooksBackNoLongerThanItsWindow) {

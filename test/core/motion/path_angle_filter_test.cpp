@@ -233,5 +233,23 @@ TEST(PathAngleFilter, ForgetsWhatWasBeforeAReset) {
   EXPECT_NEAR(filter.update(2.0, step, step).angle, -0.02, 1e-5);
 }
 
+TEST(PathAngleFilter, IsAsNewAfterAReset) {
+  // Before it gusts in short steps, which make a fast rate likely and longer steps a gap.
+  PathAngleFilter used(0.5), fresh(0.5);
+  for (int k = 1; k < 60; ++k) {
+    const PathAngleFilter::Measurement gust{0.1 * std::sin(1.0 * k), 1e-8, 0.02};
+    used.update(0.02 * k, gust, gust);
+  }
+  used.reset();
+  for (int k = 1; k < 8; ++k) {
+    const PathAngleFilter::Measurement step{0.05 + 1e-4 * k, 1e-6, 0.1};
+    const PathAngleFilter::Estimate again = used.update(2 + 0.1 * k, step, step),
+                                    first = fresh.update(2 + 0.1 * k, step, step);
+    EXPECT_EQ(again.angle, first.angle) << k;
+    EXPECT_EQ(again.variance, first.variance) << k;
+    EXPECT_EQ(again.rate_stddev, first.rate_stddev) << k;
+  }
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -127,6 +127,7 @@ TEST(SurfaceProfile, CovarianceIsTrueOnGroundOfManyVerticalCurves) {
   std::normal_distribution<double> normal;
   constexpr int kRuns = 100;
   int inside = 0;
+  double ratio = 0;
   for (int run = 0; run < kRuns; ++run) {
     // One vertical curve after the other, each of a length between 50 and 150 m; surfaces of all sorts.
     const double curvature = kSlopeChange / 100 * std::pow(4.0, run % 3 - 2);
@@ -149,8 +150,28 @@ TEST(SurfaceProfile, CovarianceIsTrueOnGroundOfManyVerticalCurves) {
     const Fits fits = fit(look(ground, pose, 0.05, random), pose);
     const double error = fits.profile.below.height() - 8;
     inside += std::abs(error) < 1.96 * std::sqrt(fits.profile.below.heightVariance());
+    ratio += error * error / fits.profile.below.heightVariance() / kRuns;
   }
   EXPECT_GE(inside, 88);
+  EXPECT_GT(ratio, 0.3) << "it claims too much";
+}
+
+TEST(SurfaceProfile, CurvatureIsAsWrongAsItClaims) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  constexpr int kRuns = 60;
+  double ratio = 0, joint = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const double curvature = kSlopeChange / 100 * kBendShares[run % kBendShares.size()] * normal(random);
+    const Fits fits = fit(look(parabola(1 / curvature), poseAt(8), 0.05, random, 400), poseAt(8));
+    const SurfaceProfile& profile = fits.profile;
+    ratio += std::pow(profile.curvature - curvature, 2) / profile.curvature_variance / kRuns;
+    joint += std::pow(profile.below.height() - 8, 2) / profile.below.heightVariance() / kRuns;
+  }
+  EXPECT_GT(ratio, 0.3);
+  EXPECT_LT(ratio, 1.6);
+  EXPECT_GT(joint, 0.3);
+  EXPECT_LT(joint, 1.6);
 }
 
 TEST(SurfaceProfile, WhatStandsOnTheGroundIsNoBend) {

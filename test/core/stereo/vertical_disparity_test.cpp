@@ -6,7 +6,9 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <random>
 
+#include "support/consistency.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/rig/rig_rotation.h"
@@ -320,6 +322,137 @@ TEST(VerticalDisparity, StraightenedRowsAreThoseOfAStraightRig) {
   const double before = cv::norm(crooked(middle), wanted(middle), cv::NORM_L1) / middle.area();
   const double after = cv::norm(level(middle), wanted(middle), cv::NORM_L1) / middle.area();
   EXPECT_LT(after, 0.25 * before);
+}
+
+// In an image whose grey levels are its rows one reads where a row is from.
+TEST(VerticalDisparity, StraightenedRowsComeFromWhereTheTurnedCameraSeesThem) {
+  const StereoRig rig = test::makeRig(640, 480, kBaseline);
+  cv::Mat rows(rig.size, CV_32F), level;
+  for (int v = 0; v < rows.rows; ++v) rows.row(v) = static_cast<float>(v);
+  for (const Eigen::Vector3d& w :
+       {Eigen::Vector3d(0.004, 0, 0), Eigen::Vector3d(0, 0, 0.006), Eigen::Vector3d(-0.002, 0.001, -0.005)}) {
+    straightenRows(rig, w, rows, level);
+    for (int v = 8; v < rig.size.height - 8; v += 11)
+      for (int u = 0; u < rig.size.width; ++u)
+        ASSERT_NEAR(level.at<float>(v, u), turnedPixel(rig, u, v, w).y(), 0.03) << w.transpose() << " " << u;
+  }
+}
+
+// So that a rig without vertical disparities may skip it.
+TEST(VerticalDisparity, RowsThatAreLevelStayAsTheyAre) {
+  const StereoRig rig = test::makeRig(640, 480, kBaseline);
+  cv::Mat image(rig.size, CV_32F), level;
+  cv::RNG(3).fill(image, cv::RNG::UNIFORM, 0, 255);
+  straightenRows(rig, Eigen::Vector3d::Zero(), image, level);
+  const cv::Range inside(2, rig.size.height - 2);  // masks are eroded by two pixels at least
+  EXPECT_EQ(cv::norm(level.rowRange(inside), image.rowRange(inside), cv::NORM_INF), 0);
+}
+
+/// Corners on a grid whose rows a bent rig moves, each known to a tenth of a pixel.
+struct MovedRows {
+  StereoLevel level;
+  std::vector<cv::Point> corners;
+  Eigen::Vector3d g = normalFromPitchRoll(-5 * kDegree, 0) / 10;
+  static constexpr double kStddev = 0.1;  // pixels
+
+  MovedRows() {
+    level.rig = test::makeRig(640, 480, kBaseline);
+    for (int v = 262; v < 470; v += 17)
+      for (int u = 70; u < 630; u += 35) corners.emplace_back(u, v);
+  }
+  RowMatches moved(const Eigen::Vector3d& w, std::mt19937& random) const {
+    std::normal_distribution<double> normal;
+    RowMatches matches;
+    for (const cv::Point& corner : corners) {
+      const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+      const double column = corner.x - disparity - level.rig.principalOffset();
+      RowRefinement::Across across;
+      across.found = true;
+      across.place = {column, turnedPixel(level.rig, column, corner.y, w).y() + kStddev * normal(random)};
+      across.column_variance = across.row_variance = kStddev * kStddev;
+      across.score = 1;
+      matches.samples.push_back({double(corner.x), double(corner.y), kStddev, disparity});
+      matches.across.emplace_back(across);
+    }
+    return matches;
+  }
+  /// After so many pairs of a rig that is bent like this.
+  void measure(RowAlignment& alignment, const Eigen::Vector3d& w, int pairs, std::mt19937& random) const {
+    for (int i = 0; i < pairs; ++i) alignment.measure(level, corners, moved(w, random), g);
+  }
+};
+
+double normalisedError(const RigRotation& found, const Eigen::Vector3d& truth) {
+  const Eigen::Vector3d error = found.w - truth;
+  return error.dot(found.covariance.inverse() * error);
+}
+
+constexpr double kVagueCalibration = 50;  // pixels
+
+TEST(RowAlignment, ClaimsTheScatterOfOnePairAndHalfOfWhatManySay) {
+  constexpr int kRuns = 300;
+  const MovedRows rows;
+  const Eigen::Vector3d w(4e-4, 0, -5e-4);
+  std::mt19937 random(5);
+  double one = 0, many = 0, gained = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    RowAlignment alignment(true, 5, kVagueCalibration, kVagueCalibration);
+    rows.measure(alignment, w, 1, random);
+    const RigRotation first = alignment.residual(rows.level.rig);
+    one += normalisedError(first, w) / kRuns;
+    rows.measure(alignment, w, 39, random);
+    const RigRotation averaged = alignment.residual(rows.level.rig);
+    many += normalisedError(averaged, w) / kRuns;
+    gained += first.covariance(0, 0) / averaged.covariance(0, 0) / kRuns;
+  }
+  const double tolerance = test::chiSquareMeanTolerance(kRuns, 3);
+  EXPECT_LT(one, 3 + tolerance);
+  EXPECT_GT(one, 0.6 * 3 - tolerance);
+  // Weights of 0.95^k add up to 17.4 pairs, their squares to 10.1: the scatter is 10.1 / 17.4 of the claim.
+  EXPECT_LT(many, 10.1 / 17.4 * 3 + tolerance);
+  EXPECT_GT(many, 0.6 * 10.1 / 17.4 * 3 - tolerance);
+  EXPECT_NEAR(gained, 17.4, 2);
+}
+
+TEST(RowAlignment, ForgetsARigThatHasBentOtherwise) {
+  const MovedRows rows;
+  std::mt19937 random(6);
+  RowAlignment alignment(true, 5, kVagueCalibration, kVagueCalibration);
+  rows.measure(alignment, {4e-4, 0, 0}, 50, random);
+  const Eigen::Vector3d now(-4e-4, 0, 3e-4);
+  rows.measure(alignment, now, 150, random);
+  EXPECT_LT(normalisedError(alignment.residual(rows.level.rig), now), 16.3);
+  alignment.reset();
+  EXPECT_TRUE(alignment.isLevel());
+  EXPECT_TRUE(alignment.residual(rows.level.rig).w.isZero()) << "nothing is measured yet";
+}
+
+TEST(RowAlignment, ExpectsOfACalibrationWhatItIsGoodTo) {
+  const MovedRows rows;
+  const StereoRig& rig = rows.level.rig;
+  // 0.3 px of the cameras turn a camera by 0.3 / f about any axis; 0.4 px of a lens look like pitch.
+  const Eigen::Matrix3d cameras = RowAlignment(true, 5, 0.3, 0).residual(rig).covariance;
+  const Eigen::Matrix3d both = RowAlignment(true, 5, 0.3, 0.4).residual(rig).covariance;
+  EXPECT_TRUE(cameras.isApprox(std::pow(0.3 / rig.fy, 2) * Eigen::Matrix3d::Identity(), 1e-9));
+  EXPECT_NEAR(both(0, 0), (0.3 * 0.3 + 0.4 * 0.4) / (rig.fy * rig.fy), 1e-12);
+  EXPECT_NEAR(both(1, 1), 0.3 * 0.3 / (rig.fy * rig.fy), 1e-12);
+  // With a measurement that is as good, the mean; one that contradicts it is believed alone.
+  const Eigen::Vector3d w(3e-4, 0, 0);
+  std::mt19937 random(7);
+  RowAlignment vague(true, 5, kVagueCalibration, kVagueCalibration), sure(true, 5, 1e-3, 0);
+  rows.measure(vague, w, 1, random);
+  const RigRotation measured = vague.residual(rig);
+  random.seed(7);
+  rows.measure(sure, w, 1, random);
+  EXPECT_LT((sure.residual(rig).w - measured.w).norm(), 0.01 * w.norm());
+  RowAlignment fair(true, 5, rig.fy * 2e-4, 0);
+  random.seed(7);
+  rows.measure(fair, w, 1, random);
+  const Eigen::Matrix3d information = measured.covariance.inverse(),
+                        prior = Eigen::Matrix3d::Identity() / (2e-4 * 2e-4);
+  const Eigen::Matrix3d mean = (information + prior).inverse();
+  EXPECT_TRUE(fair.residual(rig).covariance.isApprox(mean, 0.01));
+  EXPECT_TRUE(fair.residual(rig).w.isApprox(mean * information * measured.w, 0.01));
 }
 
 }  // namespace
