@@ -382,6 +382,54 @@ struct MovedRows {
   }
 };
 
+TEST(VerticalDisparity, AgreementIsTheShareOfMatchesWhoseRowIsFound) {
+  const MovedRows rows;
+  std::mt19937 random(4);
+  RowMatches matches = rows.moved({1e-4, 0, 0}, random);
+  const auto agreement = [&] {
+    return measureVerticalDisparities(rows.level, rows.corners, matches, rows.g, 5).agreement;
+  };
+  EXPECT_EQ(agreement(), 1);
+  for (size_t i = 0; i < matches.across.size(); i += 4) matches.across[i]->found = false;
+  EXPECT_NEAR(agreement(), 0.75, 0.01);
+}
+
+TEST(RowAlignment, SearchTellsWhetherTheRowsHaveToBeMadeLevel) {
+  for (const double bend : {0.0, 0.15}) {
+    const BentScene scene({bend, 0, 0});
+    StereoLevel level = reduceLevel(scene.model, 1, scene.parameters.window_radius + 2);
+    MatchImage left, right;
+    left.assign(scene.ground.left(scene.rig, scene.pose));
+    right.assign(scene.ground.right(scene.rig, scene.pose));
+    level.left = left.fine;
+    level.right = right.fine;
+    const Eigen::Vector3d g = test::exactPlane(scene.pose, 0, 0).g;
+    const std::vector<cv::Point> corners = findGroundCorners(level, g, 300, scene.parameters);
+    RowAlignment alignment(true, scene.parameters.window_radius, 0.3, 0.3);
+    EXPECT_EQ(alignment.search(level, corners, g), bend != 0) << bend;
+    EXPECT_EQ(alignment.isLevel(), bend == 0) << bend;
+    RowAlignment off(false, scene.parameters.window_radius, 0.3, 0.3);
+    EXPECT_FALSE(off.search(level, corners, g));
+  }
+}
+
+TEST(VerticalDisparity, GroundCornersAreBelowTheHorizonAndInTheRightImage) {
+  const BentScene scene({0, 0, 0});
+  StereoLevel level = reduceLevel(scene.model, 1, scene.parameters.window_radius + 2);
+  MatchImage left;
+  left.assign(scene.ground.left(scene.rig, scene.pose));
+  level.left = left.fine;
+  // A plane of which much lies outside the right image, and whose horizon is well below the picture's.
+  const Eigen::Vector3d g = normalFromPitchRoll(2 * kDegree, 10 * kDegree) / 4;
+  const std::vector<cv::Point> corners = findGroundCorners(level, g, 400, scene.parameters);
+  EXPECT_GT(corners.size(), 100u);
+  for (const cv::Point& corner : corners) {
+    const double disparity = scene.rig.fb() * g.dot(scene.rig.ray(corner.x, corner.y));
+    const double column = corner.x - disparity - scene.rig.principalOffset();
+    EXPECT_TRUE(disparity >= 0.3 && column >= 0 && column <= scene.rig.size.width - 1) << corner;
+  }
+}
+
 double normalisedError(const RigRotation& found, const Eigen::Vector3d& truth) {
   const Eigen::Vector3d error = found.w - truth;
   return error.dot(found.covariance.inverse() * error);
