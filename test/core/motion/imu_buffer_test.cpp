@@ -260,6 +260,19 @@ TEST_F(ImuBufferTest, BetweenMessagesOfDifferentCertaintyIsInBetween) {
   EXPECT_NEAR(prior.rotation_covariance(0, 0), 1e-4 * (2e-4 + std::pow(0.1 * kDegree, 2)), 1e-12);
 }
 
+TEST_F(ImuBufferTest, BetweenMessagesTheRateChangesEvenly) {
+  ImuBuffer buffer(parameters);
+  for (int i = 0; i < 2; ++i) {
+    ImuSample sample;
+    sample.stamp = 0.08 * i;
+    sample.angular_velocity = Eigen::Vector3d(0, i, 0);
+    buffer.add(sample);
+  }
+  // From 0 to 1 rad/s in 0.08 s: it has turned by t^2 / 0.16.
+  for (const double t : {0.02, 0.04, 0.06})
+    EXPECT_NEAR(buffer.at(t, 0.0, mounting_).rotation.norm(), t * t / 0.16, 1e-9) << t;
+}
+
 TEST_F(ImuBufferTest, SaysNothingOfTheTimeBeforeTheFirstMessageHoweverNear) {
   ImuBuffer buffer(parameters);
   for (int i = 0; i <= 50; ++i) buffer.add(sampleAt(1 + 0.01 * i));
