@@ -176,6 +176,60 @@ TEST_F(ReferToTest, NoseUpRotationLowersThePointBehind) {
   EXPECT_NEAR(refer({0, 0, -2}).vertical_speed, -2 * 0.1, 1e-3);
 }
 
+TEST_F(ReferToTest, ThePositionIsThatOfThePoint) {
+  camera_ = attitude(0, 0, 0);
+  camera_.x = -100;
+  camera_.x_variance = 0.5;
+  camera_.y = 3;
+  camera_.y_variance = 0.25;
+  const Eigen::Vector3d one_right_two_behind(1, 0, -2);
+  LandingResult body = refer(one_right_two_behind);
+  EXPECT_NEAR(body.x, -102, 1e-12);
+  EXPECT_NEAR(body.y, 2, 1e-12);
+  EXPECT_NEAR(body.x_variance, 0.5, 1e-12) << "nothing is known of the yaw";
+  EXPECT_NEAR(body.y_variance, 0.25, 1e-12);
+  camera_.yaw = 90 * kDegree;  // looks to the left: right is ahead, behind is to the right
+  body = refer(one_right_two_behind);
+  EXPECT_NEAR(body.x, -99, 1e-12);
+  EXPECT_NEAR(body.y, 1, 1e-12);
+}
+
+TEST_F(ReferToTest, AnUncertainYawSwingsThePointAcross) {
+  camera_ = attitude(0, 0, 0);
+  camera_.x = -100;
+  camera_.x_variance = 0.5;
+  camera_.y = 3;
+  camera_.y_variance = 0.25;
+  camera_.yaw_variance = 1e-4;
+  const LandingResult body = refer({1, 0, -2});
+  // By a radian it swings 1 m along the runway, which it is to the right, and 2 m across, which it is behind.
+  EXPECT_NEAR(body.x_variance, 0.5 + 1e-4, 1e-12);
+  EXPECT_NEAR(body.y_variance, 0.25 + 4e-4, 1e-12);
+}
+
+TEST_F(ReferToTest, AnUncertainRotationOfTheStepMakesTheVerticalSpeedUncertain) {
+  camera_ = attitude(0, 0, 0);
+  camera_.vertical_speed = -1;
+  camera_.vertical_speed_variance = 0.04;
+  // In 0.1 s. Only the rotation about the axis to the right moves what is 2 m behind up and down.
+  step_.covariance.diagonal() << 4e-6, 9e-6, 16e-6, 1, 1, 1;
+  EXPECT_NEAR(refer({0, 0, -2}).vertical_speed_variance, 0.04 + 20 * 20 * 4e-6, 1e-12);
+  // What is 1 m to the right moves by a rotation about the axis ahead.
+  EXPECT_NEAR(refer({1, 0, 0}).vertical_speed_variance, 0.04 + 10 * 10 * 16e-6, 1e-12);
+  step_.covariance(0, 2) = step_.covariance(2, 0) = 1e-6;
+  EXPECT_NEAR(refer({1, 0, -2}).vertical_speed_variance,
+              0.04 + 20 * 20 * 4e-6 + 10 * 10 * 16e-6 + 2 * 20 * 10 * 1e-6, 1e-12);
+}
+
+TEST_F(ReferToTest, RawHeightAndRunwayKeepTheirOwnVariances) {
+  camera_.raw_height_variance = 0.09;
+  camera_.pitch_variance = 1e-4;
+  const LandingResult body = refer({0, 0, -2});
+  EXPECT_NEAR(body.height_variance, 0.01 + 3e-4, 1e-12);
+  EXPECT_NEAR(body.raw_height_variance, 0.09 + 3e-4, 1e-12);
+  EXPECT_NEAR(body.height_above_runway_variance, 4 + 3e-4, 1e-12);
+}
+
 TEST_F(ReferToTest, WithoutTheRotationTheVerticalSpeedIsUnknown) {
   step_ = {};
   EXPECT_TRUE(std::isnan(refer({0, 0, -2}).vertical_speed));

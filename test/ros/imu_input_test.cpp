@@ -68,6 +68,34 @@ TEST(ImuReading, CovariancesThatAreNoneAreNotKnown) {
   EXPECT_FALSE(toReading(message).sample.orientation_covariance) << "not positive definite";
 }
 
+TEST(ImuReading, EachFieldOfTheMessageGoesToItsOwnPlace) {
+  sensor_msgs::Imu message = level(12.5);
+  message.orientation.x = 0.1;
+  message.orientation.y = 0.3;
+  message.orientation.z = 0.5;
+  message.orientation.w = std::sqrt(1 - 0.01 - 0.09 - 0.25);
+  message.angular_velocity.x = 0.2;
+  message.angular_velocity.y = 0.4;
+  message.angular_velocity.z = 0.6;
+  message.linear_acceleration.x = 7;
+  message.orientation_covariance = {0.1, 0.01, 0.02, 0.01, 0.2, 0.03, 0.02, 0.03, 0.3};
+  message.angular_velocity_covariance = {1.1, 0.11, 0.12, 0.11, 1.2, 0.13, 0.12, 0.13, 1.3};
+  message.linear_acceleration_covariance = {9, 0, 0, 0, 9, 0, 0, 0, 9};
+  const ImuReading reading = toReading(message);
+  EXPECT_FALSE(reading.failure) << reading.failure.message();
+  EXPECT_EQ(reading.sample.stamp, 12.5);
+  ASSERT_TRUE(reading.sample.orientation && reading.sample.orientation_covariance);
+  EXPECT_TRUE(reading.sample.orientation->vec().isApprox(Eigen::Vector3d(0.1, 0.3, 0.5), 1e-12));
+  EXPECT_NEAR(reading.sample.orientation->w(), message.orientation.w, 1e-12);
+  Eigen::Matrix3d expected;
+  expected << 0.1, 0.01, 0.02, 0.01, 0.2, 0.03, 0.02, 0.03, 0.3;
+  EXPECT_TRUE(reading.sample.orientation_covariance->isApprox(expected, 1e-12));
+  ASSERT_TRUE(reading.sample.angular_velocity && reading.sample.angular_velocity_covariance);
+  EXPECT_EQ(*reading.sample.angular_velocity, Eigen::Vector3d(0.2, 0.4, 0.6));
+  expected << 1.1, 0.11, 0.12, 0.11, 1.2, 0.13, 0.12, 0.13, 1.3;
+  EXPECT_TRUE(reading.sample.angular_velocity_covariance->isApprox(expected, 1e-12));
+}
+
 TEST(ImuReading, WhatIsNoNumberIsLeftOutAndNamed) {
   sensor_msgs::Imu message = level(1);
   message.orientation.x = kNaN;

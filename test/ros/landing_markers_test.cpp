@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -85,6 +86,80 @@ TEST(LandingMarkers, RunwayIsAsWideAsMeasured) {
       }
     }
   }
+}
+
+TEST(LandingMarkers, AllAreOfTheTimeAndInTheFrameOfTheEstimate) {
+  std_msgs::Header header;
+  header.stamp = ros::Time(1000.5);
+  header.frame_id = "runway";
+  const DrawnAircraft aircraft{{-100, 1, 20}, {0.1, 0.05, 0.02}, straightAhead()};
+  for (const std::optional<DrawnAircraft>& shown :
+       {std::optional(aircraft), std::optional<DrawnAircraft>()}) {
+    const LandingScene scene = drawLanding(header, {}, estimate(), shown, {1, 0}, {}, kUnknown);
+    EXPECT_EQ(scene.markers.markers.size(), 8u);
+    for (const auto& marker : scene.markers.markers) EXPECT_EQ(marker.header, header) << marker.ns;
+    EXPECT_EQ(scene.view.header, header);
+  }
+}
+
+TEST(LandingMarkers, TheSurfaceFillsTheRunwaysOutline) {
+  NodeParameters parameters;
+  parameters.drawn_runway_length = 900;
+  parameters.drawn_runway_width = 20;
+  const auto array = draw(parameters, {0.3, 0.05, 0.02});
+  const auto& surface = array.markers.at(0);
+  ASSERT_EQ(surface.type, visualization_msgs::Marker::TRIANGLE_LIST);
+  ASSERT_EQ(surface.points.size(), 6u);
+  double area = 0;
+  for (size_t i = 0; i < 6; i += 3) {
+    const Eigen::Vector3d corner = vector(surface.points[i]);
+    area +=
+        0.5 * (vector(surface.points[i + 1]) - corner).cross(vector(surface.points[i + 2]) - corner).norm();
+  }
+  EXPECT_NEAR(area, 900 * 20, 1e-6) << "two halves of a rectangle";
+  const auto& outline = array.markers.at(1);
+  ASSERT_EQ(outline.type, visualization_msgs::Marker::LINE_STRIP);
+  for (const auto* marker : {&surface, &outline}) {
+    const Eigen::AlignedBox3d box = boxOf(*marker);
+    EXPECT_NEAR(box.min().x(), 0, 1e-9);
+    EXPECT_NEAR(box.max().x(), 900, 1e-9);
+    EXPECT_NEAR(box.min().y(), -10, 1e-9);
+    EXPECT_NEAR(box.max().y(), 10, 1e-9);
+  }
+  EXPECT_LT(surface.points[0].z, outline.points[0].z) << "the lines are above it";
+}
+
+TEST(LandingMarkers, NumbersAreThoseOfTheEstimate) {
+  LandingResult landing = estimate();
+  landing.status = Status::kTracking;
+  landing.vertical_speed = -1.25;
+  landing.approach_angle = 3 * M_PI / 180;
+  landing.height_protection_level = 0.5;
+  const auto linesFor = [&] {
+    return linesOf(
+        named(drawLanding({}, {}, landing, std::nullopt, {1, 0}, {}, kUnknown).markers, "numbers").text);
+  };
+  EXPECT_EQ(linesFor(), (std::vector<std::string>{"tracking", "height 20.00 m", "sink rate 1.25 m/s",
+                                                  "approach 3.00 deg", "protection level 0.50 m"}));
+  landing.height_valid = false;
+  EXPECT_EQ(linesFor(), (std::vector<std::string>{"tracking, not valid", "height -", "sink rate -",
+                                                  "approach 3.00 deg", "protection level 0.50 m"}));
+  landing.height_valid = true;
+  landing.angle_valid = false;
+  EXPECT_EQ(linesFor(),
+            (std::vector<std::string>{"tracking, not valid", "height 20.00 m", "sink rate 1.25 m/s",
+                                      "approach -", "protection level 0.50 m"}));
+}
+
+TEST(LandingMarkers, TheAircraftIsDrawnNoseFirst) {
+  // 20 m high: the wings span 12 m. The nose is 0.45 spans ahead, the fin 0.16 above.
+  const Eigen::AlignedBox3d box = boxOf(named(draw({}, {0.3, 0.05, 0.02}), "aircraft"));
+  EXPECT_NEAR(box.max().x(), -100 + 0.45 * 12, 1e-6);
+  EXPECT_NEAR(box.min().x(), -100 - 0.5 * 12, 1e-6);
+  EXPECT_NEAR(box.max().y(), 1 + 6, 1e-6);
+  EXPECT_NEAR(box.min().y(), 1 - 6, 1e-6);
+  EXPECT_NEAR(box.max().z(), 20 + 0.16 * 12, 1e-6);
+  EXPECT_NEAR(box.min().z(), 20, 1e-6);
 }
 
 TEST(LandingMarkers, DashesDoNotMoveWithTheMeasuredWidth) {

@@ -28,6 +28,26 @@ TYPED_TEST(NodeParametersOf, HaveNoNameOfTheSection) {
   EXPECT_EQ(different.size(), names.size());
 }
 
+/// One parameter of each kind.
+struct EveryKind {
+  enum class Colour { kRed, kGreen } colour = Colour::kRed;
+  double length = 1;
+  bool wanted = true;
+  std::string frame;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("length", length, 0.0, 2.0, "m", "");
+    v.choice("colour", colour, {"red", "green"}, "");
+    v.flag("wanted", wanted, "");
+    v.text("frame", frame, "");
+  }
+};
+
+TEST(ParameterNames, AreThoseOfEveryKindOfParameter) {
+  EXPECT_EQ(parameterNames<EveryKind>(), (std::vector<std::string>{"length", "colour", "wanted", "frame"}));
+}
+
 TEST(NodeParameterTable, IsTheOneInTheDocumentation) {
   test::expectPage("node_parameters.md", nodeParameterTable(), "--list-node-parameters");
 }

@@ -268,6 +268,26 @@ TEST_F(StereoPairingTest, ResetForgetsWhatWaits) {
   EXPECT_EQ(pairs_, (Pairs{{1.5, 1.5}}));
 }
 
+TEST_F(StereoPairingTest, ResetForgetsThatTheClockWentBack) {
+  addPair(10.0);
+  addLeft(1.0);
+  pairing_.reset();
+  // These are of the time from which the clock went back, and would be left over from it.
+  addRight(10.1);
+  addLeft(10.1);
+  EXPECT_EQ(pairs_, (Pairs{{10.0, 10.0}, {10.1, 10.1}}));
+  EXPECT_EQ(pairing_.inputs()[2].late, 0u);
+}
+
+TEST_F(StereoPairingTest, ASecondJumpBackForgetsTheFirst) {
+  addPair(20.0);
+  addLeft(10.0);
+  addLeft(1.0);
+  // The right camera, of which nothing was heard between the jumps, is not waited for any more.
+  addRight(20.1);
+  EXPECT_EQ(pairing_.inputs()[2].late, 0u);
+}
+
 TEST_F(ApproximatePairingTest, PairsWithinMaxSkewWithoutWaitingForTheNext) {
   addLeft(1.0);
   addRight(1.004);

@@ -137,6 +137,35 @@ TEST(RunwayPath, GoesWhereTheRunwayIsOnceItIsFoundAndTakesThePathBehindAlong) {
   EXPECT_NEAR(path.track()[0].y(), -9, 1e-9) << "2 s at 1 m/s to the right";
 }
 
+TEST(RunwayPath, EachAxisIsKnownOnItsOwnAndUntilItIsLost) {
+  RunwayPath path;
+  path.update(flying(0));
+  LandingResult camera = flying(1);
+  camera.x = -300;
+  camera.x_variance = 0.5;
+  auto place = path.update(camera);
+  EXPECT_EQ(place->position.x(), -300);
+  EXPECT_EQ(place->variance.x(), 0.5);
+  EXPECT_NEAR(place->position.y(), 1, 1e-9) << "not known";
+  EXPECT_GE(place->variance.y(), 1e6);
+  EXPECT_NEAR(path.track()[0].x(), -310, 1e-9) << "1 s at 10 m/s";
+  place = path.update(flying(2));
+  EXPECT_NEAR(place->position.x(), -290, 1e-9) << "on from where it was known";
+  EXPECT_GE(place->variance.x(), 1e6);
+  // Known again, and another place: the path moves there once more.
+  camera = flying(3);
+  camera.x = -200;
+  camera.x_variance = 0.5;
+  path.update(camera);
+  EXPECT_NEAR(path.track()[0].x(), -230, 1e-9);
+  // A place that stays known moves nothing that is behind.
+  camera = flying(4);
+  camera.x = -195;
+  camera.x_variance = 0.5;
+  path.update(camera);
+  EXPECT_NEAR(path.track()[0].x(), -230, 1e-9);
+}
+
 TEST(RunwayPath, TheTrackIsBounded) {
   RunwayPath path;
   for (int i = 0; i < 5000; ++i) {
