@@ -104,6 +104,24 @@ TEST_F(Overlay, VanishingPointIsACircleAroundTheDirection) {
   EXPECT_EQ(colourfulness(picture, enlarged(190), enlarged(60)), 0);
 }
 
+TEST_F(Overlay, VanishingPointAndFocusOfExpansionHaveTheirNames) {
+  const auto coloured = [&](const cv::Mat& picture, double column, double row) {
+    int count = 0;  // beside the mark, to the right and above
+    for (int down = -20; down <= -5; ++down)
+      for (int right = 11; right <= 28; ++right)
+        count += colourfulness(picture, column + right, row + down) > 80;
+    return count;
+  };
+  const cv::Mat none = draw();
+  approach.vanishing_direction = Eigen::Vector3d(30, -60, 300).normalized();  // pixel (190, 60)
+  approach.foe = {100, 200};
+  const cv::Mat picture = draw();
+  EXPECT_EQ(coloured(none, enlarged(190), enlarged(60)), 0);
+  EXPECT_GT(coloured(picture, enlarged(190), enlarged(60)), 20);
+  EXPECT_EQ(coloured(none, enlarged(100), enlarged(200)), 0);
+  EXPECT_GT(coloured(picture, enlarged(100), enlarged(200)), 20);
+}
+
 TEST_F(Overlay, VanishingPointBehindTheCameraIsNotDrawn) {
   const cv::Mat without = draw();
   approach.vanishing_direction = Eigen::Vector3d(30, -60, -300).normalized();
@@ -273,6 +291,53 @@ TEST_F(Overlay, AttitudeIsUnderItsNamesAndInsideTheStrip) {
   EXPECT_LT(columns[0].br().x, columns[1].x);
   EXPECT_LT(columns[1].br().x, columns[2].x);
   EXPECT_LE(columns[2].br().x, 632);
+}
+
+TEST_F(Overlay, EveryInstrumentHasItsName) {
+  const cv::Mat names = labels(draw());
+  for (const int column : {10, 174, 274, 448, 508, 570}) {
+    const cv::Rect name = written(names.colRange(column - 4, column + 40));
+    EXPECT_NEAR(name.x, 4, 2) << column;
+    EXPECT_GT(name.width, 15) << column;
+    EXPECT_GT(name.height, 5) << column;
+  }
+}
+
+TEST_F(Overlay, TheMarkOfWhatIsNotValidLeavesItsNameReadable) {
+  const cv::Mat good = labels(draw());
+  landing.height_valid = landing.angle_valid = false;
+  const cv::Mat bad = labels(draw());
+  for (const int column : {10, 274}) {
+    const int width = column == 10 ? 40 : 95;  // of HEIGHT and APPROACH ANGLE
+    EXPECT_EQ(
+        cv::norm(good.colRange(column, column + width), bad.colRange(column, column + width), cv::NORM_INF),
+        0);
+  }
+  EXPECT_GT(redPixels(bad.colRange(60, 110)), 200);
+  EXPECT_GT(redPixels(bad.colRange(375, 440)), 200);
+}
+
+TEST_F(Overlay, TheAttitudeIsInDegrees) {
+  // What is written as one angle looks like another one that is the same.
+  const auto writtenAt = [&](int column) { return values(draw()).colRange(column, column + 50).clone(); };
+  landing.pitch = landing.roll = landing.yaw = 12.3 * kDegree;
+  EXPECT_EQ(cv::norm(writtenAt(448), writtenAt(508), cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(writtenAt(448), writtenAt(570), cv::NORM_INF), 0);
+  // 12.3 degrees are four letters, as 12.34 m/s begins with.
+  landing.pitch = 12 * kDegree;
+  EXPECT_GT(cv::norm(writtenAt(448), writtenAt(508), cv::NORM_INF), 0);
+}
+
+TEST_F(Overlay, TheAngleAndItsDeviationAreInDegrees) {
+  // "16.25 +-0.50 m" and "16.25 +-0.50 deg" begin alike.
+  landing.height = 16.25;
+  landing.height_variance = 0.25;
+  landing.approach_angle = 16.25 * kDegree;
+  landing.approach_angle_variance = std::pow(0.5 * kDegree, 2);
+  const cv::Mat row = values(draw());
+  const int width = 95;  // of what they have in common, nearly
+  EXPECT_GT(written(row.colRange(10, 10 + width)).width, 80);
+  EXPECT_EQ(cv::norm(row.colRange(10, 10 + width), row.colRange(274, 274 + width), cv::NORM_INF), 0);
 }
 
 TEST_F(Overlay, NumbersStayAsWideWhenTheyChange) {

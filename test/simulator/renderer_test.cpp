@@ -365,6 +365,44 @@ TEST(Renderer, ABoxHidesTheGroundBehindItsOutlineAndNothingElse) {
   EXPECT_NEAR(found.y + found.height - 1, bottom, 1.5);
 }
 
+TEST(Renderer, OneMaterialFarBelowTheHorizonNeedsNoSamples) {
+  // The same with any number of them: what takes many times as long is done where it matters only.
+  SimulatorParameters one = texturedGround(), many = texturedGround();
+  one.image.blur = many.image.blur = 0;
+  one.image.supersampling = 1;
+  many.image.supersampling = 4;
+  const cv::Rect below(0, 180, 320, 60);
+  EXPECT_EQ(cv::norm(renderPair(one, kPose).left(below), renderPair(many, kPose).left(below), cv::NORM_INF),
+            0);
+}
+
+TEST(Objects, AreAsLargeAsAskedAtMostAndOfManyShapes) {
+  SimulatedObjectsParameters p;
+  p.boxes = p.poles = 200;
+  p.box_size = 10;
+  p.pole_height = 6, p.pole_width = 0.2;
+  const std::vector<StandingObject> objects = placeObjects(p, 30, 7);
+  ASSERT_EQ(objects.size(), 400u);
+  Eigen::Array3f least = Eigen::Array3f::Constant(1e9f), most = Eigen::Array3f::Zero();
+  int long_ones = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Array3f size = (objects[i].high - objects[i].low).array();
+    least = least.min(size);
+    most = most.max(size);
+    long_ones += size.x() > size.y();
+    const Eigen::Array3f pole = (objects[200 + i].high - objects[200 + i].low).array();
+    EXPECT_NEAR(pole.x(), 0.2, 1e-4);
+    EXPECT_NEAR(pole.y(), 0.2, 1e-4);
+    EXPECT_GE(pole.z(), 3 - 1e-4);
+    EXPECT_LE(pole.z(), 6 + 1e-4);
+  }
+  EXPECT_TRUE((most <= 10.001f).all()) << most.transpose();
+  EXPECT_TRUE((most > 9.5f).all()) << most.transpose();
+  EXPECT_TRUE((least < 4).all()) << least.transpose();
+  EXPECT_TRUE((least > 1.9f).all()) << least.transpose();
+  EXPECT_NEAR(long_ones, 100, 30) << "as many are longer than wide as the other way round";
+}
+
 TEST(Objects, StandBesideTheRunwayWhereAsked) {
   SimulatedObjectsParameters p;
   p.boxes = p.poles = 100;
