@@ -88,6 +88,19 @@ class RoundTripTest(DatasetToBagTest):
         self.assertEqual(list(truth.foe), [26, 18.5])
         self.assertTrue(truth.valid and truth.height_valid and truth.angle_valid)
 
+    def test_attitude_and_place_each_in_its_field(self):
+        truth, second = self.messages()["/truth/landing_estimate"]
+        self.assertAlmostEqual(truth.pitch, math.radians(-5), 12)
+        self.assertAlmostEqual(truth.roll, math.radians(1.5), 12)
+        self.assertAlmostEqual(truth.yaw, math.radians(-2), 12)
+        self.assertEqual((truth.x, truth.y, second.x, second.y), (-100, 0.25, -99, 0.5))
+        self.assertTrue(truth.x_known and truth.y_known)
+        self.assertEqual((truth.raw_height, truth.points_height, second.raw_approach_angle),
+                         (truth.height, truth.height, second.approach_angle))
+        # The truth has no variance.
+        self.assertEqual([truth.pitch_variance, truth.roll_variance, truth.yaw_variance, truth.x_variance, truth.y_variance,
+                          truth.raw_height_variance, second.vertical_speed_variance, second.raw_approach_angle_variance], [0] * 8)
+
     def test_velocity_leads_to_the_focus_of_expansion_at_the_speed(self):
         velocity = np.array(self.messages()["/truth/landing_estimate"][1].velocity)
         self.assertAlmostEqual(np.linalg.norm(velocity), 20, 9)
@@ -140,6 +153,10 @@ class BadInputTest(DatasetToBagTest):
     def test_a_missing_image_is_named_with_its_line_and_column(self):
         (self.dataset / "right/b.png").unlink()
         self.assert_refused("frames.csv, line 3, column right:", "right/b.png: no such file")
+
+    def test_a_blank_image_is_named_with_its_line_and_column(self):
+        write_dataset(self.dataset, rows=[ROWS[0], ROWS[1].replace(",b.png,b.png", ",b.png,")])
+        self.assert_refused("frames.csv, line 3, column right: blank, expected the name of an image")
 
     def test_missing_columns(self):
         for column in ("stamp_s", "left", "right"):

@@ -86,6 +86,15 @@ class FilesTest(ProcessBagTest):
         folder = self.bag / "report"
         self.assert_refused(self.process("--report-data", folder), str(folder), "cannot be made")
 
+    def test_a_picture_that_cannot_be_written(self):
+        write_bag(self.bag, noise_frames())
+        report = self.folder / "report"
+        (report / "lines_left_000000.png.part.png").mkdir(parents=True)
+        result = self.process("--report-data", report)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"{report}/lines_left_000000.png: cannot be written", result.stderr)
+        self.assertFalse(self.csv.exists())
+
     def test_an_output_that_is_the_input(self):
         write_bag(self.bag, noise_frames())
         before = self.bag.read_bytes()

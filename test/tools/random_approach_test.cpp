@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "uav_landing/simulator/ground_profile.h"
@@ -130,6 +133,51 @@ TEST(RandomApproach, AnInertialSensorIsAsWrongAsTheEstimatorIsToldAndChangesNoth
     pitch.push_back(with.imu.pitch_error_deg);
   }
   EXPECT_NEAR(spread(pitch), 1.0, 0.1) << "attitude and slope together";
+}
+
+TEST(RandomApproach, AGyroscopesBiasAndNoiseAreThoseThatTheEstimatorIsTold) {
+  Parameters parameters;
+  parameters.approach_angle.imu_rate_bias_deg = 0.2;
+  parameters.approach_angle.imu_rate_stddev_deg = 0.05;
+  std::vector<double> bias;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    const SimulatedImuParameters imu = drawSnippet(seed, 10, 13, parameters, true).imu;
+    for (const double axis : {imu.gyro_bias_x_deg, imu.gyro_bias_y_deg, imu.gyro_bias_z_deg})
+      bias.push_back(axis);
+    ASSERT_NEAR(imu.gyro_noise_deg, 0.05, 1e-9);
+  }
+  EXPECT_NEAR(spread(bias), 0.2, 0.015);
+}
+
+/// Smallest and largest value of every number of a section.
+class Ranges {
+ public:
+  template <class Number>
+  void number(const char* name, Number& value, double, double, const char*, const char*) {
+    const auto [range, is_new] = ranges_.insert({name, {value, value}});
+    if (is_new) return;
+    range->second.first = std::min<double>(range->second.first, value);
+    range->second.second = std::max<double>(range->second.second, value);
+  }
+  void expectAllVary() const {
+    EXPECT_GT(ranges_.size(), 5u);
+    for (const auto& [name, range] : ranges_)
+      EXPECT_GT(range.second - range.first, 0.1 * range.second) << name;
+  }
+
+ private:
+  std::map<std::string, std::pair<double, double>> ranges_;
+};
+
+TEST(RandomApproach, LightGroundAndWobbleAreDifferentEveryTime) {
+  Ranges surface, wobble;
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    SimulatorParameters p = drawSnippet(seed, 10, 13, {});
+    p.surface.visit(surface);
+    p.wobble.visit(wobble);
+  }
+  surface.expectAllVary();
+  wobble.expectAllVary();
 }
 
 TEST(RandomApproach, SeedDecidesEverything) {
