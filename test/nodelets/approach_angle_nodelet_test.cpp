@@ -290,6 +290,19 @@ TEST_F(ImuTest, ALateSensorHoldsNoPairUp) {
   EXPECT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
 }
 
+TEST_F(ImuTest, ASensorThatFallsSilentAgainHoldsNoPairUpEither) {
+  startWithImu(0.02);
+  publishMounting("imu_link");
+  double t = 0;
+  for (int time = 0; time < 3; ++time) {
+    ASSERT_TRUE(sooner(t, [](const auto& result) { return result.imu.reason.empty(); })) << wholeLog();
+    // Nothing else comes that could let it go.
+    publishPair(t += 0.3);
+    EXPECT_EQ(resultOf(t).imu.reason.find("timeout: the newest imu message is 0.3"), 0u) << time;
+    publishImu(t - 0.29, t);
+  }
+}
+
 TEST_F(ImuTest, AMissingTransformIsNamedAndTheAngleIsFoundWithoutIt) {
   startWithImu();
   publishMounting("another_imu");

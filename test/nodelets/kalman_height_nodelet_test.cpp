@@ -282,6 +282,15 @@ TEST_F(KalmanHeightNodeletTest, WithoutPairsItIsLost) {
   EXPECT_LT(lost.header.stamp, PairPublisher::stampOf(0.4) + ros::Duration(60));
 }
 
+TEST_F(KalmanHeightNodeletTest, IsNotLostBeforeAPairHasHadItsTimeToCome) {
+  constexpr double kMaxAge = 2;
+  setParameter("kalman_height", "max_age", kMaxAge);
+  const ros::WallTime begin = ros::WallTime::now();
+  start(true);
+  ASSERT_TRUE(estimates_.waitFor(1));
+  EXPECT_GE((ros::WallTime::now() - begin).toSec(), kMaxAge);
+}
+
 TEST_F(KalmanHeightNodeletTest, LostAfterAResetItHasHadPairsAllTheSame) {
   start(true);
   publishSome(0, 3);
@@ -513,6 +522,25 @@ TEST_F(KalmanHeightNodeletTest, ABadRigIsTheReasonOfEveryMessage) {
       << estimateOf(0).reason;
   EXPECT_FALSE(estimateOf(0).valid);
   EXPECT_TRUE(std::isnan(estimateOf(0).height));
+}
+
+TEST_F(KalmanHeightNodeletTest, APairThatCannotBeUsedDoesNotBeginThePathAnew) {
+  start();
+  publishSome(0, 5);
+  ASSERT_TRUE(poses_.waitFor(1));
+  const double begin = poses_.messages().front()->pose.pose.position.x;
+  const auto stamp = poses_.messages().front()->header.stamp;
+  const double baseline = scene_.baseline;
+  scene_.baseline = 0;
+  publish(0.5);
+  ASSERT_TRUE(waitFor(0.5));
+  scene_.baseline = baseline;
+  publishSome(0.6, 5);
+  ASSERT_TRUE(poses_.waitFor([](const auto& p) { return p.header.stamp == PairPublisher::stampOf(1.0); }));
+  const auto last = poses_.messages().back();
+  // At 1 m/s all the time, but for the velocity that is not seen where the pair is the first again.
+  EXPECT_NEAR(last->pose.pose.position.x - begin, (last->header.stamp - stamp).toSec(), 0.25);
+  EXPECT_GT(last->pose.pose.position.x - begin, 0.7);
 }
 
 TEST_F(KalmanHeightNodeletTest, TheServiceResetForgetsTheHeight) {

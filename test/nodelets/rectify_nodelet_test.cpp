@@ -74,6 +74,25 @@ TEST_F(RectifyNodeletTest, TheMissingRightCameraIsNamed) {
   })) << wholeLog();
 }
 
+TEST_F(RectifyNodeletTest, WhatWaitedIsForgottenWhenNobodyListensAnyMore) {
+  setParameter("rectify", "drop_frames", false);
+  start();
+  cameras_.publishLeft(ros::Time(1000), scene_.blank(0), scene_.info(false));
+  // It is there, and waits for the right image.
+  ASSERT_TRUE(logged("no message on /stereo/right/image_raw, /stereo/right/camera_info")) << wholeLog();
+  left_.reset();
+  right_.reset();
+  ASSERT_TRUE(eventually([&] { return cameras_.unconnected(); }));
+  left_ = std::make_unique<Listener<sensor_msgs::Image>>("/uav_landing/left/image_rect");
+  right_ = std::make_unique<Listener<sensor_msgs::Image>>("/uav_landing/right/image_rect");
+  ASSERT_TRUE(eventually([&] { return cameras_.connected() && left_->connected() && right_->connected(); }));
+  cameras_.publishRight(ros::Time(1000), scene_.blank(0), scene_.info(true));
+  cameras_.publishLeft(ros::Time(1001), scene_.blank(0), scene_.info(false));
+  cameras_.publishRight(ros::Time(1001), scene_.blank(0), scene_.info(true));
+  ASSERT_TRUE(left_->waitFor(1));
+  EXPECT_EQ(left_->messages()[0]->header.stamp, ros::Time(1001));
+}
+
 TEST_F(RectifyNodeletTest, StampsThatNeverMatchAreShown) {
   start();
   double t = 0;

@@ -106,7 +106,12 @@ class ShortCampaignTest(unittest.TestCase):
         files = folder / "rows.csv", folder / "frames.csv"
         result = run([PROGRAM, "--csv", files[0], "--trace", files[1], *options])
         self.assertEqual(result.returncode, 0, result.stderr)
-        return [list(csv.DictReader(file.open())) for file in files]
+        tables = [list(csv.DictReader(file.open())) for file in files]
+        for table in tables:
+            for row in table:
+                # A field too few is None, one too many has the name None.
+                self.assertNotIn(None, [*row, *row.values()])
+        return tables
 
     def test_ground_that_slopes_below_the_aircraft_does_not_mislead(self):
         row = self.fly("--first", 101, "--frames", 110, "--faults", "slope")["slope"]

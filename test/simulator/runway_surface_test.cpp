@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
+#include <utility>
 #include <vector>
 
 namespace uav_landing {
@@ -38,6 +40,9 @@ float paintAt(float x, float y) { return RunwaySurface(marked()).cover({x, y, 0.
 struct Place {
   float x, y;
   bool painted;
+  friend std::ostream& operator<<(std::ostream& out, const Place& place) {
+    return out << place.x << ", " << place.y << (place.painted ? ", painted" : ", bare");
+  }
 };
 
 class RunwayMarks : public testing::TestWithParam<Place> {};
