@@ -26,7 +26,7 @@ class Workshop:
 
     def __init__(self, root, work):
         self._root, self._work = root, work
-        self.tree = work / "tree"
+        self.tree = (work / "tree").resolve()
         self.build_folder = self.tree / "build"
         self.environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"], CCACHE_BASEDIR=str(self.tree),
                                 GTEST_FAIL_FAST="1", ROS_HOME=str(work / "ros_home"))
