@@ -24,6 +24,7 @@ class Bench:
         self._tests = folder_fingerprint(workshop.tree / "test")
         self._sources = {}
         self._changing = threading.Lock()  # of the build and of what is known
+        self._built = set()  # targets of tests, without a mutant
         self._times = {}  # s of each test without a mutant; None: it fails without one
 
     def known(self, mutant):
@@ -43,8 +44,8 @@ class Bench:
         side_by_side = [mutant for mutant in mutants if is_of_shared_library(mutant.path)]
         # All at once, on all cores. One that cannot be built is left out when its turn comes.
         programs = {test.target for mutant in side_by_side for test in self._concern.tests_of(mutant.path) if test.program}
-        if programs:
-            self._workshop.build(*programs)
+        if programs and self._workshop.build(*programs):
+            self._built = programs
         with ThreadPoolExecutor(self._jobs) as pool:
             finished = set(pool.map(self._judge_beside, side_by_side))
         others = [mutant for mutant in mutants if mutant not in finished]
@@ -88,7 +89,7 @@ class Bench:
         """Builds a test without a mutant, and sees it pass."""
         with self._changing:
             if test not in self._times:
-                built = self._workshop.build(*self._targets(test, with_programs))
+                built = test.target in self._built or self._workshop.build(*self._targets(test, with_programs))
                 passed, seconds = self._workshop.run(test) if built else (False, 0)
                 self._times[test] = seconds if passed else None
                 if not passed:

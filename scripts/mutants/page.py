@@ -62,9 +62,10 @@ def _cell(code):
     return "`" + code.strip().replace("|", "\\|") + "`"
 
 
-def render(results, judged, seed):
+def render(results, judged, seed, drawn):
+    """drawn: mutants of the sample, judged or not."""
     counts = score(results, judged)
-    lines = [TEXT, f"## Score\nSeed {seed}, {len(results)} mutants.\n", "| folder | mutants | killed | equivalent | survive | score |",
+    lines = [TEXT, f"## Score\nSeed {seed}: {len(results)} of {drawn} mutants have been judged.\n", "| folder | mutants | killed | equivalent | survive | score |",
              "|---|---|---|---|---|---|"]
     for where in sorted(counts, key=lambda name: (name == "all", name)):
         count = counts[where]

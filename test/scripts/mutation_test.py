@@ -178,10 +178,11 @@ class PageTest(TreeTest):
     def test_what_is_equivalent_counts_as_killed_and_is_named_with_its_reason(self):
         results = [self.result("a", "killed"), self.result("b", "survived"), self.result("c", "survived", "src/ros/a.cpp")]
         judged = {"b": {"verdict": "equivalent", "why": "a is zero here"}, "c": {"verdict": "survives", "why": "no test yet"}}
-        text = page.render(results, judged, 1)
+        text = page.render(results, judged, 1, 5)
         self.assertIn("| src/core/height | 2 | 1 | 1 | 0 | 100% |", text)
         self.assertIn("| src/ros | 1 | 0 | 0 | 1 | 0% |", text)
         self.assertIn("| all | 3 | 1 | 1 | 1 | 67% |", text)
+        self.assertIn("3 of 5 mutants have been judged", text)
         self.assertIn("a is zero here", text)
         self.assertIn("no test yet", text)
 
