@@ -27,9 +27,9 @@ class Bench:
         self._built = set()  # targets of tests, without a mutant
         self._times = {}  # s of each test without a mutant; None: it fails without one
 
-    def known(self, mutant):
-        """The result of an earlier run that still holds, or None."""
-        return self._results.of(mutant, self._source(mutant.path), self._tests)
+    def known(self, mutant, by_any_tests=False):
+        """The result of an earlier run that still holds, or None. by_any_tests: also of one that survived older tests."""
+        return self._results.of(mutant, self._source(mutant.path), None if by_any_tests else self._tests)
 
     def _source(self, path):
         """Fingerprint of a source file without a mutant: it is asked for first by known()."""

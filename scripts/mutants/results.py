@@ -38,9 +38,9 @@ class Results:
         return result
 
     def of(self, mutant, source, tests):
-        """The result that still holds. One that survived has to face new tests; one that was killed stays so while its
-        file is the same."""
+        """The result that still holds. One that survived has to face new tests, unless `tests` is None; one that was killed
+        stays so while its file is the same."""
         result = self._by_name.get(mutant.name)
         if not result or result["source"] != source:
             return None
-        return result if result["outcome"] != "survived" or result["tests"] == tests else None
+        return result if result["outcome"] != "survived" or tests in (None, result["tests"]) else None

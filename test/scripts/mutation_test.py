@@ -169,6 +169,7 @@ class ResultsTest(TreeTest):
         self.assertIsNone(again.of(MUTANT, "new source", "tests"))
         self.assertEqual(again.of(other, "source", "tests")["outcome"], "survived")
         self.assertIsNone(again.of(other, "source", "new tests"))
+        self.assertEqual(again.of(other, "source", None)["outcome"], "survived")
 
 
 class PageTest(TreeTest):
