@@ -19,8 +19,8 @@ constexpr double kContradicts = 0.25;
 constexpr int kMostPeriods = 4;
 // Share of a period within which the way has to be one of whole periods.
 constexpr double kWhole = 0.25;
-// Times that differ by less are those of stamps that jitter (StampScatter): starting anew would do more harm,
-// s.
+// Times (s) that differ by less are those of stamps that jitter, which StampScatter follows. To start anew
+// for each of them would do more harm.
 constexpr double kLeastStep = 0.045;
 // 1 sigma of a way over itself: one that is known worse tells no time.
 constexpr double kLargestRelative = 0.08;
