@@ -128,11 +128,11 @@ uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.c
 
 # integrity
 uav_landing_add_gtest(clock_watch_test test/core/integrity/clock_watch_test.cpp)
-uav_landing_add_gtest(consistency_tests_test test/core/integrity/consistency_tests_test.cpp)
 uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
 uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
 uav_landing_add_gtest(innovation_scatter_test test/core/base/innovation_scatter_test.cpp)
 uav_landing_add_gtest(normal_doubt_test test/core/integrity/normal_doubt_test.cpp)
+uav_landing_add_gtest(pair_tests_test test/core/integrity/pair_tests_test.cpp)
 uav_landing_add_gtest(recovery_test test/core/integrity/recovery_test.cpp)
 uav_landing_add_gtest(solution_separation_test test/core/integrity/solution_separation_test.cpp)
 uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cpp)

@@ -2,6 +2,7 @@
 // not.
 #include <gtest/gtest.h>
 
+#include "integrity/test_catalogue.h"
 #include "uav_landing/pipeline.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -38,7 +39,7 @@ Counts fly(int late, bool told) {
     const LandingResult& landing =
         pipeline.process(100 + left.time, left.left, right.right, told ? late * kTick : 0).landing;
     counts.valid += landing.height_valid;
-    counts.contradicted += landing.tests[static_cast<int>(Consistency::kBaselineDirection)].failed();
+    counts.contradicted += landing.tests[static_cast<int>(IntegrityTest::kBaselineDirection)].failed();
   }
   return counts;
 }

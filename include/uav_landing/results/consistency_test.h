@@ -33,4 +33,7 @@ double normalQuantile(double probability);
 /// "tilt image_regions", or "" when none failed.
 std::string failedTests(const std::vector<TestResult>& tests);
 
+/// Page of all tests: what each compares, its unit, its limit and what follows (docs/integrity_tests.md).
+std::string integrityTestPage();
+
 }  // namespace uav_landing

@@ -22,4 +22,9 @@ VerticalSpeed verticalSpeed(const ApproachAngleResult::Motion& step, const Groun
   return result;
 }
 
+VerticalSpeed withDurations(VerticalSpeed speed, double duration_variance) {
+  speed.variance += speed.speed * speed.speed * duration_variance;
+  return speed;
+}
+
 }  // namespace uav_landing

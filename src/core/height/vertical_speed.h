@@ -18,4 +18,7 @@ struct VerticalSpeed {
 VerticalSpeed verticalSpeed(const ApproachAngleResult::Motion& step, const GroundPlane& plane, double height,
                             double height_variance, double slope_error, double acceleration_stddev);
 
+/// As uncertain as durations between stamps are as well. duration_variance: of them, over their squares.
+VerticalSpeed withDurations(VerticalSpeed speed, double duration_variance);
+
 }  // namespace uav_landing

@@ -145,6 +145,13 @@ int main(int argc, char** argv) {
         throw CLI::Success();
       },
       "print the nodelets' parameters that are in no config file (docs/node_parameters.md), and leave");
+  app.add_flag_callback(
+      "--list-tests",
+      [] {
+        std::cout << integrityTestPage();
+        throw CLI::Success();
+      },
+      "print the tests of integrity, with limits and what follows (docs/integrity_tests.md), and leave");
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   options.imu_needed = imu->count() > 0 && !options.imu.empty();
   try {

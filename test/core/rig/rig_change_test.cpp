@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "uav_landing/integrity/consistency_tests.h"
+#include "integrity/pair_tests.h"
 
 namespace uav_landing {
 namespace {
@@ -26,12 +26,11 @@ bool isLarge(const RigChange& change, const RigRotation& measured) {
 
 TEST(RigChange, SeesASuddenBendButNotAConstantError) {
   RigChange change;
-  ConsistencyTests tests(1e-5);
   const auto failed = [&](const RigRotation& measured) {
-    tests.begin();
+    PairTests tests(1e-5, 5);
     const auto innovation = change.compare(measured);
-    if (innovation) tests.add(Consistency::kRigRotation, innovation->difference, innovation->covariance);
-    const bool result = tests.failed(Consistency::kRigRotation);
+    if (innovation) tests.add(IntegrityTest::kRigRotation, innovation->difference, innovation->covariance);
+    const bool result = tests.failed(IntegrityTest::kRigRotation);
     change.learn(0.05, measured, !result);
     return result;
   };

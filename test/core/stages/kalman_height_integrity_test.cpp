@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "integrity/test_catalogue.h"
 #include "support/ground_matches.h"
 #include "support/rigs.h"
 #include "uav_landing/rig/rig_rotation.h"
@@ -50,8 +51,8 @@ TEST(KalmanHeightIntegrity, AHealthyFlightPassesAllTestsAndIsProtected) {
     result = stage.process(stereoAt(1 + 0.05 * i, 10), levelFlight(1 + 0.05 * i, 10));
   EXPECT_TRUE(result.height_valid) << result.failure.message();
   EXPECT_EQ(failedTests(result.tests), "");
-  EXPECT_TRUE(result.tests[static_cast<int>(Consistency::kSinkRate)].possible());
-  EXPECT_TRUE(result.tests[static_cast<int>(Consistency::kImageRegions)].possible());
+  EXPECT_TRUE(result.tests[static_cast<int>(IntegrityTest::kSinkRate)].possible());
+  EXPECT_TRUE(result.tests[static_cast<int>(IntegrityTest::kImageRegions)].possible());
   EXPECT_GT(result.height_protection_level, 0.2) << "two per cent of 10 m are by assumption";
   EXPECT_LT(result.height_protection_level, 0.5);
   EXPECT_DOUBLE_EQ(result.height_alert_limit, 0.05 * result.height);
@@ -133,7 +134,7 @@ TEST(KalmanHeightIntegrity, WhatAllPointsHaveInCommonIsInTheHeightsWithoutARegio
       stereo.plane.covariance += stereo.row_covariance;
       result = stage.process(stereo, levelFlight(1 + 0.05 * i, 10));
     }
-    return result.tests[static_cast<int>(Consistency::kImageRegions)].variance;
+    return result.tests[static_cast<int>(IntegrityTest::kImageRegions)].variance;
   };
   // dh = -h^2 n.dg, and g is wrong along y.
   const double by_rows = std::pow(10 * 10 * std::cos(4 * kDegree) * 1e-3, 2);
@@ -270,7 +271,7 @@ TEST(KalmanHeightIntegrity, APictureOnceMoreCountsOnceForTheAttitude) {
     approach.step.failure = {Reason::kNoMotion, ""};
     const LandingResult repeated = twice.process(again, approach);
     for (const TestResult& test : repeated.tests)
-      EXPECT_FALSE(test.name == toString(Consistency::kTilt) && test.possible()) << i;
+      EXPECT_FALSE(test.name == toString(IntegrityTest::kTilt) && test.possible()) << i;
   }
 }
 
@@ -433,7 +434,7 @@ TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayWaitsForTheVanishin
     approach.vanishing_direction = {0, -std::sin(4 * kDegree + off), std::cos(4 * kDegree + off)};
     approach.vanishing_covariance = 1e-6 * Eigen::Matrix3d::Identity();
     const LandingResult result = stage.process(stereo, approach);
-    EXPECT_EQ(result.tests[static_cast<int>(Consistency::kVanishingPoint)].failed(), off > 0);
+    EXPECT_EQ(result.tests[static_cast<int>(IntegrityTest::kVanishingPoint)].failed(), off > 0);
     stamp += 0.05;
     return result.height_valid;
   };
@@ -460,7 +461,7 @@ TEST(KalmanHeightIntegrity, AnImuThatContradictsTheGroundsNormalIsNamedAndOneTha
       result = stage.process(stereoAt(stamp, 10), approach);
     }
     EXPECT_EQ(failedTests(result.tests), std::abs(off_deg) > 3 ? "imu" : "") << off_deg;
-    const TestResult& test = result.tests[static_cast<int>(Consistency::kImu)];
+    const TestResult& test = result.tests[static_cast<int>(IntegrityTest::kImu)];
     EXPECT_NEAR(test.difference, std::abs(off_deg) * kDegree, 0.002) << off_deg;
   }
 }

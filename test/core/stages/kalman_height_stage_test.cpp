@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "landing/height_track.h"
 #include "support/degree.h"
 #include "support/kalman_height_inputs.h"
 #include "support/rigs.h"
@@ -34,11 +35,11 @@ TEST(KalmanHeightStage, SearchesUntilThereIsAPlane) {
 
 TEST(KalmanHeightStage, BelievesAHeightOnlyAfterItWasConfirmed) {
   KalmanHeightStage stage(usualRig(), {});
-  for (int i = 0; i < KalmanHeightStage::kConfirmations; ++i) {
+  for (int i = 0; i < HeightTrack::kConfirmations; ++i) {
     const LandingResult result = stage.process(stereoAt(i * kStep, 10), angleAt(i * kStep));
     EXPECT_EQ(result.status, Status::kTracking);
     EXPECT_NEAR(result.height, 10, 1e-6);
-    const bool last = i + 1 == KalmanHeightStage::kConfirmations;
+    const bool last = i + 1 == HeightTrack::kConfirmations;
     EXPECT_EQ(result.height_valid, last) << i;
     EXPECT_EQ(result.valid(), last);
     EXPECT_EQ(result.failure.reason, last ? Reason::kNone : Reason::kNotYet);
@@ -110,7 +111,7 @@ TEST(KalmanHeightStage, RecoversWithinTheTimeoutFromAWrongHeightItLockedOn) {
   EXPECT_LE(stamp - kStep - last_wrong, parameters.reset_timeout + 1e-6);
   EXPECT_EQ(result.resets, 1);
   EXPECT_NEAR(result.height, 20, 1e-9);
-  for (int i = 1; i < KalmanHeightStage::kConfirmations; ++i, stamp += kStep)
+  for (int i = 1; i < HeightTrack::kConfirmations; ++i, stamp += kStep)
     result = stage.process(stereoAt(stamp, 20), angleAt(stamp));
   EXPECT_TRUE(result.height_valid);
 }

@@ -1,0 +1,59 @@
+#include "integrity/test_catalogue.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "uav_landing/results/consistency_test.h"
+
+namespace uav_landing {
+namespace {
+
+std::string limitOf(const TestDescription& described) {
+  std::ostringstream out;
+  switch (described.limit.kind) {
+    case TestLimit::kChiSquare:
+      out << "chi-square";
+      break;
+    case TestLimit::kSquaredGate:
+      out << "`gate`²";
+      break;
+    case TestLimit::kFixed:
+      out << described.limit.value;
+      break;
+  }
+  return out.str();
+}
+
+const char* stepOf(const TestDescription& described) {
+  switch (described.step) {
+    case TestStep::kGround:
+      return "ground";
+    case TestStep::kPair:
+      return "pair";
+    case TestStep::kTrack:
+      return "track";
+    case TestStep::kMemory:
+      return "memory";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string integrityTestPage() {
+  std::ostringstream out;
+  out << "# Tests of integrity\n\n"
+         "What `kalman_height` tests on every pair, in this order in `LandingEstimate.tests`, in the "
+         "diagnostics and "
+         "in the CSV\ncolumn `failed_tests`. The squared normalised difference must not exceed the limit; "
+         "*chi-square* is what noise alone\nexceeds with probability `false_alarm_rate`. Steps are those of "
+         "the "
+         "[landing estimate](how_it_works.md); what the tests are worth\nis in [Integrity](integrity.md).\n\n"
+         "| test | step | compares | unit | limit | when it fails |\n|---|---|---|---|---|---|\n";
+  for (const TestDescription& described : kTestCatalogue)
+    out << "| `" << described.name << "` | " << stepOf(described) << " | " << described.compares << " | "
+        << described.unit << " | " << limitOf(described) << " | " << described.consequence << " |\n";
+  return out.str();
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "integrity/pair_tests.h"
+#include "landing/ground_estimate.h"
+#include "landing/height_track.h"
+#include "landing/measured_height.h"
+#include "landing/pair_input.h"
+#include "uav_landing/integrity/height_memory.h"
+
+namespace uav_landing {
+
+/// The published height against the one of before, carried on by the motion, which needs no stereo.
+class SinkRateWatch {
+ public:
+  explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
+
+  /// What the motion is less certain by than it claims.
+  struct Doubt {
+    double angle_variance = 0;     ///< by other normals of the ground, rad^2
+    double duration_variance = 0;  ///< of durations between stamps, over their squares
+  };
+  /// Why the published height is not valid, if so. errors: of the pair's height. tests: those made so far;
+  /// sink_rate is added.
+  Failure check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
+                const TrackVerdict& post, const Doubt& doubt, PairTests& tests);
+
+ private:
+  void carry(const PairInput& in, const Ground& ground, double scale, const Doubt& doubt, bool level_known);
+
+  KalmanHeightParameters parameters_;
+  HeightMemory memory_;
+};
+
+}  // namespace uav_landing
