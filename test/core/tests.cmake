@@ -3,8 +3,12 @@
 # base
 uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
 uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
-uav_landing_add_gtest(convergence_test test/core/base/convergence_test.cpp)
 uav_landing_add_gtest(steadiness_test test/core/base/steadiness_test.cpp)
+
+# estimation
+uav_landing_add_gtest(convergence_test test/core/estimation/convergence_test.cpp)
+uav_landing_add_gtest(estimation_test test/core/estimation/estimation_test.cpp)
+uav_landing_add_gtest(innovation_scatter_test test/core/estimation/innovation_scatter_test.cpp)
 
 # parameters
 uav_landing_add_gtest(parameter_file_test test/core/parameters/parameter_file_test.cpp)
@@ -57,6 +61,8 @@ uav_landing_add_gtest(vertical_speed_test test/core/height/vertical_speed_test.c
 uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
+uav_landing_add_gtest(corner_matcher_test test/core/stereo/corner_matcher_test.cpp LIBS opencv_video
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(aligned_rows_test test/core/stereo/aligned_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(band_disparities_test test/core/stereo/band_disparities_test.cpp
@@ -130,7 +136,6 @@ uav_landing_add_gtest(runway_tracker_test test/core/runway/runway_tracker_test.c
 uav_landing_add_gtest(clock_watch_test test/core/integrity/clock_watch_test.cpp)
 uav_landing_add_gtest(ground_memory_test test/core/integrity/ground_memory_test.cpp)
 uav_landing_add_gtest(height_memory_test test/core/integrity/height_memory_test.cpp)
-uav_landing_add_gtest(innovation_scatter_test test/core/base/innovation_scatter_test.cpp)
 uav_landing_add_gtest(normal_doubt_test test/core/integrity/normal_doubt_test.cpp)
 uav_landing_add_gtest(pair_tests_test test/core/integrity/pair_tests_test.cpp)
 uav_landing_add_gtest(recovery_test test/core/integrity/recovery_test.cpp)

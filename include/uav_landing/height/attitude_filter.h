@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -16,12 +17,9 @@ namespace uav_landing {
 /// in proportion to the height: the mean of pairs that were higher is tilted more than the last one.
 class AttitudeFilter {
  public:
-  static constexpr double kGate = 25.0;           ///< squared sigmas of the two angles together
-  static constexpr double kDoubtful = 9.0;        ///< the same, from which a normal that agrees is in doubt
+  static constexpr Sigmas kGate{5};               ///< of the two angles together
+  static constexpr Sigmas kDoubtful{3};           ///< the same, from which a normal that agrees is in doubt
   static constexpr double kStampRounding = 1e-3;  ///< s, by which stamps of the same pairs may differ
-  /// 1 sigma of the camera's angular velocity where no step tells the rotation, and what may as well be a
-  /// wrong turn, rad/s.
-  static constexpr double kTurnRate = 5 * M_PI / 180, kUnusualTurn = 5 * kTurnRate;
 
   /// Whether the step tells how the camera turned in the last T seconds: one that spans another time does
   /// not.

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "uav_landing/base/innovation_scatter.h"
+#include "uav_landing/estimation/innovation_scatter.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/camera_rig.h"
 #include "uav_landing/simulator/imu.h"
-#include "uav_landing/simulator/renderer.h"
+#include "uav_landing/simulator/parameters.h"
 #include "uav_landing/simulator/trajectory.h"
 
 namespace uav_landing {
@@ -22,7 +23,7 @@ class ApproachSimulator {
     cv::Mat left, right;  ///< raw, mono8
     Truth truth;
   };
-  int frames() const { return frames_; }
+  int frames() const;
   Frame frame(int index) const;
 
   /// What falls on the two sensors of one frame: rendering it is the costly part of the frame.
@@ -34,27 +35,17 @@ class ApproachSimulator {
   /// The frame that sensors of this noise (1 sigma, grey levels) make of it.
   Frame expose(const Light& light, double noise) const;
 
-  double timeOf(int index) const { return index / parameters_.path.rate; }
-  CameraPose pose(double time) const { return trajectory_.pose(time); }
-  const CameraRig& rig() const { return rig_; }
-  SimulatedImu imu() const {
-    return {parameters_.imu, trajectory_, static_cast<uint64_t>(parameters_.random.seed)};
-  }
-  double duration() const { return timeOf(frames_ - 1); }
+  double timeOf(int index) const;
+  CameraPose pose(double time) const;
+  const CameraRig& rig() const;
+  SimulatedImu imu() const;
+  double duration() const { return timeOf(frames() - 1); }
 
  private:
-  ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig);
-  Failure checkHeights() const;
-  cv::Mat lightIn(const SimulatedCamera& camera, int index) const;
-  cv::Mat picture(const cv::Mat& light, const SimulatedCameraParameters& sensor, int index, int camera_number,
-                  double noise) const;
+  struct World;
+  explicit ApproachSimulator(std::shared_ptr<const World> world) : world_(std::move(world)) {}
 
-  SimulatorParameters parameters_;
-  CameraRig rig_;
-  Trajectory trajectory_;
-  GroundProfile profile_;
-  Renderer renderer_;
-  int frames_;
+  std::shared_ptr<const World> world_;
 };
 
 }  // namespace uav_landing

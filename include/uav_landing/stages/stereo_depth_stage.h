@@ -10,12 +10,17 @@
 
 namespace uav_landing {
 
+class CornerMatcher;
+
 /// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane.
 /// Keeps the plane of the previous pair to predict where to search, by how much the right camera's rows are
 /// off (some twenty pairs), and rows of the last images to know those that come again.
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
+  /// With another matcher than the one along rows (src/core/stereo/corner_matcher.h).
+  StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters,
+                   std::unique_ptr<CornerMatcher> matcher);
   ~StereoDepthStage();
   StereoDepthStage(StereoDepthStage&&) noexcept;
 

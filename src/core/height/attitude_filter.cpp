@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimation/aircraft.h"
 #include "geometry/rotation.h"
 
 namespace uav_landing {
@@ -55,8 +56,7 @@ struct Innovation {
 
 /// Of a normal when nobody knows how the camera turned in a time of T (s).
 Eigen::Matrix3d unknownTurn(double T, const Eigen::Vector3d& normal) {
-  return std::pow(AttitudeFilter::kTurnRate * T, 2) *
-         (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  return std::pow(aircraft::kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
 }
 
 /// Of a normal that turns as the step says, by the errors of its rotation. With one that claims to know less
@@ -66,7 +66,7 @@ Eigen::Matrix3d turnCovariance(double T, const Eigen::Vector3d& normal,
   const Eigen::Matrix3d by_rotation = crossMatrix(normal);
   const Eigen::Matrix3d claimed =
       by_rotation * step.covariance.topLeftCorner<3, 3>() * by_rotation.transpose();
-  const double most = std::pow(AttitudeFilter::kTurnRate * T, 2);
+  const double most = std::pow(aircraft::kTurnRate * T, 2);
   if (claimed.trace() <= most) return claimed;
   if (!claimed.allFinite()) return unknownTurn(T, normal);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(claimed);
@@ -114,7 +114,7 @@ AttitudeFilter::Prediction AttitudeFilter::predict(double stamp, const ApproachA
 
 void AttitudeFilter::turn(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step) {
   const Eigen::Vector3d& n = estimate_->normal;
-  turn_doubted_ = agreements_ >= kConfirmed && angleBetween(n, R * n) > kUnusualTurn * T;
+  turn_doubted_ = agreements_ >= kConfirmed && angleBetween(n, R * n) > aircraft::kUnusualTurnRate * T;
   if (turn_doubted_) {
     if (!other_) doubt(*estimate_, true);
     addTurn(T, *other_);
@@ -157,7 +157,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   bool denied = false;  // the turn that was in doubt
   if (other_) {
     const Innovation without(*other_, normal, covariance);
-    const bool agrees = innovation.ratio <= kGate, other_agrees = without.ratio <= kGate;
+    const bool agrees = kGate.admitsRatio(innovation.ratio), other_agrees = kGate.admitsRatio(without.ratio);
     if (!agrees && other_agrees) {
       denied = other_is_turn_ || turn_doubted_;
       innovation = without;
@@ -169,7 +169,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
     if (denied || (other_is_turn_ && agrees != other_agrees)) other_.reset();
   }
   estimate_->ratio = innovation.ratio;
-  estimate_->agrees = estimate_->ratio <= kGate;
+  estimate_->agrees = kGate.admitsRatio(estimate_->ratio);
   if (!estimate_->agrees) {
     // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
     if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience)
@@ -179,7 +179,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   agreed_ = stamp;
   agreements_ = std::min(agreements_ + 1, kConfirmed);
   const bool guessed = predicted == Prediction::kGuessed;
-  const bool doubtful = (guessed && !denied) || innovation.ratio > kDoubtful;
+  const bool doubtful = (guessed && !denied) || innovation.ratio > kDoubtful.squared();
   if (doubtful && !other_ && agreements_ >= kConfirmed) doubt(*estimate_, false);
   if (guessed) {
     // A guess is good enough to contradict, but nothing to average with.

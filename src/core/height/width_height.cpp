@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uav_landing/estimation/limits.h"
+
 namespace uav_landing {
 namespace {
 
 constexpr double kKnownStddev = 0.002;  // of a known width
 constexpr double kSame = 0.005;         // of the width: beyond this (and 4 sigma) other edges are seen
-constexpr double kGate = 4;             // sigma
-constexpr int kAgreeing = 5;            // pairs in a row before a width is learned
+constexpr Sigmas kGate(4);
+constexpr int kAgreeing = 5;  // pairs in a row before a width is learned
 
 }  // namespace
 
@@ -36,7 +38,7 @@ WidthHeight::Width WidthHeight::seen(double ratio, double variance, double heigh
 }
 
 bool WidthHeight::agree(const Width& a, const Width& b) {
-  return std::abs(a.mean - b.mean) <= std::max(kSame * b.mean, kGate * std::sqrt(a.variance + b.variance));
+  return std::abs(a.mean - b.mean) <= std::max(kSame * b.mean, kGate.bound(a.variance + b.variance));
 }
 
 void WidthHeight::merge(const Width& seen, Width& width) {
@@ -50,7 +52,7 @@ void WidthHeight::merge(const Width& seen, Width& width) {
 bool WidthHeight::isSame(double ratio, double variance, double height, double height_variance) {
   if (!width_) return true;
   const Width now = seen(ratio, variance, height, height_variance);
-  const double without_height = kGate * std::sqrt(width_->variance + height * height * variance);
+  const double without_height = kGate.bound(width_->variance + height * height * variance);
   if (!agree(now, *width_)) {
     changed_ = true;
   } else if (std::abs(now.mean - width_->mean) <= std::max(kSame * width_->mean, without_height)) {

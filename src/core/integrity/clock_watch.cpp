@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/median.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/median.h"
+#include "estimation/robust.h"
 #include "uav_landing/integrity/height_memory.h"
 
 namespace uav_landing {

@@ -62,7 +62,7 @@ struct TestLimit {
        "half a g, and while steps contradict what 1 g makes of it: an aircraft's way does not become a period of a "   \
        "pattern longer, nor does it lead to the other camera or backwards",                                            \
        "approach angle as uncertain as it changes by that; no velocity by this step")                                  \
-  TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate), "rad",      \
+  TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()), "rad",      \
        "ground normal of the pair, with the pairs before and the rotation since (5 σ); needs `average_attitude`",      \
        "pair left out")                                                                                                \
   TEST(kVanishingPoint, "vanishing_point", TestStep::kPair, OnFailure::kSourceLeftOut, TestLimit::chiSquare(), "rad",  \

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "estimation/aircraft.h"
 #include "geometry/rotation.h"
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/height/attitude_filter.h"
 
 namespace uav_landing {
@@ -10,7 +12,7 @@ namespace {
 
 constexpr int kConfirmed = 3;
 constexpr double kPatience = 1.0;  // s, without one that agrees
-constexpr double kGate = 25.0;     // squared sigmas
+constexpr Sigmas kGate(5);
 
 }  // namespace
 
@@ -21,7 +23,7 @@ bool VanishingMemory::leaps(double stamp, const Direction& seen, const Eigen::Ve
   if (last_) {
     const double off = axis.dot(seen.direction - last_->direction);
     const double variance = axis.dot((seen.covariance + last_->covariance) * axis);
-    const bool agrees = off * off <= kGate * variance;
+    const bool agrees = kGate.admits(off, variance);
     if (!agrees && agreements_ >= kConfirmed && stamp - agreed_ <= kPatience) return true;
     agreements_ = agrees ? agreements_ + 1 : 0;
   }
@@ -35,7 +37,7 @@ void VanishingMemory::carry(double stamp, const ApproachAngleResult::Motion& tur
   stamp_ = stamp;
   if (!last_) return;
   if (!AttitudeFilter::tellsTurn(turn, T)) {
-    last_->covariance += std::pow(AttitudeFilter::kTurnRate * T, 2) * Eigen::Matrix3d::Identity();
+    last_->covariance += std::pow(aircraft::kTurnRate * T, 2) * Eigen::Matrix3d::Identity();
     return;
   }
   const Eigen::Matrix3d R = rotationMatrix(turn.rotation);

@@ -5,17 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/aircraft.h"
+
 namespace uav_landing {
 namespace {
 
 constexpr int kConfirmed = 3;
-// 1 sigma of the random acceleration, m/s^2: half a g, as in gusts and when the wheels touch down.
-constexpr double kAcceleration = 5.0;
-// The same of one that lasts, while steps contradict: a test's limit of some 5 sigma is 1 g then, more than
-// an aircraft gains or loses in that time.
-constexpr double kLasting = 1.8;
-// The same of the turn where no step tells it, rad/s.
-constexpr double kTurnRate = 5 * M_PI / 180;
 
 VelocityMemory::Innovation measuredBy(const VelocityMemory::Step& step) {
   const Eigen::Vector3d velocity = step.way / step.duration;
@@ -31,7 +26,7 @@ std::optional<VelocityMemory::Innovation> VelocityMemory::follow(const Step& ste
   covariance_before_ = covariance_;
   velocity_ = step.rotation * velocity_;
   covariance_ = (step.rotation * covariance_ * step.rotation.transpose()).eval();
-  covariance_.diagonal().array() += std::pow(kAcceleration * step.duration, 2);
+  covariance_.diagonal().array() += std::pow(aircraft::kAcceleration * step.duration, 2);
   if (agreements_ < kConfirmed) return std::nullopt;
   const Innovation measured = measuredBy(step);
   return Innovation{measured.difference - velocity_, covariance_ + measured.covariance + lasting()};
@@ -65,7 +60,7 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
 }
 
 Eigen::Matrix3d VelocityMemory::lasting() const {
-  return std::pow(kLasting * contradicted_, 2) * Eigen::Matrix3d::Identity();
+  return std::pow(aircraft::kLastingAcceleration * contradicted_, 2) * Eigen::Matrix3d::Identity();
 }
 
 void VelocityMemory::restart(const Step& step) {
@@ -83,8 +78,8 @@ void VelocityMemory::skip(double duration) {
 }
 
 void VelocityMemory::carryOn(double duration) {
-  covariance_.diagonal().array() += std::pow(kAcceleration * duration, 2);
-  const double turn = kTurnRate * duration;
+  covariance_.diagonal().array() += std::pow(aircraft::kAcceleration * duration, 2);
+  const double turn = aircraft::kTurnRate * duration;
   covariance_ += turn * turn *
                  (velocity_.squaredNorm() * Eigen::Matrix3d::Identity() - velocity_ * velocity_.transpose());
 }

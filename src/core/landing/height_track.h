@@ -5,7 +5,7 @@
 #include "height/vertical_speed.h"
 #include "integrity/pair_tests.h"
 #include "landing/measured_height.h"
-#include "uav_landing/base/innovation_scatter.h"
+#include "uav_landing/estimation/innovation_scatter.h"
 #include "uav_landing/height/height_filter.h"
 #include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"

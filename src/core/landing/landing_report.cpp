@@ -30,7 +30,7 @@ Eigen::Matrix3d doubtOfVelocity(const PairInput& in, const PairVerdict& pair, co
                                 double depth_change, double angle_variance) {
   Eigen::Matrix3d doubt = Eigen::Matrix3d::Zero();
   // After a gap an aircraft may have become that fast, but a wrong step is as likely.
-  if (pair.tests.result(IntegrityTest::kVelocity).ratio > AttitudeFilter::kDoubtful)
+  if (pair.tests.result(IntegrityTest::kVelocity).ratio > AttitudeFilter::kDoubtful.squared())
     doubt += pair.velocity.change * pair.velocity.change.transpose();
   doubt += depth_change * depth_change * velocity * velocity.transpose();
   // The vertical part is as uncertain as the angle by another normal.

@@ -18,7 +18,7 @@ double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
 
 /// The plane has turned against the pairs before, so that they say nothing of it.
 bool hasTurned(const PairTests& tests) {
-  return tests.result(IntegrityTest::kTilt).ratio > AttitudeFilter::kDoubtful;
+  return tests.result(IntegrityTest::kTilt).ratio > AttitudeFilter::kDoubtful.squared();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/aircraft.h"
 #include "geometry/rotation.h"
 
 namespace uav_landing {
@@ -16,7 +17,7 @@ constexpr double kSlope = 0.05;
 /// A camera that hardly moves turns all the same, but an unusual turn is confirmed by nothing then.
 bool knowsTurn(const ApproachAngleResult::Motion& step, double T) {
   return step.rotation.allFinite() &&
-         (!step.failure || step.rotation.norm() <= AttitudeFilter::kUnusualTurn * T);
+         (!step.failure || step.rotation.norm() <= aircraft::kUnusualTurnRate * T);
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ void SurfaceBelow::carry(const PairInput& in, const Ground& ground, const Step& 
     return;
   }
   const bool doubted = step.turn_known && ground.turn_doubted;
-  const double turn_stddev = doubted ? in.step().rotation.norm() : AttitudeFilter::kTurnRate * step.T;
+  const double turn_stddev = doubted ? in.step().rotation.norm() : aircraft::kTurnRate * step.T;
   memory_.coast(doubted ? step.R : Eigen::Matrix3d::Identity(), turn_stddev, step.T, step.normal_before,
                 doubted);
   if (step.believed) memory_.settleTurn(*last_normal_, kTurnByNormals);

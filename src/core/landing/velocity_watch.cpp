@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/aircraft.h"
 #include "geometry/rotation.h"
 #include "uav_landing/height/attitude_filter.h"
 #include "uav_landing/motion/approach_angle.h"
@@ -16,7 +17,7 @@ VelocityWatch::Verdict VelocityWatch::follow(const PairInput& in, double height,
   Verdict found;
   if (step.failure || !(step.duration > 0) || !(height > 0) || !covariance.allFinite()) {
     velocity_.skip(in.T);
-  } else if (step.rotation.norm() > AttitudeFilter::kUnusualTurn * step.duration) {
+  } else if (step.rotation.norm() > aircraft::kUnusualTurnRate * step.duration) {
     // A turn that may be a wrong one would turn the velocity, and contradict all that comes.
     velocity_.skip(step.duration);
   } else {

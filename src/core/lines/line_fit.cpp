@@ -6,6 +6,7 @@
 
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
+#include "estimation/robust.h"
 #include "lines/line_refinement.h"
 
 namespace uav_landing::line_fit {
@@ -15,7 +16,6 @@ namespace {
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
 constexpr double kMinScale = 0.05;     // px, scale of the robust weights
 constexpr float kConverged = 0.01F;    // px, a third of the floor
-constexpr double kTukey = 4.685;       // scales: 95 % as good as least squares when the errors are normal
 
 using PaddedPeaks = PaddedValues<2 * kMaxStations>;
 
@@ -147,8 +147,8 @@ Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale)
   PaddedPeaks off;
   off.count = peaks.count;
   const float mean = measureDistances(peaks, line, off.values);
-  scale = std::max(1.4826 * median(off, mean), kMinScale);
-  weigh(base, off.values, static_cast<float>(1 / (kTukey * scale)), peaks.count, peaks.weight);
+  scale = std::max(kPerMedian * median(off, mean), kMinScale);
+  weigh(base, off.values, static_cast<float>(1 / (TukeyEnd::kEfficient * scale)), peaks.count, peaks.weight);
   return fitOnce(peaks);
 }
 

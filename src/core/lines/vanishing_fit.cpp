@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.h"
 #include "base/text.h"
+#include "estimation/robust.h"
 #include "geometry/rotation.h"
 
 namespace uav_landing {

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uav_landing/estimation/limits.h"
+
 namespace uav_landing {
 
 namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kPriorTolerance = 5 * kDegree;  // of the direction from the ground known from elsewhere
-constexpr double kGate = 4;                      // sigma of a line's own errors
+constexpr Sigmas kGate(4);                       // of a line's own errors
 constexpr double kStraightness = 1.0;            // px by which an edge may differ from a straight line
 
 }  // namespace
@@ -43,8 +45,7 @@ bool VanishingLines::meeting(int i, int j, Eigen::Vector3d& direction) const {
 }
 
 double VanishingLines::toleranceOf(const VanishingCandidate& line) const {
-  return std::min(std::max(kStraightness, kGate * std::sqrt(line.endVariance())),
-                  parameters_.ransac_tolerance);
+  return std::min(std::max(kStraightness, kGate.bound(line.endVariance())), parameters_.ransac_tolerance);
 }
 
 std::vector<int> VanishingLines::passing(const Eigen::Vector3d& direction) const {

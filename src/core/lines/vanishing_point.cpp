@@ -9,6 +9,7 @@
 #include "lines/vanishing_consensus.h"
 #include "lines/vanishing_fit.h"
 #include "lines/vanishing_lines.h"
+#include "uav_landing/estimation/limits.h"
 
 namespace uav_landing {
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kMinSpread = 3 * kDegree;  // between the inlier lines in the image
-constexpr double kGate = 4;                 // robust sigma, of the lines that count in the end
+constexpr Sigmas kGate(4);                  // robust ones, of the lines that count in the end
 constexpr double kChance = 1;               // accepted number of such coincidences among random lines
 
 template <class... Parts>
@@ -68,7 +69,7 @@ Expected<VanishingPoint> fitTo(const VanishingLines& lines, const VanishingConse
       return tl::unexpected(noVanishingPoint(lines.count(), " lines are parallel"));
     used = lines.passing(fit.direction());
   }
-  used = fit.within(used, kGate * scale);
+  used = fit.within(used, kGate.count() * scale);
   const int n = static_cast<int>(used.size());
   if (n < leastLines(lines))
     return tl::unexpected(

@@ -12,7 +12,8 @@
 #include <random>
 #include <string>
 
-#include "base/convergence.h"
+#include "estimation/convergence.h"
+#include "estimation/ransac.h"
 #include "geometry/rotation.h"
 #include "image/image_cells.h"
 #include "image/window_overlap.h"
@@ -21,21 +22,12 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kRansacIterations = 80;
 // Where so many of the matches that tell a motion are close to the start, a quite different one has fewer.
 constexpr double kMostlyClose = 0.8;
 constexpr int kFewestTelling = 20;
 // Share of what matches claim that they are taken to be wrong by at least, however well they agree: what is
 // the same all over the image no residual shows.
 constexpr double kLeastScale = 0.5;
-
-// Triples to try until one without outliers is among them with a probability of 99.9 %, when this share of
-// the matches is right.
-double triplesNeeded(double share) {
-  constexpr double kMissed = 1e-3;
-  const double all_right = std::min(share * share * share, 1 - kMissed);
-  return all_right > 0 ? std::log(kMissed) / std::log1p(-all_right) : kRansacIterations;
-}
 
 // Rotation and translation that carry three matches exactly, by two Newton steps with the normal held.
 bool solveTriple(MotionRows& triple, MotionState& state) {
@@ -56,8 +48,10 @@ MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
   if (most.telling >= kFewestTelling && most.telling_close >= kMostlyClose * most.telling) return start;
   static thread_local MotionRows triple;  // kept for its memory
   std::mt19937 random(20100602u);
-  double needed = triplesNeeded(double(most.close) / all.size());
-  for (int iteration = 0; iteration < std::min<double>(needed, kRansacIterations); ++iteration) {
+  RansacBudget budget{RansacOptions()};
+  budget.found(double(most.close) / all.size());
+  while (budget.goesOn()) {
+    budget.count();
     const std::array<size_t, 3> chosen = {random() % all.size(), random() % all.size(),
                                           random() % all.size()};
     if (chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2]) continue;
@@ -68,7 +62,7 @@ MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
     if (found.votes > most.votes) {
       most = found;
       best = candidate;
-      needed = triplesNeeded(double(most.close) / all.size());
+      budget.found(double(most.close) / all.size());
     }
   }
   return best;

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/lanes.h"
-#include "base/median.h"
 #include "base/multiversion.h"
+#include "estimation/robust.h"
 #include "geometry/rotation.h"
 #include "motion/motion_lanes.h"
 
@@ -21,7 +21,7 @@ using motion_lanes::MatchRows;
 using motion_lanes::Seen;
 using motion_lanes::Terms;
 
-constexpr double kTukey = 4.5;
+constexpr double kTukey = TukeyEnd::kTemporal;
 // Squared error of what lies behind it, pixels^2.
 constexpr double kBehind = 1e9;
 constexpr size_t kTile = 32;  // matches whose columns stay in the cache

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "estimation/aircraft.h"
 #include "geometry/bias_variance.h"
 
 namespace uav_landing {
@@ -14,7 +15,6 @@ namespace {
 // numbers.
 constexpr double kLeastHeight = 1e-3, kLargestHeight = 1e5;  // m
 constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the picture: no ground rises like a wall
-constexpr double kFastestTurn = 6;  // rad/s: one roll a second
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
 constexpr double kLargestSkew = 0.1;                         // s, what max_skew can be
@@ -78,7 +78,7 @@ void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
 void keepMotion(ApproachAngleResult::Motion& motion) {
   const bool measured = !motion.failure || motion.failure.reason == Reason::kNoMotion;
   const bool possible =
-      measured && motion.rotation.norm() <= std::min(M_PI, kFastestTurn * motion.duration) &&
+      measured && motion.rotation.norm() <= std::min(M_PI, aircraft::kFastestTurnRate * motion.duration) &&
       motion.translation_over_height.norm() <= kLargestRatio && motion.duration >= kShortestStep &&
       motion.duration <= kLongestStep && isCovariance<6>(motion.covariance);
   if (!possible) {

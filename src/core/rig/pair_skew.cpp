@@ -2,11 +2,10 @@
 
 #include <cmath>
 
+#include "estimation/aircraft.h"
+
 namespace uav_landing {
 namespace {
-
-// Of a small aircraft, m/s.
-constexpr double kSpeed = 20, kSideways = 2;
 
 double meanInverseDepth(const StereoRig& rig, const StereoDepthResult& stereo) {
   double sum = 0;
@@ -44,11 +43,10 @@ GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
     // The step's rotation is that of the scene in the camera, opposite to the camera's.
     add(speed_scale * step.translation_over_height, -step.rotation / step.duration);
   } else {
-    constexpr double kTurnRate = 0.3;  // rad/s
-    add(kSpeed * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
-    add(kSideways * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
+    add(aircraft::kSpeed * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
+    add(aircraft::kSideways * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero());
     for (int axis = 0; axis < 3; ++axis)
-      add(Eigen::Vector3d::Zero(), kTurnRate * Eigen::Vector3d::Unit(axis));
+      add(Eigen::Vector3d::Zero(), aircraft::kTurnRateWithinPair * Eigen::Vector3d::Unit(axis));
   }
   return plane;
 }
@@ -64,8 +62,8 @@ BaselineDirection baselineOfSkew(const StereoRig& rig, const StereoDepthResult& 
     direction.t = over_baseline * speed_scale * step.translation_over_height.tail<2>();
     direction.covariance = std::pow(kShare, 2) * direction.t.squaredNorm() * Eigen::Matrix2d::Identity();
   } else {
-    direction.covariance.diagonal() << std::pow(over_baseline * kSideways, 2),
-        std::pow(over_baseline * kSpeed, 2);
+    direction.covariance.diagonal() << std::pow(over_baseline * aircraft::kSideways, 2),
+        std::pow(over_baseline * aircraft::kSpeed, 2);
   }
   return direction;
 }

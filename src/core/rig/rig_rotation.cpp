@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "base/median.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {
@@ -46,13 +46,13 @@ Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev) {
 
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                                 const Eigen::Vector3d& g) {
-  constexpr double kTukey = 4.0;
   const double scale = residualScale(rig, points, g);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
   for (const StereoDepthResult::Point& point : points) {
-    const double ratio = residualOf(rig, point, g) / (kTukey * scale);
-    if (!point.on_plane || std::abs(ratio) >= 1) continue;
-    const double weight = std::pow((1 - ratio * ratio) / point.disparity_stddev, 2);
+    if (!point.on_plane) continue;
+    const double root = tukeyRoot(residualOf(rig, point, g) / (TukeyEnd::kDisparity * scale));
+    if (root == 0) continue;
+    const double weight = std::pow(root / point.disparity_stddev, 2);
     const Eigen::Vector3d by_plane = rig.fb() * rig.ray(point.u, point.v);
     const double column = point.u - point.disparity - rig.principalOffset();
     information += weight * by_plane * by_plane.transpose();

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/runway/ground_edges.h"
 
 namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kLeastExtent = 0.25;           // log(far / near) of a line that counts
-constexpr double kLeastSum = 1.5;               // of the extents of both views
-constexpr double kLeastMargin = 1.4;            // over any other direction
-constexpr double kGate = 3;                     // sigma
+constexpr double kLeastExtent = 0.25;  // log(far / near) of a line that counts
+constexpr double kLeastSum = 1.5;      // of the extents of both views
+constexpr double kLeastMargin = 1.4;   // over any other direction
+constexpr Sigmas kGate(3);
 constexpr double kStraight = 0.03 * kDegree;    // 1 sigma by which edges of one runway are not parallel
 constexpr double kLargestStddev = 1 * kDegree;  // of a line that counts
 constexpr double kLeastSpread = 0.3;            // heights between the outermost of one view
@@ -114,12 +115,12 @@ class Finder {
            (a.variance + b.variance + differ.dot(covariance_ * differ) + kStraight * kStraight);
   }
   bool agree(const Direction& a, const Direction& b, double gates) const {
-    return ratio2(a, b) <= std::pow(gates * kGate, 2);
+    return ratio2(a, b) <= std::pow(gates * kGate.count(), 2);
   }
   double score(const Direction& centre) const {
     double sum = 0;
     for (const Direction& d : directions_)
-      sum += d.extent * std::max(0.0, 1 - ratio2(d, centre) / (kGate * kGate));
+      sum += d.extent * std::max(0.0, 1 - ratio2(d, centre) / kGate.squared());
     return sum;
   }
 

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/aircraft.h"
 #include "geometry/rotation.h"
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/height/attitude_filter.h"
 
 namespace uav_landing {
 namespace {
 
-constexpr double kGate = 5;           // sigma
+constexpr Sigmas kGate(5);
 constexpr double kRestart = 1.0;      // s of rejected measurements after which they are believed
 constexpr double kCommon = 0.5;       // share of a measurement's variance that successive ones have in common
 constexpr double kAlongError = 0.01;  // of the distance flown, 1 sigma
@@ -33,7 +35,7 @@ void PositionFilter::Axis::update(double value, double variance, double systemat
   const Eigen::RowVector2d h(1, std::sqrt(systematic));
   const double innovation = value - h * state_, random = variance - systematic;
   const double predicted = h * covariance_ * h.transpose();
-  if (known_ && innovation * innovation > kGate * kGate * (predicted + common_ + random)) {
+  if (known_ && !kGate.admits(innovation, predicted + common_ + random)) {
     rejected_ += seconds;
     if (rejected_ < kRestart) return;
     known_ = false;
@@ -97,7 +99,7 @@ void PositionFilter::followDirection(const Eigen::Vector3d& seen, const Approach
   } else if (turn.rotation.allFinite()) {
     direction_ = rotationMatrix(turn.rotation) * direction_;
   } else {
-    unseen_turn_ += AttitudeFilter::kTurnRate * seconds;
+    unseen_turn_ += aircraft::kTurnRate * seconds;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/image_memory.h"
 #include "lines/stripe_line.h"
 #include "runway/right_view.h"
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/geometry/half_plane.h"
 #include "uav_landing/runway/ground_direction.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kSure = 1e-3;  // expected coincidences of a point that is not there by chance
-constexpr double kGate = 3;     // sigma between a point and the ground
+constexpr Sigmas kGate(3);      // between a point and the ground
 // 1 sigma between the two, beyond which they say little of each other.
 constexpr double kVague = 0.4 * kDegree;
 constexpr double kEnough = 0.5;  // of the lines through the other view's point
@@ -172,8 +173,7 @@ class Search {
     const double straightness = parameters_.runway_straightness_deg * kDegree;
     const double variance = point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
                             normal_.dot(point.covariance * normal_) + straightness * straightness;
-    return variance <= kVague * kVague &&
-           std::abs(normal_.dot(point.direction)) <= kGate * std::sqrt(variance);
+    return variance <= kVague * kVague && std::abs(normal_.dot(point.direction)) <= kGate.bound(variance);
   }
 
   cv::Mat groundPart(const View& view) const { return belowHorizon(view.mask, view.K, normal_); }

@@ -7,12 +7,13 @@
 #include "base/text.h"
 #include "runway/centre_columns.h"
 #include "runway/runway_fit.h"
+#include "uav_landing/estimation/limits.h"
 
 namespace uav_landing {
 namespace {
 
 constexpr size_t kMaxEdges = 30;      // longest ones
-constexpr double kGate = 3;           // sigma between two pairs' centres
+constexpr Sigmas kGate(3);            // between two pairs' centres
 constexpr double kAsymmetry = 0.002;  // of the width: 1 sigma by which a pair of marks is painted off centre
 constexpr double kSharper = 2;        // times, by which one pair's centre is known much better
 constexpr double kWidthTolerance = 0.05;  // of the width that is known
@@ -188,7 +189,7 @@ class Search {
 
   double toleranceOf(const MirroredPair& a, const MirroredPair& b) const {
     const Eigen::Vector3d differ = a.by_rotation - b.by_rotation;
-    return kGate * std::sqrt(a.variance + b.variance + differ.dot(axes_.covariance * differ));
+    return kGate.bound(a.variance + b.variance + differ.dot(axes_.covariance * differ));
   }
 
   double widthOfLongest() const {
@@ -219,7 +220,7 @@ class Search {
     auto& [near, used, apart] = memory;
     near.clear();
     apart.resize(pairs_.size());
-    columns_.markApart(&centre - pairs_.data(), kGate, spread_, apart.data());
+    columns_.markApart(&centre - pairs_.data(), kGate.count(), spread_, apart.data());
     const auto next = [&](size_t from) {
       const void* close = std::memchr(apart.data() + from, 0, apart.size() - from);
       return close ? static_cast<size_t>(static_cast<const uchar*>(close) - apart.data()) : apart.size();

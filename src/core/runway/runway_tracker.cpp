@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "uav_landing/estimation/limits.h"
 #include "uav_landing/runway/runway_threshold.h"
 
 namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kGate = 4;         // sigma between what is seen and what was expected
+constexpr Sigmas kGate(4);          // between what is seen and what was expected
 constexpr double kSlack = 0.01;     // of the runway's width, that the gate is wider
 constexpr double kSameWidth = 0.1;  // of the width: between the surface's edges and the lines along them
 constexpr double kVague = 0.1;      // of the width: a centre expected within more than this says nothing
@@ -29,12 +30,12 @@ void RunwayTracker::Follower::predict(double scale, double motion, double varian
 
 std::optional<ExpectedCentre> RunwayTracker::Follower::expected(double slack) const {
   if (!value_) return std::nullopt;
-  return ExpectedCentre{*value_, kGate * std::sqrt(variance_) + slack};
+  return ExpectedCentre{*value_, kGate.bound(variance_) + slack};
 }
 
 bool RunwayTracker::Follower::update(double value, double variance, double slack) {
   missed_ = 0;
-  if (!value_ || std::abs(value - *value_) > kGate * std::sqrt(variance_ + variance) + slack) {
+  if (!value_ || std::abs(value - *value_) > kGate.bound(variance_ + variance) + slack) {
     value_ = value;
     variance_ = variance;
     confirmations_ = 1;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/lanes.h"
-#include "base/median.h"
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 

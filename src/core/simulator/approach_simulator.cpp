@@ -1,8 +1,11 @@
 #include "uav_landing/simulator/approach_simulator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
+#include "uav_landing/simulator/renderer.h"
 #include "uav_landing/simulator/sensor.h"
 
 namespace uav_landing {
@@ -21,86 +24,106 @@ std::vector<StandingObject> standOn(const GroundProfile& ground, std::vector<Sta
 
 }  // namespace
 
+/// What the pictures are of, and what takes them. The same parameters make the same one.
+struct ApproachSimulator::World {
+  SimulatorParameters parameters;
+  CameraRig rig;
+  Trajectory trajectory;
+  GroundProfile profile;
+  Renderer renderer;
+  int frames;
+
+  World(const SimulatorParameters& p, CameraRig cameras)
+      : parameters(p),
+        rig(std::move(cameras)),
+        trajectory(p.path, p.wobble, p.gust, p.random.seed),
+        profile(p.profile),
+        renderer(Scene(p.runway, p.surface, p.random.seed),
+                 standOn(profile, placeObjects(p.objects, p.runway.width, p.random.seed)), p.image, profile),
+        frames(1 + static_cast<int>(std::floor(p.path.duration * p.path.rate + 1e-6))) {}
+
+  double timeOf(int index) const { return index / parameters.path.rate; }
+
+  Failure checkHeights() const {
+    constexpr double kLowest = 0.01;
+    for (int i = 0; i < frames; ++i) {
+      const CameraPose pose = trajectory.pose(timeOf(i));
+      const double left = pose.position.z() - profile.height(pose.position.x());
+      const double right = left + rig.right.offset_x * runwayFromOptical(pose.attitude)(2, 0);
+      if (std::min(left, right) >= kLowest) continue;
+      std::ostringstream detail;
+      detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
+      return {Reason::kInputInvalid, detail.str()};
+    }
+    return {};
+  }
+
+  cv::Mat lightIn(const SimulatedCamera& camera, int index) const {
+    const SimulatedImageParameters& image = parameters.image;
+    const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
+    cv::Mat grey, sum;
+    for (int i = 0; i < samples; ++i) {
+      const double shift = image.exposure_time * ((i + 0.5) / samples - 0.5);
+      renderer.render(camera, trajectory.pose(timeOf(index) + shift), grey);
+      if (i == 0)
+        grey.copyTo(sum);
+      else
+        sum += grey;
+    }
+    if (samples > 1) sum /= samples;
+    return sum;
+  }
+
+  cv::Mat picture(const cv::Mat& light, const SimulatedCameraParameters& sensor, int index, int camera_number,
+                  double noise) const {
+    const uint64_t picture_number = 2 * static_cast<uint64_t>(index) + camera_number;
+    const uint64_t seed = (static_cast<uint64_t>(parameters.random.seed) << 32) + picture_number + 1;
+    SimulatedImageParameters image = parameters.image;
+    image.noise = noise;
+    image.blur = renderer.blurLeft();
+    cv::Mat grey = light.clone(), mono8;
+    uav_landing::expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, grey, mono8);
+    return mono8;
+  }
+};
+
 Expected<ApproachSimulator> ApproachSimulator::create(const SimulatorParameters& parameters) {
   Expected<CameraRig> rig = makeCameraRig(parameters);
   if (!rig) return tl::make_unexpected(rig.error());
-  ApproachSimulator simulator(parameters, std::move(*rig));
-  if (Failure failure = simulator.checkHeights()) return tl::make_unexpected(failure);
-  return simulator;
+  const auto world = std::make_shared<const World>(parameters, std::move(*rig));
+  if (Failure failure = world->checkHeights()) return tl::make_unexpected(failure);
+  return ApproachSimulator(world);
 }
 
-ApproachSimulator::ApproachSimulator(const SimulatorParameters& parameters, CameraRig rig)
-    : parameters_(parameters),
-      rig_(std::move(rig)),
-      trajectory_(parameters.path, parameters.wobble, parameters.gust, parameters.random.seed),
-      profile_(parameters.profile),
-      renderer_(Scene(parameters.runway, parameters.surface, parameters.random.seed),
-                standOn(profile_,
-                        placeObjects(parameters.objects, parameters.runway.width, parameters.random.seed)),
-                parameters.image, profile_),
-      frames_(1 + static_cast<int>(std::floor(parameters.path.duration * parameters.path.rate + 1e-6))) {}
+int ApproachSimulator::frames() const { return world_->frames; }
+double ApproachSimulator::timeOf(int index) const { return world_->timeOf(index); }
+CameraPose ApproachSimulator::pose(double time) const { return world_->trajectory.pose(time); }
+const CameraRig& ApproachSimulator::rig() const { return world_->rig; }
 
-Failure ApproachSimulator::checkHeights() const {
-  constexpr double kLowest = 0.01;
-  for (int i = 0; i < frames_; ++i) {
-    const CameraPose pose = trajectory_.pose(timeOf(i));
-    const double left = pose.position.z() - profile_.height(pose.position.x());
-    const double right = left + rig_.right.offset_x * runwayFromOptical(pose.attitude)(2, 0);
-    if (std::min(left, right) >= kLowest) continue;
-    std::ostringstream detail;
-    detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
-    return {Reason::kInputInvalid, detail.str()};
-  }
-  return {};
-}
-
-cv::Mat ApproachSimulator::lightIn(const SimulatedCamera& camera, int index) const {
-  const SimulatedImageParameters& image = parameters_.image;
-  const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
-  cv::Mat grey, sum;
-  for (int i = 0; i < samples; ++i) {
-    const double shift = image.exposure_time * ((i + 0.5) / samples - 0.5);
-    renderer_.render(camera, trajectory_.pose(timeOf(index) + shift), grey);
-    if (i == 0)
-      grey.copyTo(sum);
-    else
-      sum += grey;
-  }
-  if (samples > 1) sum /= samples;
-  return sum;
-}
-
-cv::Mat ApproachSimulator::picture(const cv::Mat& light, const SimulatedCameraParameters& sensor, int index,
-                                   int camera_number, double noise) const {
-  const uint64_t picture_number = 2 * static_cast<uint64_t>(index) + camera_number;
-  const uint64_t seed = (static_cast<uint64_t>(parameters_.random.seed) << 32) + picture_number + 1;
-  SimulatedImageParameters image = parameters_.image;
-  image.noise = noise;
-  image.blur = renderer_.blurLeft();
-  cv::Mat grey = light.clone(), mono8;
-  uav_landing::expose(image, sensor, seed * 0x9E3779B97F4A7C15ULL, grey, mono8);
-  return mono8;
+SimulatedImu ApproachSimulator::imu() const {
+  const SimulatorParameters& parameters = world_->parameters;
+  return {parameters.imu, world_->trajectory, static_cast<uint64_t>(parameters.random.seed)};
 }
 
 ApproachSimulator::Light ApproachSimulator::light(int index) const {
-  return {index, lightIn(rig_.left, index), lightIn(rig_.right, index)};
+  return {index, world_->lightIn(world_->rig.left, index), world_->lightIn(world_->rig.right, index)};
 }
 
 ApproachSimulator::Frame ApproachSimulator::expose(const Light& light, double noise) const {
+  const World& world = *world_;
   Frame frame;
   frame.time = timeOf(light.index);
-  frame.left = picture(light.left, parameters_.left_camera, light.index, 0, noise);
-  frame.right = picture(light.right, parameters_.right_camera, light.index, 1, noise);
-  const CameraPose now = trajectory_.pose(timeOf(light.index));
-  const CameraPose before = trajectory_.pose(timeOf(light.index - 1));
-  frame.truth = truthOf(now, light.index > 0 ? &before : nullptr, 1.0 / parameters_.path.rate,
-                        rig_.left.calibration.P.leftCols<3>());
-  frame.truth.height -= profile_.height(now.position.x());
+  frame.left = world.picture(light.left, world.parameters.left_camera, light.index, 0, noise);
+  frame.right = world.picture(light.right, world.parameters.right_camera, light.index, 1, noise);
+  const CameraPose now = pose(frame.time), before = pose(timeOf(light.index - 1));
+  frame.truth = truthOf(now, light.index > 0 ? &before : nullptr, 1.0 / world.parameters.path.rate,
+                        world.rig.left.calibration.P.leftCols<3>());
+  frame.truth.height -= world.profile.height(now.position.x());
   return frame;
 }
 
 ApproachSimulator::Frame ApproachSimulator::frame(int index) const {
-  return expose(light(index), parameters_.image.noise);
+  return expose(light(index), world_->parameters.image.noise);
 }
 
 }  // namespace uav_landing

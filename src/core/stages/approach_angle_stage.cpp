@@ -2,16 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <opencv2/imgproc.hpp>
-#include <string>
+#include <optional>
+#include <vector>
 
-#include "base/text.h"
-#include "uav_landing/geometry/half_plane.h"
-#include "uav_landing/image/corners.h"
+#include "motion/angle_by_foe.h"
+#include "motion/angle_normal.h"
+#include "motion/motion_corners.h"
 #include "uav_landing/image/image_check.h"
-#include "uav_landing/motion/approach_angle.h"
-#include "uav_landing/motion/focus_of_expansion.h"
 #include "uav_landing/motion/motion_tracker.h"
 #include "uav_landing/results/result_check.h"
 #include "uav_landing/runway/runway_direction.h"
@@ -21,8 +18,6 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// Chi-square limit (1 degree of freedom, 1e-4) beyond which a vanishing point contradicts the stereo plane.
-constexpr double kMaxVanishingNis = 15.1;
 
 }  // namespace
 
@@ -109,38 +104,16 @@ struct ApproachAngleStage::Implementation {
 
   // The normal that the angles refer to; false when there is none.
   bool findNormal(const GroundPlane* plane, ApproachAngleResult& result) const {
-    const bool has_direction = result.vanishing_direction.allFinite();
-    const bool literal = parameters.normal_source == NormalSource::kVanishingLine;
-    if (!literal && !plane && result.imu.hasNormal()) {
-      // As a plane at the height of 1.
-      const GroundPlane level{result.imu.normal, result.imu.normal_covariance};
-      setNormal(has_direction ? withDirection(level, result) : level, result);
-      return true;
-    }
-    if (literal || !plane) {
-      if (!has_direction) return false;
-      // The paper's level rig, or the roll that the stereo plane knows.
-      GroundNormal normal{result.n_vp, result.n_vp_covariance};
-      if (plane) {
-        normal = normalFromVanishingPoint(
-            {result.vanishing_direction, result.vanishing_covariance, {}, 0}, rollOf(plane->normal()),
-            std::sqrt(rollVariance(plane->normal(), plane->normalCovariance())));
-      }
-      result.n = normal.n;
-      result.n_covariance = normal.covariance;
-      return true;
-    }
-    GroundPlane fused = has_direction ? withDirection(*plane, result) : *plane;
-    if (result.imu.hasNormal()) {
-      double nis = 0;
-      fused = fuseNormal(fused, {result.imu.normal, result.imu.normal_covariance}, kMaxVanishingNis, &nis);
-      if (!(nis <= kMaxVanishingNis)) {
-        const double off = std::acos(std::clamp(fused.normal().dot(result.imu.normal), -1.0, 1.0));
-        result.imu.failure = {Reason::kRejected, text("the imu's attitude is ", rounded(off / kDegree),
-                                                      " deg off the ground ahead")};
-      }
-    }
-    setNormal(fused, result);
+    const std::optional<AngleNormal> found =
+        findAngleNormal({plane,
+                         {result.vanishing_direction, result.vanishing_covariance},
+                         {result.n_vp, result.n_vp_covariance},
+                         result.imu},
+                        parameters);
+    if (!found) return false;
+    result.n = found->normal.n;
+    result.n_covariance = found->normal.covariance;
+    if (found->imu_failure) result.imu.failure = found->imu_failure;
     return true;
   }
 
@@ -153,16 +126,6 @@ struct ApproachAngleStage::Implementation {
     result.vanishing_covariance -= straightness * straightness * across * across.transpose();
   }
 
-  static GroundPlane withDirection(const GroundPlane& plane, const ApproachAngleResult& result) {
-    return fuseVanishingPoint(plane, result.vanishing_direction, result.vanishing_covariance,
-                              kMaxVanishingNis, nullptr);
-  }
-
-  static void setNormal(const GroundPlane& plane, ApproachAngleResult& result) {
-    result.n = plane.normal();
-    result.n_covariance = plane.normalCovariance();
-  }
-
   // A picture once more was not taken at its stamp: it says nothing of the motion up to now, and the motion
   // to the next one is over the time of both.
   bool repeated(const StereoDepthResult& stereo) const {
@@ -172,97 +135,24 @@ struct ApproachAngleStage::Implementation {
   void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo, bool repeated,
                     ApproachAngleResult& result) {
     const std::vector<TrackedCorner> corners =
-        stereo ? stereoCorners(*stereo) : groundCorners(left, result.n);
+        stereo ? stereoCorners(model.rig, *stereo) : cornersWithoutStereo(left, result.n);
     const MotionTracker::Result motion =
         repeated ? tracker.repeat(stamp)
                  : tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
     ScopedTimer timer(timings, "foe_and_angle");
-    result.step = motion.step;
-    result.window = motion.window;
-    findFoe(motion, result);
-    if (paperForm()) result.window = result.step;
+    const StepFoe found =
+        findStepFoe(model.rig, tracker, motion, {result.n, result.n_covariance}, parameters);
+    result.foe = found.foe;
+    result.foe_covariance = found.covariance;
+    result.step = found.step;
+    result.window = hasPaperForm(parameters) ? result.step : motion.window;
     const Failure& angle = result.window.failure ? result.step.failure : result.window.failure;
     if (angle) result.failure = angle;
   }
 
-  // Corners with depth from the pair: the plane for those on it, their own disparity for the others.
-  std::vector<TrackedCorner> stereoCorners(const StereoDepthResult& stereo) const {
-    constexpr double kSmallestDisparity = 1.0;
-    const double height = stereo.plane.height();
-    std::vector<TrackedCorner> corners;
-    for (const StereoDepthResult::Point& point : stereo.points) {
-      if (!point.on_plane && point.disparity < kSmallestDisparity) continue;
-      corners.push_back({cvRound(point.u), cvRound(point.v), point.on_plane,
-                         height * point.disparity / model.rig.fb(),
-                         height * point.disparity_stddev / model.rig.fb()});
-    }
-    return corners;
-  }
-
-  std::vector<TrackedCorner> groundCorners(const cv::Mat& left, const Eigen::Vector3d& normal) {
-    // Nearer the horizon than this (as a tangent) the ground hardly moves.
-    constexpr double kLeastSlope = 0.01;
-    // What is texture enough, matching decides; corners spread over the ground as for stereo.
-    constexpr double kQuality = 1e-7, kDistance = 4.0, kHarris = 0.04;
+  std::vector<TrackedCorner> cornersWithoutStereo(const cv::Mat& left, const Eigen::Vector3d& normal) {
     ScopedTimer timer(timings, "harris_corners_motion");
-    const Eigen::Vector3d slope = model.rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
-    cv::Mat mask;
-    keepHalfPlane(left_mask, slope.x(), slope.y(), slope.z() - kLeastSlope, mask);
-    std::vector<TrackedCorner> corners;
-    const int count = cornerBudget(left.size(), parameters.corner_count, parameters.pixels_per_corner);
-    for (const cv::Point& point : findCorners(left, mask, count, kQuality, kDistance, kHarris)) {
-      corners.push_back({point.x, point.y, true, 0, 0});
-    }
-    return corners;
-  }
-
-  // The paper's forms are of one step.
-  bool paperForm() const {
-    return parameters.foe_method == FoeMethod::kSlidingWindow ||
-           parameters.angle_formula == AngleFormula::kEq1;
-  }
-
-  void findFoe(const MotionTracker::Result& motion, ApproachAngleResult& result) const {
-    if (motion.step.failure || !motion.step_estimate) return;
-    const MotionEstimate& estimate = *motion.step_estimate;
-    const bool vote = parameters.foe_method == FoeMethod::kSlidingWindow;
-    const Expected<FocusOfExpansion> foe =
-        vote ? foeSlidingWindow(model.rig, tracker.stepMatches(),
-                                parameters.remove_rotation ? estimate.motion.R : Eigen::Matrix3d::Identity())
-             : foeFromMotion(model.rig, estimate.motion.t, estimate.covariance.block<3, 3>(3, 3));
-    if (!foe) {
-      if (!vote) return;
-      result.step.failure = foe.error();
-      result.step.angle = result.step.angle_variance = kUnknown;
-      return;
-    }
-    result.foe = foe->pixel;
-    result.foe_covariance = foe->covariance;
-    if (!paperForm()) return;
-    angleFromFoe(result);
-    claimDifference(motion, result);
-  }
-
-  // Rotation left in the velocities moves all of their crossings, and eq (1) leaves out roll and drift: the
-  // scatter knows nothing of it. What the paper's forms differ from the motion by is a measure of it.
-  void claimDifference(const MotionTracker::Result& motion, ApproachAngleResult& result) const {
-    const Eigen::Vector2d off = result.foe - model.rig.project(motion.step_estimate->motion.t);
-    result.foe_covariance += off * off.transpose();
-    result.step.angle_variance += std::pow(result.step.angle - motion.step.angle, 2);
-  }
-
-  // Approach angle of the step from the FOE as a pixel, as the paper does.
-  void angleFromFoe(ApproachAngleResult& result) const {
-    const StereoRig& rig = model.rig;
-    const Eigen::Vector3d direction = rig.ray(result.foe.x(), result.foe.y());
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    const Eigen::DiagonalMatrix<double, 2> per_pixel(1 / rig.fx, 1 / rig.fy);
-    covariance.topLeftCorner<2, 2>() = per_pixel * result.foe_covariance * per_pixel;
-    result.step.angle =
-        parameters.angle_formula == AngleFormula::kEq1
-            ? approachAngleEq1(rig.fy * result.n.z() / result.n.y(), rig.cy - result.foe.y(), rig.fy)
-            : approachAngle(result.n, direction);
-    result.step.angle_variance = approachAngleVariance(result.n, result.n_covariance, direction, covariance);
+    return groundCorners(model.rig, left, left_mask, normal, parameters);
   }
 };
 

@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "stereo/corner_matcher.h"
 #include "stereo/corner_plane.h"
 #include "stereo/plane_tracker.h"
 #include "uav_landing/image/corners.h"
@@ -31,6 +33,7 @@ struct StereoDepthStage::Implementation {
   RigModel model;
   StereoDepthParameters parameters;
   PlaneLimits limits;
+  std::unique_ptr<CornerMatcher> matcher;
   PlaneTracker tracker;
   StereoLevel fine, coarse;
   MatchImage left, right;
@@ -43,11 +46,13 @@ struct StereoDepthStage::Implementation {
   bool looks_swapped = false;
   Timings timings;
 
-  Implementation(const RigModel& rig, const StereoDepthParameters& p)
+  Implementation(const RigModel& rig, const StereoDepthParameters& p, std::unique_ptr<CornerMatcher> given)
       : model(rig),
         parameters(p),
         limits{p.max_roll_deg * kDegree, p.max_pitch_deg * kDegree, p.min_points, p.plane_tolerance},
-        tracker(rig.rig, p, limits, cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner)),
+        matcher(given ? std::move(given) : makeRowMatcher(p)),
+        tracker(rig.rig, p, limits, cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner),
+                *matcher),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
@@ -190,7 +195,7 @@ struct StereoDepthStage::Implementation {
     if (result.from_search && rows.search(fine, matched.corners, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
-      matched.matches = matchCorners(fine, matched.corners, start, parameters);
+      matched.matches = matcher->match(fine, matched.corners, start);
     }
     fit(start, matched, result);
     return matched;
@@ -283,7 +288,10 @@ struct StereoDepthStage::Implementation {
 };
 
 StereoDepthStage::StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters)
-    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+    : StereoDepthStage(rig, parameters, nullptr) {}
+StereoDepthStage::StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters,
+                                   std::unique_ptr<CornerMatcher> matcher)
+    : implementation_(std::make_unique<Implementation>(rig, parameters, std::move(matcher))) {}
 StereoDepthStage::~StereoDepthStage() = default;
 StereoDepthStage::StereoDepthStage(StereoDepthStage&&) noexcept = default;
 

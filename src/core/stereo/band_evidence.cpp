@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/median.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "base/lanes.h"
-#include "base/median.h"
 #include "base/multiversion.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {

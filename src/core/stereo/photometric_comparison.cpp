@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "base/median.h"
+#include "estimation/robust.h"
 #include "stereo/photometric_blocks.h"
 
 namespace uav_landing {

@@ -8,6 +8,7 @@
 
 #include "base/lanes.h"
 #include "base/multiversion.h"
+#include "estimation/ransac.h"
 #include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
@@ -186,14 +187,6 @@ Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySamp
   return {slope * gy, gy, a.disparity / rig.fb() - gy * ya};
 }
 
-// Draws after which one of a plane that has this share of the votes or more would have been among them with a
-// probability of 99.9 %: every other one is a triple.
-double drawsNeeded(double share) {
-  constexpr double kMissed = 1e-3;
-  const double all_on_it = std::clamp(share * share * share, 1e-9, 1 - kMissed);
-  return 2 * std::log(kMissed) / std::log1p(-all_on_it);
-}
-
 }  // namespace
 
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
@@ -206,29 +199,32 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   if (samples.size() < 3) return best;
   const Voters voters{rig, samples};
   const auto all = static_cast<double>(samples.size());
-  double needed = iterations;
+  RansacOptions options;
+  options.most = iterations;
+  options.draws_each = kDrawsPerIteration;
+  options.of_draws = 0.5;  // every other one is a triple
+  RansacBudget budget(options);
   const auto consider = [&](const Eigen::Vector3d& g) {
     const Votes votes = voters.votesFor(g, limits.tolerance);
     if (best.found && votes.net() <= best.score) return;
     best = {g, votes.agreeing, votes.net(), true};
     improve(voters, limits, best);
     // Penalties only take away: a better plane has at least the votes that are left of this one's.
-    if (until_sure) needed = std::min<double>(iterations, drawsNeeded(best.score / all));
+    if (until_sure) budget.found(best.score / all);
   };
   if (expected != nullptr && isPlausibleGround(*expected, limits)) {
     consider(*expected);
     if (best.score >= kBeyondDoubt * all) return best;
   }
   std::mt19937 random(20100601u);
-  int counted = 0;
-  for (int draw = 0; draw < kDrawsPerIteration * iterations && counted < needed; ++draw) {
+  for (int draw = 0; budget.goesOn(); ++draw) {
     const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
                                             : throughTwo(rig, samples, limits.max_roll, random);
     // The slope first: it takes less time, and most planes that are drawn have another one.
     const double slope = rig.fb() * g.y() / rig.fy;
     if (slope_range && !(slope >= slope_range->x() && slope <= slope_range->y())) continue;
     if (!isPlausibleGround(g, limits)) continue;
-    ++counted;
+    budget.count();
     consider(g);
   }
   return best;

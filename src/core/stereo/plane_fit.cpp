@@ -8,11 +8,11 @@
 #include <limits>
 #include <string>
 
-#include "base/convergence.h"
 #include "base/lanes.h"
-#include "base/median.h"
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
+#include "estimation/convergence.h"
+#include "estimation/robust.h"
 #include "geometry/bias_variance.h"
 
 namespace uav_landing {
@@ -66,8 +66,8 @@ class PlaneProblem {
 
   // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
   UAV_LANDING_MULTIVERSION NormalEquations accumulate(double scale) {
-    constexpr double kTukey = 4.0;
-    const double unit = 1 / (kTukey * kTukey * scale * scale);
+    constexpr double kEnd = TukeyEnd::kDisparity;
+    const double unit = 1 / (kEnd * kEnd * scale * scale);
     const DoubleLanes none{}, one = none + 1;
     DoubleLanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
     for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {

@@ -28,11 +28,12 @@ double agreeingShare(const StereoDepthResult& result) {
 }  // namespace
 
 PlaneTracker::PlaneTracker(const StereoRig& rig, const StereoDepthParameters& parameters,
-                           const PlaneLimits& limits, int corner_count)
+                           const PlaneLimits& limits, int corner_count, CornerMatcher& matcher)
     : rig_(rig),
       parameters_(parameters),
       limits_(limits),
       corner_count_(corner_count),
+      matcher_(matcher),
       steadiness_(kSteadyOff, kMostOff) {}
 
 void PlaneTracker::begin(double stamp) {
@@ -115,7 +116,7 @@ std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const Ei
     std::vector<cv::Point> corners = cornersOnGround(fine, corners_, g);
     if (corners.size() >= kKept * corners_.size()) return corners;
   }
-  corners_ = findGroundCorners(fine, g, corner_count_, parameters_);
+  corners_ = matcher_.detect(fine, g, corner_count_);
   corners_of_ = g;
   return corners_;
 }

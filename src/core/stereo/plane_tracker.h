@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "stereo/corner_matcher.h"
 #include "uav_landing/base/steadiness.h"
 #include "uav_landing/base/timings.h"
 #include "uav_landing/geometry/plane_limits.h"
@@ -19,9 +20,9 @@ namespace uav_landing {
 /// Where the ground is expected in a pair, by the pairs before it. Planes are plane vectors, 1/m.
 class PlaneTracker {
  public:
-  /// corner_count: corners looked for in an image.
+  /// corner_count: corners looked for in an image. matcher: finds them; outlives this.
   PlaneTracker(const StereoRig& rig, const StereoDepthParameters& parameters, const PlaneLimits& limits,
-               int corner_count);
+               int corner_count, CornerMatcher& matcher);
 
   /// Before anything else of a pair, with its stamp in seconds. When that is not after the last one all is
   /// forgotten.
@@ -58,6 +59,7 @@ class PlaneTracker {
   StereoDepthParameters parameters_;
   PlaneLimits limits_;
   int corner_count_;
+  CornerMatcher& matcher_;
   double stamp_ = -INFINITY, duration_ = 0;  // of this pair, and since the one before, s
   bool has_last_ = false;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), rate_ = Eigen::Vector3d::Zero();  // of it, by second

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/lanes.h"
-#include "base/median.h"
 #include "base/multiversion.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/convergence.h"
-#include "base/median.h"
+#include "estimation/convergence.h"
+#include "estimation/robust.h"
 #include "image/image_cells.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
@@ -50,11 +50,9 @@ double residualScale(const std::vector<RowShift>& rows, const Eigen::Matrix<doub
 /// Weight of a row by Tukey's function of its residual; 0 for outliers.
 template <int N>
 double weightOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value, double scale) {
-  constexpr double kTukey = 4.0;
   const double stddev = scale * row.stddev;
-  const double ratio = residualOf<N>(row, value) / (kTukey * stddev);
-  if (std::abs(ratio) >= 1) return 0;
-  return (1 - ratio * ratio) * (1 - ratio * ratio) / (stddev * stddev);
+  const double root = tukeyRoot(residualOf<N>(row, value) / (TukeyEnd::kDisparity * stddev));
+  return root * root / (stddev * stddev);
 }
 
 /// What neighbouring rows share adds to the covariance.

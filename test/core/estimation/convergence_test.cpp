@@ -1,4 +1,4 @@
-#include "base/convergence.h"
+#include "estimation/convergence.h"
 
 #include <gtest/gtest.h>
 
