@@ -23,8 +23,8 @@ Pipeline::Pipeline(RigModel rig, Rectifier left, Rectifier right, const Paramete
       left_rectifier_(std::move(left)),
       right_rectifier_(std::move(right)),
       stereo_(rig_, parameters.stereo_depth),
-      approach_(rig_, parameters.approach_angle),
-      kalman_(rig_.rig, parameters.kalman_height) {}
+      approach_(rig_, parameters.approach_angle, parameters.runway),
+      kalman_(rig_.rig, parameters.kalman_height, parameters.runway) {}
 
 const Pipeline::Output& Pipeline::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                           double skew, const AttitudePrior& imu) {

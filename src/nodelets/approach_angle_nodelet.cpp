@@ -176,12 +176,14 @@ class ApproachAngleNodelet : public StageNodelet {
     AttitudePrior imu;
     if (imu_) imu = imu_->at(left->header.stamp, left_info.header.frame_id, toCalibration(left_info).R);
     ApproachAngleResult result = attempt<ApproachAngleResult>([&] {
-      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, rig_, parameters_,
-                        [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
-                          auto processed = stage.process(stamp, left_view, right_view, stereo, imu);
-                          compute_ms = stage.timings().total();
-                          return processed;
-                        });
+      return stage_.run(
+          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig,
+          [this](const RigModel& model) { return ApproachAngleStage(model, parameters_, shared_.runway); },
+          [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
+            auto processed = stage.process(stamp, left_view, right_view, stereo, imu);
+            compute_ms = stage.timings().total();
+            return processed;
+          });
     });
     result.stamp = stamp;
     noteImu(result.imu);
@@ -203,7 +205,7 @@ class ApproachAngleNodelet : public StageNodelet {
   std::unique_ptr<StereoInputs> with_stereo_;  // one of the two
   std::unique_ptr<StereoPairing> without_stereo_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
-  RigStage<ApproachAngleStage, ApproachAngleParameters> stage_;
+  RigStage<ApproachAngleStage> stage_;
 
   std::unique_ptr<ImuInput> imu_;  // null: not to be used
   ros::Subscriber imu_subscriber_, tf_subscriber_, tf_static_subscriber_;

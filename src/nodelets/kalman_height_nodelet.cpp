@@ -178,10 +178,10 @@ class KalmanHeightNodelet : public StageNodelet {
   Failure prepare(const sensor_msgs::CameraInfo& left_info, const sensor_msgs::CameraInfo& right_info) {
     if (cameras_.changed(left_info, right_info)) {
       stage_.reset();
-      const auto rig = makeStereoRig(cameras_.left(), cameras_.right(), rig_);
-      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
+      const auto rig = makeStereoRig(cameras_.left(), cameras_.right(), shared_.rig);
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
       rig_failure_ = rig ? Failure() : ofCameraInfo(rig.error());
-      if (rig) stage_.emplace(*rig, parameters_);
+      if (rig) stage_.emplace(*rig, parameters_, shared_.runway);
     }
     return rig_failure_;
   }

@@ -68,8 +68,8 @@ class OverlayNodelet : public StageNodelet {
                const sensor_msgs::CameraInfo& right_info, const StereoDepth& stereo,
                const ApproachAngle& approach, const LandingEstimate& landing) {
     if (cameras_.changed(left_info, right_info)) {
-      stereo_rig_ = makeStereoRig(cameras_.left(), cameras_.right(), rig_);
-      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
+      stereo_rig_ = makeStereoRig(cameras_.left(), cameras_.right(), shared_.rig);
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
     }
     if (!stereo_rig_) return refuse(ofCameraInfo(stereo_rig_.error()).detail);
     const auto view = toMono8(left, cameras_.left(), kLeftImage);

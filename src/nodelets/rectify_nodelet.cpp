@@ -179,7 +179,7 @@ class RectifyNodelet : public StageNodelet {
 
   void process(const Job& job) {
     if (cameras_.changed(*job.left_info, *job.right_info))
-      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), rig_)));
+      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
     Timings timings;
     sensor_msgs::ImagePtr left, right;
     {
@@ -216,7 +216,7 @@ class RectifyNodelet : public StageNodelet {
       refuse(mono.error().detail);
       return nullptr;
     }
-    if (const Failure failure = checkPrincipalPoint(calibration, rig_)) {
+    if (const Failure failure = checkPrincipalPoint(calibration, shared_.rig)) {
       refuse(view, failure);
       return nullptr;
     }

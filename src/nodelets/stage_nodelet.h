@@ -40,7 +40,8 @@ class Reminder {
   ros::WallTime said_;
 };
 
-/// What all nodelets of the chain share: parameters are checked before anything is subscribed; inputs are
+/// What all nodelets of the chain share: parameters, those of rig and runway as well, are checked before
+/// anything is subscribed; inputs are
 /// subscribed while somebody wants the output; a missing input is named in the log; diagnostics; no exception
 /// leaves a callback; topics between nodelets of one process are linked once.
 class StageNodelet : public nodelet::Nodelet {
@@ -67,15 +68,16 @@ class StageNodelet : public nodelet::Nodelet {
   /// Values of its own for the diagnostics; called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
-  /// Reads the private parameters, also into node_, and those that the nodelets share into rig_. Throws with
-  /// the parameter's name, so that the nodelet is not loaded.
+  /// Reads those that the nodelets share into shared_, and the private parameters, also into node_. Throws
+  /// with the parameter's name, so that the nodelet is not loaded.
   template <class Section>
   Section loadParametersOrThrow() {
+    const Failure shared_failure = loadSharedParameters(getNodeHandle(), shared_);
+    if (shared_failure) refuseToLoad(shared_failure.detail);
+    if (shared_.runway.width > 0) node_.drawn_runway_width = shared_.runway.width;
     Section parameters;
     const Failure failure = loadParameters(getPrivateNodeHandle(), section_, parameters, node_);
     if (failure) refuseToLoad(failure.detail);
-    const Failure rig_failure = loadRigParameters(getNodeHandle(), rig_);
-    if (rig_failure) refuseToLoad(rig_failure.detail);
     return parameters;
   }
 
@@ -146,7 +148,7 @@ class StageNodelet : public nodelet::Nodelet {
   void stop();
 
   NodeParameters node_;
-  RigParameters rig_;
+  SharedParameters shared_;
   StageReport report_;
 
  private:

@@ -65,12 +65,14 @@ class StereoDepthNodelet : public StageNodelet {
     const double skew = secondsBetween(left->header.stamp, time.time_ref);
     double compute_ms = 0;
     StereoDepthResult result = attempt<StereoDepthResult>([&] {
-      return stage_.run(left, kLeftImage, left_info, right, kRightImage, right_info, rig_, parameters_,
-                        [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
-                          auto processed = stage.process(stamp, left_view, right_view, skew);
-                          compute_ms = stage.timings().total();
-                          return processed;
-                        });
+      return stage_.run(
+          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig,
+          [this](const RigModel& model) { return StereoDepthStage(model, parameters_); },
+          [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
+            auto processed = stage.process(stamp, left_view, right_view, skew);
+            compute_ms = stage.timings().total();
+            return processed;
+          });
     });
     result.stamp = stamp;
     result.skew = skew;
@@ -85,7 +87,7 @@ class StereoDepthNodelet : public StageNodelet {
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<Inputs> pairing_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
-  RigStage<StereoDepthStage, StereoDepthParameters> stage_;
+  RigStage<StereoDepthStage> stage_;
 };
 
 }  // namespace uav_landing

@@ -33,9 +33,26 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
 
 /// Somebody else's: image_transport's plugins write theirs below the nodelet's name as well, as maps under
 /// the topic's name or their own, and they outlive the nodelet. No parameter of ours is a map.
-bool isForeign(const std::string& name, XmlRpc::XmlRpcValue& value, const std::vector<std::string>& own) {
+bool isForeign(const std::string& section, const std::string& name, const XmlRpc::XmlRpcValue& value,
+               const std::vector<std::string>& own) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeStruct &&
-         std::find(own.begin(), own.end(), name) == own.end() && suggestName(name, own).empty();
+         std::find(own.begin(), own.end(), name) == own.end() && suggestName(name, own).empty() &&
+         whereItBelongs(section, name).empty();
+}
+
+/// The values that the parameter server has for a section, without those that skip(name, value) says are
+/// none. map: its name there.
+template <class Skip>
+Expected<YAML::Node> readSection(const std::string& map, const std::string& section, Skip&& skip) {
+  YAML::Node all(YAML::NodeType::Map);
+  XmlRpc::XmlRpcValue given;
+  if (!ros::param::get(map, given)) return all;
+  if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
+    return tl::make_unexpected(
+        Failure{Reason::kInputInvalid, section + ": expected a map of names and values"});
+  for (auto& member : given)
+    if (!skip(member.first, member.second)) all[member.first] = toYaml(member.second);
+  return all;
 }
 
 /// Takes the keys of NodeParameters out of the map of all private parameters.
@@ -54,44 +71,29 @@ YAML::Node takeNodeKeys(YAML::Node& all) {
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters) {
-  XmlRpc::XmlRpcValue given;
-  YAML::Node all(YAML::NodeType::Map);
-  if (ros::param::get(private_handle.getNamespace(), given)) {
-    if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
-      return {Reason::kInputInvalid, section + ": expected a map of names and values"};
-    const std::vector<std::string> names = parameterNames<NodeParameters, Section>();
-    for (auto& member : given)
-      if (!isForeign(member.first, member.second, names)) all[member.first] = toYaml(member.second);
-  }
-  SectionLoader loader(takeNodeKeys(all), section);
+  const std::vector<std::string> names = parameterNames<NodeParameters, Section>();
+  Expected<YAML::Node> all = readSection(
+      private_handle.getNamespace(), section,
+      [&](const std::string& name, const auto& value) { return isForeign(section, name, value, names); });
+  if (!all) return all.error();
   NodeParameters loaded = node_parameters;
-  loaded.visit(loader);
-  const Failure failure = loader.finish();
+  const Failure failure = loadSection(takeNodeKeys(*all), section, loaded);
   if (failure) return failure;
   if (!loaded.config_file.empty()) {
     if (const auto file = loadParameterFile(loaded.config_file); !file) return file.error();
   }
   node_parameters = loaded;
-  SectionLoader own(all, section);
-  Section loaded_section = parameters;
-  loaded_section.visit(own);
-  const Failure own_failure = own.finish();
-  if (!own_failure) parameters = loaded_section;
-  return own_failure;
+  return loadSection(*all, section, parameters);
 }
 
-Failure loadRigParameters(const ros::NodeHandle& handle, RigParameters& parameters) {
-  constexpr const char* kSection = "rig";
-  XmlRpc::XmlRpcValue given;
-  if (!handle.getParam(kSection, given)) return {};
-  if (given.getType() != XmlRpc::XmlRpcValue::TypeStruct)
-    return {Reason::kInputInvalid, std::string(kSection) + ": expected a map of names and values"};
-  YAML::Node all(YAML::NodeType::Map);
-  for (auto& member : given) all[member.first] = toYaml(member.second);
-  SectionLoader loader(all, kSection);
-  RigParameters loaded = parameters;
-  loaded.visit(loader);
-  const Failure failure = loader.finish();
+Failure loadSharedParameters(const ros::NodeHandle& handle, SharedParameters& parameters) {
+  SharedParameters loaded = parameters;
+  Failure failure;
+  loaded.visitSections([&](const char* section, auto& values) {
+    if (failure) return;
+    const auto given = readSection(handle.resolveName(section), section, [](auto&&...) { return false; });
+    failure = given ? loadSection(*given, section, values) : given.error();
+  });
   if (!failure) parameters = loaded;
   return failure;
 }

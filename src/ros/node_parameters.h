@@ -51,9 +51,10 @@ struct NodeParameters {
            "broadcast runway_frame to the estimated frame; if not, the chain rests while nobody subscribes "
            "its output (kalman_height)");
     v.number("drawn_runway_width", drawn_runway_width, 0.1, 200.0, "m",
-             "of the runway as drawn until it has been measured (kalman_height markers)");
+             "width of the runway as drawn until it has been measured; where runway/width is given, that is "
+             "the default (kalman_height markers)");
     v.number("drawn_runway_length", drawn_runway_length, 0.1, 10000.0, "m",
-             "of the runway as drawn (kalman_height markers)");
+             "length of the runway as drawn (kalman_height markers)");
     v.number(
         "ellipsoid_scale", ellipsoid_scale, 1.0, 1000.0, "",
         "the ellipsoid of three sigma is drawn larger by this factor: centimetres are too small to be seen "
@@ -71,7 +72,8 @@ template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);
 
-/// Reads what all nodelets of a namespace share: its parameters rig/*. Defaults and failure as above.
-Failure loadRigParameters(const ros::NodeHandle& handle, RigParameters& parameters);
+/// Reads what all nodelets of a namespace share: its parameters rig/* and runway/*. Defaults and failure as
+/// above.
+Failure loadSharedParameters(const ros::NodeHandle& handle, SharedParameters& parameters);
 
 }  // namespace uav_landing

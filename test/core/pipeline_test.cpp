@@ -5,6 +5,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "support/approach_scene.h"
+
 namespace uav_landing {
 namespace {
 
@@ -60,6 +62,44 @@ TEST(Pipeline, RectifiesEachImageIntoItsOwn) {
   const cv::Rect inside(2, 2, kWidth - 4, kHeight - 4);
   EXPECT_EQ(cv::norm(output.left(inside), left(inside), cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(output.right(inside), right(inside), cv::NORM_INF), 0);
+}
+
+/// A camera of the scene's rig, that needs no rectification. baseline: m, of the right one.
+CameraCalibration cameraOf(const StereoRig& rig, double cx, double baseline) {
+  CameraCalibration c;
+  c.width = rig.size.width;
+  c.height = rig.size.height;
+  c.distortion_model = "plumb_bob";
+  c.K << rig.fx, 0, cx, 0, rig.fy, rig.cy, 0, 0, 1;
+  c.R = Eigen::Matrix3d::Identity();
+  c.P << rig.fx, 0, cx, -rig.fx * baseline, 0, rig.fy, rig.cy, 0, 0, 0, 1, 0;
+  return c;
+}
+
+/// Last pair of an approach to painted lines whose outermost edges are 2.12 m apart.
+Pipeline::Output approachOf(double known_width) {
+  test::ApproachScene scene(7);
+  scene.ground.contrast = 3;
+  const StereoRig& rig = scene.rig;
+  Parameters parameters;
+  parameters.runway.width = known_width;
+  Pipeline pipeline =
+      Pipeline::create(cameraOf(rig, rig.cx, 0), cameraOf(rig, rig.cx_right, rig.baseline), parameters)
+          .value();
+  const auto path = test::straight(test::attitude(-8, 0, 0), 1.8, 1.4, 10);
+  for (int i = 0; i < 5; ++i) {
+    const double t = i * test::kPeriod;
+    pipeline.process(t, scene.ground.left(rig, path(t)), scene.ground.right(rig, path(t)));
+  }
+  const double t = 5 * test::kPeriod;
+  return pipeline.process(t, scene.ground.left(rig, path(t)), scene.ground.right(rig, path(t)));
+}
+
+TEST(Pipeline, TheRunwaysWidthIsKnownToItsEdgesAndToTheHeight) {
+  const Pipeline::Output known = approachOf(2.12), wide = approachOf(1.02 * 2.12), other = approachOf(3);
+  ASSERT_FALSE(known.approach.runway.failure) << known.approach.runway.failure.message();
+  EXPECT_TRUE(other.approach.runway.failure) << "edges of another width";
+  EXPECT_NEAR(wide.landing.width_height / known.landing.width_height, 1.02, 1e-3);
 }
 
 TEST(Pipeline, TimesAreThoseOfTheStagesThatThisPairWentThrough) {

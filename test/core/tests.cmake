@@ -166,4 +166,4 @@ uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stag
   SOURCES test/support/ground_renderer.cpp)
 
 # the whole chain
-uav_landing_add_gtest(pipeline_test test/core/pipeline_test.cpp)
+uav_landing_add_gtest(pipeline_test test/core/pipeline_test.cpp SOURCES test/support/ground_renderer.cpp)

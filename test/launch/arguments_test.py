@@ -30,7 +30,7 @@ class ArgumentsTest(unittest.TestCase):
 
     def test_an_empty_value_is_the_default(self):
         # From another launch file: on the command line roslaunch itself takes an empty value for the default.
-        names = ("approximate_sync", "max_skew", "base_frame", "runway_width", "bag")
+        names = ("approximate_sync", "max_skew", "base_frame", "runway_width", "drawn_runway_width", "bag")
         with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
             empty = "".join(f'<arg name="{name}" value=""/>' for name in names)
             file.write(f'<launch><include file="{LAUNCH}/stereo.launch">{empty}</include></launch>')
@@ -53,7 +53,8 @@ class ArgumentsTest(unittest.TestCase):
             for nodelet in nodelets:
                 self.assertIn(f"/uav_landing/{nodelet}/", config.clear_params)
             if file == "stereo":
-                self.assertIn("/uav_landing/rig/", config.clear_params)
+                for shared in ("rig", "runway"):
+                    self.assertIn(f"/uav_landing/{shared}/", config.clear_params)
 
     def test_values_reach_the_nodelets(self):
         given = parameters("approximate_sync:=true", "max_skew:=0.02", "base_frame:=base_link", "bag:=/tmp/a.bag")
@@ -62,13 +63,18 @@ class ArgumentsTest(unittest.TestCase):
         self.assertEqual(given["/uav_landing/kalman_height/base_frame"], "base_link")
         self.assertEqual(given["/use_sim_time"], True)
 
-    def test_the_runways_width_reaches_edges_height_and_markers(self):
-        default, given = parameters(), parameters("runway_width:=45")
-        for name, unknown in (("approach_angle/runway_width", None), ("kalman_height/known_runway_width", None),
-                              ("kalman_height/drawn_runway_width", 30)):
-            self.assertEqual(default.get(f"/uav_landing/{name}"), unknown)
-            self.assertEqual(given[f"/uav_landing/{name}"], 45)
-        self.assertEqual(parameters("runway_width:=0")["/uav_landing/kalman_height/drawn_runway_width"], 30)
+    def test_the_runways_width_has_one_place_for_all_nodelets(self):
+        def widths(*arguments):
+            return {name: value for name, value in parameters(*arguments).items() if "width" in name}
+
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("runway: {width: 25}")
+            file.flush()
+            self.assertEqual(widths(), {}, "what is drawn has its default in the nodelet")
+            self.assertEqual(widths("runway_width:=45"), {"/uav_landing/runway/width": 45})
+            self.assertEqual(widths(f"config:={file.name}"), {"/uav_landing/runway/width": 25})
+            self.assertEqual(widths(f"config:={file.name}", "runway_width:=45"), {"/uav_landing/runway/width": 45})
+        self.assertEqual(widths("drawn_runway_width:=20"), {"/uav_landing/kalman_height/drawn_runway_width": 20})
 
     def test_no_inertial_sensor_can_be_asked_for(self):
         self.assertEqual(parameters("imu:=none")["/uav_landing/approach_angle/imu"], "")

@@ -199,10 +199,11 @@ class LaunchTest(unittest.TestCase):
             # Not the first ones: a machine with other work to do may miss much of a round.
             self.assert_comes(lambda: sum(valid > 10 for valid in valid_rounds()[1:]) >= 2, launched)
 
-    def test_nodelets_and_process_bag_give_the_same_numbers(self):
+    def same_numbers(self, config):
+        """What process_bag publishes, by topic, after the nodelets have published the same."""
         offline_bag = self.folder / "offline.bag"
         subprocess.run(["rosrun", "uav_landing", "process_bag", "--input", str(self.bag), "--output",
-                        str(offline_bag)], check=True, stdout=subprocess.DEVNULL, timeout=200)
+                        str(offline_bag), "--config", str(config)], check=True, stdout=subprocess.DEVNULL, timeout=200)
         with rosbag.Bag(str(offline_bag)) as bag:
             offline = {name: [m for _, m, _ in bag.read_messages([f"/uav_landing/{name}"])] for name in OUTPUTS}
         # Static transforms are there before the sensors are.
@@ -211,7 +212,7 @@ class LaunchTest(unittest.TestCase):
         with rosbag.Bag(str(self.bag)) as bag:
             transforms.publish(next(m for _, m, _ in bag.read_messages(["/tf_static"])))
         listeners = {name: self.listen(f"/uav_landing/{name}", OUTPUTS[name]) for name in OUTPUTS}
-        with launch("drop_frames:=false", "overlay:=false") as launched:
+        with launch("drop_frames:=false", "overlay:=false", f"config:={config}") as launched:
             self.assert_comes(chain_is_connected, launched)
             self.assert_comes(lambda: transforms.get_num_connections() > 0, launched)
             with Process("rosbag", "play", "--quiet", "--rate=4", "--queue=1000", "--wait-for-subscribers",
@@ -223,9 +224,21 @@ class LaunchTest(unittest.TestCase):
             self.assertEqual([m.header.stamp for m in live], [m.header.stamp for m in offline[name]], name)
             for a, b in zip(live, offline[name]):
                 self.assertEqual(differences(a, b, name), [], f"at {a.header.stamp.to_sec():.3f} s")
+        return offline
+
+    def test_nodelets_and_process_bag_give_the_same_numbers(self):
+        offline = self.same_numbers(SOURCE_DIR / "config/stereo.yaml")
         self.assertTrue(any(e.valid for e in offline["landing_estimate"]))
+        self.assertTrue(any(math.isfinite(a.runway.width) for a in offline["approach_angle"]))
         self.assertEqual({a.imu.reason for a in offline["approach_angle"]}, {""})
         self.assertTrue(all(math.isfinite(a.imu.rotation[0]) for a in offline["approach_angle"][1:]))
+
+    def test_nodelets_and_process_bag_know_the_same_width_of_the_runway(self):
+        config = self.folder / "width.yaml"
+        config.write_text("runway: {width: 1.6}\n")
+        offline = self.same_numbers(config)
+        # The lab's runway is 1.2 m wide, and edges of another width are rejected.
+        self.assertEqual([a.runway.width for a in offline["approach_angle"] if math.isfinite(a.runway.width)], [])
 
     def test_a_silent_right_camera_is_named_and_nothing_is_valid(self):
         with launch() as launched:

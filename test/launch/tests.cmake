@@ -4,6 +4,8 @@ uav_landing_add_rostest(test/launch/launch.test SOURCES test/launch/launch_test.
 uav_landing_add_rostest(test/launch/autopilot.test SOURCES test/launch/autopilot_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach)
 uav_landing_add_rostest(test/launch/diagnostics.test SOURCES test/launch/diagnostics_test.py DEPENDENCIES uav_landing_nodelets)
+uav_landing_add_rostest(test/launch/shared_parameters.test SOURCES test/launch/shared_parameters_test.py
+  DEPENDENCIES uav_landing_nodelets)
 uav_landing_add_rostest(test/launch/simulate.test SOURCES test/launch/simulate_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach)
 uav_landing_add_rostest(test/launch/recovery.test SOURCES test/launch/recovery_test.py

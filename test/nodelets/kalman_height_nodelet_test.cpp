@@ -79,6 +79,13 @@ class KalmanHeightNodeletTest : public NodeletTest {
       angle->step.approach_angle = 0;
       angle->step.approach_angle_variance = 1e-6;
       angle->window = angle->step;
+      if (std::isfinite(runway_width_)) {
+        angle->runway.reason.clear();
+        angle->runway.y = 0;
+        angle->runway.y_variance = 1e-6;
+        angle->runway.width = runway_width_;
+        angle->runway.width_variance = 1e-6;
+      }
     } else {
       depth->reason = "no_plane";
       angle->reason = angle->step.reason = angle->window.reason = "no_ground_normal";
@@ -176,6 +183,7 @@ class KalmanHeightNodeletTest : public NodeletTest {
   }
 
   StereoScene scene_;
+  double runway_width_ = kNan;                                              // as seen, over the height
   std::string left_frame_ = "left_optical", image_frame_ = "left_optical";  // frame_ids
   double rectifying_pitch_ = 0;  // rad, of R in camera_info: from the camera as mounted to the rectified one
   ros::Publisher stereo_ = handle_.advertise<StereoDepth>("/uav_landing/stereo_depth", 100);
@@ -607,6 +615,43 @@ TEST_F(KalmanHeightNodeletTest, MarkersAreFiniteAndTheirViewFollows) {
     x.push_back(message->transforms[0].transform.translation.x);
   }
   EXPECT_NEAR(x[4] - x[3], 0.1, 0.01) << "as the aircraft moves";
+}
+
+/// How wide the runway is drawn, m.
+double drawnWidth(const visualization_msgs::MarkerArray& array) {
+  double least = 0, most = 0;
+  for (const auto& marker : array.markers)
+    if (marker.ns == "runway")
+      for (const auto& point : marker.points) {
+        least = std::min(least, point.y);
+        most = std::max(most, point.y);
+      }
+  return most - least;
+}
+
+TEST_F(KalmanHeightNodeletTest, TheRunwayIsDrawnAsWideAsItIsKnownToBe) {
+  const auto expectDrawn = [&](double width) {
+    Listener<visualization_msgs::MarkerArray> markers("/uav_landing/markers");
+    start();
+    ASSERT_TRUE(eventually([&] { return markers.connected(); }));
+    publish(0);
+    ASSERT_TRUE(markers.waitFor(1));
+    EXPECT_NEAR(drawnWidth(*markers.messages()[0]), width, 0.01);
+    unload("kalman_height");
+  };
+  expectDrawn(30);
+  setParameter("runway", "width", 45);
+  expectDrawn(45);
+  setParameter("kalman_height", "drawn_runway_width", 20);
+  expectDrawn(20);
+}
+
+TEST_F(KalmanHeightNodeletTest, TheRunwaysWidthGivesASecondHeight) {
+  setParameter("runway", "width", 45);
+  start();
+  runway_width_ = 45 / 2.02;  // over the height, as from 2.02 m
+  publishSome(0, 4);
+  EXPECT_NEAR(estimateOf(0.3).width_height, 2.02, 1e-3);
 }
 
 TEST_F(KalmanHeightNodeletTest, TheViewBeforeAnyImageDoesNotOutlastTheFirst) {

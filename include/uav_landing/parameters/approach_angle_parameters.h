@@ -43,7 +43,6 @@ struct ApproachAngleParameters {
   double angle_window = 0.5;
   AngleSmoothing angle_smoothing = AngleSmoothing::kAdaptive;
   double min_motion = 5.0;
-  double runway_width = 0;
   bool use_imu = true;
   double imu_delay = 0;
   double imu_wait = 0.02;
@@ -114,9 +113,6 @@ struct ApproachAngleParameters {
              "angle_window, half of it late");
     v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
              "translation must exceed its own uncertainty by this factor, or no angle is claimed");
-    v.number("runway_width", runway_width, 0.0, 200.0, "m",
-             "between the outermost long edges along the runway; edges of another width are not believed. 0: "
-             "not known");
     v.flag("use_imu", use_imu,
            "use attitude and angular velocity of an inertial sensor where messages of one come");
     v.number("imu_delay", imu_delay, -1.0, 1.0, "s",

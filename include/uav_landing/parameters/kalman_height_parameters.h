@@ -27,7 +27,6 @@ struct KalmanHeightParameters {
   double min_height_error = 0.15;
   double max_angle_stddev_deg = 1.0;
   bool fuse_width_height = true;
-  double known_runway_width = 0;
   bool rig_watch = true;
   double rig_memory = 60.0;
   double max_rig_rotation_deg = 0.2;
@@ -80,11 +79,8 @@ struct KalmanHeightParameters {
     v.number("max_angle_stddev_deg", max_angle_stddev_deg, 0.01, 20.0, "deg",
              "1 sigma of the approach angle above this is not valid");
     v.flag("fuse_width_height", fuse_width_height,
-           "use the height from the runway's width: where stereo has none, and, when known_runway_width is "
-           "set, together with stereo if both agree");
-    v.number("known_runway_width", known_runway_width, 0.0, 200.0, "m",
-             "between the outermost long edges of the runway, for the height; 0: learned while the stereo "
-             "height is good");
+           "use the height from the runway's width: where stereo has none, and, when runway/width is "
+           "given, together with stereo if both agree");
     v.flag(
         "rig_watch", rig_watch,
         "estimate how far the right camera has turned since the calibration, and correct the plane for it");

@@ -4,7 +4,7 @@
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/parameters/overlay_parameters.h"
 #include "uav_landing/parameters/rectify_parameters.h"
-#include "uav_landing/parameters/rig_parameters.h"
+#include "uav_landing/parameters/shared_parameters.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
 namespace uav_landing {
@@ -15,9 +15,9 @@ namespace uav_landing {
 // meaning) for int and double, flag(name, value, meaning) and choice(name, enum value, {names in enum order},
 // meaning).
 
-/// One parameter set for the whole chain; each member is a section of config/*.yaml.
-struct Parameters {
-  RigParameters rig;
+/// One parameter set for the whole chain. What the stages share and what each has of its own: each member is
+/// a section of config/*.yaml.
+struct Parameters : SharedParameters {
   RectifyParameters rectify;
   StereoDepthParameters stereo_depth;
   ApproachAngleParameters approach_angle;
@@ -27,7 +27,7 @@ struct Parameters {
   /// Calls v(section name, parameter struct) for every section.
   template <class Visitor>
   void visitSections(Visitor&& v) {
-    v("rig", rig);
+    SharedParameters::visitSections(v);
     v("rectify", rectify);
     v("stereo_depth", stereo_depth);
     v("approach_angle", approach_angle);

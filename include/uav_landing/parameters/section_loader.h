@@ -15,6 +15,10 @@ namespace uav_landing {
 /// "; did you mean X?" for the nearest of the names, or "" when none is near.
 std::string suggestName(const std::string& word, const std::vector<std::string>& names);
 
+/// Where a key belongs that this section does not have: it has moved, or is a section that all stages share.
+/// "" when that is not known.
+std::string whereItBelongs(const std::string& section, const std::string& key);
+
 /// Checks that a node is a map (or empty) with every key once. section: "" for the whole file.
 Failure checkMap(const YAML::Node& node, const std::string& section);
 
@@ -81,5 +85,21 @@ class SectionLoader {
   std::vector<std::string> names_;
   Failure failure_;
 };
+
+/// Reads one section's values into a parameter struct (defaults stay where nothing is given). The failure
+/// names the parameter with its section, the value and what was expected: a key that does not exist (with
+/// the nearest name that does, or where it belongs), a value of another type, out of range, or not one of the
+/// choices. The parameters are then as before.
+template <class ParameterStruct>
+Failure loadSection(const YAML::Node& node, const std::string& section, ParameterStruct& parameters) {
+  const Failure failure = checkMap(node, section);
+  if (failure) return failure;
+  ParameterStruct loaded = parameters;
+  SectionLoader loader(node, section);
+  loaded.visit(loader);
+  const Failure wrong = loader.finish();
+  if (!wrong) parameters = loaded;
+  return wrong;
+}
 
 }  // namespace uav_landing

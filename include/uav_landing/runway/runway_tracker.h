@@ -6,6 +6,7 @@
 
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
+#include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 #include "uav_landing/runway/runway_direction.h"
 #include "uav_landing/runway/runway_edges.h"
@@ -21,7 +22,8 @@ class RunwayTracker {
   /// Pairs in a row that must agree.
   static constexpr int kConfirmations = 3;
 
-  RunwayTracker(const RigModel& rig, const ApproachAngleParameters& parameters);
+  RunwayTracker(const RigModel& rig, const ApproachAngleParameters& parameters,
+                const RunwayParameters& runway = {});
 
   /// left: rectified image. approach: of this pair, with n, the vanishing direction and the step; direction:
   /// the lines it was found from. height: by stereo, m, or NaN; without it only the left view counts.
@@ -78,6 +80,7 @@ class RunwayTracker {
 
   RigModel model_;
   ApproachAngleParameters parameters_;
+  double known_width_;  // m; 0: unknown
   std::optional<double> last_stamp_;
 
   Follower centre_, threshold_;

@@ -6,6 +6,7 @@
 #include "uav_landing/base/timings.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
+#include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -14,7 +15,8 @@ namespace uav_landing {
 /// Keeps the images of the last angle_window seconds, the path so far, and what is known of the runway.
 class ApproachAngleStage {
  public:
-  ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters);
+  ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters,
+                     const RunwayParameters& runway = {});
   ~ApproachAngleStage();
   ApproachAngleStage(ApproachAngleStage&&) noexcept;
 

@@ -5,6 +5,7 @@
 #include "uav_landing/base/timings.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
+#include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -13,7 +14,8 @@ namespace uav_landing {
 /// status and validity.
 class KalmanHeightStage {
  public:
-  KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters);
+  KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
+                    const RunwayParameters& runway = {});
   ~KalmanHeightStage();
   KalmanHeightStage(KalmanHeightStage&&) noexcept;
   KalmanHeightStage& operator=(KalmanHeightStage&&) noexcept;

@@ -25,11 +25,9 @@ void fuseWidth(const WidthHeight::Estimate& seen, MeasuredHeight& measured) {
 
 }  // namespace
 
-HeightMeasurement::HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters)
-    : rig_(rig),
-      parameters_(parameters),
-      width_(parameters.known_runway_width),
-      stamps_(parameters.max_deceleration) {}
+HeightMeasurement::HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
+                                     const RunwayParameters& runway)
+    : rig_(rig), parameters_(parameters), width_(runway.width), stamps_(parameters.max_deceleration) {}
 
 MeasuredHeight HeightMeasurement::propose(const PairInput& in, const Ground& ground,
                                           const MeasuredHeight& by_ground, const HeightPrior& prior) {

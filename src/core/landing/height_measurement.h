@@ -6,6 +6,7 @@
 #include "landing/pair_input.h"
 #include "uav_landing/height/width_height.h"
 #include "uav_landing/integrity/stamp_scatter.h"
+#include "uav_landing/parameters/runway_parameters.h"
 
 namespace uav_landing {
 
@@ -17,7 +18,8 @@ MeasuredHeight heightByGround(const StereoRig& rig, const KalmanHeightParameters
 /// open.
 class HeightMeasurement {
  public:
-  HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters);
+  HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
+                    const RunwayParameters& runway);
 
   /// by_ground: of the same pair. The result is without a failure where the width alone gives a height.
   MeasuredHeight propose(const PairInput& in, const Ground& ground, const MeasuredHeight& by_ground,

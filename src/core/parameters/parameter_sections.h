@@ -11,25 +11,12 @@
 #include <vector>
 
 #include "uav_landing/base/failure.h"
-#include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/parameters/section_loader.h"
 
 namespace uav_landing {
 
 // Loading of any set of parameter structs, such as Parameters: a struct whose visitSections() names its
 // sections.
-
-template <class ParameterStruct>
-Failure loadSection(const YAML::Node& node, const std::string& section, ParameterStruct& parameters) {
-  const Failure failure = checkMap(node, section);
-  if (failure) return failure;
-  ParameterStruct loaded = parameters;
-  SectionLoader loader(node, section);
-  loaded.visit(loader);
-  const Failure wrong = loader.finish();
-  if (!wrong) parameters = loaded;
-  return wrong;
-}
 
 template <class ParameterSet>
 Failure loadSections(const YAML::Node& root, ParameterSet& parameters) {

@@ -5,6 +5,8 @@
 #include <set>
 
 #include "base/text.h"
+#include "parameters/moved_parameters.h"
+#include "uav_landing/parameters/shared_parameters.h"
 
 namespace uav_landing {
 namespace {
@@ -42,6 +44,14 @@ std::string suggestName(const std::string& word, const std::vector<std::string>&
   return "; did you mean " + *nearest + "?";
 }
 
+std::string whereItBelongs(const std::string& section, const std::string& key) {
+  for (const MovedParameter& moved : kMovedParameters)
+    if (section + "/" + key == moved.was) return text("has moved to ", moved.now);
+  bool shared = false;
+  SharedParameters().visitSections([&](const char* name, auto&) { shared = shared || key == name; });
+  return shared ? "is a section of its own, expected beside " + section : "";
+}
+
 Failure checkMap(const YAML::Node& node, const std::string& section) {
   if (node.IsNull()) return {};
   if (!node.IsMap())
@@ -60,8 +70,10 @@ Failure SectionLoader::finish() const {
   if (failure_ || !node_.IsMap()) return failure_;
   for (const auto& entry : node_) {
     const std::string key = entry.first.Scalar();
-    if (std::find(names_.begin(), names_.end(), key) == names_.end())
-      return {Reason::kInputInvalid, section_ + "/" + key + ": no such parameter" + suggestName(key, names_)};
+    if (std::find(names_.begin(), names_.end(), key) != names_.end()) continue;
+    const std::string elsewhere = whereItBelongs(section_, key);
+    return invalid(section_, "/", key, ": ",
+                   elsewhere.empty() ? "no such parameter" + suggestName(key, names_) : elsewhere);
   }
   return {};
 }

@@ -54,8 +54,9 @@ void RunwayTracker::Follower::miss(double seconds, double patience) {
   if (confirmations_ < kConfirmations || missed_ > patience) *this = Follower();
 }
 
-RunwayTracker::RunwayTracker(const RigModel& rig, const ApproachAngleParameters& parameters)
-    : model_(rig), parameters_(parameters) {}
+RunwayTracker::RunwayTracker(const RigModel& rig, const ApproachAngleParameters& parameters,
+                             const RunwayParameters& runway)
+    : model_(rig), parameters_(parameters), known_width_(runway.width) {}
 
 void RunwayTracker::reset() {
   last_stamp_.reset();
@@ -156,8 +157,7 @@ RunwayTracker::Edges RunwayTracker::edgesOf(const GroundAxes& axes, const Runway
 void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction,
                                double height, ApproachAngleResult::Runway& result) {
   const Edges edges = edgesOf(axes, direction, height);
-  const double width =
-      std::isfinite(height) && parameters_.runway_width > 0 ? parameters_.runway_width / height : 0;
+  const double width = std::isfinite(height) && known_width_ > 0 ? known_width_ / height : 0;
   const Outlook outlook{model_.rig, edges.either};
   Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt, &outlook);
   if (centre_.confirmations() >= kConfirmations) {

@@ -29,8 +29,8 @@ struct ApproachAngleStage::Implementation {
   RunwayTracker runway;
   Timings timings;
 
-  Implementation(const RigModel& rig, const ApproachAngleParameters& p)
-      : model(rig), parameters(p), tracker(rig, p), runway(rig, p) {
+  Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
+      : model(rig), parameters(p), tracker(rig, p), runway(rig, p, known) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
   }
@@ -156,8 +156,9 @@ struct ApproachAngleStage::Implementation {
   }
 };
 
-ApproachAngleStage::ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters)
-    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+ApproachAngleStage::ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters,
+                                       const RunwayParameters& runway)
+    : implementation_(std::make_unique<Implementation>(rig, parameters, runway)) {}
 ApproachAngleStage::~ApproachAngleStage() = default;
 ApproachAngleStage::ApproachAngleStage(ApproachAngleStage&&) noexcept = default;
 

@@ -37,9 +37,10 @@ struct Parts {
   PositionFilter position;
   FailureCounts failures;
 
-  Parts(const StereoRig& rig, const KalmanHeightParameters& parameters, int resets)
+  Parts(const StereoRig& rig, const KalmanHeightParameters& parameters, const RunwayParameters& runway,
+        int resets)
       : ground(rig, parameters),
-        measurement(rig, parameters),
+        measurement(rig, parameters, runway),
         monitor(rig, parameters),
         track(parameters, resets),
         sink_rate(parameters),
@@ -60,19 +61,21 @@ struct Look {
 struct KalmanHeightStage::Implementation {
   StereoRig rig;
   KalmanHeightParameters parameters;
+  RunwayParameters runway;
   LandingClock clock;
   std::unique_ptr<Parts> parts;
   Timings timings;
 
-  Implementation(const StereoRig& given, const KalmanHeightParameters& p)
+  Implementation(const StereoRig& given, const KalmanHeightParameters& p, const RunwayParameters& known)
       : rig(given),
         parameters(p),
+        runway(known),
         clock(p.reset_timeout, p.gate),
-        parts(std::make_unique<Parts>(rig, parameters, 0)) {}
+        parts(std::make_unique<Parts>(rig, parameters, runway, 0)) {}
 
   void startAnew() {
     parts->track.lose();
-    parts = std::make_unique<Parts>(rig, parameters, parts->track.resets());
+    parts = std::make_unique<Parts>(rig, parameters, runway, parts->track.resets());
   }
 
   // What happens to a pair, in order.
@@ -204,8 +207,9 @@ struct KalmanHeightStage::Implementation {
   }
 };
 
-KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters)
-    : implementation_(std::make_unique<Implementation>(rig, parameters)) {}
+KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
+                                     const RunwayParameters& runway)
+    : implementation_(std::make_unique<Implementation>(rig, parameters, runway)) {}
 KalmanHeightStage::~KalmanHeightStage() = default;
 KalmanHeightStage::KalmanHeightStage(KalmanHeightStage&&) noexcept = default;
 KalmanHeightStage& KalmanHeightStage::operator=(KalmanHeightStage&&) noexcept = default;

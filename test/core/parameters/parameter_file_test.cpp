@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "parameters/moved_parameters.h"
+#include "support/bad_configurations.h"
 #include "support/documentation.h"
 
 namespace uav_landing {
@@ -26,6 +28,34 @@ struct Writer {
   template <class Enum>
   void choice(const char*, Enum&, std::initializer_list<const char*>, const char*) {}
 };
+
+/// Finds a parameter by its name.
+struct NameFinder {
+  const std::string name;
+  bool found = false;
+  template <class... Rest>
+  void number(const char* candidate, Rest&&...) {
+    found = found || name == candidate;
+  }
+  template <class... Rest>
+  void flag(const char* candidate, Rest&&...) {
+    found = found || name == candidate;
+  }
+  template <class Enum>
+  void choice(const char* candidate, Enum&, std::initializer_list<const char*>, const char*) {
+    found = found || name == candidate;
+  }
+};
+
+/// path: section/name.
+bool isParameter(const std::string& path) {
+  const size_t slash = path.find('/');
+  NameFinder finder{path.substr(slash + 1)};
+  Parameters().visitSections([&](const std::string& section, auto& values) {
+    if (section == path.substr(0, slash)) values.visit(finder);
+  });
+  return finder.found;
+}
 
 TEST(ParameterFile, TakesGivenValuesAndKeepsTheOtherDefaults) {
   const Expected<Parameters> parameters = parseParameters(
@@ -57,13 +87,40 @@ TEST(ParameterFile, NamesTheNearestSectionForAnUnknownOne) {
             "test.yaml: stereo_dept: no such section; did you mean stereo_depth?");
 }
 
-TEST(ParameterFile, RefusesTwoWidthsOfOneRunway) {
-  EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\nkalman_height: {known_runway_width: 30}\n"),
-            "accepted");
-  EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\n"), "accepted");
-  EXPECT_NE(errorOf("approach_angle: {runway_width: 30}\nkalman_height: {known_runway_width: 31}\n")
-                .find("approach_angle/runway_width is 30 m"),
-            std::string::npos);
+TEST(ParameterFile, TakesWhatStagesShareFromSectionsOfTheirOwn) {
+  const Expected<Parameters> parameters =
+      parseParameters("rig: {max_baseline: 60}\nrunway: {width: 45}\n", "test.yaml");
+  ASSERT_TRUE(parameters) << parameters.error().message();
+  EXPECT_EQ(parameters->rig.max_baseline, 60);
+  EXPECT_EQ(parameters->runway.width, 45);
+  EXPECT_EQ(Parameters().runway.width, 0) << "unknown";
+}
+
+TEST(ParameterFile, SaysWhereAKeyBelongs) {
+  EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\n"),
+            "test.yaml: approach_angle/runway_width: has moved to runway/width");
+  EXPECT_EQ(errorOf("kalman_height: {known_runway_width: 30}\n"),
+            "test.yaml: kalman_height/known_runway_width: has moved to runway/width");
+  EXPECT_EQ(errorOf("kalman_height: {runway: {width: 30}}\n"),
+            "test.yaml: kalman_height/runway: is a section of its own, expected beside kalman_height");
+  EXPECT_EQ(errorOf("runway: {rig: {max_baseline: 60}}\n"),
+            "test.yaml: runway/rig: is a section of its own, expected beside runway");
+  EXPECT_EQ(errorOf("approach_angle: {known_runway_width: 30}\n"),
+            "test.yaml: approach_angle/known_runway_width: no such parameter")
+      << "it never was there";
+}
+
+TEST(ParameterFile, WhatHasMovedIsNowhereElse) {
+  for (const MovedParameter& moved : kMovedParameters) {
+    EXPECT_FALSE(isParameter(moved.was)) << moved.was;
+    EXPECT_TRUE(isParameter(moved.now)) << moved.now;
+  }
+}
+
+TEST(ParameterFile, RefusesWhatTheDocumentationSaysInItsWords) {
+  for (const char* heading : {"Parameters", "Files"})
+    for (const test::BadConfiguration& row : test::badConfigurations(heading))
+      EXPECT_EQ(errorOf(row.given), "test.yaml: " + row.message);
 }
 
 TEST(ParameterFile, RefusesValuesOutOfRangeWithTheRange) {

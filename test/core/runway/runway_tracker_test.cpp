@@ -22,12 +22,13 @@ struct Approach {
   RigModel model = test::makeModel(rig);
   GroundRenderer ground{61};
   ApproachAngleParameters parameters;
-  RunwayTracker tracker{model, parameters};
+  RunwayTracker tracker;
   int frame = 0;
   double time = 0, climbed = 0;  // s, m
   std::optional<Pose> last;
 
-  Approach() {
+  /// known_width: m, or 0.
+  explicit Approach(double known_width = 0) : tracker(model, parameters, {known_width}) {
     ground.contrast = 2;
     ground.line_offset = 1.1;
     ground.line_width = 0.12;
@@ -91,6 +92,14 @@ TEST(RunwayTracker, TellsThePositionAfterThreePairsThatAgree) {
     EXPECT_LT(std::abs(error), 3 * std::sqrt(runway.y_variance) * pose.height());
     EXPECT_NEAR(runway.width * pose.height(), 2 * 1.1 + 0.12, 0.05);
     EXPECT_TRUE(runway.threshold_failure) << "there is none";
+  }
+}
+
+TEST(RunwayTracker, TakesNoEdgesOfAnotherWidthThanTheKnownOne) {
+  Approach known(2 * 1.1 + 0.12), other(1.3 * (2 * 1.1 + 0.12));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(bool(known.next().failure), i < 2) << i;
+    EXPECT_TRUE(other.next().failure) << i;
   }
 }
 

@@ -100,9 +100,7 @@ TEST(KalmanHeightIntegrity, APairThatFailsItsTestsGivesNoAngleEither) {
 }
 
 TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = 40;
-  KalmanHeightStage stage(test::usualRig(), parameters);
+  KalmanHeightStage stage(test::usualRig(), {}, {40});
   LandingResult result;
   for (int i = 0; i < 80; ++i) {
     const double stamp = 1 + 0.05 * i;

@@ -109,14 +109,13 @@ TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
   constexpr double kHeight = 20, kWidth = 40;
   constexpr int kRuns = 300, kPairs = 40;
   KalmanHeightParameters parameters;
-  parameters.known_runway_width = kWidth;
   parameters.height_model_error = 0;
   parameters.acceleration_stddev = 0.05;
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   double ratio = 0, share_of_width = 0;
   for (int run = 0; run < kRuns; ++run) {
-    KalmanHeightStage stage(usualRig(), parameters);
+    KalmanHeightStage stage(usualRig(), parameters, {kWidth});
     const double width = kWidth * (1 + 0.002 * normal(random));
     LandingResult result;
     for (int i = 0; i < kPairs; ++i) {
@@ -273,9 +272,7 @@ TEST(KalmanHeightReconstruction, TheWidthSeenOnAPlaneRefusedForItsTiltIsNoHeight
 }
 
 TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = 30;
-  KalmanHeightStage stage(usualRig(), parameters);
+  KalmanHeightStage stage(usualRig(), {}, {30});
   LandingResult result;
   for (int i = 0; i < 20; ++i) result = stage.process(stereoAt(i * kStep, 20), runwayFrom(i * kStep, 20));
   EXPECT_NEAR(result.width_height, 20 * 30.0 / 45, 1e-6);
@@ -284,9 +281,7 @@ TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
 
 /// Knows the width of 45 m and has seen it from 20 m; stamp: of the next pair.
 KalmanHeightStage overKnownRunway(double& stamp, int pairs = 20) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = 45;
-  KalmanHeightStage stage(usualRig(), parameters);
+  KalmanHeightStage stage(usualRig(), {}, {45});
   for (stamp = 0; pairs-- > 0; stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
   return stage;
 }
@@ -338,10 +333,9 @@ TEST(KalmanHeightReconstruction, HeightsThatAreRefusedDoNotTeachTheWidth) {
 
 TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatAKnownWidthIsWrongBy) {
   KalmanHeightParameters parameters;
-  parameters.known_runway_width = 45;
   parameters.height_model_error = 0;
   parameters.acceleration_stddev = 0.1;
-  KalmanHeightStage stage(usualRig(), parameters);
+  KalmanHeightStage stage(usualRig(), parameters, {45});
   LandingResult result;
   for (int i = 0; i < 100; ++i)
     result = stage.process(stereoAt(i * kStep, 20, -0.1, 0.05, 0.3), runwayFrom(i * kStep, 20));
@@ -350,9 +344,7 @@ TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatAKnownWidthIsWrongBy) {
 }
 
 TEST(KalmanHeightReconstruction, AKnownWidthThatAgreesImprovesTheHeight) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = 45;
-  KalmanHeightStage stage(usualRig(), parameters);
+  KalmanHeightStage stage(usualRig(), {}, {45});
   const StereoDepthResult stereo = stereoAt(0, 20, -0.1, 0.05, 0.2);
   const LandingResult alone = stage.process(stereo, angleAt(0));
   const LandingResult both = stage.process(stereoAt(kStep, 20, -0.1, 0.05, 0.2), runwayFrom(kStep, 20.1));
