@@ -146,6 +146,22 @@ uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.
 uav_landing_add_gtest(vanishing_memory_test test/core/integrity/vanishing_memory_test.cpp)
 uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
 
+# landing
+uav_landing_add_gtest(ground_estimate_test test/core/landing/ground_estimate_test.cpp)
+uav_landing_add_gtest(heading_test test/core/landing/heading_test.cpp)
+uav_landing_add_gtest(height_by_ground_test test/core/landing/height_by_ground_test.cpp)
+uav_landing_add_gtest(height_measurement_test test/core/landing/height_measurement_test.cpp)
+uav_landing_add_gtest(height_track_test test/core/landing/height_track_test.cpp)
+uav_landing_add_gtest(landing_clock_test test/core/landing/landing_clock_test.cpp)
+uav_landing_add_gtest(landing_report_test test/core/landing/landing_report_test.cpp)
+uav_landing_add_gtest(pair_monitor_test test/core/landing/pair_monitor_test.cpp)
+uav_landing_add_gtest(path_doubt_test test/core/landing/path_doubt_test.cpp)
+uav_landing_add_gtest(recovery_wait_test test/core/landing/recovery_wait_test.cpp)
+uav_landing_add_gtest(sink_rate_watch_test test/core/landing/sink_rate_watch_test.cpp)
+uav_landing_add_gtest(surface_ahead_test test/core/landing/surface_ahead_test.cpp)
+uav_landing_add_gtest(surface_below_test test/core/landing/surface_below_test.cpp)
+uav_landing_add_gtest(velocity_watch_test test/core/landing/velocity_watch_test.cpp)
+
 # stages
 uav_landing_add_gtest(approach_angle_normal_test test/core/stages/approach_angle_normal_test.cpp
   SOURCES test/support/ground_renderer.cpp)
