@@ -36,9 +36,10 @@ class Concern:
         self._homes = {kind: name for name in self._files if name.endswith(".h")
                        for kind in _DECLARED.findall(self._texts[name])}
         self._tests = tests
+        self._sources = {test: set(sources_of(test.target)) if test.target else set() for test in tests}
         self._by_source = {}
         for test in tests:
-            for source in sources_of(test.target) if test.target else []:
+            for source in self._sources[test]:
                 self._by_source.setdefault(source, []).append(test)
 
     def _resolved(self, name):
@@ -47,6 +48,30 @@ class Concern:
             places = [Path(name).parent / included] + [Path(root) / included for root in _ROOTS]
             found += [place.as_posix() for place in places if place.as_posix() in self._texts][:1]
         return found
+
+    def sources_of(self, test):
+        return self._sources[test]
+
+    def sources_that_see(self, header):
+        """Sources of the libraries and programs that include it, by other headers or not."""
+        return {name for name in self._seeing(header) if name.startswith("src/")}
+
+    def nearest_sources(self, header):
+        """Of the sources and of the tests those that see it by the fewest includes."""
+        nearest = set()
+        for folder in ("src/", "test/"):
+            seeing = {name: steps for name, steps in self._seeing(header).items() if name.startswith(folder)}
+            nearest |= {name for name, steps in seeing.items() if steps == min(seeing.values())}
+        return nearest
+
+    def _seeing(self, header):
+        """Sources that include it, with the number of includes that it takes."""
+        steps, border = {header: 0}, [header]
+        while border:
+            reached = {user: steps[at] + 1 for at in border for user in self._includers[at] if user not in steps}
+            steps.update(reached)
+            border = list(reached)
+        return {name: count for name, count in steps.items() if name.endswith(".cpp")}
 
     def _headers_of(self, name):
         """The headers that a source implements: of its own name, and of the classes whose functions it defines."""
@@ -93,8 +118,8 @@ class Concern:
             return self._by_words(stem, ("test_tools", "test_scripts"))
         return []
 
-    def tests_of(self, name):
-        """The nearest first; those that bear its name before all others."""
+    def tests_of(self, name, seconds=lambda test: 0):
+        """The nearest first; those that bear its name before all others; of those that are as near the quickest first."""
         near = {}
         for other, distance in self._distances(name).items():
             named = Path(other).stem.startswith(Path(name).stem)
@@ -106,4 +131,4 @@ class Concern:
         alone = {test: distance for test, distance in near.items() if test.program}
         if alone and name.startswith(("src/core/", "include/")):
             near = alone
-        return sorted(near, key=lambda test: (near[test], not test.program, test.name))
+        return sorted(near, key=lambda test: (near[test], not test.program, seconds(test), test.name))

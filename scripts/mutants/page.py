@@ -15,8 +15,11 @@ scripts/mutation --seed 2 --number 30 src/core/integrity   # of one folder, or o
 scripts/mutation --seed 1 --number 300 --page              # writes this page
 ```
 It works on a copy of the tree in `build/mutation/`. It builds each mutant there and runs the tests that reach the changed file by
-includes, the nearest first. It keeps every result and goes on where it was stopped. A mutant that was killed counts as long as its
-file is the same; one that survived has to face new tests again. A mutant that cannot be compiled does not count.
+includes: the nearest first, and the quickest of those that are as near. A test that fails has to pass without the mutant. A header
+that many sources see is compiled into the nearest ones first, and into all of them when that kills nothing.
+
+It keeps every result and goes on where it was stopped. A mutant that was killed counts as long as its file is the same; one that
+survived has to face new tests again. A mutant that cannot be compiled does not count.
 
 A mutant that survives shows a missing test, or code that does nothing. `test/mutation/judged.yaml` names those that somebody has
 looked at: *equivalent* ones, which no input can tell from the original, with the reason, and others with what is missing.

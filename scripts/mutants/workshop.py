@@ -24,12 +24,13 @@ def _limit_memory():
 class Workshop:
     """Files in `work`/tree, its build in `work`/tree/build."""
 
-    def __init__(self, root, work):
-        self._root, self._work = root, work
+    def __init__(self, root, work, jobs=1):
+        """jobs: compilers side by side."""
+        self._root, self._work, self._jobs = root, work, jobs
         self.tree = (work / "tree").resolve()
         self.build_folder = self.tree / "build"
         self.environment = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"], CCACHE_BASEDIR=str(self.tree),
-                                GTEST_FAIL_FAST="1", ROS_HOME=str(work / "ros_home"))
+                                GTEST_FAIL_FAST="1", NOSE_STOP="1", ROS_HOME=str(work / "ros_home"))
         self.environment.setdefault("UAV_LANDING_DATA", str((root.parent / "shared/data").resolve()))
 
     def refresh(self):
@@ -45,7 +46,7 @@ class Workshop:
             shutil.copy(source, copy)
         for copy in self.tree.rglob("*"):
             name = copy.relative_to(self.tree).as_posix()
-            if copy.is_file() and name not in wanted and not name.startswith(("build/", "bin/")):
+            if copy.is_file() and name not in wanted and not name.startswith(("build/", "bin/", ".git/")):
                 copy.unlink()
 
     def configure(self):
@@ -61,19 +62,31 @@ class Workshop:
     def build(self, *targets):
         """Whether they could be built."""
         with (self._work / "build.log").open("w") as log:
-            return subprocess.run(["cmake", "--build", "build", "--target", *targets, "--", "--keep-going", f"-j{os.cpu_count()}"], cwd=self.tree,
-                                  env=self.environment, stdout=log, stderr=subprocess.STDOUT).returncode == 0
+            return subprocess.run(["cmake", "--build", "build", "--target", *targets, "--", "--keep-going", f"-j{self._jobs}"],
+                                  cwd=self.tree, env=self.environment, stdout=log, stderr=subprocess.STDOUT).returncode == 0
 
     @contextmanager
-    def changed(self, mutant):
-        """The copy with one line changed, and as it was afterwards."""
+    def changed(self, mutant, sources=None):
+        """The copy with one line changed, and as it was afterwards.
+
+        sources: those that are compiled with the change; None: all that see the changed file.
+        """
         path = self.tree / mutant.path
         original = path.read_text(encoding="utf-8")
-        path.write_text(self._text_with(mutant), encoding="utf-8")
+        self._write(path, self._text_with(mutant), sources)
         try:
             yield
         finally:
-            path.write_text(original, encoding="utf-8")
+            self._write(path, original, sources)
+
+    def _write(self, path, text, sources):
+        before = path.stat()
+        path.write_text(text, encoding="utf-8")
+        if sources is not None:
+            # make goes by times.
+            os.utime(str(path), ns=(before.st_atime_ns, before.st_mtime_ns))
+            for source in sources:
+                (self.tree / source).touch()
 
     def tests(self):
         """All tests of ctest."""

@@ -4,12 +4,14 @@ import shutil
 import sys
 import tempfile
 import unittest
+from contextlib import contextmanager
 from pathlib import Path
 
 from project import SOURCE_DIR, run
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
 from mutants import candidates, operators, page  # noqa: E402 (only there after the line before)
+from mutants.bench import Bench, TestTimes  # noqa: E402
 from mutants.candidates import Mutant  # noqa: E402
 from mutants.concern import Concern, Test  # noqa: E402
 from mutants.results import Results  # noqa: E402
@@ -130,6 +132,22 @@ class ConcernTest(TreeTest):
     def test_a_program_is_tested_by_the_python_tests_that_name_it(self):
         self.assertEqual(self.concern.tests_of("src/tools/play.cpp"), [self.play])
 
+    def test_of_tests_that_are_as_near_the_quickest_comes_first(self):
+        self.write("test/core/gain_again_test.cpp", '#include "base/gain.h"\n')
+        again = Test("a", "gain_again_test", True)
+        sources = {"gain_test": ["test/core/gain_test.cpp"], "gain_again_test": ["test/core/gain_again_test.cpp"]}
+        concern = Concern(self.tree, [self.gain, again], sources.get)
+        for quick, slow in ((self.gain, again), (again, self.gain)):
+            self.assertEqual(concern.tests_of("src/core/base/gain.h", {quick: 1, slow: 2}.get), [quick, slow])
+
+    def test_the_sources_that_see_a_header_and_the_nearest_of_them(self):
+        self.write("src/core/base/gains.h", '#include "base/gain.h"\n')
+        self.write("src/core/base/gains.cpp", '#include "base/gains.h"\n')
+        concern = Concern(self.tree, [], {}.get)
+        sources = {"src/core/base/gain.cpp", "src/core/height/filter_part.cpp"}
+        self.assertEqual(concern.nearest_sources("src/core/base/gain.h"), sources | {"test/core/gain_test.cpp"})
+        self.assertEqual(concern.sources_that_see("src/core/base/gain.h"), sources | {"src/core/base/gains.cpp"})
+
     def test_what_no_test_reaches(self):
         self.assertEqual(self.concern.tests_of("src/core/other.cpp"), [])
 
@@ -147,6 +165,25 @@ class WorkshopTest(TreeTest):
             self.assertEqual((project / "src/core/a.cpp").read_text(), "x = 1;\nx = a - b;\n")
         self.assertEqual(copy.read_text(), "x = 1;\nx = a - b;\n")
 
+    def test_the_chosen_sources_alone_are_compiled_with_a_changed_header(self):
+        self.write("project/src/core/a.h", "x = 1;\nx = a - b;\n")
+        self.write("project/src/core/near.cpp", '#include "a.h"\n')
+        self.write("project/src/core/far.cpp", '#include "a.h"\n')
+        run(["git", "init", "-q", self.tree / "project"])
+        workshop = Workshop(self.tree / "project", self.tree / "work")
+        workshop.refresh()
+
+        def times():
+            return {name: (workshop.tree / "src/core" / name).stat().st_mtime_ns for name in ("a.h", "near.cpp", "far.cpp")}
+        before = times()
+        with workshop.changed(MUTANT._replace(path="src/core/a.h"), {"src/core/near.cpp"}):
+            during = times()
+            self.assertIn("x = a + b;", (workshop.tree / "src/core/a.h").read_text())
+        after = times()
+        for name in ("a.h", "far.cpp"):
+            self.assertEqual([before[name]] * 2, [during[name], after[name]])
+        self.assertTrue(before["near.cpp"] < during["near.cpp"] < after["near.cpp"])
+
     def test_what_is_gone_from_the_tree_goes_from_the_copy(self):
         self.write("project/src/a.cpp", "a\n")
         run(["git", "init", "-q", self.tree / "project"])
@@ -156,6 +193,77 @@ class WorkshopTest(TreeTest):
         (self.tree / "project/src/a.cpp").unlink()
         workshop.refresh()
         self.assertFalse((workshop.tree / "src/a.cpp").exists())
+
+
+class FakeWorkshop:
+    """Notes what is built and run. A test of `broken` fails always, one of `killers` with a mutant."""
+
+    def __init__(self, tree, killers=(), broken=()):
+        self.tree, self.killers, self.broken, self.ran, self.sources = tree, killers, broken, [], []
+        self._mutant = False
+
+    def build(self, *_):
+        return True
+
+    @contextmanager
+    def changed(self, _, sources=None):
+        self._mutant = True
+        self.sources.append(sources)
+        yield
+        self._mutant = False
+
+    def build_library_with(self, mutant):
+        return Path(tempfile.mkdtemp(dir=str(self.tree)))
+
+    def run(self, test, library=None, deadline=None):
+        mutant = self._mutant or library is not None
+        self.ran.append((test.name, mutant))
+        return test not in self.broken and not (mutant and test in self.killers), 1.0
+
+
+class BenchTest(TreeTest):
+    def setUp(self):
+        super().setUp()
+        self.write("src/core/a.cpp", '#include "a.h"\nx = a - b;\n')
+        self.write("src/core/a.h", "x = 1;\nx = a - b;\n")
+        self.write("test/a_test.cpp", '#include "a.h"\n')
+        self.write("test/b_test.cpp", '#include "a.h"\n')
+        self.a, self.b = Test("a", "a_test", True), Test("b", "b_test", True)
+
+    def judge(self, mutant=MUTANT, **workshop):
+        concern = Concern(self.tree, [self.a, self.b], {"a_test": ["test/a_test.cpp"], "b_test": ["test/b_test.cpp"]}.get)
+        self.workshop = FakeWorkshop(self.tree, **workshop)
+        said = []
+        Bench(self.workshop, concern, Results(self.tree / "results.jsonl"), TestTimes(self.tree / "times.json"), 100, 1,
+              said.append).judge([mutant])
+        return said[-1]["outcome"], said[-1]["by"]
+
+    def test_a_test_that_fails_without_the_mutant_kills_nothing(self):
+        self.assertEqual(self.judge(broken=[self.a]), ("survived", ""))
+        self.assertEqual(self.judge(broken=[self.a], killers=[self.b]), ("killed", "b"))
+        in_header = MUTANT._replace(path="src/core/a.h")
+        self.assertEqual(self.judge(in_header, broken=[self.a]), ("survived", ""))
+
+    def test_a_test_runs_without_the_mutant_only_when_it_failed_with_it(self):
+        self.assertEqual(self.judge(killers=[self.b]), ("killed", "b"))
+        self.assertEqual(self.workshop.ran, [("a", True), ("b", True), ("b", False)])
+
+    def test_a_header_that_many_see_faces_all_of_them_when_the_nearest_do_not_kill(self):
+        self.write("src/core/all.h", '#include "a.h"\n')
+        for number in range(10):
+            self.write(f"src/core/far{number}.cpp", '#include "all.h"\n')
+        in_header = MUTANT._replace(path="src/core/a.h")
+        nearest = {"src/core/a.cpp", "test/a_test.cpp", "test/b_test.cpp"}
+        self.assertEqual(self.judge(in_header), ("survived", ""))
+        self.assertEqual(self.workshop.sources, [nearest, None])
+        self.assertEqual(self.judge(in_header, killers=[self.b]), ("killed", "b"))
+        self.assertEqual(self.workshop.sources, [nearest])
+
+    def test_times_are_kept(self):
+        self.judge(killers=[self.b])
+        times = TestTimes(self.tree / "times.json")
+        self.assertEqual((times.of(self.a), times.of(self.b)), (1.0, 1.0))
+        self.assertEqual(times.of(Test("unknown", None, False)), 0)
 
 
 class ResultsTest(TreeTest):
