@@ -120,12 +120,15 @@ TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
     LandingResult result;
     for (int i = 0; i < kPairs; ++i) {
       ApproachAngleResult approach = angleAt(i * kStep);
-      approach.runway.failure = {};
+      approach.runway.y = 0;
+      approach.runway.y_variance = 1e-6;
       approach.runway.width = width / kHeight + 1e-4 * normal(random);
       approach.runway.width_variance = 1e-8;
       result =
           stage.process(stereoAt(i * kStep, kHeight + 0.02 * normal(random), -0.1, 0.05, 0.02), approach);
     }
+    // Without the width it would be 0.02^2.
+    ASSERT_NEAR(result.raw_height_variance, 1 / (1 / std::pow(0.02, 2) + 1 / std::pow(0.04, 2)), 1e-6);
     ratio += std::pow(result.height - kHeight, 2) / result.height_variance / kRuns;
     // Stereo has 0.02 m, the width 0.04 m: a fifth of the width's error is in each pair.
     share_of_width += std::pow(0.2 * 0.002 * kHeight, 2) / result.height_variance / kRuns;
