@@ -40,6 +40,7 @@ uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
 # lines
 uav_landing_add_gtest(heading_gate_test test/core/lines/heading_gate_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(line_fit_test test/core/lines/line_fit_test.cpp)
 uav_landing_add_gtest(line_segments_test test/core/lines/line_segments_test.cpp)
 uav_landing_add_gtest(segment_scanner_test test/core/lines/segment_scanner_test.cpp)
 uav_landing_add_gtest(stripe_line_test test/core/lines/stripe_line_test.cpp)
