@@ -67,6 +67,22 @@ TEST(RunwayDirection, IsThatOfThePaintedLinesInBothViewsAndTogether) {
   }
 }
 
+// Of stripes hardly a pixel wide a blurred picture shows sides that are pushed apart: 0.1 degrees between
+// vanishing points, or none at all.
+TEST(RunwayDirection, IsFreeOfWhatBlurDoesToStripes) {
+  for (const bool with_normal : {true, false}) {
+    Scene scene;
+    scene.ground.line_width = 0.04;
+    scene.left = scene.ground.left(scene.rig, scene.pose);
+    scene.right = scene.ground.right(scene.rig, scene.pose);
+    for (const cv::Mat& image : {scene.left, scene.right}) cv::GaussianBlur(image, image, {}, 0.8);
+    const RunwayDirection found = scene.find(with_normal);
+    ASSERT_FALSE(found.left.failure || found.right.failure) << with_normal;
+    EXPECT_LT(scene.error(found.left.vanishing_direction), 0.02 * kDegree) << with_normal;
+    EXPECT_LT(scene.error(found.right.vanishing_direction), 0.02 * kDegree) << with_normal;
+  }
+}
+
 TEST(RunwayDirection, LooksBelowTheHorizonOnlyWhenTheGroundIsKnown) {
   Scene scene;
   // A fan of strong edges in the sky that meet 25 degrees to the left of the runway, above the horizon.
