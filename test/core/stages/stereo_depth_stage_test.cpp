@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -378,6 +379,30 @@ double sinkSteadily(const Scene& scene, StereoDepthStage& stage) {
     expectPose(stage.process(stamp, pair.left, pair.right), pose, "steady");
   }
   return stamp;
+}
+
+/// Points on the plane in the uppermost rows of the ground.
+int pointsBelowHorizon(const Scene& scene, const Pose& pose, const StereoDepthResult& result) {
+  constexpr double kRows = 32;
+  const double horizon = scene.rig.cy + scene.rig.fy * std::tan(pose.pitch);
+  return static_cast<int>(std::count_if(
+      result.points.begin(), result.points.end(),
+      [&](const StereoDepthResult::Point& point) { return point.on_plane && point.v < horizon + kRows; }));
+}
+
+// Rows of sky are not made ready for matching. With each pair 44 of them become ground.
+TEST(StereoDepthStage, SeesTheGroundThatComesIntoViewWhileTheNoseGoesDownSteadily) {
+  Scene scene(14, 0.05);
+  scene.rig = test::makeRig(640, 480, 1.0);
+  scene.model = test::makeModel(scene.rig);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 6; ++i) {
+    const Pose pose = makePose(5, 10 - 5 * i, 0);
+    const Pair pair = scene.render(pose);
+    const int seen = pointsBelowHorizon(scene, pose, stage.process(1 + 0.1 * i, pair.left, pair.right));
+    EXPECT_GT(seen, pointsBelowHorizon(scene, pose, scene.first(pair)) / 2) << i;
+    EXPECT_GT(seen, 10) << i;
+  }
 }
 
 TEST(StereoDepthStage, FindsThePlaneAgainAfterAJumpFromSteadyFlight) {
