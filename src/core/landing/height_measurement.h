@@ -19,7 +19,7 @@ MeasuredHeight heightByGround(const StereoRig& rig, const KalmanHeightParameters
 class HeightMeasurement {
  public:
   HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
-                    const RunwayParameters& runway);
+                    const RunwayParameters& runway = {});
 
   /// by_ground: of the same pair. The result is without a failure where the width alone gives a height.
   MeasuredHeight propose(const PairInput& in, const Ground& ground, const MeasuredHeight& by_ground,

@@ -176,7 +176,7 @@ TEST(GroundEstimate, APlaneTiltedAgainstThePairsBeforeAndTheRotationSinceIsNamed
   EXPECT_TRUE(tilted.tilted);
   // 4 degrees about an axis that is pitched by 0.1 rad.
   EXPECT_NEAR(tilted.tilt, 4 * kDegree * std::cos(0.1), 0.01 * kDegree);
-  EXPECT_GT(tilted.tilt_ratio, AttitudeFilter::kGate);
+  EXPECT_GT(tilted.tilt_ratio, AttitudeFilter::kGate.squared());
   const Eigen::Vector3d before = normalFromPitchRoll(-0.1, 0.05);
   EXPECT_NEAR((tilted.normalOr(Eigen::Vector3d::UnitZ()) - before).norm(), 0, 1e-6);
   EXPECT_FALSE(flight.fly().tilted);

@@ -32,11 +32,7 @@ ApproachAngleResult runwayFrom(double height) {
   return approach;
 }
 
-KalmanHeightParameters withKnownWidth(double width = kWidth) {
-  KalmanHeightParameters parameters;
-  parameters.known_runway_width = width;
-  return parameters;
-}
+RunwayParameters withKnownWidth(double width = kWidth) { return {width}; }
 
 int indexOf(FaultySource source) { return static_cast<int>(source); }
 
@@ -44,6 +40,7 @@ int indexOf(FaultySource source) { return static_cast<int>(source); }
 class Pairs {
  public:
   explicit Pairs(const KalmanHeightParameters& parameters = {}) : measurement(usualRig(), parameters) {}
+  explicit Pairs(const RunwayParameters& runway) : measurement(usualRig(), {}, runway) {}
 
   HeightMeasurement measurement;
   HeightPrior prior = priorAt(kHeight);
