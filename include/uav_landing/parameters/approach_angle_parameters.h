@@ -70,9 +70,10 @@ struct ApproachAngleParameters {
     v.flag("stripe_centres", stripe_centres,
            "for the vanishing point, take the middle of a stripe so narrow that blur pushes its sides apart");
     v.number("ransac_iterations", ransac_iterations, 10, 10000, "",
-             "most pairs of lines tried; fewer where many lines agree");
+             "most pairs of lines tried by RANSAC; fewer where many lines agree");
     v.number("ransac_tolerance", ransac_tolerance, 0.1, 20.0, "px",
-             "distance by which a line's far end may miss the vanishing point's line");
+             "distance by which a line's far end may miss the vanishing point's line; a line that "
+             "misses it by more is an outlier");
     v.number("min_lines", min_lines, 2, 100, "lines",
              "fewest lines that make a vanishing point; with 2 any two lines are believed");
     v.number("max_yaw_deg", max_yaw_deg, 1.0, 80.0, "deg",
@@ -103,7 +104,7 @@ struct ApproachAngleParameters {
              "matching window is (2 r + 1) squared");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched around the place the previous motion predicts");
-    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
+    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match; a weaker one is rejected");
     v.number("min_matches", min_matches, 6, 1000, "matches", "fewest matches that make a motion");
     v.number("angle_window", angle_window, 0.0, 0.5, "s",
              "images used for the published angle; 0: one step, as always with sliding_window and eq1");
@@ -112,11 +113,13 @@ struct ApproachAngleParameters {
              "mean over "
              "angle_window, half of it late");
     v.number("min_motion", min_motion, 2.0, 50.0, "sigma",
-             "translation must exceed its own uncertainty by this factor, or no angle is claimed");
+             "translation must exceed its own uncertainty by this factor, or no angle is claimed "
+             "(no_motion): the camera stands still or is too slow");
     v.flag("use_imu", use_imu,
            "use attitude and angular velocity of an inertial sensor where messages of one come");
     v.number("imu_delay", imu_delay, -1.0, 1.0, "s",
-             "by which an imu message's stamp is later than that of an image of the same moment");
+             "latency of the imu: by how much a message's stamp is later than that of an image of "
+             "the same moment");
     v.number("imu_wait", imu_wait, 0.0, 1.0, "s",
              "a pair waits this long for the imu message after it, then goes on by those before it");
     v.number("imu_max_gap", imu_max_gap, 0.001, 1.0, "s",

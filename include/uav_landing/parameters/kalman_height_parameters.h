@@ -49,7 +49,8 @@ struct KalmanHeightParameters {
     v.flag("fuse_vanishing_point", fuse_vanishing_point,
            "correct the stereo plane's pitch with the vanishing point");
     v.number("vanishing_point_gate", vanishing_point_gate, 1.0, 20.0, "sigma",
-             "a vanishing point, or another normal, that disagrees more with the stereo plane is left out");
+             "gate of the vanishing point and of the other normals: one that disagrees more with "
+             "the stereo plane is rejected as an outlier");
     v.flag("fuse_imu", fuse_imu,
            "correct the stereo plane's pitch and roll, and watch the rig, with the attitude of an imu");
     v.flag("fuse_motion_normal", fuse_motion_normal,
@@ -57,21 +58,23 @@ struct KalmanHeightParameters {
            "moves in the left image");
     v.flag("use_motion", use_motion, "measure the vertical speed by the motion between the frames as well");
     v.flag("average_attitude", average_attitude,
-           "pitch and roll of the last second's pairs along the rotation between them, and the test tilt; "
-           "else of each pair alone");
+           "smooth pitch and roll over the last second's pairs, along the rotation between them, "
+           "and make the test tilt; else they are those of each pair alone");
     v.number("acceleration_stddev", acceleration_stddev, 0.01, 50.0, "m/s^2",
-             "1 sigma of the random vertical acceleration, eq (7)");
+             "1 sigma of the random vertical acceleration, the process noise of eq (7): a smaller "
+             "one smooths the height more");
     v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",
              "1 sigma of the initial vertical speed, which starts at 0");
     v.number("height_model_error", height_model_error, 0.0, 0.1, "of height",
              "1 sigma by which the surface below differs from the plane seen ahead; does not average out");
-    v.number("gate", gate, 1.0, 20.0, "sigma", "largest normalised innovation that is believed");
-    v.number(
-        "max_age", max_age, 0.05, 10.0, "s",
-        "without a believable height for this long, while coasting, the height is not valid; without a pair "
-        "for this long the status is lost");
+    v.number("gate", gate, 1.0, 20.0, "sigma",
+             "innovation gate of the height filter: a height with a larger normalised innovation is "
+             "rejected as an outlier");
+    v.number("max_age", max_age, 0.05, 10.0, "s",
+             "timeout of the height: without a believable one for this long, while coasting, it is "
+             "not valid; without a pair for this long the status is lost");
     v.number("reset_timeout", reset_timeout, 0.1, 60.0, "s",
-             "without an accepted measurement for this long the filter starts anew");
+             "timeout of the filter: without an accepted measurement for this long it starts anew");
     v.number("max_height_error", max_height_error, 0.001, 1.0, "of height",
              "3 sigma above this share of the height (and min_height_error) is not valid");
     v.number("min_height_error", min_height_error, 0.001, 10.0, "m",
@@ -81,37 +84,41 @@ struct KalmanHeightParameters {
     v.flag("fuse_width_height", fuse_width_height,
            "use the height from the runway's width: where stereo has none, and, when runway/width is "
            "given, together with stereo if both agree");
-    v.flag(
-        "rig_watch", rig_watch,
-        "estimate how far the right camera has turned since the calibration, and correct the plane for it");
+    v.flag("rig_watch", rig_watch,
+           "watch for a bent rig: estimate how far the right camera has turned since the "
+           "calibration, and correct the plane for it");
     v.number("rig_memory", rig_memory, 1.0, 36000.0, "s",
              "for how long what was seen of the rig's rotation counts; shorter follows a rig that moves");
     v.number("max_rig_rotation_deg", max_rig_rotation_deg, 0.01, 5.0, "deg",
-             "a rotation of the right camera that is certainly beyond this is not valid");
+             "largest bend of the rig: when the right camera has certainly turned by more, the "
+             "estimate is not valid (rig_bent)");
     v.flag("integrity_monitor", integrity_monitor,
-           "test the sources of the height against each other and compute the height's protection level");
+           "make the tests of integrity, which compare the sources of the height, and compute the "
+           "height's protection level");
     v.number("integrity_risk", integrity_risk, 1e-12, 0.1, "per pair",
-             "probability that the error exceeds the protection level");
+             "probability that the height's error exceeds the protection level");
     v.number("fault_probability", fault_probability, 1e-9, 1.0, "per pair",
              "prior probability that one source is wrong and no test says so; 1: the protection level holds "
              "with integrity_risk even then");
     v.number("false_alarm_rate", false_alarm_rate, 1e-12, 0.1, "per test and pair",
-             "probability that a test fails without a fault, as far as the claimed variances are true");
-    v.number(
-        "max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
-        "by which the aircraft can change its speed over the ground: a picture that stands still sooner is "
-        "that of a camera that hangs, a speed that seems to jump says that stamps are wrong");
-    v.number(
-        "recovery_time", recovery_time, 0.0, 60.0, "s",
-        "after contradictions that took the height away, or among the first heights, none may come for this "
-        "long before it is valid; 0: it is as soon as the tests pass");
+             "probability of a false alarm: a test of integrity fails without a fault, as far as "
+             "the claimed variances are true. A larger one makes the limits of the tests tighter");
+    v.number("max_deceleration", max_deceleration, 0.01, 1000.0, "m/s^2",
+             "largest change of the aircraft's ground speed. If the image stops faster than this "
+             "allows, the camera is treated as frozen (test standstill). If the speed seems to jump "
+             "by more, the stamps are treated as wrong. An image that repeats bit by bit is treated "
+             "as frozen, too (test repeated_image); that has no limit to set");
+    v.number("recovery_time", recovery_time, 0.0, 60.0, "s",
+             "wait after contradictions: when tests took the height away, or failed among the first "
+             "heights, none may fail for this long before the height is valid. 0: it is valid as "
+             "soon as the tests pass");
     v.number("alert_limit", alert_limit, 0.001, 100.0, "m",
              "the height is not valid when its protection level exceeds this and alert_limit_relative");
-    v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height", "see alert_limit");
-    v.number(
-        "unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
-        "largest error of a scale common to all heights, such as that of the baseline, which nothing can "
-        "see: in the protection level by assumption");
+    v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height",
+             "the alert limit as a share of the height, see alert_limit");
+    v.number("unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
+             "largest error of a scale common to all heights, such as a wrong baseline. No test can "
+             "see it, so the protection level assumes it");
   }
 };
 

@@ -38,7 +38,8 @@ struct StereoDepthParameters {
   template <class Visitor>
   void visit(Visitor&& v) {
     v.number("corner_count", corner_count, 20, 5000, "corners",
-             "Harris corners kept in the left image, at most; fewer by pixels_per_corner");
+             "Harris corners kept in the left image, at most; fewer by pixels_per_corner. Fewer "
+             "take less computing time");
     v.number("pixels_per_corner", pixels_per_corner, 1, 10000, "px",
              "of the image for each corner, at least: 256 corners at 320x240; fewer pixels for more corners, "
              "which "
@@ -50,21 +51,25 @@ struct StereoDepthParameters {
     v.number("window_radius", window_radius, 2, kLargestWindowRadius, "px",
              "matching window is (2 r + 1) squared");
     v.choice("matching_cost", matching_cost, {"zncc", "ssd"},
-             "zncc: blind to gain and offset between the cameras; ssd: the paper's");
+             "zncc: blind to differences in brightness (gain, offset, exposure) between the "
+             "cameras; ssd: the paper's");
     v.flag("warp_window", warp_window,
            "shear the window as the ground plane does between the views and refine it to sub-pixel with gain "
            "and offset free; without it: upright windows and a parabola, as in the paper");
     v.number("max_disparity", max_disparity, 0.05, 1.0, "image widths", "largest disparity searched");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched to both sides of the disparity that the previous plane predicts");
-    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match");
+    v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match; a weaker one is rejected");
     v.number("uniqueness", uniqueness, 0.1, 1.0, "",
-             "a second peak at least this good, as a share of the best, makes a match ambiguous");
+             "a second peak at least this good, as a share of the best, makes a match ambiguous, as "
+             "on a repeated pattern; the match is rejected");
     v.number("left_right_tolerance", left_right_tolerance, 0.1, 5.0, "px",
-             "largest difference between matching left to right and back");
+             "largest difference between matching left to right and back; a match that differs more "
+             "is rejected");
     v.number("min_points", min_points, 6, 1000, "points", "fewest points that make a ground plane");
     v.number("plane_tolerance", plane_tolerance, 0.1, 10.0, "px",
-             "disparity by which a point may be off the plane in the consensus step");
+             "disparity by which a point may be off the plane in the consensus step (RANSAC); a "
+             "point farther off is an outlier");
     v.flag("vertical_disparities", vertical_disparities,
            "measure by how many rows matches are off, which shows a bent rig, and make the rows level");
     v.flag("direct_refinement", direct_refinement,

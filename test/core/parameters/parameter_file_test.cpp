@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <sstream>
 #include <string>
 
@@ -204,6 +205,36 @@ TEST(ParameterFile, ShippedPresetsLoad) {
         loadParameterFile(std::string(UAV_LANDING_SOURCE_DIR "/config/") + name + ".yaml");
     EXPECT_TRUE(parameters) << parameters.error().message();
   }
+}
+
+/// The row of a parameter in a table of parameters.
+std::string rowOf(const std::string& table, const std::string& section, const std::string& name) {
+  const size_t begin = table.find("\n| `" + name + "` |", table.find("\n## " + section + "\n"));
+  return begin == std::string::npos ? "" : table.substr(begin + 1, table.find('\n', begin + 1) - begin - 1);
+}
+
+TEST(ParameterTable, HasTheWordsThatPeopleSearchFor) {
+  const std::string table = parameterTable();
+  for (const auto& [word, section, name] : std::initializer_list<std::array<const char*, 3>>{
+           {"frozen", "kalman_height", "max_deceleration"},
+           {"repeats", "kalman_height", "max_deceleration"},
+           {"outlier", "kalman_height", "gate"},
+           {"outlier", "kalman_height", "vanishing_point_gate"},
+           {"outlier", "stereo_depth", "plane_tolerance"},
+           {"outlier", "approach_angle", "ransac_tolerance"},
+           {"innovation gate", "kalman_height", "gate"},
+           {"timeout", "kalman_height", "max_age"},
+           {"timeout", "kalman_height", "reset_timeout"},
+           {"RANSAC", "stereo_depth", "plane_tolerance"},
+           {"process noise", "kalman_height", "acceleration_stddev"},
+           {"exposure", "stereo_depth", "matching_cost"},
+           {"synchronisation", "rectify", "approximate_sync"},
+           {"latency", "approach_angle", "imu_delay"},
+           {"false alarm", "kalman_height", "false_alarm_rate"},
+           {"bent rig", "kalman_height", "rig_watch"},
+           {"cropped", "rig", "max_principal_point_offset"},
+           {"computing time", "stereo_depth", "corner_count"}})
+    EXPECT_NE(rowOf(table, section, name).find(word), std::string::npos) << word << " in " << name;
 }
 
 TEST(ParameterTable, IsTheOneInTheDocumentation) {
