@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "support/degree.h"
 #include "support/ground_matches.h"
@@ -44,75 +43,6 @@ TEST(KalmanHeightAttitude, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDire
   EXPECT_NEAR(result.roll, roll, 1e-9);
   EXPECT_NEAR(result.yaw, yaw, 1e-9);
   EXPECT_NEAR(std::sqrt(result.yaw_variance), 0.2 * kDegree, 0.05 * kDegree);
-}
-
-TEST(KalmanHeightAttitude, AVanishingDirectionThatLeapsTurnsNoYaw) {
-  KalmanHeightStage stage(usualRig(), {});
-  double stamp = 0;
-  const auto fly = [&](double yaw_deg, bool repeated = false) {
-    StereoDepthResult stereo = stereoAt(stamp, 10, 0, 0);
-    stereo.left_repeated = repeated;
-    ApproachAngleResult approach = withoutTurning(stamp);
-    approach.vanishing_direction = {std::sin(yaw_deg * kDegree), 0, std::cos(yaw_deg * kDegree)};
-    approach.vanishing_covariance = std::pow(0.03 * kDegree, 2) * Eigen::Matrix3d::Identity();
-    stamp += kStep;
-    return stage.process(stereo, approach);
-  };
-  for (int i = 0; i < 6; ++i) EXPECT_NEAR(fly(0.02 * (i % 2)).yaw, 0.02 * (i % 2) * kDegree, 1e-9) << i;
-  const LandingResult leapt = fly(0.7);
-  EXPECT_NEAR(leapt.yaw, 0.02 * kDegree, 1e-9);
-  // As certain as the pair before with a rotation known to 0.05 degrees.
-  EXPECT_NEAR(std::sqrt(leapt.yaw_variance), std::hypot(0.03, 0.05) * kDegree, 0.02 * kDegree);
-  EXPECT_NEAR(fly(0.7, true).yaw, 0.02 * kDegree, 1e-9) << "the same image again";
-  EXPECT_NEAR(fly(0).yaw, 0, 1e-9);
-  EXPECT_NEAR(fly(0, true).yaw, 0, 1e-9);
-  // What stays is the runway: the turn may have been wrong.
-  for (int i = 0; i < 4; ++i) fly(0);
-  for (const double yaw : {0.0, 0.0, 0.7, 0.7}) EXPECT_NEAR(fly(0.7).yaw, yaw * kDegree, 1e-9) << yaw;
-}
-
-TEST(KalmanHeightAttitude, CorrectsThePitchWithTheVanishingPointButNotWithTheFusedNormal) {
-  // Stereo that knows the pitch badly; the vanishing point says level, exactly.
-  StereoDepthResult stereo = stereoAt(0, 10, -0.02, 0);
-  stereo.plane.covariance = std::pow(0.002, 2) * Eigen::Matrix3d::Identity();
-  ApproachAngleResult approach = angleAt(0);
-  approach.n = Eigen::Vector3d(0.3, 0.9, 0.1).normalized();
-  approach.n_covariance = 1e-12 * Eigen::Matrix3d::Identity();
-
-  KalmanHeightStage without(usualRig(), {});
-  EXPECT_NEAR(without.process(stereo, approach).pitch, -0.02, 1e-9);
-
-  approach.vanishing_direction = Eigen::Vector3d::UnitZ();
-  approach.vanishing_covariance = 1e-12 * Eigen::Matrix3d::Identity();
-  KalmanHeightStage fused(usualRig(), {});
-  EXPECT_NEAR(fused.process(stereo, approach).pitch, 0, 1e-6);
-
-  KalmanHeightParameters parameters;
-  parameters.fuse_vanishing_point = false;
-  KalmanHeightStage off(usualRig(), parameters);
-  EXPECT_NEAR(off.process(stereo, approach).pitch, -0.02, 1e-9);
-}
-
-TEST(KalmanHeightAttitude, LeavesOutAVanishingPointThatContradictsThePlane) {
-  const StereoDepthResult stereo = stereoAt(0, 10, -0.1, 0, 0.001);
-  ApproachAngleResult approach = angleAt(0);
-  approach.vanishing_direction = Eigen::Vector3d::UnitZ();  // 0.1 rad off
-  approach.vanishing_covariance = 1e-8 * Eigen::Matrix3d::Identity();
-  KalmanHeightStage stage(usualRig(), {});
-  EXPECT_NEAR(stage.process(stereo, approach).pitch, -0.1, 1e-9);
-}
-
-/// The pairs of a second see the same texture.
-TEST(KalmanHeightAttitude, DoesNotClaimThatTheErrorsOfThePitchAverageOutAltogether) {
-  KalmanHeightStage stage(usualRig(), {});
-  std::vector<double> variances;
-  for (int i = 0; i < 40; ++i) {
-    ApproachAngleResult exactly = withoutTurning(i * kStep);
-    exactly.step.covariance *= 1e-4;
-    variances.push_back(stage.process(stereoAt(i * kStep, 10), exactly).pitch_variance);
-  }
-  EXPECT_LT(variances.back(), 0.6 * variances.front());
-  EXPECT_GT(variances.back(), variances.front() / 3);
 }
 
 TEST(KalmanHeightAttitude, LeavesOutAPlaneTiltedAgainstTheRotationSinceThePairBefore) {
@@ -200,101 +130,6 @@ ApproachAngleResult levelFlight(const StereoDepthResult& stereo) {
   approach.vanishing_direction.setConstant(kUnknown);
   approach.vanishing_covariance.setConstant(kUnknown);
   return approach;
-}
-
-// A right camera that has turned in yaw makes a plane that is tilted, and nothing but the vanishing point
-// contradicts it, by less than a test needs.
-TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsAContradictionThatNoTestRefusesIsLikelyToBeAFault) {
-  constexpr double kPitch = -0.1, kVanishing = 0.15 * kDegree;
-  // 1 sigma of the plane's normal is 0.002 m over 10 m. The odds of a fault are 1 : 999 beforehand.
-  const double stddev = std::hypot(kVanishing, 0.002 / 10);
-  for (const double sigmas : {0.0, 1.0, 3.0, 3.6}) {
-    SCOPED_TRACE(sigmas);
-    KalmanHeightStage stage(usualRig(), {});
-    LandingResult result;
-    for (double stamp = 0; stamp < 2; stamp += kStep) {
-      const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-      result = stage.process(stereo, levelFlight(stereo, -kPitch - sigmas * stddev, kVanishing));
-    }
-    ASSERT_EQ(failedTests(result.tests), "");
-    ASSERT_TRUE(result.angle_valid) << result.failure.message();
-    const double likelier = std::exp(0.5 * sigmas * sigmas), probability = likelier / (likelier + 999);
-    const double off = sigmas * stddev;
-    const double expected = std::pow(0.06 * kDegree, 2) + probability * (off * off + kVanishing * kVanishing);
-    EXPECT_NEAR(std::sqrt(result.approach_angle_variance), std::sqrt(expected), 0.02 * std::sqrt(expected));
-  }
-}
-
-// Without a vanishing point only what moves in the image contradicts a plane that a turned right camera
-// tilts.
-TEST(KalmanHeightAttitude, AnAngleIsAsUncertainAsTheMotionsOwnNormalContradictsThePlane) {
-  constexpr double kPitch = -0.1, kOwn = 0.06 * kDegree, kDifference = 0.5 * kDegree;
-  KalmanHeightStage stage(usualRig(), {});
-  double stamp = 0;
-  const auto fly = [&](double difference) {
-    const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-    ApproachAngleResult approach = levelFlight(stereo);
-    approach.window.normal = normalFromPitchRoll(kPitch + difference, 0);
-    approach.window.normal_covariance =
-        kOwn * kOwn *
-        (Eigen::Matrix3d::Identity() - approach.window.normal * approach.window.normal.transpose());
-    stamp += kStep;
-    return stage.process(stereo, approach);
-  };
-  LandingResult result;
-  while (stamp < 2) result = fly(0.5 * kOwn);
-  ASSERT_TRUE(result.angle_valid) << result.failure.message();
-  const double agreeing = std::sqrt(result.approach_angle_variance);
-  EXPECT_NEAR(agreeing, 0.06 * kDegree, 0.003 * kDegree);
-  result = fly(kDifference);
-  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), agreeing, 0.003 * kDegree) << "a single pair";
-  for (int i = 0; i < 2; ++i) result = fly(kDifference);
-  EXPECT_TRUE(result.height_valid) << result.failure.message();
-  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), kDifference, 0.05 * kDegree);
-  while (stamp < 4) result = fly(0);
-  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), agreeing, 0.003 * kDegree);
-}
-
-TEST(KalmanHeightAttitude, ThePlaneIsTurnedByTheMotionsOwnNormalAsWeightsSay) {
-  constexpr double kPitch = -0.1, kOff = 0.3 * kDegree, kOwn = 0.05 * kDegree;
-  // 0.02 m of 10 m is 0.11 degrees across, too.
-  const double by_stereo = 0.02 / 10, share = by_stereo * by_stereo / (by_stereo * by_stereo + kOwn * kOwn);
-  for (const bool watch : {false, true}) {
-    for (const bool fuse : {false, true}) {
-      KalmanHeightParameters parameters;
-      parameters.rig_watch = watch;
-      parameters.fuse_motion_normal = fuse;
-      KalmanHeightStage stage(usualRig(), parameters);
-      const StereoDepthResult stereo = stereoAt(0, 10, kPitch, 0, 0.02);
-      ApproachAngleResult approach = levelFlight(stereo);
-      const Eigen::Vector3d n = normalFromPitchRoll(kPitch + kOff, -kOff);
-      approach.window.normal = n;
-      approach.window.normal_covariance = kOwn * kOwn * (Eigen::Matrix3d::Identity() - n * n.transpose());
-      const LandingResult result = stage.process(stereo, approach);
-      EXPECT_NEAR(result.pitch, kPitch + (fuse ? share * kOff : 0), 0.02 * kOff) << watch << fuse;
-      EXPECT_NEAR(result.roll, fuse ? -share * kOff : 0, 0.02 * kOff) << watch << fuse;
-      EXPECT_NEAR(std::sqrt(result.pitch_variance), by_stereo * (fuse ? std::sqrt(1 - share) : 1),
-                  0.05 * by_stereo)
-          << watch << fuse;
-    }
-  }
-}
-
-TEST(KalmanHeightAttitude, APairWithoutAVanishingPointIsAsUncertainAsThoseBeforeThatContradicted) {
-  constexpr double kPitch = -0.1, kDifference = 0.8 * kDegree;
-  KalmanHeightStage stage(usualRig(), {});
-  double stamp = 0;
-  LandingResult result;
-  for (; stamp < 1; stamp += kStep) {
-    const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-    result = stage.process(stereo, levelFlight(stereo, -kPitch - kDifference, 0.15 * kDegree));
-  }
-  ASSERT_EQ(failedTests(result.tests), "vanishing_point");
-  const double before = result.approach_angle_variance;
-  const StereoDepthResult stereo = stereoAt(stamp, 10, kPitch, 0, 0.002);
-  result = stage.process(stereo, levelFlight(stereo));
-  EXPECT_EQ(failedTests(result.tests), "");
-  EXPECT_NEAR(std::sqrt(result.approach_angle_variance), std::sqrt(before), 0.01 * kDegree);
 }
 
 TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatHasTurnedIsAsUncertainAsTheTurnUntilThePairsAgree) {

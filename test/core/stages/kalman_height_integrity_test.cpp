@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "integrity/test_catalogue.h"
 #include "support/ground_matches.h"
@@ -119,74 +118,6 @@ TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
   EXPECT_GT(result.height_protection_level, std::abs(result.height - 20));
 }
 
-TEST(KalmanHeightIntegrity, WhatAllPointsHaveInCommonIsInTheHeightsWithoutARegion) {
-  // Of a rig that is not watched: what its rows may be wrong by is the same without any region.
-  KalmanHeightParameters parameters;
-  parameters.rig_watch = false;
-  const auto varianceOfRegions = [&](double row_stddev) {
-    KalmanHeightStage stage(test::usualRig(), parameters);
-    LandingResult result;
-    for (int i = 0; i < 5; ++i) {
-      StereoDepthResult stereo = stereoAt(1 + 0.05 * i, 10);
-      stereo.row_covariance(1, 1) = row_stddev * row_stddev;
-      stereo.plane.covariance += stereo.row_covariance;
-      result = stage.process(stereo, levelFlight(1 + 0.05 * i, 10));
-    }
-    return result.tests[static_cast<int>(IntegrityTest::kImageRegions)].variance;
-  };
-  // dh = -h^2 n.dg, and g is wrong along y.
-  const double by_rows = std::pow(10 * 10 * std::cos(4 * kDegree) * 1e-3, 2);
-  EXPECT_NEAR(varianceOfRegions(1e-3) - varianceOfRegions(0), by_rows, 0.01 * by_rows);
-}
-
-TEST(KalmanHeightIntegrity, HeightsThatScatterMoreThanTheyClaimHaveAVarianceThatSaysSo) {
-  KalmanHeightParameters parameters;
-  const auto fly = [&](double scatter) {
-    KalmanHeightStage stage(test::usualRig(), parameters);
-    std::mt19937 random(5);
-    std::normal_distribution<double> error(0, scatter);
-    LandingResult result;
-    for (int i = 0; i < 60; ++i) {
-      const double stamp = 1 + 0.05 * i;
-      StereoDepthResult stereo = stereoAt(stamp, 10 + error(random));
-      stereo.points.clear();
-      stereo.plane.covariance *= 36;  // claims a stddev of 0.06 / n.z of the height
-      result = stage.process(stereo, levelFlight(stamp, 10));
-    }
-    return result;
-  };
-  const double claimed = std::sqrt(fly(0).raw_height_variance);
-  const LandingResult honest = fly(0.8 * claimed), bold = fly(2.5 * claimed);
-  EXPECT_GT(bold.height_variance, 1.5 * honest.height_variance);
-  EXPECT_NEAR(bold.vertical_speed_variance, honest.vertical_speed_variance,
-              0.1 * honest.vertical_speed_variance)
-      << "by the motion";
-  parameters.use_motion = false;
-  EXPECT_GT(fly(2.5 * claimed).vertical_speed_variance, 1.5 * fly(0.8 * claimed).vertical_speed_variance);
-}
-
-TEST(KalmanHeightIntegrity, MotionsThatScatterMoreThanTheyClaimHaveASpeedThatSaysSo) {
-  const auto fly = [](double scatter) {
-    KalmanHeightStage stage(test::usualRig(), {});
-    std::mt19937 random(6);
-    std::normal_distribution<double> error(0, scatter);
-    LandingResult result;
-    for (int i = 0; i < 60; ++i) {
-      const double stamp = 1 + 0.05 * i;
-      StereoDepthResult stereo = stereoAt(stamp, 10);
-      stereo.points.clear();
-      stereo.plane.covariance *= 36;
-      ApproachAngleResult approach = levelFlight(stamp, 10);
-      approach.step.covariance = std::pow(0.002, 2) * Matrix6d::Identity();  // of 10 m in 0.05 s: 0.4 m/s
-      approach.step.translation_over_height += error(random) * stereo.plane.normal();
-      result = stage.process(stereo, approach);
-    }
-    return result.vertical_speed_variance;
-  };
-  EXPECT_NEAR(fly(0.5 * 0.002), fly(0), 1e-6);
-  EXPECT_GT(fly(3 * 0.002), 1.25 * fly(0));
-}
-
 TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentAvailable) {
   KalmanHeightStage stage(test::usualRig(), {});
   const auto height = [](double stamp) { return 20 - 1.5 * (stamp - 1); };
@@ -215,8 +146,6 @@ TEST(KalmanHeightIntegrity, EverySecondPictureRepeatedLeavesTheHeightOfADescentA
   }
 }
 
-// The camera nods by 0.1 deg from pair to pair, and planes are off by 0.05 deg this way and that: pairs of
-// which every one is shown twice say of the attitude what they say once.
 TEST(KalmanHeightIntegrity, TheGroundBelowIsAsMuchNearerAsTheHeightWhilePicturesRepeat) {
   KalmanHeightStage stage(test::usualRig(), {});
   const auto height = [](int i) { return 12 - 0.1 * i; };
@@ -240,36 +169,6 @@ TEST(KalmanHeightIntegrity, TheGroundBelowIsAsMuchNearerAsTheHeightWhilePictures
     EXPECT_NEAR(result.height, height(i), 0.05);
     EXPECT_NE(result.protection_source, "surface_below");
     EXPECT_LT(result.height_protection_level, before.height_protection_level + 0.1);
-  }
-}
-
-TEST(KalmanHeightIntegrity, APictureOnceMoreCountsOnceForTheAttitude) {
-  KalmanHeightStage once(test::usualRig(), {}), twice(test::usualRig(), {});
-  constexpr double kNod = 0.1 * kDegree, kError = 0.05 * kDegree, kPeriod = 0.1;
-  for (int i = 0; i < 40; ++i) {
-    const double stamp = 1 + kPeriod * i, error = i % 3 == 0 ? kError : -0.5 * kError;
-    StereoDepthResult stereo = stereoAt(stamp, 10);
-    stereo.plane.g = normalFromPitchRoll(-4 * kDegree + kNod * i + error, 0) / 10;
-    stereo.points = test::matchesOn(test::usualRig(), stereo.plane.g);
-    ApproachAngleResult approach = levelFlight(stamp, 10);
-    approach.n = stereo.plane.normal();
-    for (ApproachAngleResult::Motion* motion : {&approach.step, &approach.window}) {
-      motion->duration = kPeriod;
-      motion->rotation = Eigen::Vector3d(-kNod, 0, 0);
-      motion->translation_over_height *= 2;
-    }
-    const LandingResult expected = once.process(stereo, approach), shown = twice.process(stereo, approach);
-    EXPECT_NEAR(shown.pitch, expected.pitch, 1e-9) << i;
-    EXPECT_NEAR(shown.pitch_variance, expected.pitch_variance, 1e-6 * expected.pitch_variance) << i;
-
-    StereoDepthResult again = stereo;
-    again.stamp = approach.stamp = stamp + 0.5 * kPeriod;
-    again.left_repeated = again.right_repeated = true;
-    approach.step = {};
-    approach.step.failure = {Reason::kNoMotion, ""};
-    const LandingResult repeated = twice.process(again, approach);
-    for (const TestResult& test : repeated.tests)
-      EXPECT_FALSE(test.name == toString(IntegrityTest::kTilt) && test.possible()) << i;
   }
 }
 
@@ -298,89 +197,6 @@ TEST(KalmanHeightIntegrity, AHeightIsRightAlsoAfterABendLateInALongFlight) {
       valid_afterwards += stamp > kBent + 1;
     }
     EXPECT_GT(valid_afterwards, 40);
-  }
-}
-
-TEST(KalmanHeightIntegrity, MatchesThatDoNotHoldAcrossTheRowsGiveNoMeasurement) {
-  KalmanHeightStage stage(test::usualRig(), {});
-  const auto process = [&](double stamp, double agreement) {
-    StereoDepthResult stereo = stereoAt(stamp, 10);
-    stereo.row_agreement = agreement;
-    return stage.process(stereo, levelFlight(stamp, 10));
-  };
-  double stamp = 1;
-  for (int i = 0; i < 40; ++i, stamp += 0.05) EXPECT_EQ(failedTests(process(stamp, 0.6).tests), "");
-  const LandingResult result = process(stamp, 0.4);
-  EXPECT_EQ(failedTests(result.tests), "row_agreement");
-  EXPECT_EQ(result.failure.message(), "inconsistent: row_agreement");
-  EXPECT_TRUE(result.rejected);
-  EXPECT_EQ(result.status, Status::kCoasting);
-}
-
-TEST(KalmanHeightIntegrity, ABaselineInAnotherDirectionThanCalibratedGivesNoMeasurement) {
-  KalmanHeightStage stage(test::usualRig(), {});
-  const auto process = [&](double stamp, double forward, double stddev) {
-    StereoDepthResult stereo = stereoAt(stamp, 10);
-    stereo.baseline_direction.t = {0, forward};
-    stereo.baseline_direction.covariance = stddev * stddev * Eigen::Matrix2d::Identity();
-    return stage.process(stereo, levelFlight(stamp, 10));
-  };
-  double stamp = 1;
-  for (int i = 0; i < 40; ++i, stamp += 0.05) EXPECT_EQ(failedTests(process(stamp, 0.02, 0.01).tests), "");
-  // 4.8 sigma of two numbers are exceeded once in a hundred thousand; a calibration is not perfect either.
-  EXPECT_EQ(failedTests(process(stamp, 0.048, 0.01).tests), "");
-  const LandingResult result = process(stamp + 0.05, 0.06, 0.01);
-  EXPECT_EQ(failedTests(result.tests), "baseline_direction");
-  EXPECT_EQ(result.failure.message(), "inconsistent: baseline_direction");
-  EXPECT_TRUE(result.rejected);
-  EXPECT_EQ(result.status, Status::kCoasting);
-}
-
-TEST(KalmanHeightIntegrity, ABaselineThatTheSkewOfThePairExplainsIsNoFault) {
-  constexpr double kSkew = 0.005;  // s
-  for (const bool step_known : {true, false}) {
-    for (const double share : {1.0, 0.0, -1.0}) {
-      KalmanHeightStage stage(test::usualRig(), {});
-      LandingResult result;
-      for (int i = 0; i < 20; ++i) {
-        StereoDepthResult stereo = stereoAt(1 + 0.05 * i, 10);
-        ApproachAngleResult approach = levelFlight(1 + 0.05 * i, 10);
-        const Eigen::Vector3d velocity = 10 / 0.05 * approach.step.translation_over_height;
-        stereo.skew = kSkew;
-        stereo.baseline_direction.t = share * kSkew / test::usualRig().baseline * velocity.tail<2>();
-        stereo.baseline_direction.covariance = 1e-6 * Eigen::Matrix2d::Identity();
-        if (!step_known) approach.step = ApproachAngleResult::Motion();
-        result = stage.process(stereo, approach);
-      }
-      // 10 cm of way on a metre of baseline are 6 deg. Where nobody knows the way it may be any.
-      const bool passes = !step_known || share == 1;
-      EXPECT_EQ(failedTests(result.tests), passes ? "" : "baseline_direction") << step_known << share;
-    }
-  }
-}
-
-TEST(KalmanHeightIntegrity, AsManyPairsInARowMustPassAsFailedBefore) {
-  for (const int failures : {1, 2, 3, 5}) {
-    KalmanHeightStage stage(test::usualRig(), {});
-    double stamp = 1;
-    const auto accepted = [&](double agreement) {
-      StereoDepthResult stereo = stereoAt(stamp, 10);
-      stereo.row_agreement = agreement;
-      const LandingResult result = stage.process(stereo, levelFlight(stamp, 10));
-      stamp += 0.05;
-      return result.status == Status::kTracking;
-    };
-    for (int i = 0; i < 20; ++i) ASSERT_TRUE(accepted(0.9));
-    for (int i = 0; i < failures; ++i) EXPECT_FALSE(accepted(0.4));
-    // One that passes by chance, and a failure again: it begins anew.
-    if (failures > 1) {
-      EXPECT_FALSE(accepted(0.9)) << failures;
-      EXPECT_FALSE(accepted(0.4)) << failures;
-    }
-    const int needed = failures == 1 ? 1 : 3;
-    for (int i = 1; i < needed; ++i) EXPECT_FALSE(accepted(0.9)) << failures << ", " << i;
-    EXPECT_TRUE(accepted(0.9)) << failures;
-    EXPECT_TRUE(accepted(0.9)) << failures;
   }
 }
 
@@ -419,48 +235,6 @@ TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayIsBelievedAfterASec
     int until = 1;
     while (!valid(0.9) && until < 60) ++until;
     EXPECT_EQ(until, recovery_time > 0 ? 20 : 3);
-  }
-}
-
-TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayWaitsForTheVanishingPointToAgree) {
-  KalmanHeightStage stage(test::usualRig(), {});
-  double stamp = 1;
-  const auto valid = [&](double agreement, double off) {
-    StereoDepthResult stereo = stereoAt(stamp, 10);
-    stereo.row_agreement = agreement;
-    ApproachAngleResult approach = levelFlight(stamp, 10);
-    approach.vanishing_direction = {0, -std::sin(4 * kDegree + off), std::cos(4 * kDegree + off)};
-    approach.vanishing_covariance = 1e-6 * Eigen::Matrix3d::Identity();
-    const LandingResult result = stage.process(stereo, approach);
-    EXPECT_EQ(result.tests[static_cast<int>(IntegrityTest::kVanishingPoint)].failed(), off > 0);
-    stamp += 0.05;
-    return result.height_valid;
-  };
-  for (int i = 0; i < 20; ++i) valid(0.9, 0);
-  for (int i = 0; i < 20; ++i) EXPECT_TRUE(valid(0.9, i < 10 ? 2 * kDegree : 0)) << "alone it is left out";
-  for (int i = 0; i < 10; ++i) valid(0.4, 0);
-  for (int i = 0; i < 30; ++i) EXPECT_FALSE(valid(0.9, 2 * kDegree)) << i;
-  int until = 1;
-  while (!valid(0.9, 0) && until < 60) ++until;
-  EXPECT_EQ(until, 20);
-}
-
-TEST(KalmanHeightIntegrity, AnImuThatContradictsTheGroundsNormalIsNamedAndOneThatAgreesIsNot) {
-  // The ground's slope is in the imu's covariance: 0.6 degrees, 1 sigma. The limit of 1e-5 with two degrees
-  // of freedom is 4.8 sigma: 2.9 degrees.
-  for (const double off_deg : {0.0, 2.0, -2.0, 4.0, -4.0}) {
-    KalmanHeightStage stage(test::usualRig(), {});
-    LandingResult result;
-    for (int i = 0; i < 5; ++i) {
-      const double stamp = 1 + 0.05 * i;
-      ApproachAngleResult approach = levelFlight(stamp, 10);
-      approach.imu.normal = normalFromPitchRoll((-4 + off_deg) * kDegree, 0);
-      approach.imu.normal_covariance = std::pow(0.6 * kDegree, 2) * Eigen::Matrix3d::Identity();
-      result = stage.process(stereoAt(stamp, 10), approach);
-    }
-    EXPECT_EQ(failedTests(result.tests), std::abs(off_deg) > 3 ? "imu" : "") << off_deg;
-    const TestResult& test = result.tests[static_cast<int>(IntegrityTest::kImu)];
-    EXPECT_NEAR(test.difference, std::abs(off_deg) * kDegree, 0.002) << off_deg;
   }
 }
 

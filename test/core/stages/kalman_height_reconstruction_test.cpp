@@ -138,44 +138,6 @@ TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
   EXPECT_LT(ratio, 1.25);
 }
 
-TEST(KalmanHeightReconstruction, AveragesThePointsOnRequest) {
-  const double h = 10, alpha = 0.1;
-  StereoDepthResult stereo = stereoAt(0, h, -alpha, 0);
-  for (double forward : {40.0, 60.0, 90.0}) {
-    const double depth = forward * std::cos(alpha) + h * std::sin(alpha);
-    const double below = h * std::cos(alpha) - forward * std::sin(alpha);
-    StereoDepthResult::Point point;
-    point.u = 320;
-    point.v = 240 + 500 * below / depth;
-    point.disparity = 500 * 1.0 / depth;
-    point.disparity_stddev = 0.1;
-    point.on_plane = true;
-    stereo.points.push_back(point);
-  }
-  KalmanHeightParameters parameters;
-  parameters.height_source = HeightSource::kPoints;
-  KalmanHeightStage by_pitch(usualRig(), parameters);
-  LandingResult result = by_pitch.process(stereo, angleAt(0));
-  EXPECT_NEAR(result.raw_height, h, 1e-9);
-  EXPECT_NEAR(result.points_height, h, 1e-9);
-
-  // To the letter: 5 degrees of approach angle in place of 0.1 rad of pitch.
-  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
-  KalmanHeightStage by_approach(usualRig(), parameters);
-  const double mean_forward = (40.0 + 60.0 + 90.0) / 3;
-  const double turn = 5 * kDegree - alpha;
-  result = by_approach.process(stereo, angleAt(0));
-  EXPECT_NEAR(result.raw_height, h * std::cos(turn) + mean_forward * std::sin(turn), 1e-9);
-
-  ApproachAngleResult unknown = angleAt(0);
-  unknown.failure = {Reason::kNoMotion, "standing still"};
-  unknown.window = unknown.step = {};
-  KalmanHeightStage without_angle(usualRig(), parameters);
-  result = without_angle.process(stereo, unknown);
-  EXPECT_EQ(result.status, Status::kSearching);
-  EXPECT_EQ(result.failure.message(), "no_motion: standing still");
-}
-
 // The depths of all points are too large by a share, as those of far ones are on average.
 TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatMakesTheAverageAnotherThanThePlanes) {
   constexpr double kHeight = 10, kShare = 0.02;
@@ -274,53 +236,6 @@ TEST(KalmanHeightReconstruction, TheWidthSeenOnAPlaneRefusedForItsTiltIsNoHeight
   EXPECT_NEAR(tilted.vertical_speed, before.vertical_speed, 0.05);
 }
 
-TEST(KalmanHeightReconstruction, DoesNotBelieveAWidthThatContradictsStereo) {
-  KalmanHeightStage stage(usualRig(), {}, {30});
-  LandingResult result;
-  for (int i = 0; i < 20; ++i) result = stage.process(stereoAt(i * kStep, 20), runwayFrom(i * kStep, 20));
-  EXPECT_NEAR(result.width_height, 20 * 30.0 / 45, 1e-6);
-  EXPECT_NEAR(result.raw_height, 20, 1e-6);
-}
-
-/// Knows the width of 45 m and has seen it from 20 m; stamp: of the next pair.
-KalmanHeightStage overKnownRunway(double& stamp, int pairs = 20) {
-  KalmanHeightStage stage(usualRig(), {}, {45});
-  for (stamp = 0; pairs-- > 0; stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
-  return stage;
-}
-
-TEST(KalmanHeightReconstruction, DoesNotCarryOnByEdgesOfAnotherWidthThanTheKnownOne) {
-  double stamp = 0;
-  KalmanHeightStage stage = overKnownRunway(stamp);
-  // Lines 1.2 m inside of both edges: 5 % narrower, as from 21.1 m.
-  for (int i = 0; i < 9; ++i, stamp += kStep) {
-    const LandingResult result = stage.process(noStereo(stamp), runwayFrom(stamp, 21.1));
-    EXPECT_NEAR(result.width_height, 21.1, 0.01) << "is reported";
-    ASSERT_FALSE(std::isfinite(result.raw_height)) << i;
-  }
-  EXPECT_NEAR(stage.process(noStereo(stamp), runwayFrom(stamp, 20)).raw_height, 20, 0.01) << "the right ones";
-}
-
-TEST(KalmanHeightReconstruction, APairWithoutAWidthSaysNothingOfTheEdges) {
-  KalmanHeightStage stage(usualRig(), {});
-  double stamp = 0;
-  for (int i = 0; i < 20; ++i, stamp += kStep) stage.process(stereoAt(stamp, 20), runwayFrom(stamp, 20));
-  ApproachAngleResult without = runwayFrom(stamp, 20);
-  without.runway.width = without.runway.width_variance = std::nan("");
-  stage.process(noStereo(stamp), without);
-  stamp += kStep;
-  // Off by what is no more than the height's own uncertainty.
-  EXPECT_NEAR(stage.process(noStereo(stamp), runwayFrom(stamp, 20.15)).raw_height, 20.15, 0.01);
-}
-
-TEST(KalmanHeightReconstruction, DoesNotMeanHeightsWithEdgesOfAnotherWidthThanTheKnownOne) {
-  double stamp = 0;
-  KalmanHeightStage stage = overKnownRunway(stamp, 50);
-  // Edges 2 % narrower, while stereo of a single pair is good to 1 % only.
-  const LandingResult result = stage.process(stereoAt(stamp, 20, -0.1, 0.05, 0.2), runwayFrom(stamp, 20.4));
-  EXPECT_NEAR(result.raw_height, 20, 1e-6);
-}
-
 TEST(KalmanHeightReconstruction, HeightsThatAreRefusedDoNotTeachTheWidth) {
   KalmanHeightStage stage(usualRig(), {});
   double stamp = 0;
@@ -344,47 +259,6 @@ TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatAKnownWidthIsWrongBy) {
     result = stage.process(stereoAt(i * kStep, 20, -0.1, 0.05, 0.3), runwayFrom(i * kStep, 20));
   // 0.2 % of the width.
   EXPECT_GT(std::sqrt(result.height_variance), 0.95 * 0.002 * 20);
-}
-
-TEST(KalmanHeightReconstruction, AKnownWidthThatAgreesImprovesTheHeight) {
-  KalmanHeightStage stage(usualRig(), {}, {45});
-  const StereoDepthResult stereo = stereoAt(0, 20, -0.1, 0.05, 0.2);
-  const LandingResult alone = stage.process(stereo, angleAt(0));
-  const LandingResult both = stage.process(stereoAt(kStep, 20, -0.1, 0.05, 0.2), runwayFrom(kStep, 20.1));
-  EXPECT_GT(both.raw_height, alone.raw_height);
-  EXPECT_LT(both.raw_height_variance, 0.5 * alone.raw_height_variance);
-}
-
-/// On level ground this far below a level camera, or on something.
-StereoDepthResult::Point pointAt(double forward, double below, bool on_plane) {
-  return {320, 240 + 500 * below / forward, 500 / forward, 0.1, on_plane};
-}
-
-TEST(KalmanHeightReconstruction, AveragesThePointsOnThePlaneOrEveryDepthAsThePaperDoes) {
-  constexpr double kHeight = 10;
-  StereoDepthResult stereo = stereoAt(0, kHeight, 0, 0);
-  for (const double forward : {40.0, 60.0, 90.0}) stereo.points.push_back(pointAt(forward, kHeight, true));
-  stereo.points.push_back(pointAt(50, kHeight - 2, false));
-  KalmanHeightParameters parameters;
-  parameters.height_source = HeightSource::kPoints;
-  EXPECT_NEAR(KalmanHeightStage(usualRig(), parameters).process(stereo, angleAt(0)).raw_height, kHeight,
-              1e-9);
-  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
-  const double forward = (40.0 + 60.0 + 90.0 + 50.0) / 4, below = kHeight - 2.0 / 4;
-  EXPECT_NEAR(KalmanHeightStage(usualRig(), parameters).process(stereo, angleAt(0)).raw_height,
-              below * std::cos(5 * kDegree) + forward * std::sin(5 * kDegree), 1e-9);
-}
-
-TEST(KalmanHeightReconstruction, NamesTheMissingAngleWhereNothingElseHasFailed) {
-  StereoDepthResult stereo = stereoAt(0, 10, 0, 0);
-  for (const double forward : {40.0, 60.0}) stereo.points.push_back(pointAt(forward, 10, true));
-  ApproachAngleResult approach = angleAt(0);
-  approach.step = approach.window = {};
-  KalmanHeightParameters parameters;
-  parameters.height_source = HeightSource::kPoints;
-  parameters.reconstruction_angle = ReconstructionAngle::kApproach;
-  const LandingResult result = KalmanHeightStage(usualRig(), parameters).process(stereo, approach);
-  EXPECT_EQ(result.failure.message(), "no_motion: no approach angle to reconstruct the height with");
 }
 
 }  // namespace
