@@ -18,6 +18,7 @@ LandingClock::Time LandingClock::follow(double stamp) {
   const double T = stamp - *last;
   if (T > 0 && T <= reset_timeout_) return {T, {}};
   watch_ = ClockWatch();
+  if (T == 0) return {0, {Reason::kTimeJump, "the stamp is that of the pair before"}};
   return {0,
           {Reason::kTimeJump, text("the stamp went ", T < 0 ? "back" : "ahead", " by ", std::abs(T), " s")}};
 }

@@ -50,6 +50,7 @@ TEST(LandingClock, SaysWhichWayTheStampWent) {
   clock.follow(100);
   EXPECT_EQ(clock.follow(95).jump.message(), "time_jump: the stamp went back by 5 s");
   EXPECT_EQ(clock.follow(97.5).jump.message(), "time_jump: the stamp went ahead by 2.5 s");
+  EXPECT_EQ(clock.follow(97.5).jump.message(), "time_jump: the stamp is that of the pair before");
 }
 
 TEST(LandingClock, KnowsTheAgeOfTheLastPairUntilAReset) {
