@@ -1,6 +1,7 @@
 # The core knows no ROS: it is compiled without catkin's include directories and linked without its libraries, with
 # --no-undefined, so that a ROS header or symbol in it breaks the build.
-file(GLOB core_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/core/*.cpp ${PROJECT_SOURCE_DIR}/src/core/*/*.cpp)
+file(GLOB core_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/core/*.cpp ${PROJECT_SOURCE_DIR}/src/core/*/*.cpp
+  ${PROJECT_SOURCE_DIR}/src/core/*/*/*.cpp)
 add_library(uav_landing_core SHARED ${core_sources})
 target_include_directories(uav_landing_core PUBLIC ${PROJECT_SOURCE_DIR}/include)
 target_include_directories(uav_landing_core PRIVATE ${PROJECT_SOURCE_DIR}/src/core)

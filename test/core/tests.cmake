@@ -62,41 +62,41 @@ uav_landing_add_gtest(vertical_speed_test test/core/height/vertical_speed_test.c
 uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
-uav_landing_add_gtest(corner_matcher_test test/core/stereo/corner_matcher_test.cpp LIBS opencv_video
+uav_landing_add_gtest(corner_matcher_test test/core/stereo/matching/corner_matcher_test.cpp LIBS opencv_video
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(aligned_rows_test test/core/stereo/aligned_rows_test.cpp
+uav_landing_add_gtest(aligned_rows_test test/core/stereo/photometric/aligned_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(band_disparities_test test/core/stereo/band_disparities_test.cpp
+uav_landing_add_gtest(band_disparities_test test/core/stereo/photometric/band_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(band_evidence_test test/core/stereo/band_evidence_test.cpp)
-uav_landing_add_gtest(texture_bands_test test/core/stereo/texture_bands_test.cpp)
-uav_landing_add_gtest(block_disparities_test test/core/stereo/block_disparities_test.cpp
+uav_landing_add_gtest(band_evidence_test test/core/stereo/photometric/band_evidence_test.cpp)
+uav_landing_add_gtest(texture_bands_test test/core/stereo/photometric/texture_bands_test.cpp)
+uav_landing_add_gtest(block_disparities_test test/core/stereo/photometric/block_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(pair_disparities_test test/core/stereo/pair_disparities_test.cpp
+uav_landing_add_gtest(pair_disparities_test test/core/stereo/photometric/pair_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(direct_refinement_test test/core/stereo/direct_refinement_test.cpp
+uav_landing_add_gtest(direct_refinement_test test/core/stereo/photometric/direct_refinement_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(refined_rows_test test/core/stereo/refined_rows_test.cpp
+uav_landing_add_gtest(refined_rows_test test/core/stereo/photometric/refined_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(corner_plane_test test/core/stereo/corner_plane_test.cpp)
-uav_landing_add_gtest(plane_tracker_test test/core/stereo/plane_tracker_test.cpp
+uav_landing_add_gtest(corner_plane_test test/core/stereo/plane/corner_plane_test.cpp)
+uav_landing_add_gtest(plane_tracker_test test/core/stereo/plane/plane_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(plane_fit_test test/core/stereo/plane_fit_test.cpp
+uav_landing_add_gtest(plane_fit_test test/core/stereo/plane/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(plane_tracking_test test/core/stereo/plane_tracking_test.cpp
+uav_landing_add_gtest(plane_search_test test/core/stereo/plane/plane_search_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(region_planes_test test/core/stereo/region_planes_test.cpp)
-uav_landing_add_gtest(row_fit_test test/core/stereo/row_fit_test.cpp)
-uav_landing_add_gtest(row_matching_test test/core/stereo/row_matching_test.cpp)
-uav_landing_add_gtest(sample_stddevs_test test/core/stereo/sample_stddevs_test.cpp
+uav_landing_add_gtest(region_planes_test test/core/stereo/plane/region_planes_test.cpp)
+uav_landing_add_gtest(row_fit_test test/core/stereo/rows/row_fit_test.cpp)
+uav_landing_add_gtest(row_matching_test test/core/stereo/matching/row_matching_test.cpp)
+uav_landing_add_gtest(sample_stddevs_test test/core/stereo/photometric/sample_stddevs_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(shift_evidence_test test/core/stereo/shift_evidence_test.cpp)
-uav_landing_add_gtest(shift_matching_test test/core/stereo/shift_matching_test.cpp)
-uav_landing_add_gtest(surface_profile_test test/core/stereo/surface_profile_test.cpp
+uav_landing_add_gtest(shift_evidence_test test/core/stereo/photometric/shift_evidence_test.cpp)
+uav_landing_add_gtest(shift_matching_test test/core/stereo/photometric/shift_matching_test.cpp)
+uav_landing_add_gtest(surface_profile_test test/core/stereo/surface/surface_profile_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(surface_variance_test test/core/stereo/surface_variance_test.cpp
+uav_landing_add_gtest(surface_variance_test test/core/stereo/surface/surface_variance_test.cpp
   SOURCES test/support/ground_renderer.cpp)
-uav_landing_add_gtest(vertical_disparity_test test/core/stereo/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(vertical_disparity_test test/core/stereo/rows/vertical_disparity_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # motion
 uav_landing_add_gtest(approach_angle_test test/core/motion/approach_angle_test.cpp)

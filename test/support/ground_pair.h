@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stereo/block_disparity.h"
+#include "stereo/photometric/block_disparity.h"
 #include "support/ground_renderer.h"
 #include "support/rigs.h"
 #include "uav_landing/stereo/stereo_level.h"

@@ -63,14 +63,4 @@ struct OwnTexture {
   Eigen::Matrix2d growth = Eigen::Matrix2d::Zero();  ///< both as PatchRefinement::Evidence has them
 };
 
-/// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient. own: of this very window.
-PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius,
-                            OwnTexture& own);
-inline PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                                   const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius) {
-  OwnTexture own;
-  return refinePatch(reference, other, u, v, position, warp, radius, own);
-}
-
 }  // namespace uav_landing

@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "uav_landing/height/height_filter.h"
+#include "uav_landing/image/image_region.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
-#include "uav_landing/stereo/region_planes.h"
+#include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 

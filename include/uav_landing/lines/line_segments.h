@@ -5,26 +5,10 @@
 #include <vector>
 
 #include "uav_landing/lines/heading_gate.h"
+#include "uav_landing/lines/line_segment.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
-
-/// A straight edge, refined to sub-pixel. Pixels of the rectified image.
-struct LineSegment {
-  Eigen::Vector2d a, b;  ///< end points
-  Eigen::Vector3d line;  ///< homogeneous, (l0, l1) of unit length: l.[u v 1] is the distance in pixels
-  double offset_stddev;  ///< of the distance at the segment's middle, pixels
-  double angle_stddev;   ///< of the direction, rad
-
-  double length() const { return (b - a).norm(); }
-  Eigen::Vector2d middle() const { return 0.5 * (a + b); }
-};
-
-/// A straight edge to about a pixel.
-struct RoughSegment {
-  Eigen::Vector2d a, b;                                ///< ends, px
-  Eigen::Vector2d brighter = Eigen::Vector2d::Zero();  ///< roughly towards the brighter side; 0: not known
-};
 
 /// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
 /// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:

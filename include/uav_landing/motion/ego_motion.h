@@ -1,39 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/motion/camera_motion.h"
+#include "uav_landing/motion/temporal_match.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
-
-// Motion is scale-free here: lengths are in units of the height now, so that the ground plane is the unit
-// normal n (n.X = 1 on it) and t is t / h.
-
-/// Camera motion from a frame then to the frame now: x_now = R x_then - t, t in the frame now.
-struct CameraMotion {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();
-
-  /// Where the point on the ray r (third component 1) at inverse depth w was seen then, up to scale.
-  Eigen::Vector3d seenThen(const Eigen::Vector3d& r, double w) const { return R.transpose() * (r + w * t); }
-};
-
-/// A corner now and where it was then. Pixels of the rectified left image.
-struct TemporalMatch {
-  Eigen::Vector2d now, then;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< of then given now, pixels^2
-  /// How then follows from the warp it was looked for with, and that warp (PatchRefinement::Claim).
-  std::array<Eigen::Matrix2d, 2> by_warp = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
-  Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
-  bool on_plane = true;      ///< depth from the ground plane, else from its own disparity
-  double inverse_depth = 0;  ///< of a point off the plane, times height
-  double inverse_depth_stddev = 0;
-  /// Side of the square of pixels that it was matched by; those that overlap share noise.
-  double extent = 0;
-};
 
 /// Motion with the ground normal that fits both the prior and the matches.
 struct MotionEstimate {
@@ -51,12 +27,6 @@ struct MotionEstimate {
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   std::vector<char> inliers;
   int inlier_count = 0;
-};
-
-/// Rotation from then to now that is known beforehand, of an inertial sensor.
-struct RotationPrior {
-  Eigen::Matrix3d R;
-  Eigen::Matrix3d covariance;  ///< of its rotation vector, in the frame now, rad^2
 };
 
 /// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "uav_landing/motion/ego_motion.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/motion/temporal_match.h"
 
 namespace uav_landing {
 

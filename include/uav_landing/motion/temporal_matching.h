@@ -1,20 +1,16 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "uav_landing/geometry/calibration.h"
 #include "uav_landing/image/match_image.h"
 #include "uav_landing/image/patch_refinement.h"
-#include "uav_landing/motion/ego_motion.h"
+#include "uav_landing/motion/camera_motion.h"
+#include "uav_landing/motion/temporal_match.h"
 
 namespace uav_landing {
-
-/// A corner of the image now with what is known of its depth (see TemporalMatch).
-struct TrackedCorner {
-  int u = 0, v = 0;
-  bool on_plane = true;
-  double inverse_depth = 0, inverse_depth_stddev = 0;
-};
 
 struct TemporalMatchOptions {
   int window_radius = 5;

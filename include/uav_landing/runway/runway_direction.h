@@ -5,10 +5,11 @@
 
 #include "uav_landing/base/timings.h"
 #include "uav_landing/image/rectification.h"
-#include "uav_landing/lines/line_segments.h"
+#include "uav_landing/lines/line_segment.h"
 #include "uav_landing/lines/vanishing_point.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/stage_results.h"
+#include "uav_landing/runway/seen_ground.h"
 
 namespace uav_landing {
 
@@ -18,14 +19,6 @@ struct RunwayDirection {
   /// Those of the views, with their uncertainty; where a runway is followed, those that may lie along it.
   std::vector<LineSegment> left_lines, right_lines;
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
-};
-
-/// The ground as stereo sees it.
-struct SeenGround {
-  GroundPlane plane;
-  RigRotation rows;  ///< what vertical disparities tell, or unknown
-  /// Whether a runway is followed on it already: then nothing depends on lines that are not there.
-  bool has_runway = false;
 };
 
 /// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, the

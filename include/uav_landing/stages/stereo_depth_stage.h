@@ -18,7 +18,7 @@ class CornerMatcher;
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
-  /// With another matcher than the one along rows (src/core/stereo/corner_matcher.h).
+  /// With another matcher than the one along rows (src/core/stereo/matching/corner_matcher.h).
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters,
                    std::unique_ptr<CornerMatcher> matcher);
   ~StereoDepthStage();

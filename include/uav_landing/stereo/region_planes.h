@@ -5,14 +5,10 @@
 
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/image/image_region.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
-
-/// Parts of the image's ground that one fault may spoil: dirt on a lens, a puddle, a slope, another surface.
-/// Three strips by distance and two halves, with equally many points on the plane.
-enum class ImageRegion { kNear, kMiddle, kFar, kLeft, kRight };
-constexpr int kImageRegions = 5;
 
 /// The ground plane from the matched points outside of each region.
 struct RegionPlanes {

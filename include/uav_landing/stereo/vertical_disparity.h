@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "uav_landing/results/stage_results.h"
-#include "uav_landing/stereo/stereo_matching.h"
+#include "uav_landing/stereo/corner_matching.h"
 
 namespace uav_landing {
 

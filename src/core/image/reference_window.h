@@ -47,10 +47,4 @@ class ReferenceWindow {
   OwnTexture& own_;
 };
 
-/// From a place on as refinePatch does it. first: what a look there found, when there was one already.
-/// distances: as for evidence(); without them only the covariance may be asked for.
-PatchRefinement refineWindow(const ReferenceWindow& window, const cv::Mat& other,
-                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp,
-                             const GainShift* first, bool distances);
-
 }  // namespace uav_landing

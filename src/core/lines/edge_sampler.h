@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <opencv2/core.hpp>
 
+#include "lines/edge_picture.h"
 #include "lines/line_fit.h"
-#include "lines/line_refinement.h"
 
 namespace uav_landing::line_fit {
 

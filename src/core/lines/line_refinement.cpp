@@ -59,12 +59,6 @@ int edgeSign(const EdgeSampler& sampler, double half) {
 
 }  // namespace
 
-LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double offset_stddev,
-                            double angle_stddev) {
-  const Eigen::Vector2d along = (b - a).normalized(), across(-along.y(), along.x());
-  return {a, b, {across.x(), across.y(), -across.dot(0.5 * (a + b))}, offset_stddev, angle_stddev};
-}
-
 Eigen::Vector2d brighterSide(const EdgePicture& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Axis axis(0.5 * (a + b), b - a);
   return edgeSign(EdgeSampler(picture, axis, {1, 0}), 0.5 * (b - a).norm()) * axis.across;

@@ -1,18 +1,12 @@
 #pragma once
 
-#include <opencv2/core.hpp>
+#include <Eigen/Core>
 #include <optional>
 
-#include "lines/segment_scanner.h"
-#include "uav_landing/lines/line_segments.h"
+#include "lines/edge_picture.h"
+#include "uav_landing/lines/line_segment.h"
 
 namespace uav_landing {
-
-/// What lines are refined in.
-struct EdgePicture {
-  cv::Mat image, transposed;  ///< mono8; transposed has the image's columns as rows
-  cv::Mat ground;             ///< mono8, of the image: edges only where it is not 0
-};
 
 /// Fits a straight line to the intensity gradient's peak along a rough segment (off by up to 2 px), to
 /// sub-pixel: at rows (columns, when the line is flat) the gradient's peak near the line is interpolated.
@@ -25,10 +19,5 @@ std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSeg
 
 /// Unit vector across a rough segment towards its brighter side, as a refined line's normal would be.
 Eigen::Vector2d brighterSide(const EdgePicture& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
-
-/// Line through two points with these standard deviations, the normal 90 degrees clockwise (in the picture)
-/// of the direction from a to b.
-LineSegment makeLineSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double offset_stddev,
-                            double angle_stddev);
 
 }  // namespace uav_landing

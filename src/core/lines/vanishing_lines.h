@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lines/vanishing_candidate.h"
-#include "uav_landing/lines/line_segments.h"
+#include "uav_landing/lines/line_segment.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {

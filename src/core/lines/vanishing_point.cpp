@@ -1,138 +1,77 @@
 #include "uav_landing/lines/vanishing_point.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/text.h"
-#include "lines/vanishing_chance.h"
-#include "lines/vanishing_consensus.h"
-#include "lines/vanishing_fit.h"
-#include "lines/vanishing_lines.h"
-#include "uav_landing/estimation/limits.h"
+#include "geometry/rotation.h"
+#include "lines/vanishing_candidate.h"
 
 namespace uav_landing {
-
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kMinSpread = 3 * kDegree;  // between the inlier lines in the image
-constexpr Sigmas kGate(4);                  // robust ones, of the lines that count in the end
-constexpr double kChance = 1;               // accepted number of such coincidences among random lines
+constexpr double kViewsDiffer = 1 * kDegree;  // with kViewsGate: left and right saw different things
+constexpr double kViewsGate = 25;             // squared, 2 degrees of freedom
 
-template <class... Parts>
-Failure noVanishingPoint(const Parts&... parts) {
-  return {Reason::kNoVanishingPoint, text(parts...)};
-}
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
 
-int leastLines(const VanishingLines& lines) { return std::max(lines.parameters().min_lines, 2); }
-
-Failure checkDirection(const VanishingLines& lines, const Eigen::Vector3d& direction,
-                       const LineIndices& used) {
-  if (direction.allFinite() && direction.z() > 0 && lines.alongRunway(direction)) return {};
-  return noVanishingPoint(used.size(), " lines meet, but not along the runway");
-}
-
-/// Largest angle between the lines in the image: pi minus the widest gap between their directions.
-double directionSpread(const VanishingLines& lines, const LineIndices& used) {
-  std::vector<double> angles;
-  for (const int i : used) {
-    const double angle = std::atan2(lines[i].along.y(), lines[i].along.x());
-    angles.push_back(angle < 0 ? angle + M_PI : angle);
-  }
-  std::sort(angles.begin(), angles.end());
-  double gap = angles.front() + M_PI - angles.back();
-  for (size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-  return M_PI - gap;
-}
-
-Failure check(const VanishingLines& lines, const Eigen::Vector3d& direction, const LineIndices& used,
-              double coincidences) {
-  if (const Failure failure = checkDirection(lines, direction, used)) return failure;
-  const double spread = directionSpread(lines, used);
-  if (spread < kMinSpread)
-    return noVanishingPoint("lines are parallel within ", std::round(10 * spread / kDegree) / 10,
-                            " deg, less than ", kMinSpread / kDegree);
-  if (lines.parameters().min_lines > 2 && coincidences > kChance)
-    return noVanishingPoint("as many lines meet by chance: ", used.size(), " of ", lines.count());
-  return {};
-}
-
-/// The lines that pass through where RANSAC found most of them to meet, and where they do.
-Expected<VanishingPoint> fitTo(const VanishingLines& lines, const VanishingConsensus& consensus) {
-  VanishingFit fit(lines, consensus.direction);
-  LineIndices used = lines.passing(fit.direction());
-  double scale = 1;
-  for (int iteration = 0; iteration < 8 && used.size() >= 2; ++iteration) {
-    scale = fit.robustStep(used);
-    if (!fit.direction().allFinite())
-      return tl::unexpected(noVanishingPoint(lines.count(), " lines are parallel"));
-    used = lines.passing(fit.direction());
-  }
-  used = fit.within(used, kGate.count() * scale);
-  const int n = static_cast<int>(used.size());
-  if (n < leastLines(lines))
-    return tl::unexpected(
-        noVanishingPoint(n, " lines of at least ", lines.parameters().min_lines, " meet in one point"));
-  for (int iteration = 0; iteration < 3; ++iteration) fit.plainStep(used);
-  const double coincidences = expectedCoincidences(lines, fit.direction(), used, consensus.meetings);
-  if (const Failure failure = check(lines, fit.direction(), used, coincidences))
-    return tl::unexpected(failure);
-  Expected<VanishingPoint> point = fit.describe(used);
-  if (point) point->coincidences = coincidences;
-  return point;
-}
-
-/// Where those two of the lines meet that differ most in direction; nothing when all are parallel.
-std::optional<Eigen::Vector3d> widestMeeting(const VanishingLines& lines, const LineIndices& used) {
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double widest = 0;
-  for (const int i : used) {
-    for (const int j : used) {
-      const double sine =
-          std::abs(lines[i].along.x() * lines[j].along.y() - lines[i].along.y() * lines[j].along.x());
-      Eigen::Vector3d candidate;
-      if (sine <= widest || !lines.meeting(i, j, candidate)) continue;
-      widest = sine;
-      direction = candidate;
-    }
-  }
-  if (widest < std::sin(kMinSpread)) return std::nullopt;
-  return direction;
+Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPoint& right) {
+  const Matrix32 B = tangents(left.direction);
+  const Eigen::Vector2d difference = B.transpose() * (right.direction - left.direction);
+  const Eigen::Matrix2d Cl = B.transpose() * left.covariance * B, Cr = B.transpose() * right.covariance * B;
+  const Eigen::Matrix2d Sinv = (Cl + Cr).inverse();
+  const double nis = difference.dot(Sinv * difference);
+  if (nis > kViewsGate && difference.norm() > kViewsDiffer)
+    return tl::unexpected(Failure{
+        Reason::kNoVanishingPoint,
+        text("left and right differ by ", std::round(10 * difference.norm() / kDegree) / 10, " deg")});
+  const Eigen::Matrix2d gain = Cl * Sinv;
+  VanishingPoint mean;
+  mean.direction = (left.direction + B * (gain * difference)).normalized();
+  // Views that differ by more than they claim have claimed too much.
+  const Matrix32 T = tangents(mean.direction);
+  const Eigen::Matrix2d covariance = std::max(1.0, nis / 2) * gain * Cr;
+  const Eigen::Matrix2d turn = T.transpose() * B;
+  mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
+  mean.inlier_count = left.inlier_count + right.inlier_count;
+  return mean;
 }
 
 }  // namespace
 
-Expected<VanishingPoint> findVanishingPoint(const std::vector<LineSegment>& segments,
-                                            const Eigen::Matrix3d& K,
-                                            const ApproachAngleParameters& parameters,
-                                            const Eigen::Vector3d* prior_normal) {
-  const VanishingLines lines(segments, K, parameters, prior_normal);
-  if (lines.count() < leastLines(lines))
+Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& left,
+                                                const Expected<VanishingPoint>& right,
+                                                double runway_straightness) {
+  if (!left && !right)
     return tl::unexpected(
-        Failure{Reason::kTooFewFeatures, text(lines.count(), " lines of at least ", parameters.min_lines)});
-  const std::optional<VanishingConsensus> consensus = findConsensus(lines);
-  if (!consensus)
-    return tl::unexpected(noVanishingPoint("none of the ", lines.count(), " lines meet along the runway"));
-  return fitTo(lines, *consensus);
+        Failure{left.error().reason, "left: " + left.error().detail + "; right: " + right.error().detail});
+  Expected<VanishingPoint> mean = left && right ? fuseViews(*left, *right) : left ? left : right;
+  if (!mean) return mean;
+  mean->inliers.clear();
+  const Eigen::Vector3d& p = mean->direction;
+  mean->covariance +=
+      runway_straightness * runway_straightness * (Eigen::Matrix3d::Identity() - p * p.transpose());
+  return mean;
 }
 
-Expected<VanishingPoint> fitVanishingPoint(const std::vector<LineSegment>& segments, const Eigen::Matrix3d& K,
-                                           const ApproachAngleParameters& parameters,
-                                           const std::vector<char>& members,
-                                           const Eigen::Vector3d* prior_normal) {
-  const VanishingLines lines(segments, K, parameters, prior_normal);
-  LineIndices used;
-  for (size_t i = 0; i < members.size(); ++i)
-    if (members[i] != 0) used.push_back(static_cast<int>(i));
-  const std::optional<Eigen::Vector3d> start = widestMeeting(lines, used);
-  if (!start) return tl::unexpected(noVanishingPoint(used.size(), " lines are parallel"));
-  VanishingFit fit(lines, *start);
-  for (int iteration = 0; iteration < 5; ++iteration) {
-    fit.robustStep(used);
-    if (const Failure failure = checkDirection(lines, fit.direction(), used)) return tl::unexpected(failure);
-  }
-  return fit.describe(used);
+GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev) {
+  // The horizon's direction w = (cos, -sin, 0) lies in the ground as p does, so n = p x w, and rollOf(n) is
+  // the roll exactly.
+  const Eigen::Vector3d& p = point.direction;
+  const Eigen::Vector3d w(std::cos(roll), -std::sin(roll), 0), dw(-std::sin(roll), -std::cos(roll), 0);
+  const Eigen::Vector3d m = p.cross(w);
+  GroundNormal normal;
+  normal.n = m.normalized();
+  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - normal.n * normal.n.transpose()) / m.norm();
+  Eigen::Matrix3d minus_w_cross;
+  minus_w_cross << 0, w.z(), -w.y(), -w.z(), 0, w.x(), w.y(), -w.x(), 0;
+  const Eigen::Matrix3d from_point = across * minus_w_cross;
+  const Eigen::Vector3d from_roll = across * p.cross(dw);
+  normal.covariance = from_point * point.covariance * from_point.transpose() +
+                      roll_stddev * roll_stddev * from_roll * from_roll.transpose();
+  return normal;
 }
 
 }  // namespace uav_landing

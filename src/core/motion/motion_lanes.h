@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/lanes.h"
-#include "motion/motion_rows.h"
+#include "motion/motion_state.h"
 
 namespace uav_landing {
 namespace motion_lanes {
@@ -107,13 +107,13 @@ struct MatchRows {
   const DoubleLanes none{}, one = none + 1;
   DoubleLanes rx, ry, right[4], below[4], corner[4];
   load(in, rx);
-  load(in + MotionRows::kY * padded, ry);
+  load(in + kY * padded, ry);
   for (int k = 0; k < 4; ++k) {
-    load(in + (MotionRows::kRight + k) * padded, right[k]);
-    load(in + (MotionRows::kBelow + k) * padded, below[k]);
+    load(in + (kRight + k) * padded, right[k]);
+    load(in + (kBelow + k) * padded, below[k]);
     corner[k] = (k == 0 || k == 3 ? one : none) - right[k] - below[k];
   }
-  const double *on_plane = in + MotionRows::kOnPlane * padded, *depth = in + MotionRows::kDepth * padded;
+  const double *on_plane = in + kOnPlane * padded, *depth = in + kDepth * padded;
   Seen at, neighbour;
   look(s, rx, ry, on_plane, depth, at);
   addPixel(s, at, corner, rows);

@@ -38,14 +38,14 @@ UAV_LANDING_MULTIVERSION void vote(const Terms& terms, const double* inputs, siz
     const double* in = inputs + i;
     DoubleLanes rx, ry, then_u, then_v, xx, xy, yy;
     load(in, rx);
-    load(in + MotionRows::kY * padded, ry);
-    look(terms, rx, ry, in + MotionRows::kOnPlane * padded, in + MotionRows::kDepth * padded, at);
-    load(in + MotionRows::kU * padded, then_u);
-    load(in + MotionRows::kV * padded, then_v);
+    load(in + kY * padded, ry);
+    look(terms, rx, ry, in + kOnPlane * padded, in + kDepth * padded, at);
+    load(in + kU * padded, then_u);
+    load(in + kV * padded, then_v);
     const DoubleLanes error_u = then_u - at.u, error_v = then_v - at.v;
-    load(in + MotionRows::kXX * padded, xx);
-    load(in + MotionRows::kXY * padded, xy);
-    load(in + MotionRows::kYY * padded, yy);
+    load(in + kXX * padded, xx);
+    load(in + kXY * padded, xy);
+    load(in + kYY * padded, yy);
     const Mask tells = (index < last) & (xx + yy < kSquare);
     xx += kSquare;
     yy += kSquare;
@@ -76,12 +76,12 @@ UAV_LANDING_MULTIVERSION void lineariseAll(const Terms& s, const double* inputs,
     Mask seen;
     combine(s, in, padded, rows, seen);
     DoubleLanes u, v, xx, xy, yy, depth_stddev;
-    load(in + MotionRows::kSeenU * padded, u);
-    load(in + MotionRows::kSeenV * padded, v);
-    load(in + MotionRows::kXX * padded, xx);
-    load(in + MotionRows::kXY * padded, xy);
-    load(in + MotionRows::kYY * padded, yy);
-    load(in + MotionRows::kDepthStddev * padded, depth_stddev);  // none on the plane
+    load(in + kSeenU * padded, u);
+    load(in + kSeenV * padded, v);
+    load(in + kXX * padded, xx);
+    load(in + kXY * padded, xy);
+    load(in + kYY * padded, yy);
+    load(in + kDepthStddev * padded, depth_stddev);  // none on the plane
     const DoubleLanes du = rows.depth_u * depth_stddev, dv = rows.depth_v * depth_stddev;
     xx += du * du;
     xy += du * dv;
@@ -207,9 +207,9 @@ MotionState MotionState::apply(const Vector9d& step) const {
 void MotionRows::resize(size_t count) {
   count_ = count;
   padded_ = wholeDoubleLanes(count);
-  inputs_.resize(std::max(inputs_.size(), kInputs * padded_));
+  inputs_.resize(std::max(inputs_.size(), kMotionInputs * padded_));
   outputs_.resize(std::max(outputs_.size(), kOutputs * padded_));
-  for (size_t column = 0; column < kInputs; ++column)
+  for (size_t column = 0; column < kMotionInputs; ++column)
     for (size_t i = count_; i < padded_; ++i)
       inputs_[column * padded_ + i] = column == kXX || column == kYY ? 1 : 0;
 }
@@ -223,7 +223,7 @@ void MotionRows::assign(const StereoRig& rig, const std::vector<TemporalMatch>& 
   for (size_t i = 0; i < count_; ++i) {
     const TemporalMatch& match = matches[i];
     const Eigen::Vector3d ray = rig.ray(match.now.x(), match.now.y());
-    const auto set = [&](Input column, double value) { inputs_[column * padded_ + i] = value; };
+    const auto set = [&](MotionInput column, double value) { inputs_[column * padded_ + i] = value; };
     set(kX, ray.x());
     set(kY, ray.y());
     set(kU, match.then.x());
@@ -251,7 +251,7 @@ void MotionRows::assign(const MotionRows& all, const std::array<size_t, 3>& chos
   cx_ = all.cx_;
   cy_ = all.cy_;
   resize(chosen.size());
-  for (size_t column = 0; column < kInputs; ++column)
+  for (size_t column = 0; column < kMotionInputs; ++column)
     for (size_t i = 0; i < count_; ++i)
       inputs_[column * padded_ + i] = all.inputs_[column * all.padded_ + chosen[i]];
 }

@@ -4,20 +4,11 @@
 #include <array>
 #include <vector>
 
-#include "uav_landing/motion/ego_motion.h"
+#include "motion/motion_state.h"
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/motion/temporal_match.h"
 
 namespace uav_landing {
-
-using Vector9d = Eigen::Matrix<double, 9, 1>;
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-
-/// The unknowns of ego-motion: rotation now -> then (perturbed on the left), translation, ground normal.
-struct MotionState {
-  Eigen::Matrix3d Q;
-  Eigen::Vector3d t, n;
-
-  MotionState apply(const Vector9d& step) const;
-};
 
 /// How well a motion is supported: votes weighted by closeness, and how many matches it fits well. Telling
 /// are matches that know both of their coordinates; others, as along a line, fit nearly any motion well.
@@ -41,26 +32,6 @@ class MotionRows {
  public:
   /// Distance, in pixels, by which a match may miss a motion in the consensus step.
   static constexpr double kTolerance = 2.0;
-
-  /// Columns that are put in. kSeen: where a mixture of the corner and its neighbours was seen; kRight,
-  /// kBelow: their shares, by rows.
-  enum Input {
-    kX,
-    kY,
-    kU,
-    kV,
-    kXX,
-    kXY,
-    kYY,
-    kOnPlane,
-    kDepth,
-    kDepthStddev,
-    kSeenU,
-    kSeenV,
-    kRight,
-    kBelow = kRight + 4,
-    kInputs = kBelow + 4
-  };
 
   void assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches);
   size_t size() const { return count_; }

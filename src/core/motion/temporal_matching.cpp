@@ -8,6 +8,7 @@
 #include "base/order_statistic.h"
 #include "base/touch_ahead.h"
 #include "image/clipping.h"
+#include "image/patch_refiner.h"
 #include "motion/common_gain.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/patch_matching.h"

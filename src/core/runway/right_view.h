@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/lines/line_segments.h"
-#include "uav_landing/runway/runway_direction.h"
+#include "uav_landing/lines/line_segment.h"
+#include "uav_landing/runway/seen_ground.h"
 
 namespace uav_landing {
 

@@ -12,6 +12,7 @@
 #include "runway/right_view.h"
 #include "uav_landing/estimation/limits.h"
 #include "uav_landing/geometry/half_plane.h"
+#include "uav_landing/lines/vanishing_search.h"
 #include "uav_landing/runway/ground_direction.h"
 
 namespace uav_landing {

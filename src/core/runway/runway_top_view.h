@@ -6,7 +6,7 @@
 
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/runway/ground_edges.h"
-#include "uav_landing/runway/runway_edges.h"
+#include "uav_landing/runway/runway_cross_section.h"
 
 namespace uav_landing {
 

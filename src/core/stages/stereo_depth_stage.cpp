@@ -4,15 +4,16 @@
 #include <string>
 #include <utility>
 
-#include "stereo/corner_matcher.h"
-#include "stereo/corner_plane.h"
-#include "stereo/plane_tracker.h"
+#include "stereo/matching/corner_matcher.h"
+#include "stereo/plane/corner_plane.h"
+#include "stereo/plane/plane_search.h"
+#include "stereo/plane/plane_tracker.h"
 #include "uav_landing/image/corners.h"
 #include "uav_landing/image/image_check.h"
 #include "uav_landing/image/match_image.h"
+#include "uav_landing/stereo/corner_matching.h"
 #include "uav_landing/stereo/direct_refinement.h"
 #include "uav_landing/stereo/plane_fit.h"
-#include "uav_landing/stereo/stereo_matching.h"
 #include "uav_landing/stereo/surface_profile.h"
 #include "uav_landing/stereo/surface_variance.h"
 #include "uav_landing/stereo/vertical_disparity.h"

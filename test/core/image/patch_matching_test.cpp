@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "image/patch_refiner.h"
 #include "support/random_texture.h"
 #include "uav_landing/image/match_image.h"
-#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 namespace {

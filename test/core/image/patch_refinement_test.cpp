@@ -1,10 +1,10 @@
-#include "uav_landing/image/patch_refinement.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+
+#include "image/patch_refiner.h"
 
 namespace uav_landing {
 namespace {

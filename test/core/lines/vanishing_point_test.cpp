@@ -8,6 +8,7 @@
 #include <random>
 
 #include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/lines/vanishing_search.h"
 
 namespace uav_landing {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
+#include "image/patch_refiner.h"
 #include "support/ground_renderer.h"
 #include "support/random_texture.h"
 #include "uav_landing/image/corners.h"
-#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 namespace {

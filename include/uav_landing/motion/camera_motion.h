@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace uav_landing {
+
+// Motion is scale-free here: lengths are in units of the height now, so that the ground plane is the unit
+// normal n (n.X = 1 on it) and t is t / h.
+
+/// Camera motion from a frame then to the frame now: x_now = R x_then - t, t in the frame now.
+struct CameraMotion {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();
+
+  /// Where the point on the ray r (third component 1) at inverse depth w was seen then, up to scale.
+  Eigen::Vector3d seenThen(const Eigen::Vector3d& r, double w) const { return R.transpose() * (r + w * t); }
+};
+
+/// Rotation from then to now that is known beforehand, of an inertial sensor.
+struct RotationPrior {
+  Eigen::Matrix3d R;
+  Eigen::Matrix3d covariance;  ///< of its rotation vector, in the frame now, rad^2
+};
+
+}  // namespace uav_landing

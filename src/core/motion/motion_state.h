@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace uav_landing {
+
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// The unknowns of ego-motion: rotation now -> then (perturbed on the left), translation, ground normal.
+struct MotionState {
+  Eigen::Matrix3d Q;
+  Eigen::Vector3d t, n;
+
+  MotionState apply(const Vector9d& step) const;
+};
+
+/// Columns of what is known of matches. kSeen: where a mixture of the corner and its neighbours was seen;
+/// kRight, kBelow: their shares, by rows.
+enum MotionInput {
+  kX,
+  kY,
+  kU,
+  kV,
+  kXX,
+  kXY,
+  kYY,
+  kOnPlane,
+  kDepth,
+  kDepthStddev,
+  kSeenU,
+  kSeenV,
+  kRight,
+  kBelow = kRight + 4,
+  kMotionInputs = kBelow + 4
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,117 @@
+#include "stereo/photometric/band_disparities.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "uav_landing/stereo/vertical_disparity.h"
+
+namespace uav_landing {
+namespace {
+
+// Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+constexpr double kLeastDisparity = 0.3;
+// Blocks in a row that speak together, until they know the shift to this (1 sigma, pixels), and those that
+// know it to less than that say nothing.
+constexpr int kTogether = 8;
+constexpr double kKnown = 0.25, kLeastKnown = 1.0;
+
+}  // namespace
+
+BandDisparities::BandDisparities(const StereoLevel& level)
+    : rig_(level.rig), rows_(level.left_mask, level.right_mask) {}
+
+bool BandDisparities::isSeen(int column, int line) const {
+  constexpr int kAround = 4;  // pixels beside what is filled up
+  const int u = kGridColumn + column * kBlockWidth, v = grid_.first_row + line * kBlockHeight;
+  for (int row = v; row < v + kBlockHeight; ++row) {
+    const cv::Range& seen = rows_.seen(row);
+    if (u - kAround < seen.start || u + kBlockWidth + kAround > seen.end) return false;
+  }
+  return true;
+}
+
+void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
+  rows_.begin(left, ShiftModel(rig_, g), kLeastDisparity + rig_.principalOffset());
+  grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
+  const int height = std::max(0, rows_.left().rows - 2 * kGridRow);
+  grid_.lines = height / kBlockHeight;
+  // The lowest rows, which say most, are in a block.
+  grid_.first_row = kGridRow + height % kBlockHeight / 2 * 2;
+  grid_.seen.clear();
+  for (int line = 0; line < grid_.lines; ++line)
+    for (int column = 0; column < grid_.columns; ++column) grid_.seen.push_back(isSeen(column, line));
+  if (!grid_.seen.empty()) left_.split(rows_.left());
+}
+
+void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
+  disparities_.clear();
+  differ_by_noise_ = false;
+  if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;
+  const ShiftModel shift(rig_, g);
+  rows_.align(levelled(right, rows), shift);
+  right_.split(rows_.right());
+  weigh();
+  for (int line = 0; differ_by_noise_ && line < grid_.lines; ++line) tellLine(line, shift);
+}
+
+// By how much a row that is off moves what fine texture shows, its derivatives tell too little of.
+const cv::Mat& BandDisparities::levelled(const cv::Mat& right, const RigRotation& rows) {
+  right.convertTo(grey_, CV_32F);
+  if (rows.w.isZero()) return grey_;
+  straightenRows(rig_, rows.w, grey_, level_);
+  return level_;
+}
+
+void BandDisparities::weigh() {
+  constexpr int kCoarsest = TextureBands::kBands - 1;
+  // Rectification takes some of the noise off the finest band; pictures of different things differ in all.
+  constexpr double kMostCoarse = 4 * TextureBands::kWhiteCoarsest;
+  evidence_.assign(grid_.seen.size(), {});
+  scores_.clear();
+  differ_by_noise_ = false;
+  std::array<double, TextureBands::kBands> residuals;
+  std::optional<double> gain;
+  // The coarsest, which has the least noise, knows the gain best.
+  for (int band = kCoarsest; band >= 0; --band) {
+    addUp(left_[band], right_[band], TextureBands::factor(band), grid_, sums_);
+    if (!gain) gain = gainOf(sums_);
+    if (!gain) return;
+    addNeighbours(grid_, sums_, around_);
+    const BandNoise noise = noiseOf(grid_, around_, *gain);
+    residuals[band] = noise.residual;
+    addEvidence(grid_, sums_, around_, *gain, noise, TextureBands::noise(band), scores_, evidence_);
+  }
+  differ_by_noise_ = residuals[kCoarsest] <= kMostCoarse * residuals[0];
+}
+
+void BandDisparities::tellLine(int line, const ShiftModel& shift) {
+  const double v = rows_.firstRow() + grid_.first_row + (line + 0.5) * kBlockHeight - 0.5;
+  std::array<Group, 2> groups;  // of those that do not look alike, and of those that do
+  for (int column = 0; column < grid_.columns; ++column) {
+    const BandEvidence& block = evidence_[grid_.at(column, line)];
+    const bool last = (column + 1) % kTogether == 0 || column + 1 == grid_.columns;
+    if (block.information > 0)
+      groups[block.looksAlike()].add(block, kGridColumn + (column + 0.5) * kBlockWidth - 0.5);
+    for (Group& group : groups) {
+      if (!last && group.sum.stddev() > kKnown) continue;
+      if (group.sum.stddev() < kLeastKnown) tell(group, v, shift);
+      group = {};
+    }
+  }
+}
+
+void BandDisparities::Group::add(const BandEvidence& block, double u) {
+  sum.add(block);
+  place += block.information * u;
+  ++blocks;
+}
+
+void BandDisparities::tell(const Group& group, double v, const ShiftModel& shift) {
+  const BandEvidence& sum = group.sum;
+  const double u = group.place / sum.information;
+  const ShiftMatch match{u, v, sum.shift(), sum.stddev(), sum.lean(), group.blocks, false, sum.looksAlike()};
+  disparities_.push_back(disparityOf(match, rig_, shift, Eigen::Vector3d::Zero()));
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "stereo/photometric/aligned_rows.h"
+#include "stereo/photometric/band_evidence.h"
+#include "stereo/photometric/block_disparity.h"
+#include "stereo/photometric/texture_bands.h"
+#include "uav_landing/rig/rig_rotation.h"
+#include "uav_landing/stereo/stereo_level.h"
+
+namespace uav_landing {
+
+/// Disparities of the ground where its texture is hardly more than noise. Such texture is faint in other
+/// frequencies than a painted line beside it: the aligned images are taken apart into bands, and each block
+/// counts in each band by the signal it has there.
+class BandDisparities {
+ public:
+  /// level: of the whole images; its masks are eroded by at least two pixels.
+  explicit BandDisparities(const StereoLevel& level);
+
+  /// Takes the left image (mono8) below the horizon of the plane g, 1/m.
+  void choose(const cv::Mat& left, const Eigen::Vector3d& g);
+  /// Compares it with the right image (mono8) warped by the plane g. rows: rotation that the vertical
+  /// disparities of the images have.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+
+  /// Whether what the images differed by was noise in the last measurement. Else they do not show the same,
+  /// and there are no disparities.
+  bool differByNoise() const { return differ_by_noise_; }
+  /// Of the last measurement, for some blocks of a row each.
+  const std::vector<BlockDisparity>& disparities() const { return disparities_; }
+
+ private:
+  /// The right image as floats, its rows level with the left one's.
+  const cv::Mat& levelled(const cv::Mat& right, const RigRotation& rows);
+  bool isSeen(int column, int line) const;
+  void weigh();
+  void tellLine(int line, const ShiftModel& shift);
+  /// Blocks of a row that speak together.
+  struct Group {
+    BandEvidence sum;
+    double place = 0;  // column times information
+    int blocks = 0;
+    void add(const BandEvidence& block, double u);
+  };
+  void tell(const Group& group, double v, const ShiftModel& shift);
+
+  StereoRig rig_;
+  AlignedRows rows_;
+  cv::Mat grey_, level_;
+  BlockGrid grid_;
+  TextureBands left_, right_;
+  std::vector<BandSums> sums_, around_;  // of one band
+  std::vector<BandScore> scores_;        // of the last one
+  std::vector<BandEvidence> evidence_;
+  std::vector<BlockDisparity> disparities_;
+  bool differ_by_noise_ = false;
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "stereo/photometric/block_disparity.h"
+#include "stereo/photometric/photometric_blocks.h"
+#include "uav_landing/stereo/stereo_level.h"
+
+namespace uav_landing {
+
+/// Disparities of the ground from blocks of a pair's images.
+class BlockDisparities {
+ public:
+  /// level: of the whole images; its masks are eroded by at least two pixels.
+  explicit BlockDisparities(const StereoLevel& level);
+
+  /// Takes blocks of the left image (mono8) below the horizon of the plane g, 1/m.
+  void choose(const cv::Mat& left, const Eigen::Vector3d& g);
+  /// Compares them with the right image (mono8) warped by the plane g. rows: rotation that the vertical
+  /// disparities of the images have.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+
+  /// Of the last measurement.
+  const std::vector<BlockDisparity>& disparities() const { return disparities_; }
+  /// Share of their blocks that do so beyond doubt, each alone or a few together.
+  double certainShare() const;
+
+ private:
+  StereoRig rig_;
+  PhotometricBlocks blocks_;
+  std::vector<PhotometricBlocks::Match> matches_;
+  std::vector<BlockDisparity> disparities_;
+};
+
+}  // namespace uav_landing

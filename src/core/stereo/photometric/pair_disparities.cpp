@@ -1,0 +1,43 @@
+#include "stereo/photometric/pair_disparities.h"
+
+namespace uav_landing {
+namespace {
+
+// Share of the blocks that are beyond doubt where the images are clear.
+constexpr double kMostlyCertain = 0.5;
+
+}  // namespace
+
+PairDisparities::PairDisparities(const RigModel& model, int margin)
+    : blocks_(reduceLevel(model, 1, margin)), bands_(reduceLevel(model, 1, margin)) {}
+
+void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
+                            const RigRotation& rows) {
+  blocks_.choose(left, g);
+  blocks_.measure(right, g, rows);
+  noisy_ = blocks_.certainShare() < kMostlyCertain;
+  if (noisy_) {
+    bands_.choose(left, g);
+    bands_.measure(right, g, rows);
+    noisy_ = bands_.differByNoise();
+  }
+  collect();
+}
+
+void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
+  if (noisy_) bands_.measure(right, g, rows);
+  noisy_ = noisy_ && bands_.differByNoise();
+  if (!noisy_) blocks_.measure(right, g, rows);
+  collect();
+}
+
+void PairDisparities::collect() {
+  found_.clear();
+  informative_ = 0;
+  for (const BlockDisparity& disparity : noisy_ ? bands_.disparities() : blocks_.disparities()) {
+    informative_ += disparity.blocks;
+    if (disparity.alike) found_.push_back(disparity);
+  }
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "stereo/photometric/band_disparities.h"
+#include "stereo/photometric/block_disparities.h"
+
+namespace uav_landing {
+
+/// Disparities of the ground from a pair's images: by the blocks that show most, or, where most of these are
+/// hardly more than noise, by all of the ground's texture, faint as it is.
+class PairDisparities {
+ public:
+  /// margin: pixels that stay away from the edges of the model's masks, at least 4.
+  PairDisparities(const RigModel& model, int margin);
+
+  /// Takes blocks of a pair (mono8) and compares them with the right image warped by the plane g, 1/m. rows:
+  /// rotation that the vertical disparities of the images have.
+  void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+  /// Compares them on another plane. right: as for begin.
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+
+  /// Of the last comparison, those that the right image shows.
+  const std::vector<BlockDisparity>& found() const { return found_; }
+  /// Blocks that show more than noise, also those that the right image does not show.
+  int informative() const { return informative_; }
+  /// Whether neighbours have errors in common, so that they scatter less than they are wrong.
+  bool haveCommonErrors() const { return noisy_; }
+
+ private:
+  void collect();
+
+  BlockDisparities blocks_;
+  BandDisparities bands_;
+  bool noisy_ = false;  // by which of them
+  std::vector<BlockDisparity> found_;
+  int informative_ = 0;
+};
+
+}  // namespace uav_landing

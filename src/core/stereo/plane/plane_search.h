@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "uav_landing/parameters/stereo_depth_parameters.h"
+#include "uav_landing/stereo/plane_consensus.h"
+#include "uav_landing/stereo/stereo_level.h"
+
+namespace uav_landing {
+
+/// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
+Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
+                     const StereoDepthParameters& parameters, const PlaneLimits& limits);
+
+/// The same by a few of the corners found at full size, this factor larger than the level. Not found unless
+/// most of them agree.
+Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
+                             const PlaneLimits& limits);
+
+/// Plane with nothing known: full disparity range, windows sheared as for a range of heights, all peaks kept
+/// as candidates and resolved by consensus, so that repeated texture does not decide.
+Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
+                      const PlaneLimits& limits);
+
+}  // namespace uav_landing

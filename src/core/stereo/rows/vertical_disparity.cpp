@@ -1,0 +1,286 @@
+#include "uav_landing/stereo/vertical_disparity.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/interpolation.h"
+#include "base/multiversion.h"
+#include "base/thinned.h"
+#include "image/patch_refiner.h"
+#include "stereo/matching/shift_model.h"
+#include "stereo/rows/row_fit.h"
+#include "uav_landing/image/image_check.h"
+#include "uav_landing/image/patch_matching.h"
+#include "uav_landing/rig/rig_rotation.h"
+
+namespace uav_landing {
+namespace {
+
+using row_fit::RowFit;
+using row_fit::RowShift;
+
+constexpr size_t kSearched = 80;  // corners
+// Error of a row that its residuals do not show, pixels.
+constexpr double kStddevFloor = 0.04;
+constexpr double kMinScore = 0.8;
+
+// A corner with its disparity: as found along the row, or the plane's.
+struct PlacedCorner {
+  cv::Point corner;
+  double disparity;
+  bool matched;
+  std::optional<RowRefinement::Across> across;
+};
+
+std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Point>& corners,
+                                 const RowMatches& matches, const Eigen::Vector3d& g) {
+  std::vector<PlacedCorner> all;
+  all.reserve(corners.size());
+  size_t next = 0;
+  for (const cv::Point& corner : corners) {
+    const bool matched = next < matches.samples.size() && matches.samples[next].u == corner.x &&
+                         matches.samples[next].v == corner.y;
+    if (matched) {
+      all.push_back({corner, matches.samples[next].disparity, true, matches.across[next]});
+      ++next;
+    } else {
+      all.push_back({corner, rig.fb() * g.dot(rig.ray(corner.x, corner.y)), false, std::nullopt});
+    }
+  }
+  return all;
+}
+
+// Where the window around a corner is in the right image, looked for from start on.
+RowRefinement::Across lookAcross(const StereoLevel& level, const cv::Point& corner,
+                                 const Eigen::Vector2d& start, const Eigen::Matrix2d& warp, int radius) {
+  return RowRefinement::Across(refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius));
+}
+
+// Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
+bool isBeside(const RowRefinement::Across& found, double column) {
+  constexpr double kSigmas = 3, kPlane = 0.1;  // the latter pixels
+  const double off = found.place.x() - column;
+  return off * off > kSigmas * kSigmas * (found.column_variance + kPlane * kPlane);
+}
+
+// disparity: of the corner, as known so far. False when it has no row.
+bool addRow(const StereoRig& rig, const cv::Point& corner, double disparity,
+            const RowRefinement::Across& across, std::vector<RowShift>& rows) {
+  if (!across.found || across.score < kMinScore) return false;
+  RowShift row;
+  row.by << verticalDisparityByRotation(rig, across.place.x(), across.place.y()),
+      verticalDisparityByBaseline(rig, disparity, corner.y);
+  row.shift = across.place.y() - corner.y;
+  row.stddev = std::sqrt(across.row_variance + kStddevFloor * kStddevFloor);
+  row.below_centre = corner.y - rig.cy;
+  row.cell = imageCell(rig, corner.x, corner.y);
+  rows.push_back(row);
+  return true;
+}
+
+Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
+  const Expected<RowFit<3>> fit = row_fit::fitRows<3>(rows);
+  if (!fit) return tl::make_unexpected(fit.error());
+  return RigRotation{fit->value, fit->covariance + row_fit::sharedVariance<3>(rows, *fit), fit->count};
+}
+
+BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
+  // What a lens or texture leaves in a part of the image, the same for all corners there, pixels.
+  constexpr double kCommon = 0.1;
+  // 1 sigma of the right focal length over the left one after a calibration.
+  constexpr double kFocal = 0.0015;
+  const Expected<RowFit<5>> fit = row_fit::fitRows<5>(rows);
+  if (!fit) return {};
+  const Eigen::Matrix<double, 5, 5> covariance = fit->covariance + row_fit::sharedVariance<5>(rows, *fit) +
+                                                 row_fit::commonVariance<5>(rows, *fit, kCommon) +
+                                                 row_fit::focalVariance<5>(rows, *fit, kFocal);
+  return {fit->value.tail<2>(), covariance.bottomRightCorner<2, 2>()};
+}
+
+// A row of the image seen aslant: place down the image by column.
+struct SlantedRow {
+  double first, slope, lowest;  // at the first column, per column, largest place
+
+  double at(int column) const { return std::clamp(first + slope * column, 1.0, lowest); }
+};
+
+// Columns begin .. end - 1 of a slanted row between the same four rows of the image.
+UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stride, SlantedRow row, int whole,
+                                                 int begin, int end, float* __restrict out) {
+  const float *a = above, *b = a + stride, *c = b + stride, *d = c + stride;
+  for (int u = begin; u < end; ++u) {
+    const double place = row.first + row.slope * u;
+    const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
+    out[u] = parabolicBetween(a[u], b[u], c[u], d[u], static_cast<float>(inside - whole));
+  }
+}
+
+void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int end, float* out) {
+  const int whole = static_cast<int>(row.at(begin));
+  interpolateColumns(image.ptr<float>(whole - 1), image.step1(), row, whole, begin, end, out);
+}
+
+cv::Mat levelled(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& buffer) {
+  if (w.isZero()) return right;
+  straightenRows(rig, w, right, buffer);
+  return buffer;
+}
+
+}  // namespace
+
+VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
+                                               const std::vector<cv::Point>& corners,
+                                               const RowMatches& matches, const Eigen::Vector3d& g,
+                                               int window_radius) {
+  const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
+  const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, matches, g), kCornersAcross);
+  std::vector<RowShift> rows;
+  rows.reserve(some.size());
+  int matched = 0, again = 0;
+  for (const PlacedCorner& at : some) {
+    const Eigen::Vector2d start(at.corner.x - at.disparity - level.rig.principalOffset(), at.corner.y);
+    if (!at.matched && !isSet(level.right_mask, start.x(), at.corner.y)) continue;
+    const RowRefinement::Across across =
+        at.across ? *at.across : lookAcross(level, at.corner, start, warp, window_radius);
+    if (!at.matched && across.found && isBeside(across, start.x())) continue;
+    const bool found = addRow(level.rig, at.corner, at.disparity, across, rows);
+    matched += at.matched ? 1 : 0;
+    again += at.matched && found ? 1 : 0;
+  }
+  VerticalDisparities measured;
+  if (matched > 0) measured.agreement = static_cast<double>(again) / matched;
+  measured.rotation = fitRotation(rows);
+  measured.baseline = fitBaseline(rows);
+  return measured;
+}
+
+Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
+                                                const std::vector<cv::Point>& corners,
+                                                const Eigen::Vector3d& g, int window_radius) {
+  constexpr int kSteps = 4;  // a peak on the border does not count
+  const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
+  const std::vector<cv::Point> some = thinned(corners, kSearched);
+  PatchSearch search(level.left, level.right, window_radius);
+  std::vector<RowShift> rows;
+  rows.reserve(some.size());
+  for (const cv::Point& corner : some) {
+    const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+    const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
+    const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
+    if (best.found)
+      addRow(level.rig, corner, disparity, lookAcross(level, corner, best.position, warp, window_radius),
+             rows);
+  }
+  return fitRotation(rows);
+}
+
+double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) {
+  double largest = 0;
+  for (const double column : {0.0, rig.cx_right, rig.size.width - 1.0})
+    for (const double v : {0.0, rig.cy, rig.size.height - 1.0})
+      largest = std::max(largest, std::abs(verticalDisparityByRotation(rig, column, v).dot(w)));
+  return largest;
+}
+
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
+  constexpr int kSpan = 32;  // columns that mostly come from the same rows
+  out.create(right.size(), CV_32F);
+  for (int v = 0; v < out.rows; ++v) {
+    // Linear in the column.
+    const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
+    const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
+    const SlantedRow row{first, (last - first) / (out.cols - 1), right.rows - 2.001};
+    for (int begin = 0; begin < out.cols; begin += kSpan) {
+      const int end = std::min(begin + kSpan, out.cols);
+      const bool same = static_cast<int>(row.at(begin)) == static_cast<int>(row.at(end - 1));
+      const int step = same ? end - begin : 1;
+      for (int u = begin; u < end; u += step) interpolateRow(right, row, u, u + step, out.ptr<float>(v));
+    }
+  }
+}
+
+Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g) {
+  constexpr double kLean = 2.5;  // rms over simulated runways
+  const Eigen::Vector3d squares = residual.w.array().square() + residual.covariance.diagonal().array();
+  Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
+  leak(0, 0) = squares.x() * std::pow(kLean / rig.baseline, 2) + squares.z() * g.y() * g.y();
+  leak(2, 2) = squares.x() * g.y() * g.y();
+  return leak;
+}
+
+cv::Mat RowAlignment::level(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
+  return levelled(rig, taken_out_, right, buffer);
+}
+
+cv::Mat RowAlignment::levelAgain(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const {
+  return levelled(rig, levelled_by_, right, buffer);
+}
+
+bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                          const Eigen::Vector3d& g) {
+  if (!enabled_) return false;
+  const Expected<RigRotation> found = searchVerticalDisparities(level, corners, g, window_radius_);
+  return found && adapt(level.rig, *found);
+}
+
+RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
+                                             const RowMatches& matches, const Eigen::Vector3d& g) {
+  if (!enabled_) return {};
+  levelled_by_ = taken_out_;
+  const VerticalDisparities found = measureVerticalDisparities(level, corners, matches, g, window_radius_);
+  Measured measured{{}, found.baseline, found.agreement};
+  if (!found.rotation) return measured;
+  measured.rotation = *found.rotation;
+  measured.rotation.w += taken_out_;
+  average(measured.rotation);
+  adapt(level.rig, *found.rotation);
+  return measured;
+}
+
+void RowAlignment::average(const RigRotation& measured) {
+  constexpr double kKept = 0.95;  // of a pair's weight when the next comes
+  const Eigen::Matrix3d weight = measured.covariance.inverse();
+  information_ = kKept * information_ + weight;
+  right_ = kKept * right_ + weight * measured.w;
+  measured_ = true;
+}
+
+RigRotation RowAlignment::residual(const StereoRig& rig) const {
+  // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
+  constexpr double kBelievable = 16;
+  constexpr double kExact = 1e-6;  // pixels
+  const Eigen::Vector3d variances =
+      lensVariances(rig, row_bias_stddev_).array() + std::pow(std::max(bias_stddev_, kExact) / rig.fy, 2);
+  const Eigen::Matrix3d calibrated = variances.asDiagonal();
+  RigRotation residual{Eigen::Vector3d::Zero(), calibrated};
+  if (measured_) {
+    Eigen::Matrix3d prior = calibrated.inverse();
+    const Eigen::Matrix3d alone = information_.inverse();
+    const Eigen::Vector3d w = alone * right_;
+    const Eigen::Matrix3d both = alone + calibrated;
+    if (w.dot(both.inverse() * w) > kBelievable) prior.setZero();
+    residual.covariance = (information_ + prior).inverse();
+    residual.w = residual.covariance * right_;
+  }
+  if (measured_) residual.w -= levelled_by_;
+  return residual;
+}
+
+bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
+  // Vertical disparities up to this, pixels, do not disturb the matching along rows, and straightening costs
+  // time.
+  constexpr double kStraightEnough = 0.5;
+  // Chi-square (3 degrees of freedom) from which a residual is not noise.
+  constexpr double kSignificant = 30;
+  // What looks like ry is rather the residual of a lens, and no help where it is extrapolated to.
+  const Eigen::Vector3d w(residual.w.x(), 0, residual.w.z());
+  if (largestVerticalDisparity(rig, w) < kStraightEnough) return false;
+  if (residual.w.dot(residual.covariance.inverse() * residual.w) < kSignificant) return false;
+  taken_out_ += w;
+  if (largestVerticalDisparity(rig, taken_out_) < kStraightEnough) taken_out_.setZero();
+  return true;
+}
+
+}  // namespace uav_landing
