@@ -7,7 +7,7 @@
 
 #include "approach_messages.h"
 #include "message_fields.h"
-#include "uav_landing/results/result_check.h"
+#include "results/result_check.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "uav_landing/simulator/sensor.h"
+#include "simulator/sensor.h"
 
 namespace uav_landing {
 namespace {

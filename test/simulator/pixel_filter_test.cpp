@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/pixel_filter.h"
+#include "simulator/pixel_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/runway_surface.h"
+#include "simulator/runway_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
+#include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/block_disparity.h"
 #include "support/ground_renderer.h"
 #include "support/rigs.h"
-#include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
 namespace test {

@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
+#include "motion/ego_motion.h"
 #include "support/ground_renderer.h"
 #include "support/rigs.h"
-#include "uav_landing/motion/ego_motion.h"
 
 namespace uav_landing {
 namespace test {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/plane_limits.h"
+#include "stereo/photometric/direct_refinement.h"
 #include "support/ground_pair.h"
-#include "uav_landing/geometry/plane_limits.h"
-#include "uav_landing/stereo/direct_refinement.h"
 
 namespace uav_landing {
 namespace test {

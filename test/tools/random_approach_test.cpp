@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "uav_landing/simulator/ground_profile.h"
+#include "simulator/ground_profile.h"
 #include "uav_landing/simulator/trajectory.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "uav_landing/estimation/innovation_scatter.h"
+#include "estimation/innovation_scatter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/geometry/plane_limits.h"
+#include "geometry/plane_limits.h"
 
 #include <cmath>
 

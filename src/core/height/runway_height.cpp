@@ -1,4 +1,4 @@
-#include "uav_landing/height/runway_height.h"
+#include "height/runway_height.h"
 
 #include <algorithm>
 #include <cmath>

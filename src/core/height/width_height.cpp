@@ -1,9 +1,9 @@
-#include "uav_landing/height/width_height.h"
+#include "height/width_height.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "uav_landing/estimation/limits.h"
+#include "estimation/limits.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/image/image_check.h"
+#include "image/image_check.h"
 
 #include <algorithm>
 #include <cstdint>

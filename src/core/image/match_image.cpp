@@ -1,4 +1,4 @@
-#include "uav_landing/image/match_image.h"
+#include "image/match_image.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/image/patch_matching.h"
+#include "image/patch_matching.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "uav_landing/image/patch_refinement.h"
+#include "image/patch_refinement.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "image/patch_refinement.h"
 #include "image/window_planes.h"
-#include "uav_landing/image/patch_refinement.h"
 
 namespace uav_landing {
 

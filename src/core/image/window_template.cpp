@@ -1,4 +1,4 @@
-#include "uav_landing/image/window_template.h"
+#include "image/window_template.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/ground_memory.h"
+#include "integrity/ground_memory.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "estimation/robust.h"
-#include "uav_landing/integrity/height_memory.h"
+#include "integrity/height_memory.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/normal_doubt.h"
+#include "integrity/normal_doubt.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/recovery.h"
+#include "integrity/recovery.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/speed_memory.h"
+#include "integrity/speed_memory.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "uav_landing/height/attitude_filter.h"
+#include "height/attitude_filter.h"
 
 namespace uav_landing {
 

@@ -1,11 +1,11 @@
-#include "uav_landing/integrity/vanishing_memory.h"
+#include "integrity/vanishing_memory.h"
 
 #include <cmath>
 
 #include "estimation/aircraft.h"
+#include "estimation/limits.h"
 #include "geometry/rotation.h"
-#include "uav_landing/estimation/limits.h"
-#include "uav_landing/height/attitude_filter.h"
+#include "height/attitude_filter.h"
 
 namespace uav_landing {
 namespace {

@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "geometry/bias_variance.h"
 #include "rig/pair_skew.h"
-#include "uav_landing/rig/rig_rotation.h"
+#include "rig/rig_rotation.h"
 
 namespace uav_landing {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "height/attitude_filter.h"
 #include "landing/pair_input.h"
 #include "landing/surface_ahead.h"
-#include "uav_landing/height/attitude_filter.h"
+#include "rig/rig_rotation_filter.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
-#include "uav_landing/rig/rig_rotation_filter.h"
 
 namespace uav_landing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "integrity/vanishing_memory.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/vanishing_memory.h"
 
 namespace uav_landing {
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "height/reconstruction.h"
 #include "landing/height_measurement.h"
-#include "uav_landing/height/reconstruction.h"
 
 namespace uav_landing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "uav_landing/stereo/region_planes.h"
+#include "stereo/plane/region_planes.h"
 
 namespace uav_landing {
 namespace {

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "height/width_height.h"
+#include "integrity/stamp_scatter.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_track.h"
 #include "landing/measured_height.h"
 #include "landing/pair_input.h"
-#include "uav_landing/height/width_height.h"
-#include "uav_landing/integrity/stamp_scatter.h"
 #include "uav_landing/parameters/runway_parameters.h"
 
 namespace uav_landing {

@@ -2,12 +2,12 @@
 
 #include <optional>
 
+#include "estimation/innovation_scatter.h"
+#include "height/height_filter.h"
 #include "height/vertical_speed.h"
 #include "integrity/pair_tests.h"
+#include "integrity/solution_separation.h"
 #include "landing/measured_height.h"
-#include "uav_landing/estimation/innovation_scatter.h"
-#include "uav_landing/height/height_filter.h"
-#include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 
 namespace uav_landing {

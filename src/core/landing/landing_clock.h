@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "integrity/clock_watch.h"
 #include "landing/height_track.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/clock_watch.h"
 
 namespace uav_landing {
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "height/camera_twist.h"
+#include "integrity/ground_memory.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_track.h"
 #include "landing/measured_height.h"
 #include "landing/pair_input.h"
 #include "landing/pair_monitor.h"
 #include "landing/path_doubt.h"
-#include "uav_landing/integrity/ground_memory.h"
 
 namespace uav_landing {
 

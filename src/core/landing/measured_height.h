@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "height/common_variance.h"
+#include "integrity/solution_separation.h"
 #include "uav_landing/base/failure.h"
-#include "uav_landing/height/common_variance.h"
-#include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

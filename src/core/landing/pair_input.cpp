@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "integrity/test_catalogue.h"
-#include "uav_landing/results/result_check.h"
+#include "results/result_check.h"
 
 namespace uav_landing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "uav_landing/results/camera_step.h"
+#include "results/camera_step.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "integrity/pair_tests.h"
+#include "integrity/speed_memory.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_track.h"
 #include "landing/measured_height.h"
 #include "landing/pair_input.h"
 #include "landing/velocity_watch.h"
-#include "uav_landing/integrity/speed_memory.h"
-#include "uav_landing/rig/rig_change.h"
+#include "rig/rig_change.h"
 
 namespace uav_landing {
 

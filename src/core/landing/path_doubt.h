@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "integrity/normal_doubt.h"
 #include "integrity/pair_tests.h"
+#include "integrity/vanishing_memory.h"
 #include "landing/ground_estimate.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/normal_doubt.h"
-#include "uav_landing/integrity/vanishing_memory.h"
 
 namespace uav_landing {
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "integrity/recovery.h"
 #include "landing/height_track.h"
 #include "landing/pair_monitor.h"
-#include "uav_landing/integrity/recovery.h"
 
 namespace uav_landing {
 

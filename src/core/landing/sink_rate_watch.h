@@ -1,11 +1,11 @@
 #pragma once
 
+#include "integrity/height_memory.h"
 #include "integrity/pair_tests.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_track.h"
 #include "landing/measured_height.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/height_memory.h"
 
 namespace uav_landing {
 

@@ -2,11 +2,11 @@
 
 #include <optional>
 
+#include "integrity/ground_memory.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_track.h"
 #include "landing/measured_height.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/ground_memory.h"
 
 namespace uav_landing {
 

@@ -5,8 +5,8 @@
 
 #include "estimation/aircraft.h"
 #include "geometry/rotation.h"
-#include "uav_landing/height/attitude_filter.h"
-#include "uav_landing/motion/approach_angle.h"
+#include "height/attitude_filter.h"
+#include "motion/approach_angle.h"
 
 namespace uav_landing {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "integrity/pair_tests.h"
+#include "integrity/velocity_memory.h"
 #include "landing/pair_input.h"
-#include "uav_landing/integrity/velocity_memory.h"
 
 namespace uav_landing {
 

@@ -7,7 +7,7 @@
 #include "base/multiversion.h"
 #include "base/order_statistic.h"
 #include "estimation/robust.h"
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing::line_fit {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/lanes.h"
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 /// Straight lines through edges seen at single rows or columns of an image.
 namespace uav_landing::line_fit {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "lines/edge_picture.h"
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing {
 

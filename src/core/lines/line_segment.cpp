@@ -1,4 +1,4 @@
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing {
 

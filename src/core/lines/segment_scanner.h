@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image_memory.h"
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing {
 

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing {
 

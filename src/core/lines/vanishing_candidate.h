@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "uav_landing/lines/line_segment.h"
+#include "lines/line_segment.h"
 
 namespace uav_landing {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lines/vanishing_lines.h"
-#include "uav_landing/lines/vanishing_point.h"
+#include "lines/vanishing_point.h"
 
 namespace uav_landing {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uav_landing/estimation/limits.h"
+#include "estimation/limits.h"
 
 namespace uav_landing {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "lines/line_segment.h"
 #include "lines/vanishing_candidate.h"
-#include "uav_landing/lines/line_segment.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "uav_landing/lines/vanishing_point.h"
+#include "lines/vanishing_point.h"
 
 #include <Eigen/LU>
 #include <algorithm>

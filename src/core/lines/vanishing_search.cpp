@@ -1,15 +1,15 @@
-#include "uav_landing/lines/vanishing_search.h"
+#include "lines/vanishing_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "base/text.h"
+#include "estimation/limits.h"
 #include "lines/vanishing_chance.h"
 #include "lines/vanishing_consensus.h"
 #include "lines/vanishing_fit.h"
 #include "lines/vanishing_lines.h"
-#include "uav_landing/estimation/limits.h"
 
 namespace uav_landing {
 

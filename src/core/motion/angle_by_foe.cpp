@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "uav_landing/motion/approach_angle.h"
-#include "uav_landing/motion/focus_of_expansion.h"
+#include "motion/approach_angle.h"
+#include "motion/focus_of_expansion.h"
 
 namespace uav_landing {
 namespace {

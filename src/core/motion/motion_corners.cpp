@@ -1,7 +1,7 @@
 #include "motion/motion_corners.h"
 
-#include "uav_landing/geometry/half_plane.h"
-#include "uav_landing/image/corners.h"
+#include "geometry/half_plane.h"
+#include "image/corners.h"
 
 namespace uav_landing {
 

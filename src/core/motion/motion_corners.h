@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "uav_landing/motion/motion_tracker.h"
+#include "motion/motion_tracker.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "motion/motion_state.h"
+#include "motion/temporal_match.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/motion/temporal_match.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "uav_landing/motion/motion_tracker.h"
+#include "motion/motion_tracker.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -8,9 +8,9 @@
 #include "base/text.h"
 #include "base/thinned.h"
 #include "geometry/rotation.h"
-#include "uav_landing/image/corners.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/motion/approach_angle.h"
+#include "image/corners.h"
+#include "image/image_check.h"
+#include "motion/approach_angle.h"
 
 namespace uav_landing {
 namespace {

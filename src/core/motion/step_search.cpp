@@ -1,4 +1,4 @@
-#include "uav_landing/motion/step_search.h"
+#include "motion/step_search.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "uav_landing/motion/temporal_matching.h"
+#include "motion/temporal_matching.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,10 +8,10 @@
 #include "base/order_statistic.h"
 #include "base/touch_ahead.h"
 #include "image/clipping.h"
+#include "image/image_check.h"
+#include "image/patch_matching.h"
 #include "image/patch_refiner.h"
 #include "motion/common_gain.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/image/patch_matching.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/rig/rig_rotation.h"
+#include "rig/rig_rotation.h"
 
 #include <Eigen/LU>
 #include <algorithm>

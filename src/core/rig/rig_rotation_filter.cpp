@@ -1,4 +1,4 @@
-#include "uav_landing/rig/rig_rotation_filter.h"
+#include "rig/rig_rotation_filter.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "uav_landing/rig/rig_rotation.h"
+#include "rig/rig_rotation.h"
 
 namespace uav_landing {
 namespace {

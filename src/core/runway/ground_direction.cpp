@@ -1,12 +1,12 @@
-#include "uav_landing/runway/ground_direction.h"
+#include "runway/ground_direction.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "uav_landing/estimation/limits.h"
-#include "uav_landing/runway/ground_edges.h"
+#include "estimation/limits.h"
+#include "runway/ground_edges.h"
 
 namespace uav_landing {
 namespace {

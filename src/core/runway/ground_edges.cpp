@@ -1,4 +1,4 @@
-#include "uav_landing/runway/ground_edges.h"
+#include "runway/ground_edges.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

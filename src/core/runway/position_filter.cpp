@@ -1,13 +1,13 @@
-#include "uav_landing/runway/position_filter.h"
+#include "runway/position_filter.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "estimation/aircraft.h"
+#include "estimation/limits.h"
 #include "geometry/rotation.h"
-#include "uav_landing/estimation/limits.h"
-#include "uav_landing/height/attitude_filter.h"
+#include "height/attitude_filter.h"
 
 namespace uav_landing {
 namespace {

@@ -1,6 +1,6 @@
 #include "runway/right_view.h"
 
-#include "uav_landing/rig/rig_rotation.h"
+#include "rig/rig_rotation.h"
 
 namespace uav_landing {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "lines/line_segment.h"
+#include "runway/seen_ground.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/lines/line_segment.h"
-#include "uav_landing/runway/seen_ground.h"
 
 namespace uav_landing {
 

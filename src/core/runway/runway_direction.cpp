@@ -1,4 +1,4 @@
-#include "uav_landing/runway/runway_direction.h"
+#include "runway/runway_direction.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "base/image_memory.h"
+#include "estimation/limits.h"
+#include "geometry/half_plane.h"
 #include "lines/stripe_line.h"
+#include "lines/vanishing_search.h"
+#include "runway/ground_direction.h"
 #include "runway/right_view.h"
-#include "uav_landing/estimation/limits.h"
-#include "uav_landing/geometry/half_plane.h"
-#include "uav_landing/lines/vanishing_search.h"
-#include "uav_landing/runway/ground_direction.h"
 
 namespace uav_landing {
 namespace {

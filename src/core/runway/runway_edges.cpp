@@ -1,13 +1,13 @@
-#include "uav_landing/runway/runway_edges.h"
+#include "runway/runway_edges.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "base/text.h"
+#include "estimation/limits.h"
 #include "runway/centre_columns.h"
 #include "runway/runway_fit.h"
-#include "uav_landing/estimation/limits.h"
 
 namespace uav_landing {
 namespace {

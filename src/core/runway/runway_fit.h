@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "uav_landing/runway/ground_edges.h"
-#include "uav_landing/runway/runway_cross_section.h"
+#include "runway/ground_edges.h"
+#include "runway/runway_cross_section.h"
 
 namespace uav_landing {
 

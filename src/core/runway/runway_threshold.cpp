@@ -1,4 +1,4 @@
-#include "uav_landing/runway/runway_threshold.h"
+#include "runway/runway_threshold.h"
 
 #include <algorithm>
 #include <cmath>

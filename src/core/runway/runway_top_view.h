@@ -4,9 +4,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "runway/ground_edges.h"
+#include "runway/runway_cross_section.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/runway/ground_edges.h"
-#include "uav_landing/runway/runway_cross_section.h"
 
 namespace uav_landing {
 

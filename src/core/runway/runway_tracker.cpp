@@ -1,11 +1,11 @@
-#include "uav_landing/runway/runway_tracker.h"
+#include "runway/runway_tracker.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.h"
-#include "uav_landing/estimation/limits.h"
-#include "uav_landing/runway/runway_threshold.h"
+#include "estimation/limits.h"
+#include "runway/runway_threshold.h"
 
 namespace uav_landing {
 namespace {

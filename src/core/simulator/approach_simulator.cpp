@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
-#include "uav_landing/simulator/renderer.h"
-#include "uav_landing/simulator/sensor.h"
+#include "simulator/renderer.h"
+#include "simulator/sensor.h"
 
 namespace uav_landing {
 

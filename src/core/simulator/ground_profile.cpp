@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/ground_profile.h"
+#include "simulator/ground_profile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/noise_tile.h"
+#include "simulator/noise_tile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/objects.h"
+#include "simulator/objects.h"
 
 #include <algorithm>
 #include <array>

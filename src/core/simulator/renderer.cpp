@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/renderer.h"
+#include "simulator/renderer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/scene.h"
+#include "simulator/scene.h"
 
 #include <algorithm>
 #include <cmath>

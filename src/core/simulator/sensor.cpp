@@ -1,4 +1,4 @@
-#include "uav_landing/simulator/sensor.h"
+#include "simulator/sensor.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include "image/image_check.h"
 #include "motion/angle_by_foe.h"
 #include "motion/angle_normal.h"
 #include "motion/motion_corners.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/motion/motion_tracker.h"
-#include "uav_landing/results/result_check.h"
-#include "uav_landing/runway/runway_direction.h"
-#include "uav_landing/runway/runway_tracker.h"
+#include "motion/motion_tracker.h"
+#include "results/result_check.h"
+#include "runway/runway_direction.h"
+#include "runway/runway_tracker.h"
 
 namespace uav_landing {
 namespace {

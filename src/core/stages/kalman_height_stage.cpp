@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "height/attitude.h"
+#include "height/runway_height.h"
 #include "landing/ground_estimate.h"
 #include "landing/heading.h"
 #include "landing/height_measurement.h"
@@ -17,8 +18,7 @@
 #include "landing/recovery_wait.h"
 #include "landing/sink_rate_watch.h"
 #include "landing/surface_below.h"
-#include "uav_landing/height/runway_height.h"
-#include "uav_landing/runway/position_filter.h"
+#include "runway/position_filter.h"
 
 namespace uav_landing {
 namespace {

@@ -4,19 +4,19 @@
 #include <string>
 #include <utility>
 
+#include "image/corners.h"
+#include "image/image_check.h"
+#include "image/match_image.h"
 #include "stereo/matching/corner_matcher.h"
+#include "stereo/matching/corner_matching.h"
+#include "stereo/photometric/direct_refinement.h"
 #include "stereo/plane/corner_plane.h"
+#include "stereo/plane/plane_fit.h"
 #include "stereo/plane/plane_search.h"
 #include "stereo/plane/plane_tracker.h"
-#include "uav_landing/image/corners.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/image/match_image.h"
-#include "uav_landing/stereo/corner_matching.h"
-#include "uav_landing/stereo/direct_refinement.h"
-#include "uav_landing/stereo/plane_fit.h"
-#include "uav_landing/stereo/surface_profile.h"
-#include "uav_landing/stereo/surface_variance.h"
-#include "uav_landing/stereo/vertical_disparity.h"
+#include "stereo/rows/vertical_disparity.h"
+#include "stereo/surface/surface_profile.h"
+#include "stereo/surface/surface_variance.h"
 
 namespace uav_landing {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "uav_landing/simulator/ground_profile.h"
+#include "simulator/ground_profile.h"
 
 namespace uav_landing {
 namespace {

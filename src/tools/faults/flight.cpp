@@ -7,8 +7,8 @@
 #include "camera_info.h"
 #include "datasets/dataset.h"
 #include "simulation/random_approach.h"
+#include "simulator/ground_profile.h"
 #include "uav_landing/simulator/attitude.h"
-#include "uav_landing/simulator/ground_profile.h"
 
 namespace uav_landing {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "simulator/ground_profile.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/results/truth.h"
 #include "uav_landing/simulator/approach_simulator.h"
-#include "uav_landing/simulator/ground_profile.h"
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {

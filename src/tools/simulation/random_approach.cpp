@@ -4,9 +4,9 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "uav_landing/rig/rig_rotation.h"
-#include "uav_landing/simulator/ground_profile.h"
-#include "uav_landing/stereo/surface_profile.h"
+#include "rig/rig_rotation.h"
+#include "simulator/ground_profile.h"
+#include "stereo/surface/surface_profile.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/base/steadiness.h"
+#include "base/steadiness.h"
 
 #include <gtest/gtest.h>
 

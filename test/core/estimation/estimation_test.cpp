@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "estimation/limits.h"
 #include "estimation/ransac.h"
 #include "estimation/robust.h"
-#include "uav_landing/estimation/limits.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/geometry/half_plane.h"
+#include "geometry/half_plane.h"
 
 #include <gtest/gtest.h>
 

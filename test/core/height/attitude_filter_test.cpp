@@ -1,4 +1,4 @@
-#include "uav_landing/height/attitude_filter.h"
+#include "height/attitude_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/height/height_filter.h"
+#include "height/height_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/height/reconstruction.h"
+#include "height/reconstruction.h"
 
 #include <gtest/gtest.h>
 

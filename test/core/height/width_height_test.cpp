@@ -1,4 +1,4 @@
-#include "uav_landing/height/width_height.h"
+#include "height/width_height.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/image/corners.h"
+#include "image/corners.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/image/image_check.h"
+#include "image/image_check.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "image/match_image.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/geometry/ground_plane.h"
-#include "uav_landing/image/match_image.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/image/patch_matching.h"
+#include "image/patch_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "image/match_image.h"
 #include "image/patch_refiner.h"
 #include "support/random_texture.h"
-#include "uav_landing/image/match_image.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/clock_watch.h"
+#include "integrity/clock_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/ground_memory.h"
+#include "integrity/ground_memory.h"
 
 #include <gtest/gtest.h>
 

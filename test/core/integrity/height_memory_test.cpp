@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/height_memory.h"
+#include "integrity/height_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "integrity/solution_separation.h"
 #include "support/documentation.h"
-#include "uav_landing/integrity/solution_separation.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/solution_separation.h"
+#include "integrity/solution_separation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/stamp_scatter.h"
+#include "integrity/stamp_scatter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/vanishing_memory.h"
+#include "integrity/vanishing_memory.h"
 
 #include <gtest/gtest.h>
 

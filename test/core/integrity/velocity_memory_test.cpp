@@ -1,4 +1,4 @@
-#include "uav_landing/integrity/velocity_memory.h"
+#include "integrity/velocity_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "rig/rig_rotation.h"
 #include "support/degree.h"
 #include "support/ground_matches.h"
 #include "support/landing_parts.h"
-#include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/lines/heading_gate.h"
+#include "lines/heading_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/lines/line_segments.h"
+#include "lines/line_segments.h"
 
 #include <gtest/gtest.h>
 

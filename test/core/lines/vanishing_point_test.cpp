@@ -1,4 +1,4 @@
-#include "uav_landing/lines/vanishing_point.h"
+#include "lines/vanishing_point.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "lines/vanishing_search.h"
 #include "uav_landing/geometry/ground_plane.h"
-#include "uav_landing/lines/vanishing_search.h"
 
 namespace uav_landing {
 namespace {

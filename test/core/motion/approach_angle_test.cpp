@@ -1,4 +1,4 @@
-#include "uav_landing/motion/approach_angle.h"
+#include "motion/approach_angle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/motion/ego_motion.h"
+#include "motion/ego_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/motion/focus_of_expansion.h"
+#include "motion/focus_of_expansion.h"
 
 #include <gtest/gtest.h>
 

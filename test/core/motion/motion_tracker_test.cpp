@@ -1,4 +1,4 @@
-#include "uav_landing/motion/motion_tracker.h"
+#include "motion/motion_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "image/corners.h"
 #include "support/counting_allocator.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/image/corners.h"
 
 namespace uav_landing {
 namespace {

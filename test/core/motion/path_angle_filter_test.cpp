@@ -1,4 +1,4 @@
-#include "uav_landing/motion/path_angle_filter.h"
+#include "motion/path_angle_filter.h"
 
 #include <gtest/gtest.h>
 

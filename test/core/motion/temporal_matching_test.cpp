@@ -1,4 +1,4 @@
-#include "uav_landing/motion/temporal_matching.h"
+#include "motion/temporal_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
+#include "image/corners.h"
 #include "image/patch_refiner.h"
 #include "support/ground_renderer.h"
 #include "support/random_texture.h"
-#include "uav_landing/image/corners.h"
 
 namespace uav_landing {
 namespace {

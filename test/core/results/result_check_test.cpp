@@ -1,4 +1,4 @@
-#include "uav_landing/results/result_check.h"
+#include "results/result_check.h"
 
 #include <gtest/gtest.h>
 

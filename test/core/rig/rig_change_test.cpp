@@ -1,4 +1,4 @@
-#include "uav_landing/rig/rig_change.h"
+#include "rig/rig_change.h"
 
 #include <gtest/gtest.h>
 

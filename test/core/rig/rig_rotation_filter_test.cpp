@@ -1,4 +1,4 @@
-#include "uav_landing/rig/rig_rotation_filter.h"
+#include "rig/rig_rotation_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway/ground_direction.h"
+#include "runway/ground_direction.h"
 
 #include <gtest/gtest.h>
 

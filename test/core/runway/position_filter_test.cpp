@@ -1,4 +1,4 @@
-#include "uav_landing/runway/position_filter.h"
+#include "runway/position_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway/runway_direction.h"
+#include "runway/runway_direction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/runway/runway_edges.h"
+#include "runway/runway_edges.h"
 
 #include <gtest/gtest.h>
 

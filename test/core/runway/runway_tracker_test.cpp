@@ -1,4 +1,4 @@
-#include "uav_landing/runway/runway_tracker.h"
+#include "runway/runway_tracker.h"
 
 #include <gtest/gtest.h>
 

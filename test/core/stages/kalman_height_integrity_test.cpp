@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "integrity/test_catalogue.h"
+#include "rig/rig_rotation.h"
 #include "support/ground_matches.h"
 #include "support/rigs.h"
-#include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/stages/kalman_height_stage.h"
 
 namespace uav_landing {

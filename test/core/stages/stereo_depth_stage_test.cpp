@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "image/image_check.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/image/image_check.h"
 
 namespace uav_landing {
 namespace {

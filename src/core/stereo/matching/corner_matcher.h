@@ -4,8 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "stereo/matching/corner_matching.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
-#include "uav_landing/stereo/corner_matching.h"
 
 namespace uav_landing {
 

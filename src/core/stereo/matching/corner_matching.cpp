@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/corner_matching.h"
+#include "stereo/matching/corner_matching.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 #include "base/image_memory.h"
 #include "base/thinned.h"
 #include "base/touch_ahead.h"
+#include "geometry/half_plane.h"
+#include "image/corners.h"
+#include "image/image_check.h"
+#include "stereo/matching/row_matching.h"
+#include "stereo/matching/row_refinement.h"
 #include "stereo/matching/shift_model.h"
-#include "uav_landing/geometry/half_plane.h"
-#include "uav_landing/image/corners.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/stereo/row_matching.h"
-#include "uav_landing/stereo/row_refinement.h"
 
 namespace uav_landing {
 namespace {

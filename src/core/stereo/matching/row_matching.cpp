@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/row_matching.h"
+#include "stereo/matching/row_matching.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/row_refinement.h"
+#include "stereo/matching/row_refinement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "stereo/rows/row_warp.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/stereo/row_warp.h"
 
 namespace uav_landing {
 

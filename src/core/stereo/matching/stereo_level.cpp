@@ -1,10 +1,10 @@
-#include "uav_landing/stereo/stereo_level.h"
+#include "stereo/matching/stereo_level.h"
 
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/image/match_image.h"
+#include "image/image_check.h"
+#include "image/match_image.h"
 
 namespace uav_landing {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "uav_landing/stereo/vertical_disparity.h"
+#include "stereo/rows/vertical_disparity.h"
 
 namespace uav_landing {
 namespace {

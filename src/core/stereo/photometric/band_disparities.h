@@ -3,12 +3,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "rig/rig_rotation.h"
+#include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/aligned_rows.h"
 #include "stereo/photometric/band_evidence.h"
 #include "stereo/photometric/block_disparity.h"
 #include "stereo/photometric/texture_bands.h"
-#include "uav_landing/rig/rig_rotation.h"
-#include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
 

@@ -3,9 +3,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/block_disparity.h"
 #include "stereo/photometric/photometric_blocks.h"
-#include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "results/disparity_sample.h"
+#include "rig/rig_rotation.h"
 #include "stereo/matching/shift_model.h"
 #include "stereo/photometric/shift_matching.h"
-#include "uav_landing/results/disparity_sample.h"
-#include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
 

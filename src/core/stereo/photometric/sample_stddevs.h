@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "results/disparity_sample.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/results/disparity_sample.h"
 
 namespace uav_landing {
 

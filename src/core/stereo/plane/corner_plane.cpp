@@ -6,7 +6,7 @@
 #include "geometry/bias_variance.h"
 #include "image/image_cells.h"
 #include "image/window_overlap.h"
-#include "uav_landing/stereo/plane_consensus.h"
+#include "stereo/plane/plane_consensus.h"
 
 namespace uav_landing {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "uav_landing/stereo/corner_matching.h"
-#include "uav_landing/stereo/plane_fit.h"
+#include "stereo/matching/corner_matching.h"
+#include "stereo/plane/plane_fit.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/plane_consensus.h"
+#include "stereo/plane/plane_consensus.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

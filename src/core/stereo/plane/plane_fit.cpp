@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/plane_fit.h"
+#include "stereo/plane/plane_fit.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

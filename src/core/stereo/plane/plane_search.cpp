@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/thinned.h"
+#include "image/corners.h"
+#include "image/image_check.h"
+#include "image/match_image.h"
+#include "stereo/matching/corner_matching.h"
+#include "stereo/matching/row_matching.h"
 #include "stereo/matching/shift_model.h"
-#include "uav_landing/image/corners.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/image/match_image.h"
-#include "uav_landing/stereo/corner_matching.h"
-#include "uav_landing/stereo/row_matching.h"
 
 namespace uav_landing {
 namespace {

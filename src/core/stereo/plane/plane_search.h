@@ -4,9 +4,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "stereo/matching/stereo_level.h"
+#include "stereo/plane/plane_consensus.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
-#include "uav_landing/stereo/plane_consensus.h"
-#include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereo/matching/corner_matching.h"
 #include "stereo/matching/shift_model.h"
 #include "stereo/plane/plane_search.h"
-#include "uav_landing/stereo/corner_matching.h"
 
 namespace uav_landing {
 namespace {

@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "base/steadiness.h"
+#include "geometry/plane_limits.h"
+#include "image/match_image.h"
 #include "stereo/matching/corner_matcher.h"
-#include "uav_landing/base/steadiness.h"
+#include "stereo/matching/stereo_level.h"
 #include "uav_landing/base/timings.h"
-#include "uav_landing/geometry/plane_limits.h"
-#include "uav_landing/image/match_image.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 #include "uav_landing/results/stage_results.h"
-#include "uav_landing/stereo/stereo_level.h"
 
 namespace uav_landing {
 

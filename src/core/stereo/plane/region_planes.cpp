@@ -1,9 +1,9 @@
-#include "uav_landing/stereo/region_planes.h"
+#include "stereo/plane/region_planes.h"
 
 #include <algorithm>
 
 #include "base/order_statistic.h"
-#include "uav_landing/stereo/plane_fit.h"
+#include "stereo/plane/plane_fit.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/vertical_disparity.h"
+#include "stereo/rows/vertical_disparity.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -8,12 +8,12 @@
 #include "base/interpolation.h"
 #include "base/multiversion.h"
 #include "base/thinned.h"
+#include "image/image_check.h"
+#include "image/patch_matching.h"
 #include "image/patch_refiner.h"
+#include "rig/rig_rotation.h"
 #include "stereo/matching/shift_model.h"
 #include "stereo/rows/row_fit.h"
-#include "uav_landing/image/image_check.h"
-#include "uav_landing/image/patch_matching.h"
-#include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "uav_landing/stereo/plane_fit.h"
+#include "stereo/plane/plane_fit.h"
 
 namespace uav_landing {
 

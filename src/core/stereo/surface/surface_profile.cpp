@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/surface_profile.h"
+#include "stereo/surface/surface_profile.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

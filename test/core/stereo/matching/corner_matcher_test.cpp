@@ -7,8 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "image/corners.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/image/corners.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {

@@ -1,13 +1,13 @@
-#include "uav_landing/stereo/row_matching.h"
+#include "stereo/matching/row_matching.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "image/match_image.h"
+#include "stereo/matching/row_refinement.h"
 #include "support/random_texture.h"
-#include "uav_landing/image/match_image.h"
-#include "uav_landing/stereo/row_refinement.h"
 
 namespace uav_landing {
 namespace {

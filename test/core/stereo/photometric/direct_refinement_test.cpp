@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/direct_refinement.h"
+#include "stereo/photometric/direct_refinement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/plane_fit.h"
+#include "stereo/plane/plane_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "stereo/plane/plane_consensus.h"
+#include "stereo/surface/surface_variance.h"
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/stereo/plane_consensus.h"
-#include "uav_landing/stereo/surface_variance.h"
 
 namespace uav_landing {
 namespace {

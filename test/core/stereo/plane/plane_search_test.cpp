@@ -6,10 +6,10 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "image/match_image.h"
+#include "stereo/matching/corner_matching.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/image/match_image.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
-#include "uav_landing/stereo/corner_matching.h"
 
 namespace uav_landing {
 namespace {

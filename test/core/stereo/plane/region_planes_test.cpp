@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/region_planes.h"
+#include "stereo/plane/region_planes.h"
 
 #include <gtest/gtest.h>
 

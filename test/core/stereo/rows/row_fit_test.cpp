@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "rig/rig_rotation.h"
 #include "support/consistency.h"
 #include "support/rigs.h"
-#include "uav_landing/rig/rig_rotation.h"
 
 namespace uav_landing::row_fit {
 namespace {

@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/vertical_disparity.h"
+#include "stereo/rows/vertical_disparity.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "image/match_image.h"
+#include "rig/rig_rotation.h"
+#include "stereo/matching/corner_matching.h"
 #include "support/consistency.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/image/match_image.h"
-#include "uav_landing/rig/rig_rotation.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
-#include "uav_landing/stereo/corner_matching.h"
 
 namespace uav_landing {
 namespace {

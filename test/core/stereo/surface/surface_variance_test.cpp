@@ -1,4 +1,4 @@
-#include "uav_landing/stereo/surface_variance.h"
+#include "stereo/surface/surface_variance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "lines/heading_gate.h"
+#include "lines/line_segment.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
+
+namespace uav_landing {
+
+/// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
+/// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:
+/// mono8, 255 where lines are looked for (already eroded). gate: only lines that pass it are fitted; the
+/// others come after them and stay as they were found, good to half a pixel. Null: all are fitted.
+/// Deterministic. Returns an empty list when there are none.
+std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
+                                   const ApproachAngleParameters& parameters,
+                                   const HeadingGate* gate = nullptr);
+
+/// Those of these lines that are there and pass the gate, fitted to the gradient along them as above.
+/// expected: off by up to 2 px; they may reach beyond the image.
+std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
+                                       const std::vector<RoughSegment>& expected,
+                                       const ApproachAngleParameters& parameters, const HeadingGate& gate);
+
+}  // namespace uav_landing

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <deque>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "image/match_image.h"
+#include "motion/ego_motion.h"
+#include "motion/path_angle_filter.h"
+#include "motion/step_search.h"
+#include "motion/temporal_matching.h"
+#include "uav_landing/base/timings.h"
+#include "uav_landing/image/rectification.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
+
+namespace uav_landing {
+
+/// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
+/// Keeps the images of that time, the motion since each of them, and the last step as the next prediction.
+class MotionTracker {
+ public:
+  MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters);
+
+  struct Result {
+    ApproachAngleResult::Motion step, window;
+    std::optional<MotionEstimate> step_estimate;
+    std::optional<PathAngleFilter::Measurement> step_angle, window_angle;  ///< as far as they have one
+  };
+
+  /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
+  /// units of the height. imu: its rotation since the frame before leads the search, helps where the corners
+  /// leave the rotation uncertain, and makes up for half of the corners; one that contradicts them is left
+  /// out. Without a ground normal call skip().
+  Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
+                 const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
+                 Timings& timings, const AttitudePrior& imu = {});
+  /// Keeps the image for the next step although nothing can be said about the motion to it.
+  void skip(double stamp, const cv::Mat& left);
+  /// The image is the very one of the call before: nothing of the motion since, the next step is from when
+  /// the image first came. The window's motion is what it was, its angle less certain the longer that was
+  /// ago, and after angle_window, or with a stamp before it, there is none.
+  Result repeat(double stamp) const;
+  void reset();
+  /// Corners followed to the frame before by the last process(), those that contradict the motion included.
+  const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
+
+ private:
+  struct Frame {
+    double stamp = 0;
+    MatchImage image;
+    std::optional<CameraMotion> since;  ///< motion from then to now, when known
+  };
+
+  using Corners = std::vector<TrackedCorner>;
+  Frame takeFrame(double stamp, const cv::Mat& left);
+  void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                    const Corners& corners, const RotationPrior* rotation, Result& result);
+  std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
+  void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
+                      const Corners& corners, Result& result);
+  void takeMemory(const Frame& now);
+  void advance(Frame&& now, const Result& result);
+  void smoothAngle(double stamp, Result& result);
+  ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
+                                       size_t matches,
+                                       std::optional<PathAngleFilter::Measurement>& angle) const;
+
+  StereoRig rig_;
+  cv::Mat mask_;  // left, eroded by the window
+  ApproachAngleParameters parameters_;
+  StepSearch search_;
+  std::deque<Frame> past_;         // oldest first
+  std::vector<MatchImage> spare_;  // their memory is used again
+  cv::Mat spare_coarse_;
+  std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
+  CornerTextures textures_;                                   // of the image now
+  std::optional<CameraMotion> last_step_;
+  double last_duration_ = 0;  // s, of it
+  double last_sink_ = 0;      // in it, in heights at its end
+  PathAngleFilter filter_;
+  ApproachAngleResult::Motion last_window_;
+  double last_rate_stddev_ = 0;  // of its angle, rad/s
+};
+
+}  // namespace uav_landing

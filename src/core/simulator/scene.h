@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "simulator/noise_tile.h"
+#include "simulator/runway_surface.h"
+#include "uav_landing/simulator/parameters.h"
+
+namespace uav_landing {
+
+/// How bright the ground and the sky are, in grey levels, averaged over what one sample sees. The ground is
+/// the plane z = 0 of the runway frame.
+class Scene {
+ public:
+  Scene(const SimulatedRunwayParameters& runway, const SimulatedSurfaceParameters& surface, uint64_t seed);
+
+  RunwaySurface::Cover cover(const RunwaySurface::Patch& patch) const { return runway_.cover(patch); }
+  /// A patch of ground with this cover at this distance from the camera (for the haze).
+  float ground(const RunwaySurface::Patch& patch, const RunwaySurface::Cover& cover, float distance) const;
+
+  /// Sky in a unit direction of the runway frame; extent: angle the sample covers, rad.
+  float sky(const Eigen::Vector3f& direction, float extent) const;
+
+ private:
+  /// A surface's texture at three scales, mean 0, each with variance 1 before averaging.
+  static float texture(const NoiseTile& tile, const RunwaySurface::Patch& patch, float grain);
+  float tyreMarks(const RunwaySurface::Patch& patch) const;
+
+  RunwaySurface runway_;
+  SimulatedSurfaceParameters surface_;
+  float tyre_marks_, touchdown_, touchdown_length_, tyre_half_width_;
+  NoiseTile runway_tile_, grass_tile_, cloud_tile_;
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "image/window_template.h"
+#include "stereo/rows/row_warp.h"
+#include "uav_landing/parameters/stereo_depth_parameters.h"
+
+namespace uav_landing {
+
+/// A place along the row that fits.
+struct RowCandidate {
+  double position = 0;  ///< column in the other image
+  double score = 0;     ///< correlation, 1 at best
+};
+
+/// Similarities of one window along a row of the other image.
+class RowSearch {
+ public:
+  /// Both images CV_32F of the same size; they must outlive the search.
+  RowSearch(const cv::Mat& reference, const cv::Mat& other, int radius, MatchingCost cost);
+
+  /// Scores the positions centre + k scale, k = -steps..steps, for the window around (u, v). False when the
+  /// window leaves the reference image or has no contrast.
+  bool run(int u, int v, double centre, int steps, const RowWarp& warp);
+
+  /// Best peak of the last run. Its score is -1 when there is none. The second best peak that is more than
+  /// two steps away goes to second_score.
+  RowCandidate best(double* second_score) const;
+  /// All local maxima of at least min_score, best first, at most count.
+  std::vector<RowCandidate> peaks(double min_score, int count) const;
+
+ private:
+  /// Fills the strip with the values around all positions, less the template's mean; NaN outside the image,
+  /// any behind the width.
+  void resample(int v, int width, const RowWarp& warp);
+  void scoreAll();
+  RowCandidate interpolated(int index) const;
+
+  const cv::Mat& reference_;
+  const cv::Mat& other_;
+  int radius_;
+  MatchingCost cost_;
+  int steps_ = 0;
+  double centre_ = 0, scale_ = 1;
+  WindowTemplate template_;
+  int padded_ = 0, stride_ = 0;  // positions filled up to whole blocks; of the rows in the strip
+  std::vector<float> strip_;     // resampled rows of the other image
+  std::vector<float> column_sums_, column_squares_;
+  std::vector<float> scores_;
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "image/patch_refinement.h"
+#include "stereo/rows/row_warp.h"
+
+namespace uav_landing {
+
+/// Sub-pixel position by Gauss-Newton over (position, gain, offset): reference = gain other(warp) + offset.
+struct RowRefinement {
+  bool converged = false;
+  double position = 0;
+  double stddev = 0;  ///< 1 sigma of the position from residuals and gradient, pixels
+  double score = 0;   ///< correlation after refinement
+
+  /// Where it is when it may move across the row as well, within two pixels of where it was seen along it.
+  struct Across {
+    Across() = default;
+    explicit Across(const PatchRefinement& refined);
+
+    bool found = false;
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< in the other image, pixels
+    double column_variance = 0, row_variance = 0;     ///< pixels^2
+    double score = 0;                                 ///< correlation there
+  } across;
+};
+
+/// Of the window around (u, v) of the reference, from this column of the other image on. Both images CV_32F
+/// of the same size. Not converged where the window leaves an image, has no contrast along the row, or is not
+/// found within 1.5 px. across_too: whether to find `across`, too.
+RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
+                             const RowWarp& warp, int radius, bool across_too = false);
+
+}  // namespace uav_landing
