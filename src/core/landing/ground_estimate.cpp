@@ -43,7 +43,10 @@ Eigen::Vector3d Ground::normalOr(const Eigen::Vector3d& otherwise) const {
 }
 
 GroundEstimate::GroundEstimate(const StereoRig& rig, const KalmanHeightParameters& parameters)
-    : rig_(rig), parameters_(parameters), rig_rotation_(rig, parameters.rig_memory) {}
+    : rig_(rig),
+      parameters_(parameters),
+      rig_rotation_(rig, parameters.rig_memory),
+      surface_(parameters.height_source == HeightSource::kPlane) {}
 
 Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known) {
   Ground ground;
@@ -54,8 +57,7 @@ Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known
   } else {
     ground.plane = measured;
     findPlane(in, rig_doubted, ground);
-    ground.surface =
-        surface_.follow(in.stereo, ground.plane, parameters_.height_source == HeightSource::kPlane, known);
+    ground.surface = surface_.follow(in.stereo, ground.plane, known);
     ground.normal = {ground.plane.normal(), ground.plane.normalCovariance()};
   }
   ground.rig_variance = rig_variance_;

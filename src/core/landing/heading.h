@@ -5,9 +5,8 @@
 
 namespace uav_landing {
 
-/// The runway's direction that a pair sees. One that leaps is of other lines, as of the edge of a shadow, and
-/// the one before takes its place; but for two pairs at most, as the turn that it is compared by may have
-/// been wrong.
+/// The runway's direction that a pair sees. If it leaps (for example, to the edge of a shadow), the one
+/// before is kept for two pairs at most: the turn that the two are compared by may have been wrong.
 class Heading {
  public:
   /// normal: of the ground, unit.

@@ -120,15 +120,15 @@ Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const
 }
 
 CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
-                          const PairVerdict& pair, const LandingResult& result, double duration_variance,
-                          double angle_variance) {
+                          const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt) {
   // Its lengths are by the depths of a normal that knows nothing of the rig's rotation.
   const Eigen::Vector3d& n = in.approach.n;
   const bool another = ground.plane.valid() && n.allFinite();
   const double change = another ? depthChange(rig, in.stereo.points, n, ground.plane.normal()) : 0;
   CameraTwist twist = cameraTwist(in.step(), (1 + change) * (result.height - ground.surface.bend),
-                                  result.height_variance, duration_variance);
-  twist.covariance.topLeftCorner<3, 3>() += doubtOfVelocity(in, pair, twist.velocity, change, angle_variance);
+                                  result.height_variance, doubt.duration_variance);
+  twist.covariance.topLeftCorner<3, 3>() +=
+      doubtOfVelocity(in, pair, twist.velocity, change, doubt.angle_variance);
   return twist;
 }
 

@@ -37,10 +37,8 @@ void judgeAngle(const PairInput& in, const Failure& refusal, double max_stddev_d
 Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const Failure& otherwise);
 
 /// Velocity and turn by the step since the pair before, with what the step itself does not know of them.
-/// duration_variance: of the step's duration, over its square. angle_variance: by other normals, rad^2.
 CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
-                          const PairVerdict& pair, const LandingResult& result, double duration_variance,
-                          double angle_variance);
+                          const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt);
 
 void reportTwist(const CameraTwist& twist, LandingResult& result);
 

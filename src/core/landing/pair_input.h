@@ -33,4 +33,10 @@ struct PairInput {
 /// whether it is certain enough for an angle does not matter, as that of a picture that stands still is not.
 std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step, double height);
 
+/// What a step is less certain by than it claims.
+struct MotionDoubt {
+  double angle_variance = 0;     ///< by other normals of the ground, rad^2
+  double duration_variance = 0;  ///< of durations between stamps, over their squares
+};
+
 }  // namespace uav_landing

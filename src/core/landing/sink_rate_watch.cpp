@@ -9,7 +9,7 @@
 namespace uav_landing {
 
 Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
-                             const TrackVerdict& post, const Doubt& doubt, PairTests& tests) {
+                             const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests) {
   const std::optional<HeightMemory::Expected> before = memory_.expected();
   const HeightFilter& filter = post.filter;
   const double scale = before ? before->height : filter.initialised() ? filter.state()[0] : kUnknown;
@@ -28,7 +28,7 @@ Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const He
                rounded(filter.state()[0] - expected->height), " m from the one before and the motion since")};
 }
 
-void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scale, const Doubt& doubt,
+void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scale, const MotionDoubt& doubt,
                           bool level_known) {
   VerticalSpeed speed;
   double velocity = kUnknown;

@@ -14,18 +14,14 @@ class SinkRateWatch {
  public:
   explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
 
-  /// What the motion is less certain by than it claims.
-  struct Doubt {
-    double angle_variance = 0;     ///< by other normals of the ground, rad^2
-    double duration_variance = 0;  ///< of durations between stamps, over their squares
-  };
-  /// Why the published height is not valid, if so. errors: of the pair's height. tests: those made so far;
-  /// sink_rate is added.
+  /// Why the published height is not valid, if so. errors: of the pair's height. doubt: of its step. tests:
+  /// those made so far; sink_rate is added.
   Failure check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
-                const TrackVerdict& post, const Doubt& doubt, PairTests& tests);
+                const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests);
 
  private:
-  void carry(const PairInput& in, const Ground& ground, double scale, const Doubt& doubt, bool level_known);
+  void carry(const PairInput& in, const Ground& ground, double scale, const MotionDoubt& doubt,
+             bool level_known);
 
   KalmanHeightParameters parameters_;
   HeightMemory memory_;

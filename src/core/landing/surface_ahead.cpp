@@ -6,10 +6,10 @@
 namespace uav_landing {
 
 SurfaceAhead::Shape SurfaceAhead::follow(const StereoDepthResult& stereo, const GroundPlane& plane,
-                                         bool follow_bend, bool known) {
+                                         bool known) {
   followUnevenness(stereo.surface_variance, known);
   Shape shape{plane, 0, 0, unevenness_};
-  if (follow_bend && stereo.below.valid()) {
+  if (follow_bend_ && stereo.below.valid()) {
     // What corrects the plane of the surface ahead corrects the tangent likewise: both are of the same
     // images.
     shape.below.g += stereo.below.g - stereo.plane.g;

@@ -117,9 +117,7 @@ struct KalmanHeightStage::Implementation {
                parameters.max_angle_stddev_deg, result);
     reportDirections(in, ground, result);
     if (motionBelieved(ground, pair))
-      reportTwist(believedTwist(rig, in, ground, pair, result, duration_variance,
-                                parts->doubt.variance(in, ground, in.step())),
-                  result);
+      reportTwist(believedTwist(rig, in, ground, pair, result, doubtOfStep(in, ground)), result);
     timer.emplace(timings, "runway_filter");
     reportPosition(in, ground, result);
     timer.reset();
@@ -146,13 +144,17 @@ struct KalmanHeightStage::Implementation {
                          parts->measurement.durationVariance());
   }
 
+  // Before the pair is tested it has the doubt of those before alone.
+  MotionDoubt doubtOfStep(const PairInput& in, const Ground& ground) const {
+    return {parts->doubt.variance(in, ground, in.step()), parts->measurement.durationVariance()};
+  }
+
   // Tests the published height, and bounds its error. Returns why it is waited for, if so.
   Failure guardHeight(const PairInput& in, const Look& look, const MeasuredHeight& measured,
                       const PairVerdict& pair, const TrackVerdict& post, PairTests& tests,
                       LandingResult& result) {
     if (!parameters.integrity_monitor) return {};
-    const SinkRateWatch::Doubt doubt{parts->doubt.variance(in, look.ground, in.step()),
-                                     parts->measurement.durationVariance()};
+    const MotionDoubt doubt = doubtOfStep(in, look.ground);
     refuseHeight(result, parts->sink_rate.check(in, look.ground, measured.errors, post, doubt, tests));
     const Failure waiting = parts->recovery.follow(in.T, pair, tests, post);
     refuseHeight(result, waiting);

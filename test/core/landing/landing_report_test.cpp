@@ -262,10 +262,8 @@ TEST(LandingReport, WhatRefusesAPairRefusesItsAngle) {
       << "why there is no height at all comes first";
 }
 
-CameraTwist twistOf(const Pair& pair, const PairVerdict& verdict, double duration_variance = 0,
-                    double angle_variance = 0) {
-  return believedTwist(usualRig(), pair.input(), pair.ground, verdict, resultAt(10), duration_variance,
-                       angle_variance);
+CameraTwist twistOf(const Pair& pair, const PairVerdict& verdict, const MotionDoubt& doubt = {}) {
+  return believedTwist(usualRig(), pair.input(), pair.ground, verdict, resultAt(10), doubt);
 }
 
 TEST(LandingReport, TheVelocityIsTheStepTimesTheHeightAboveThePlaneAhead) {
@@ -278,7 +276,7 @@ TEST(LandingReport, TheVelocityIsTheStepTimesTheHeightAboveThePlaneAhead) {
 // 0.05 degrees of 10 m in 0.1 s across, and along the 1 cm of the height and 1 % of the duration besides.
 TEST(LandingReport, TheVelocityIsAsUncertainAsStepHeightAndDuration) {
   const Eigen::Matrix3d covariance =
-      twistOf(Pair(), passingPair(), 0.01 * 0.01).covariance.topLeftCorner<3, 3>();
+      twistOf(Pair(), passingPair(), {0, 0.01 * 0.01}).covariance.topLeftCorner<3, 3>();
   const double of_step = std::pow(0.05 * kDegree * 10 / kStep, 2);
   EXPECT_NEAR(covariance(0, 0), of_step, 1e-9);
   EXPECT_NEAR(covariance(2, 2), of_step + std::pow(20 * 0.001, 2) + std::pow(20 * 0.01, 2), 1e-9);
@@ -286,7 +284,7 @@ TEST(LandingReport, TheVelocityIsAsUncertainAsStepHeightAndDuration) {
 
 TEST(LandingReport, TheVerticalSpeedIsAsUncertainAsTheNormalTurnsTheVelocity) {
   const Matrix6d without = twistOf(Pair(), passingPair()).covariance;
-  const Matrix6d with = twistOf(Pair(), passingPair(), 0, std::pow(1 * kDegree, 2)).covariance;
+  const Matrix6d with = twistOf(Pair(), passingPair(), {std::pow(1 * kDegree, 2), 0}).covariance;
   EXPECT_NEAR(with(1, 1) - without(1, 1), std::pow(20 * kDegree, 2), 1e-9);
   EXPECT_NEAR((with - without).norm(), with(1, 1) - without(1, 1), 1e-9) << "and nothing else";
 }

@@ -17,7 +17,7 @@ constexpr double kSpeed = 20;  // m/s
 /// tells it.
 class Flight {
  public:
-  SinkRateWatch::Doubt doubt;
+  MotionDoubt doubt;
   HeightErrors errors;
   bool motion_known = true;
   double turned = 0;                   // the plane against level, rad
