@@ -122,6 +122,17 @@ TEST(MotionTracker, FindsThatTheSpeedChangedWhereMostOfWhatIsSeenAreLines) {
   }
 }
 
+TEST(MotionTracker, FindsAFirstStepWhereMostOfWhatIsSeenAreLines) {
+  for (const double step : {0.1, 0.3, 0.5, 0.8, 1.2}) {
+    SCOPED_TRACE(step);
+    Scene scene;
+    paintLines(scene, 4, 2.5);
+    const Pose then = makePose(-step, 1.7), now = makePose(0, 1.7);
+    scene.process(1, then);
+    expectStep(scene.process(1.1, now), then, now);
+  }
+}
+
 TEST(MotionTracker, KeepsUpWithASpeedThatGrowsWhereMostOfWhatIsSeenAreLines) {
   Scene scene;
   paintLines(scene, 4, 2.5);
