@@ -42,6 +42,7 @@ class Bench:
         self._tests = folder_fingerprint(workshop.tree / "test")
         self._sources = {}
         self._changing = threading.Lock()  # of the build and of what is known
+        self._built = set()  # test programs that are there without a mutant
         self._passing = {}  # whether a test passes without a mutant: only those are asked that have failed with one
 
     def known(self, mutant, by_any_tests=False):
@@ -61,10 +62,11 @@ class Bench:
         side_by_side = [mutant for mutant in mutants if is_of_shared_library(mutant.path)]
         # All at once, on all cores. One that cannot be built fails without a mutant, too.
         programs = {test.target for mutant in side_by_side for test in self._concern.tests_of(mutant.path) if test.program}
-        if programs:
-            self._workshop.build(*programs)
+        if programs and self._workshop.build(*programs):
+            self._built = programs
         with ThreadPoolExecutor(self._jobs) as pool:
             finished = set(pool.map(self._judge_beside, side_by_side))
+        self._built = set()
         others = [mutant for mutant in mutants if mutant not in finished]
         for mutant in sorted(others, key=lambda mutant: (mutant.path.endswith(".h"), mutant.path)):
             self._judge_in_place(mutant)
@@ -123,7 +125,7 @@ class Bench:
         """Whether a test passes without a mutant. One that does not is left out from then on."""
         with self._changing:
             if test not in self._passing:
-                built = self._workshop.build(*self._targets(test))
+                built = test.target in self._built or self._workshop.build(*self._targets(test))
                 self._passing[test], seconds = self._workshop.run(test) if built else (False, 0)
                 if self._passing[test]:
                     self._times.note(test, seconds)
