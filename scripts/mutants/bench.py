@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from .results import file_fingerprint, folder_fingerprint
 from .workshop import LONGEST
 
-SHORTEST = 60  # s, that a test may take at least
+SHORTEST = 20  # s, that a test may take at least
 SLOWER = 10  # times as long as without a mutant: it hangs
 MANY = 8  # sources that see a header: it takes long to compile them all
 

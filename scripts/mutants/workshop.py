@@ -14,11 +14,20 @@ from pathlib import Path
 from .concern import Test
 
 MOST_MEMORY = 16 << 30  # bytes of address space: what a mutant allocates without end is killed by it
-LONGEST = 300  # s, of one test
+LONGEST = 600  # s, of one test
+BUSY = 5  # times as long as it takes alone a program may run where the machine is busy
 
 
 def _limit_memory():
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+
+
+def _limits_of_program(seconds):
+    """What a program is started with: it may take so much of the processors' time."""
+    def limit():
+        _limit_memory()
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    return limit
 
 
 class Workshop:
@@ -149,7 +158,10 @@ class Workshop:
     def run(self, test, library=None, deadline=LONGEST):
         """Whether a test passes, and its seconds. library: the folder of the one to use instead of that of the build."""
         environment = dict(self.environment)
+        limit = _limit_memory
         if test.program:
+            limit = _limits_of_program(int(deadline))
+            deadline *= BUSY
             command = [self.build_folder / "devel/lib/uav_landing" / test.target]
             places = [str(library)] if library else []
             environment["LD_LIBRARY_PATH"] = ":".join(places + [str(self.build_folder / "devel/lib")])
@@ -159,7 +171,7 @@ class Workshop:
         begun = time.monotonic()
         try:
             done = subprocess.run(list(map(str, command)), cwd=self.build_folder, env=environment, stdout=subprocess.DEVNULL,
-                                  stderr=subprocess.DEVNULL, timeout=deadline, preexec_fn=_limit_memory).returncode == 0
+                                  stderr=subprocess.DEVNULL, timeout=deadline, preexec_fn=limit).returncode == 0
         except subprocess.TimeoutExpired:
             done = False
         return done, time.monotonic() - begun
