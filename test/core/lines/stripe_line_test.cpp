@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "lines/line_segments.h"
+
 namespace uav_landing {
 namespace {
 
