@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "support/ground_renderer.h"
 
 namespace uav_landing {
@@ -18,9 +20,10 @@ class Flight {
   MatchImage image_;
   StereoLevel level_;
   Timings timings_;
+  std::unique_ptr<CornerMatcher> matcher_ = makeRowMatcher(parameters_);
 
  public:
-  PlaneTracker tracker{model_.rig, parameters_, {0.5, 0.5, 20, 1.0}, 200};
+  PlaneTracker tracker{model_.rig, parameters_, {0.5, 0.5, 20, 1.0}, 200, *matcher_};
 
   Flight() {
     const cv::Mat left = GroundRenderer(5).left(model_.rig, test::makePose(2, -10, 0));
