@@ -3,9 +3,9 @@
 import re
 import unittest
 
-from project import DEVEL_DIR, SOURCE_DIR, run
+from project import BUILD_DIR, SOURCE_DIR, run
 
-PROGRAM = DEVEL_DIR / "lib/uav_landing/height_without_ros"
+PROGRAM = BUILD_DIR / "examples/height_without_ros"
 
 
 class ExampleTest(unittest.TestCase):

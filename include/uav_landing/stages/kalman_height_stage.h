@@ -16,6 +16,7 @@ class KalmanHeightStage {
  public:
   KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
                     const RunwayParameters& runway = {});
+  KalmanHeightStage(const KalmanHeightStage& other);
   ~KalmanHeightStage();
   KalmanHeightStage(KalmanHeightStage&&) noexcept;
   KalmanHeightStage& operator=(KalmanHeightStage&&) noexcept;

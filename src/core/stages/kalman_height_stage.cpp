@@ -63,7 +63,7 @@ struct KalmanHeightStage::Implementation {
   KalmanHeightParameters parameters;
   RunwayParameters runway;
   LandingClock clock;
-  std::unique_ptr<Parts> parts;
+  std::optional<Parts> parts;
   Timings timings;
 
   Implementation(const StereoRig& given, const KalmanHeightParameters& p, const RunwayParameters& known)
@@ -71,11 +71,12 @@ struct KalmanHeightStage::Implementation {
         parameters(p),
         runway(known),
         clock(p.reset_timeout, p.gate),
-        parts(std::make_unique<Parts>(rig, parameters, runway, 0)) {}
+        parts(std::in_place, rig, parameters, runway, 0) {}
 
   void startAnew() {
     parts->track.lose();
-    parts = std::make_unique<Parts>(rig, parameters, runway, parts->track.resets());
+    const int resets = parts->track.resets();
+    parts.emplace(rig, parameters, runway, resets);
   }
 
   // What happens to a pair, in order.
@@ -212,6 +213,8 @@ struct KalmanHeightStage::Implementation {
 KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
                                      const RunwayParameters& runway)
     : implementation_(std::make_unique<Implementation>(rig, parameters, runway)) {}
+KalmanHeightStage::KalmanHeightStage(const KalmanHeightStage& other)
+    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
 KalmanHeightStage::~KalmanHeightStage() = default;
 KalmanHeightStage::KalmanHeightStage(KalmanHeightStage&&) noexcept = default;
 KalmanHeightStage& KalmanHeightStage::operator=(KalmanHeightStage&&) noexcept = default;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "image/window_template.h"
-#include "stereo/rows/row_warp.h"
+#include "stereo/matching/row_warp.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
 namespace uav_landing {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "image/patch_refinement.h"
-#include "stereo/rows/row_warp.h"
+#include "stereo/matching/row_warp.h"
 
 namespace uav_landing {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stereo/rows/row_warp.h"
+#include "stereo/matching/row_warp.h"
 #include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
