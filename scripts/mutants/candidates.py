@@ -33,7 +33,7 @@ def of_file(tree, path):
     for number, (text, code) in enumerate(zip(source.split("\n"), without_comments_and_texts(source).split("\n")), 1):
         if _NOT_CODE.match(code):
             continue
-        occurrence = seen[text] = seen.get(text, 0) + 1
+        occurrence = seen[text.strip()] = seen.get(text.strip(), 0) + 1
         mutants = []
         for kind, operator in KINDS.items():
             for start, end, replacement in operator(code):

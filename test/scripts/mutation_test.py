@@ -102,6 +102,10 @@ class CandidatesTest(TreeTest):
         self.write("src/a.cpp", "  int other = 1;\n\n  x = a - b;\n  y = a - b;\n")
         self.assertEqual(self.names(), before)
 
+    def test_the_same_statement_has_another_name_wherever_it_stands(self):
+        self.write("src/a.cpp", "  x = a - b;\n    x = a - b;\n  x = a - b;\n")
+        self.assertEqual(len(set(self.names())), 3)
+
 
 class ConcernTest(TreeTest):
     def setUp(self):
