@@ -96,7 +96,7 @@ class Concern:
         return distances
 
     def _by_words(self, word, folders):
-        """Python tests that name a program."""
+        """Tests in Python or with a launch file that name a program."""
         return [test for test in self._tests if not test.target and any(folder in test.name for folder in folders) and
                 re.search(rf"\b{word}\b", self._text_of(test))]
 
@@ -104,9 +104,18 @@ class Concern:
         for folder in ("test/tools", "test/scripts", "test/launch", "test/nodelets"):
             marker = folder.replace("/", "_") + "_"
             if marker in test.name:
-                path = self._tree / folder / test.name.split(marker, 1)[1]
-                return _read(path) if path.is_file() else ""
+                return self._text_with_launched(self._tree / folder / test.name.split(marker, 1)[1])
         return ""
+
+    def _text_with_launched(self, path):
+        """The text of a test, of the program that a .test file starts, and of the launch files that are named."""
+        if not path.is_file():
+            return ""
+        text = _read(path)
+        started = [path.parent / name for name in re.findall(r'type="(\w+\.py)"', text)]
+        text += "".join(_read(file) for file in started if file.is_file())
+        launched = [self._tree / "launch" / name for name in sorted(set(re.findall(r"\w+\.launch\b", text)))]
+        return text + "".join(_read(file) for file in launched if file.is_file())
 
     def _outside_core(self, name):
         """Tests of a nodelet or of a program by its source."""
@@ -115,7 +124,7 @@ class Concern:
             return [test for test in self._tests if test.target == f"{stem}_test"] + \
                 [test for test in self._tests if test.target in [f"{chain}_test" for chain in _WHOLE_CHAIN]]
         if name.startswith("src/tools/") and re.search(r"^int main\(", self._texts[name], re.MULTILINE):
-            return self._by_words(stem, ("test_tools", "test_scripts"))
+            return self._by_words(stem, ("test_tools", "test_scripts", "test_launch"))
         return []
 
     def tests_of(self, name, seconds=lambda test: 0):

@@ -136,6 +136,14 @@ class ConcernTest(TreeTest):
     def test_a_program_is_tested_by_the_python_tests_that_name_it(self):
         self.assertEqual(self.concern.tests_of("src/tools/play.cpp"), [self.play])
 
+    def test_a_program_is_tested_by_what_launches_it(self):
+        self.write("launch/player.launch", '<node pkg="p" type="play" name="player"/>\n')
+        self.write("test/launch/player.test", '<test test-name="player" pkg="p" type="player_test.py"/>\n')
+        self.write("test/launch/player_test.py", 'launch_file("player.launch")\n')
+        launched = Test("rostest_test_launch_player.test", None, False)
+        other = Test("rostest_test_launch_other.test", None, False)
+        self.assertEqual(Concern(self.tree, [launched, other], {}.get).tests_of("src/tools/play.cpp"), [launched])
+
     def test_of_tests_that_are_as_near_the_quickest_comes_first(self):
         self.write("test/core/gain_again_test.cpp", '#include "base/gain.h"\n')
         again = Test("a", "gain_again_test", True)
