@@ -118,14 +118,14 @@ class Concern:
         return text + "".join(_read(file) for file in launched if file.is_file())
 
     def _outside_core(self, name):
-        """Tests of a nodelet or of a program by its source."""
-        stem = Path(name).stem
+        """Tests of a nodelet or of a program by its source: 0 for those that bear its name, 1 for others."""
+        stem, tests = Path(name).stem, []
         if name.startswith("src/nodelets/"):
-            return [test for test in self._tests if test.target == f"{stem}_test"] + \
-                [test for test in self._tests if test.target in [f"{chain}_test" for chain in _WHOLE_CHAIN]]
-        if name.startswith("src/tools/") and re.search(r"^int main\(", self._texts[name], re.MULTILINE):
-            return self._by_words(stem, ("test_tools", "test_scripts", "test_launch"))
-        return []
+            targets = [f"{nodelet}_test" for nodelet in (stem, *_WHOLE_CHAIN)]
+            tests = [test for test in self._tests if test.target in targets]
+        elif name.startswith("src/tools/") and re.search(r"^int main\(", self._texts[name], re.MULTILINE):
+            tests = self._by_words(stem, ("test_tools", "test_scripts", "test_launch"))
+        return {test: 0 if stem in test.name else 1 for test in tests}
 
     def tests_of(self, name, seconds=lambda test: 0):
         """The nearest first; those that bear its name before all others; of those that are as near the quickest first."""
@@ -134,8 +134,8 @@ class Concern:
             named = Path(other).stem.startswith(Path(name).stem)
             for test in self._by_source.get(other, []):
                 near[test] = min(near.get(test, 1000), -1 if named else distance)
-            for i, test in enumerate(self._outside_core(other)):
-                near[test] = min(near.get(test, 1000), distance + 1 + i)
+            for test, further in self._outside_core(other).items():
+                near[test] = min(near.get(test, 1000), distance + 1 + further)
         # Of the core the tests without a ROS master say all, where there are any.
         alone = {test: distance for test, distance in near.items() if test.program}
         if alone and name.startswith(("src/core/", "include/")):

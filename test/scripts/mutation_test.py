@@ -136,6 +136,14 @@ class ConcernTest(TreeTest):
     def test_a_program_is_tested_by_the_python_tests_that_name_it(self):
         self.assertEqual(self.concern.tests_of("src/tools/play.cpp"), [self.play])
 
+    def test_of_tests_of_a_program_those_of_its_name_come_first_and_then_the_quickest(self):
+        tests = [Test(f"nosetests_test_tools_{name}_test.py", None, False) for name in ("slow", "quick", "play_input")]
+        for name in ("slow", "quick", "play_input"):
+            self.write(f"test/tools/{name}_test.py", "run play\n")
+        slow, quick, named = tests
+        seconds = {slow: 300, quick: 1, named: 100}
+        self.assertEqual(Concern(self.tree, tests, {}.get).tests_of("src/tools/play.cpp", seconds.get), [named, quick, slow])
+
     def test_a_program_is_tested_by_what_launches_it(self):
         self.write("launch/player.launch", '<node pkg="p" type="play" name="player"/>\n')
         self.write("test/launch/player.test", '<test test-name="player" pkg="p" type="player_test.py"/>\n')
