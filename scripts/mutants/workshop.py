@@ -172,6 +172,6 @@ class Workshop:
         try:
             done = subprocess.run(list(map(str, command)), cwd=self.build_folder, env=environment, stdout=subprocess.DEVNULL,
                                   stderr=subprocess.DEVNULL, timeout=deadline, preexec_fn=limit).returncode == 0
-        except subprocess.TimeoutExpired:
+        except (subprocess.TimeoutExpired, FileNotFoundError):  # the latter: it could not be built
             done = False
         return done, time.monotonic() - begun
