@@ -17,6 +17,7 @@ class KalmanHeightStage {
   KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
                     const RunwayParameters& runway = {});
   KalmanHeightStage(const KalmanHeightStage& other);
+  KalmanHeightStage& operator=(const KalmanHeightStage& other);
   ~KalmanHeightStage();
   KalmanHeightStage(KalmanHeightStage&&) noexcept;
   KalmanHeightStage& operator=(KalmanHeightStage&&) noexcept;

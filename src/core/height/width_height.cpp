@@ -15,12 +15,7 @@ constexpr int kAgreeing = 5;  // pairs in a row before a width is learned
 
 }  // namespace
 
-WidthHeight::WidthHeight(double known_width) : known_(known_width > 0), known_width_(known_width) { reset(); }
-
-void WidthHeight::reset() {
-  width_.reset();
-  other_.reset();
-  changed_ = false;
+WidthHeight::WidthHeight(double known_width) : known_(known_width > 0), known_width_(known_width) {
   if (known_) width_ = Width{known_width_, std::pow(kKnownStddev * known_width_, 2), kAgreeing};
 }
 

@@ -31,7 +31,6 @@ class WidthHeight {
   void learn(double ratio, double variance, double height, double height_variance);
   /// Whether the width does not depend on stereo.
   bool independent() const { return known_; }
-  void reset();
 
  private:
   struct Width {

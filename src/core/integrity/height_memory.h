@@ -29,7 +29,6 @@ class HeightMemory {
   /// After each comparison. filter: with everything in it. A height that does not agree is not remembered:
   /// the old one goes on until its 1 sigma is beyond useful (m).
   void refresh(const HeightFilter& filter, bool agrees, double useful);
-  void reset() { *this = HeightMemory(); }
 
  private:
   struct Memory {

@@ -25,7 +25,6 @@ class NormalDoubt {
   double probability(double stamp) const;
   const Eigen::Vector3d& turn() const { return turn_; }
   double variance() const { return variance_; }
-  void reset() { *this = NormalDoubt(fault_probability_, memory_); }
 
  private:
   double fault_probability_, memory_;

@@ -25,7 +25,7 @@ void PairTests::addLargest(IntegrityTest test, double difference, double varianc
   result.difference = difference;
   result.variance = variance;
   result.ratio = difference * difference / variance;
-  result.limit = chiSquareLimit(false_alarm_rate_ / count, 1);
+  result.limit = limitOf(test, 1, count);
 }
 
 void PairTests::add(IntegrityTest test, const Eigen::VectorXd& difference,
@@ -37,16 +37,28 @@ void PairTests::add(IntegrityTest test, const Eigen::VectorXd& difference,
   result.difference = difference.norm();
   result.variance = covariance.trace() / count;
   result.ratio = ratio;
-  result.limit = chiSquareLimit(false_alarm_rate_, count);
+  result.limit = limitOf(test, count);
 }
 
 void PairTests::addRatio(IntegrityTest test, double difference, double ratio) {
-  const TestLimit limit = descriptionOf(test).limit;
   TestResult& result = of(test);
   result.difference = difference;
   result.variance = difference * difference / ratio;
   result.ratio = ratio;
-  result.limit = limit.kind == TestLimit::kSquaredGate ? gate_ * gate_ : limit.value;
+  result.limit = limitOf(test);
+}
+
+double PairTests::limitOf(IntegrityTest test, int degrees, int count) const {
+  const TestLimit limit = descriptionOf(test).limit;
+  switch (limit.kind) {
+    case TestLimit::kChiSquare:
+      return chiSquareLimit(false_alarm_rate_ / count, degrees);
+    case TestLimit::kSquaredGate:
+      return gate_ * gate_;
+    case TestLimit::kFixed:
+      break;
+  }
+  return limit.value;
 }
 
 std::optional<IntegrityTest> PairTests::firstFailed(TestStep step, OnFailure consequence) const {

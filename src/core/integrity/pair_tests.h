@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// What the tests of the catalogue say of one pair.
+/// What the tests of the catalogue say of one pair. Each is compared with the limit of its line there.
 class PairTests {
  public:
   /// gate: sigmas.
@@ -24,7 +24,7 @@ class PairTests {
   void addLargest(IntegrityTest test, double difference, double variance, int count);
   /// Several numbers at once. difference: the size that is reported.
   void add(IntegrityTest test, const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
-  /// A squared normalised difference that was found elsewhere, against the fixed limit of the catalogue.
+  /// A squared normalised difference that was found elsewhere.
   void addRatio(IntegrityTest test, double difference, double ratio);
 
   bool failed(IntegrityTest test) const { return result(test).failed(); }
@@ -34,6 +34,8 @@ class PairTests {
 
  private:
   TestResult& of(IntegrityTest test) { return results_[static_cast<int>(test)]; }
+  /// As the catalogue has it. count: of tests of which this is the largest. degrees: of freedom.
+  double limitOf(IntegrityTest test, int degrees = 1, int count = 1) const;
 
   double false_alarm_rate_, gate_;
   std::array<TestResult, kIntegrityTests> results_;

@@ -17,7 +17,6 @@ class Recovery {
   bool pending() const { return pending_; }
   /// Since the last contradiction, pairs that agreed, s.
   double quiet() const { return quiet_; }
-  void reset() { *this = Recovery(needed_); }
 
  private:
   double needed_;

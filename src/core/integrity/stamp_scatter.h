@@ -19,7 +19,6 @@ class StampScatter {
   void skip() { last_.reset(); }
   /// Variance of the durations over their squares, of the last seconds; 0 when they are as good as shows.
   double ofDuration() const;
-  void reset() { *this = StampScatter(acceleration_); }
 
  private:
   struct Speed {

@@ -31,7 +31,6 @@ class VelocityMemory {
   void skip(double duration);
   /// s since the last step that did not agree.
   double sinceContradiction() const { return since_contradiction_; }
-  void reset() { *this = VelocityMemory(); }
 
  private:
   void restart(const Step& step);

@@ -37,7 +37,7 @@ double lastingShare(const StereoDepthResult& stereo) {
 
 }  // namespace
 
-Eigen::Vector3d Ground::normalOr(const Eigen::Vector3d& otherwise) const {
+Eigen::Vector3d Ground::positionNormalOr(const Eigen::Vector3d& otherwise) const {
   if (!plane.valid()) return otherwise;
   return tilted ? normal.n : plane.normal();
 }

@@ -23,8 +23,10 @@ struct Ground {
   bool tilted = false;  ///< the plane contradicts those before: no height, speed or place by it
   bool turn_doubted = false, attitude_settled = true;  ///< see AttitudeFilter
 
-  /// Of the ground that positions refer to; without a plane otherwise.
-  Eigen::Vector3d normalOr(const Eigen::Vector3d& otherwise) const;
+  /// The averaged normal; without a plane otherwise.
+  GroundNormal normalOr(const GroundNormal& otherwise) const { return plane.valid() ? normal : otherwise; }
+  /// Of the ground that positions refer to: by this pair, unless it is tilted; without a plane otherwise.
+  Eigen::Vector3d positionNormalOr(const Eigen::Vector3d& otherwise) const;
 };
 
 /// The ground ahead: the plane of a pair freed of the rig's rotation and fused with what else is known of the

@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-// Edges of the runway that are farther than this from the width learned are not believed (width_height.cpp).
+// Within this share of the width, other edges may be taken for the runway's.
 constexpr double kWidthTolerance = 0.02;
 
 /// Weighted mean of a height and the one by a known width, if they agree.

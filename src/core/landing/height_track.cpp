@@ -132,8 +132,12 @@ void HeightTrack::judge(double stamp, TrackVerdict& verdict) const {
   verdict.height_valid = !verdict.failure;
 }
 
-SolutionSeparation::Level HeightTrack::protectionLevel(double height, double height_variance) const {
-  return separation_.protectionLevel(height, height_variance, varianceFactor());
+SolutionSeparation::Level HeightTrack::protectionLevel(
+    double height, double height_variance, const std::optional<GroundMemory::Below>& below) const {
+  const SolutionSeparation::Level level =
+      separation_.protectionLevel(height, height_variance, varianceFactor());
+  if (!below) return level;
+  return separation_.larger(level, height, below->height, below->variance, "surface_below");
 }
 
 // By which the filter's own variance is larger than what the pairs claim makes of it.

@@ -5,6 +5,7 @@
 #include "estimation/innovation_scatter.h"
 #include "height/height_filter.h"
 #include "height/vertical_speed.h"
+#include "integrity/ground_memory.h"
 #include "integrity/pair_tests.h"
 #include "integrity/solution_separation.h"
 #include "landing/measured_height.h"
@@ -62,12 +63,10 @@ class HeightTrack {
                       const VerticalSpeed& speed);
   /// Gives the height up, if there is one: nothing has been measured for too long.
   void lose();
-  /// Of the published height, with surface_below as one more solution.
-  SolutionSeparation::Level protectionLevel(double height, double height_variance) const;
-  SolutionSeparation::Level larger(const SolutionSeparation::Level& level, double height, double solution,
-                                   double variance, const char* source) const {
-    return separation_.larger(level, height, solution, variance, source);
-  }
+  /// Of the height (m, m^2) that update() gave. below: by the ground straight below, where that is known; one
+  /// more solution.
+  SolutionSeparation::Level protectionLevel(double height, double height_variance,
+                                            const std::optional<GroundMemory::Below>& below) const;
   Status status() const;
   bool known() const { return filter_.initialised(); }
   int resets() const { return resets_; }

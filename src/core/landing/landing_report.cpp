@@ -76,8 +76,7 @@ void reportHeight(const MeasuredHeight& measured, const PairVerdict& pair, const
 
 void reportProtection(const HeightTrack& track, const std::optional<GroundMemory::Below>& below,
                       const KalmanHeightParameters& parameters, LandingResult& result) {
-  SolutionSeparation::Level level = track.protectionLevel(result.height, result.height_variance);
-  if (below) level = track.larger(level, result.height, below->height, below->variance, "surface_below");
+  const SolutionSeparation::Level level = track.protectionLevel(result.height, result.height_variance, below);
   result.height_protection_level = level.bound;
   result.protection_source = level.source;
   result.height_alert_limit =

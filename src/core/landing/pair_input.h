@@ -25,6 +25,8 @@ struct PairInput {
   const ApproachAngleResult::Motion& step() const { return approach.step; }
   /// The motion that the approach angle is of: over the window, or the step alone where that has none.
   const ApproachAngleResult::Motion& path() const;
+  /// The ground's normal that its angles are measured against.
+  GroundNormal normal() const { return {approach.n, approach.n_covariance}; }
   /// The ground's normal by what moves in the image over the same time.
   GroundNormal normalByMotion() const;
 };

@@ -22,6 +22,56 @@ void testNormal(IntegrityTest test, const GroundPlane& plane, const GroundNormal
             basis.transpose() * (plane.normalCovariance() + normal.covariance) * basis);
 }
 
+void testImages(const PairInput& in, PairTests& tests) {
+  const StereoDepthResult& stereo = in.stereo;
+  if (stereo.left_repeated || stereo.right_repeated) tests.addRatio(IntegrityTest::kRepeatedImage, 1, 1);
+  if (std::isfinite(stereo.photometric_agreement))
+    tests.addRatio(IntegrityTest::kPhotometric, stereo.photometric_agreement,
+                   1 - stereo.photometric_agreement);
+  if (std::isfinite(stereo.row_agreement))
+    tests.addRatio(IntegrityTest::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement);
+}
+
+void testRegions(const MeasuredHeight& measured, PairTests& tests) {
+  double worst = 0, difference = 0, variance = 0;
+  int count = 0;
+  for (int i = 0; i < kImageRegions; ++i) {
+    const SolutionSeparation::Measurement& without =
+        measured.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
+    if (!without.known()) continue;
+    ++count;
+    const double d = without.height - measured.height;
+    // The whole has the rest in it, but the grey levels besides.
+    const double allowed = without.variance;
+    if (d * d <= worst * allowed) continue;
+    worst = d * d / allowed;
+    difference = d;
+    variance = allowed;
+  }
+  if (count > 0) tests.addLargest(IntegrityTest::kImageRegions, difference, variance, count);
+}
+
+void testWidth(const MeasuredHeight& measured, PairTests& tests) {
+  if (!std::isfinite(measured.width_height)) return;
+  tests.add(IntegrityTest::kRunwayWidth, measured.width_height - measured.stereo_height,
+            measured.width_height_variance + measured.stereo_variance);
+}
+
+/// What else says how the ground lies, against stereo alone.
+void testDirections(const PairInput& in, const Ground& ground, PairTests& tests) {
+  const ApproachAngleResult& approach = in.approach;
+  const GroundPlane& plane = ground.alone;
+  if (plane.valid() && approach.vanishing_direction.allFinite()) {
+    const Eigen::Vector3d& p = approach.vanishing_direction;
+    const double h = plane.height();
+    tests.add(IntegrityTest::kVanishingPoint, h * p.dot(plane.g),
+              h * h * p.dot(plane.covariance * p) +
+                  plane.normal().dot(approach.vanishing_covariance * plane.normal()));
+  }
+  testNormal(IntegrityTest::kImu, plane, {approach.imu.normal, approach.imu.normal_covariance}, tests);
+  if (!in.repeated()) testNormal(IntegrityTest::kMotionNormal, plane, in.normalByMotion(), tests);
+}
+
 }  // namespace
 
 PairMonitor::PairMonitor(const StereoRig& rig, const KalmanHeightParameters& parameters)
@@ -68,16 +118,6 @@ PairVerdict PairMonitor::check(const PairInput& in, const Ground& ground, const 
   return verdict;
 }
 
-void PairMonitor::testImages(const PairInput& in, PairTests& tests) const {
-  const StereoDepthResult& stereo = in.stereo;
-  if (stereo.left_repeated || stereo.right_repeated) tests.addRatio(IntegrityTest::kRepeatedImage, 1, 1);
-  if (std::isfinite(stereo.photometric_agreement))
-    tests.addRatio(IntegrityTest::kPhotometric, stereo.photometric_agreement,
-                   1 - stereo.photometric_agreement);
-  if (std::isfinite(stereo.row_agreement))
-    tests.addRatio(IntegrityTest::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement);
-}
-
 void PairMonitor::testRig(const PairInput& in, PairVerdict& verdict) {
   const RigRotation& measured = in.stereo.vertical_rotation;
   const std::optional<RigChange::Innovation> change = rig_change_.compare(measured);
@@ -104,46 +144,6 @@ void PairMonitor::testStandstill(const PairInput& in, double height, PairTests& 
   const std::optional<SpeedMemory::Shortfall> shortfall = speed_.compare(*way);
   if (shortfall) tests.addOneSided(IntegrityTest::kStandstill, shortfall->difference, shortfall->variance);
   speed_.learn(*way, !tests.failed(IntegrityTest::kStandstill));
-}
-
-void PairMonitor::testRegions(const MeasuredHeight& measured, PairTests& tests) const {
-  double worst = 0, difference = 0, variance = 0;
-  int count = 0;
-  for (int i = 0; i < kImageRegions; ++i) {
-    const SolutionSeparation::Measurement& without =
-        measured.without[static_cast<int>(faultySource(static_cast<ImageRegion>(i)))];
-    if (!without.known()) continue;
-    ++count;
-    const double d = without.height - measured.height;
-    // The whole has the rest in it, but the grey levels besides.
-    const double allowed = without.variance;
-    if (d * d <= worst * allowed) continue;
-    worst = d * d / allowed;
-    difference = d;
-    variance = allowed;
-  }
-  if (count > 0) tests.addLargest(IntegrityTest::kImageRegions, difference, variance, count);
-}
-
-void PairMonitor::testWidth(const MeasuredHeight& measured, PairTests& tests) const {
-  if (!std::isfinite(measured.width_height)) return;
-  tests.add(IntegrityTest::kRunwayWidth, measured.width_height - measured.stereo_height,
-            measured.width_height_variance + measured.stereo_variance);
-}
-
-// What else says how the ground lies, against stereo alone.
-void PairMonitor::testDirections(const PairInput& in, const Ground& ground, PairTests& tests) const {
-  const ApproachAngleResult& approach = in.approach;
-  const GroundPlane& plane = ground.alone;
-  if (plane.valid() && approach.vanishing_direction.allFinite()) {
-    const Eigen::Vector3d& p = approach.vanishing_direction;
-    const double h = plane.height();
-    tests.add(IntegrityTest::kVanishingPoint, h * p.dot(plane.g),
-              h * h * p.dot(plane.covariance * p) +
-                  plane.normal().dot(approach.vanishing_covariance * plane.normal()));
-  }
-  testNormal(IntegrityTest::kImu, plane, {approach.imu.normal, approach.imu.normal_covariance}, tests);
-  if (!in.repeated()) testNormal(IntegrityTest::kMotionNormal, plane, in.normalByMotion(), tests);
 }
 
 // Why a pair is left out, or "".

@@ -47,13 +47,9 @@ class PairMonitor {
                     const HeightPrior& prior, double duration_variance);
 
  private:
-  void testImages(const PairInput& in, PairTests& tests) const;
   void testRig(const PairInput& in, PairVerdict& verdict);
   void testBaseline(const PairInput& in, PairTests& tests) const;
   void testStandstill(const PairInput& in, double height, PairTests& tests);
-  void testRegions(const MeasuredHeight& measured, PairTests& tests) const;
-  void testWidth(const MeasuredHeight& measured, PairTests& tests) const;
-  void testDirections(const PairInput& in, const Ground& ground, PairTests& tests) const;
   std::string problemOf(const std::optional<IntegrityTest>& failed);
 
   StereoRig rig_;

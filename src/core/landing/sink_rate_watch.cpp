@@ -32,7 +32,7 @@ void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scal
                           bool level_known) {
   VerticalSpeed speed;
   double velocity = kUnknown;
-  const Eigen::Vector3d normal = ground.plane.valid() ? ground.normal.n : in.approach.n;
+  const Eigen::Vector3d normal = ground.normalOr(in.normal()).n;
   if (!in.step().failure && level_known && normal.allFinite() && std::isfinite(scale) && scale > 0) {
     const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
     speed = withDurations(verticalSpeed(in.step(), plane, scale, 0, 0, parameters_.acceleration_stddev),

@@ -86,8 +86,7 @@ bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, c
 }
 
 Eigen::Vector3d SurfaceBelow::normal(const PairInput& in, const Ground& ground) const {
-  if (ground.plane.valid()) return ground.normal.n;
-  const Eigen::Vector3d& n = in.approach.n;
+  const Eigen::Vector3d n = ground.normalOr(in.normal()).n;
   return n.allFinite() ? n : last_normal_.value_or(n);
 }
 

@@ -18,7 +18,7 @@ std::string parameterTable() {
   out << "# Parameters\n\nAll parameters of the chain, section by section as in `config/stereo.yaml`. "
          "All stages share `rig` and `runway`; the\nother sections belong to the nodelet of their name. "
          "What the tests of the height compare, and which limits they have:\n"
-         "[integrity](integrity.md#tests).\n";
+         "[tests of integrity](integrity_tests.md).\n";
   Parameters parameters;
   parameters.visitSections(
       [&](const char* section, auto& values) { values.visit(TableWriter(out, section)); });

@@ -18,7 +18,6 @@ class PositionFilter {
   void process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
                const ApproachAngleResult::Motion& turn, double height, double height_variance,
                LandingResult& result);
-  void reset() { *this = PositionFilter(); }
 
  private:
   /// Position along one axis. Errors of the motion and of successive measurements are much the same from pair

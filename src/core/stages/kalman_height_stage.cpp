@@ -167,8 +167,7 @@ struct KalmanHeightStage::Implementation {
   }
 
   void reportDirections(const PairInput& in, const Ground& ground, LandingResult& result) {
-    const GroundNormal normal =
-        ground.plane.valid() ? ground.normal : GroundNormal{in.approach.n, in.approach.n_covariance};
+    const GroundNormal normal = ground.normalOr(in.normal());
     const VanishingMemory::Direction runway = parts->heading.follow(in, normal.n);
     reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
   }
@@ -183,7 +182,7 @@ struct KalmanHeightStage::Implementation {
 
   void reportPosition(const PairInput& in, const Ground& ground, LandingResult& result) {
     const double bend = ground.surface.bend;
-    parts->position.process(in.approach, ground.normalOr(in.approach.n), in.turn,
+    parts->position.process(in.approach, ground.positionNormalOr(in.approach.n), in.turn,
                             result.height_valid ? result.height - bend : kUnknown, result.height_variance,
                             result);
     const RunwayHeight above = runwayHeight(result, bend, parts->measurement.widthKnown());
@@ -215,6 +214,9 @@ KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightPar
     : implementation_(std::make_unique<Implementation>(rig, parameters, runway)) {}
 KalmanHeightStage::KalmanHeightStage(const KalmanHeightStage& other)
     : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
+KalmanHeightStage& KalmanHeightStage::operator=(const KalmanHeightStage& other) {
+  return *this = KalmanHeightStage(other);
+}
 KalmanHeightStage::~KalmanHeightStage() = default;
 KalmanHeightStage::KalmanHeightStage(KalmanHeightStage&&) noexcept = default;
 KalmanHeightStage& KalmanHeightStage::operator=(KalmanHeightStage&&) noexcept = default;

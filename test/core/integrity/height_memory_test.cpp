@@ -51,22 +51,6 @@ TEST(HeightMemory, KeepsTheOldHeightWhileTheNewOneContradictsUntilItIsOfNoUse) {
   EXPECT_LT(lasted, 25);
 }
 
-TEST(HeightMemory, ForgetsAtAReset) {
-  HeightMemory memory;
-  const auto fly = [&] {
-    memory.carry(0.05, 0, 1e-4, 20);
-    memory.refresh(settled(20, 0), true, 1);
-  };
-  for (int i = 0; i < 25; ++i) fly();
-  ASSERT_TRUE(memory.expected());
-  memory.reset();
-  EXPECT_FALSE(memory.expected());
-  for (int i = 0; i < 10; ++i) {
-    fly();
-    EXPECT_FALSE(memory.expected()) << "nor is the younger height older than half a second: " << i;
-  }
-}
-
 TEST(HeightMemory, IsAsUncertainAsTheHeightTheSpeedAndTheDirectionOfTheHorizontal) {
   // Without random acceleration the height of t later is h + v t, with a variance of its own.
   HeightFilter filter(0, 5, 5);

@@ -31,17 +31,5 @@ TEST(Recovery, AContradictionBeginsTheTimeAnew) {
   EXPECT_FALSE(recovery.pending());
 }
 
-TEST(Recovery, IsOverAtAResetAndNeedsAsLongAfterIt) {
-  Recovery recovery(1.0);
-  recovery.follow(0.1, Recovery::Pair::kContradicts, true);
-  for (int i = 0; i < 9; ++i) recovery.follow(0.1, Recovery::Pair::kAgrees, false);
-  recovery.reset();
-  EXPECT_FALSE(recovery.pending());
-  EXPECT_EQ(recovery.quiet(), 0);
-  recovery.follow(0.1, Recovery::Pair::kContradicts, true);
-  for (int i = 0; i < 9; ++i) recovery.follow(0.1, Recovery::Pair::kAgrees, false);
-  EXPECT_TRUE(recovery.pending());
-}
-
 }  // namespace
 }  // namespace uav_landing

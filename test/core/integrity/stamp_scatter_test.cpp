@@ -51,15 +51,6 @@ StampScatter scattered() {
   return scatter;
 }
 
-TEST(StampScatter, IsForgottenAtAReset) {
-  StampScatter scatter = scattered();
-  scatter.reset();
-  EXPECT_EQ(scatter.ofDuration(), 0);
-  // Another aircraft flies at another speed, which is no wrong stamp either.
-  for (int i = 0; i < 20; ++i) scatter.follow({kStep, 3 * kSpeed * kStep, 1e-8});
-  EXPECT_EQ(scatter.ofDuration(), 0);
-}
-
 TEST(StampScatter, GoodStampsEndIt) {
   StampScatter scatter = scattered();
   for (int i = 0; i < 20; ++i) scatter.follow({kStep, kSpeed * kStep, 1e-8});

@@ -114,15 +114,6 @@ TEST(VelocityMemory, AStepThatContradictsDoesNotTurnTheVelocity) {
   for (int i = 0; i < 5; ++i) EXPECT_LT(fly(memory, stepOf(kForward)), kLimit) << i;
 }
 
-TEST(VelocityMemory, ForgetsAtAReset) {
-  VelocityMemory memory = known();
-  EXPECT_GT(fly(memory, stepOf({0, 0, 60})), kLimit);
-  memory.reset();
-  EXPECT_GT(memory.sinceContradiction(), 1e3);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isnan(fly(memory, stepOf({0, 0, 60})))) << i;
-  EXPECT_LT(fly(memory, stepOf({0, 0, 60})), 1);
-}
-
 /// Aircraft that fly as the filter takes them to: at 20 m/s with a random acceleration of 5 m/s^2, seen with
 /// an error of 0.1 m/s forward and of 0.2 m/s across. Mean of the squared differences over what is claimed
 /// of each axis, of the step after those that are known. missing: steps before it that tell nothing.

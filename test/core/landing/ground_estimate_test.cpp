@@ -42,7 +42,7 @@ TEST(GroundEstimate, SaysWhyThereIsNoPlane) {
   const Ground ground = firstGround(test::noStereo(0), withoutTurning(0));
   EXPECT_EQ(ground.failure.message(), "too_few_matches: 7 of at least 20");
   EXPECT_FALSE(ground.plane.valid());
-  EXPECT_EQ(ground.normalOr(Eigen::Vector3d::UnitY()), Eigen::Vector3d::UnitY());
+  EXPECT_EQ(ground.positionNormalOr(Eigen::Vector3d::UnitY()), Eigen::Vector3d::UnitY());
 }
 
 TEST(GroundEstimate, APlaneWhoseHeightIsUncertainByAThirdIsNone) {
@@ -59,7 +59,7 @@ TEST(GroundEstimate, IsThePlaneByStereoWhereNothingElseIsKnown) {
     EXPECT_NEAR((plane.g - stereo.plane.g).norm(), 0, 1e-12);
     EXPECT_NEAR(std::sqrt(plane.heightVariance()), 0.01, 1e-9);
   }
-  EXPECT_EQ(ground.normalOr(Eigen::Vector3d::UnitY()), stereo.plane.normal());
+  EXPECT_EQ(ground.positionNormalOr(Eigen::Vector3d::UnitY()), stereo.plane.normal());
   EXPECT_FALSE(ground.tilted);
 }
 
@@ -178,7 +178,7 @@ TEST(GroundEstimate, APlaneTiltedAgainstThePairsBeforeAndTheRotationSinceIsNamed
   EXPECT_NEAR(tilted.tilt, 4 * kDegree * std::cos(0.1), 0.01 * kDegree);
   EXPECT_GT(tilted.tilt_ratio, AttitudeFilter::kGate.squared());
   const Eigen::Vector3d before = normalFromPitchRoll(-0.1, 0.05);
-  EXPECT_NEAR((tilted.normalOr(Eigen::Vector3d::UnitZ()) - before).norm(), 0, 1e-6);
+  EXPECT_NEAR((tilted.positionNormalOr(Eigen::Vector3d::UnitZ()) - before).norm(), 0, 1e-6);
   EXPECT_FALSE(flight.fly().tilted);
 }
 

@@ -280,7 +280,7 @@ TEST(HeightTrack, TheProtectionLevelIsOfTheSourceThatTheHeightHangsOnMost) {
     TrackVerdict verdict = pairs.see(withoutFar(height));
     for (int i = 0; i < 100; ++i) verdict = pairs.see(withoutFar(height));
     const SolutionSeparation::Level level =
-        pairs.track.protectionLevel(verdict.height, verdict.height_variance);
+        pairs.track.protectionLevel(verdict.height, verdict.height_variance, std::nullopt);
     // 2 % of the height are by assumption.
     const double expected = (height > 10 ? 0.5 : 0.2) + 2.576 * std::sqrt(verdict.height_variance);
     EXPECT_NEAR(level.bound, expected, 1e-3);

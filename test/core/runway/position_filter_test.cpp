@@ -210,19 +210,6 @@ TEST(PositionFilter, LeavesOutOneOutlierButBelievesASecondOfThem) {
   EXPECT_NEAR(believed.y, flight.y + 4, 0.05);
 }
 
-TEST(PositionFilter, ForgetsAtAReset) {
-  Flight flight;
-  for (int i = 0; i < 5; ++i) flight.next(true, true);
-  flight.filter.reset();
-  const LandingResult nothing = flight.next(false, false);
-  EXPECT_TRUE(std::isnan(nothing.x) && std::isnan(nothing.x_variance));
-  EXPECT_TRUE(std::isnan(nothing.y) && std::isnan(nothing.y_variance));
-  flight.y += 10;
-  const LandingResult first = flight.next(false, true);
-  EXPECT_NEAR(first.y, flight.y, 1e-9) << "nor is it an outlier of what was before";
-  EXPECT_TRUE(std::isnan(first.x));
-}
-
 TEST(PositionFilter, AWidthIsAsUncertainAsItIsSeenAndAsTheHeightMakesIt) {
   Flight flight;
   const LandingResult result = flight.next(true, true);
