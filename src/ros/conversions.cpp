@@ -107,6 +107,7 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   message.right = toMessage(result.right);
   toArray(result.vanishing_direction, message.vanishing_direction);
   toArray(result.vanishing_covariance, message.vanishing_covariance);
+  message.other_runway_probability = result.other_runway_probability;
   toArray(result.n_vp, message.n_vp);
   toArray(result.n_vp_covariance, message.n_vp_covariance);
   toArray(result.n, message.n);
@@ -129,6 +130,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   result.right = toResult(message.right);
   fromArray(message.vanishing_direction, result.vanishing_direction);
   fromArray(message.vanishing_covariance, result.vanishing_covariance);
+  result.other_runway_probability = message.other_runway_probability;
   fromArray(message.n_vp, result.n_vp);
   fromArray(message.n_vp_covariance, result.n_vp_covariance);
   fromArray(message.n, result.n);
@@ -167,8 +169,11 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.pitch_variance = result.pitch_variance;
   message.roll = result.roll;
   message.roll_variance = result.roll_variance;
+  message.yaw_known = std::isfinite(result.yaw);
+  message.yaw_reason = result.yaw_failure.message();
   message.yaw = result.yaw;
   message.yaw_variance = result.yaw_variance;
+  message.other_runway_probability = result.other_runway_probability;
   toArray(result.foe, message.foe);
   toArray(result.velocity, message.velocity);
   toArray(result.angular_velocity, message.angular_velocity);
@@ -225,6 +230,8 @@ LandingResult toResult(const LandingEstimate& message) {
   result.roll_variance = message.roll_variance;
   result.yaw = message.yaw;
   result.yaw_variance = message.yaw_variance;
+  result.yaw_failure = parseFailure(message.yaw_reason);
+  result.other_runway_probability = message.other_runway_probability;
   fromArray(message.foe, result.foe);
   fromArray(message.velocity, result.velocity);
   fromArray(message.angular_velocity, result.angular_velocity);

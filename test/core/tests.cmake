@@ -117,6 +117,8 @@ uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_
   SOURCES test/support/ground_renderer.cpp)
 
 # runway
+uav_landing_add_gtest(runway_hypothesis_test test/core/runway/runway_hypothesis_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(ground_direction_test test/core/runway/ground_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(ground_edges_test test/core/runway/ground_edges_test.cpp
@@ -145,6 +147,7 @@ uav_landing_add_gtest(speed_memory_test test/core/integrity/speed_memory_test.cp
 uav_landing_add_gtest(stamp_order_test test/core/integrity/stamp_order_test.cpp)
 uav_landing_add_gtest(stamp_scatter_test test/core/integrity/stamp_scatter_test.cpp)
 uav_landing_add_gtest(vanishing_memory_test test/core/integrity/vanishing_memory_test.cpp)
+uav_landing_add_gtest(runway_identity_test test/core/integrity/runway_identity_test.cpp)
 uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
 
 # landing

@@ -76,6 +76,7 @@ struct ApproachMessages {
     const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
     result.vanishing_direction = (z - result.n.z() * result.n).normalized();
     result.vanishing_covariance = directionCovariance(result.vanishing_direction);
+    result.other_runway_probability = 0;
     for (ApproachAngleResult::View* view : {&result.left, &result.right}) {
       view->lines = {{{100, 470}, {300, 230}, true}, {{540, 470}, {340, 230}, true}};
       view->vanishing_direction = result.vanishing_direction;

@@ -124,6 +124,7 @@ ApproachAngleResult distinctApproachAngle() {
   result.right = distinctView();
   fill(result.vanishing_direction);
   fill(result.vanishing_covariance);
+  result.other_runway_probability = next();
   fill(result.n_vp);
   fill(result.n_vp_covariance);
   fill(result.n);
@@ -152,6 +153,7 @@ LandingResult distinctLanding() {
   result.stamp = header().stamp.toSec();
   result.status = Status::kCoasting;
   result.failure = {Reason::kRejected, "raw height 3 m"};
+  result.yaw_failure = {Reason::kNoRunway, "another one"};
   result.height_valid = true;
   for (double* number : {&result.height,
                          &result.height_variance,
@@ -170,6 +172,7 @@ LandingResult distinctLanding() {
                          &result.roll_variance,
                          &result.yaw,
                          &result.yaw_variance,
+                         &result.other_runway_probability,
                          &result.innovation,
                          &result.innovation_variance,
                          &result.x,
@@ -276,6 +279,7 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   expectEqual(back.right, result.right);
   EXPECT_EQ(back.vanishing_direction, result.vanishing_direction);
   EXPECT_EQ(back.vanishing_covariance, result.vanishing_covariance);
+  EXPECT_EQ(back.other_runway_probability, result.other_runway_probability);
   EXPECT_EQ(back.n_vp, result.n_vp);
   EXPECT_EQ(back.n_vp_covariance, result.n_vp_covariance);
   EXPECT_EQ(back.n, result.n);
@@ -319,6 +323,9 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_EQ(message.twist_covariance[8], result.twist_covariance(1, 2));
   EXPECT_EQ(message.skew, 0.002);
   EXPECT_EQ(message.compute_ms, 3.5);
+  EXPECT_TRUE(message.yaw_known);
+  EXPECT_EQ(message.yaw_reason, "no_runway: another one");
+  EXPECT_EQ(message.other_runway_probability, result.other_runway_probability);
   EXPECT_TRUE(message.x_known);
   EXPECT_TRUE(message.y_known);
   EXPECT_EQ(message.x, result.x);
@@ -535,7 +542,7 @@ TEST(Conversions, EachFieldOfALandingEstimateHasItsOwnNumber) {
 }
 
 TEST(Conversions, EachFlagOfALandingEstimateIsItsOwn) {
-  for (int flag = 0; flag < 6; ++flag) {
+  for (int flag = 0; flag < 7; ++flag) {
     LandingResult result;
     result.status = Status::kTracking;
     result.height_valid = flag == 0 || flag == 5;
@@ -543,6 +550,7 @@ TEST(Conversions, EachFlagOfALandingEstimateIsItsOwn) {
     result.rejected = flag == 2;
     if (flag == 3) result.x = -40;
     if (flag == 4) result.y = 3;
+    if (flag == 6) result.yaw = 0.1;
     const LandingEstimate message = toMessage(result, header(), "base_link", 0, 0);
     EXPECT_EQ(message.height_valid, result.height_valid) << flag;
     EXPECT_EQ(message.angle_valid, result.angle_valid) << flag;
@@ -550,6 +558,7 @@ TEST(Conversions, EachFlagOfALandingEstimateIsItsOwn) {
     EXPECT_EQ(message.rejected, flag == 2) << flag;
     EXPECT_EQ(message.x_known, flag == 3) << flag;
     EXPECT_EQ(message.y_known, flag == 4) << flag;
+    EXPECT_EQ(message.yaw_known, flag == 6) << flag;
     const LandingResult back = toResult(message);
     EXPECT_EQ(back.height_valid, result.height_valid) << flag;
     EXPECT_EQ(back.angle_valid, result.angle_valid) << flag;

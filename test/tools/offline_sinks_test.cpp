@@ -64,6 +64,9 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   landing.pitch = -4 * kDegree;
   landing.roll = 5 * kDegree;
   landing.yaw = -6 * kDegree;
+  landing.yaw_variance = std::pow(0.6 * kDegree, 2);
+  landing.yaw_failure = {Reason::kNoRunway, "another one"};
+  landing.other_runway_probability = 0.0625;
   landing.x = -100;
   landing.x_variance = 4;
   landing.y = 1.5;
@@ -127,7 +130,9 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                               {"rig_ry_stddev_deg", 0.02},
                                               {"rig_rz_stddev_deg", 0.03},
                                               {"speed_m_s", 13},
-                                              {"speed_stddev_m_s", 0.3}};
+                                              {"speed_stddev_m_s", 0.3},
+                                              {"yaw_stddev_deg", 0.6},
+                                              {"other_runway_probability", 0.0625}};
   for (const auto& [name, value] : numbers) {
     ASSERT_EQ(row.count(name), 1u) << name;
     ASSERT_FALSE(row[name].empty()) << name;
@@ -140,6 +145,8 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                                  {"angle_valid", "0"},
                                                  {"status", "coasting"},
                                                  {"reason", "rejected"},
+                                                 {"yaw_known", "1"},
+                                                 {"yaw_reason", "no_runway"},
                                                  {"protection_source", "near_region"},
                                                  {"failed_tests", "innovation"}};
   EXPECT_EQ(row, texts) << "all other columns";

@@ -136,6 +136,9 @@ struct ApproachAngleResult {
   /// covariance, rad^2. Independent of stereo.
   Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  /// Chance that this direction is that of something else: a street, a field, a shore. 0 to 1; its covariance
+  /// is that of the right one.
+  double other_runway_probability = 1;
   /// Ground normal from the vanishing points alone (level rig, roll variance large), left frame; rad^2.
   Eigen::Vector3d n_vp = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_vp_covariance = Eigen::Matrix3d::Constant(kUnknown);
@@ -173,7 +176,9 @@ struct LandingResult {
   /// Positive nose up, right side down, and to the left of the runway; rad, rad^2.
   double pitch = kUnknown, pitch_variance = kUnknown;
   double roll = kUnknown, roll_variance = kUnknown;
-  double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is seen
+  double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is certain
+  Failure yaw_failure;                             ///< why the yaw is not known
+  double other_runway_probability = 1;  ///< chance that the direction seen is not the runway's, 0 to 1
   double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
   /// Of the point above the plane of the runway's surface, m, m^2; unknown until the threshold is seen.

@@ -25,6 +25,8 @@ class VanishingMemory {
              const ApproachAngleResult::Motion& turn);
   /// After a leap: the one of the pairs before, where the camera looks now.
   const std::optional<Direction>& remembered() const { return last_; }
+  /// Pairs in a row that have agreed with the one before.
+  int agreements() const { return agreements_; }
   void reset() { *this = VanishingMemory(); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include "integrity/vanishing_memory.h"
 #include "landing/pair_input.h"
+#include "landing/pair_monitor.h"
 
 namespace uav_landing {
 
@@ -16,5 +17,9 @@ class Heading {
   VanishingMemory memory_;
   int held_ = 0;  // pairs in a row
 };
+
+/// Why the direction that the pair sees is not to be taken for the runway's; none where it may be. pair: what
+/// the tests say of it.
+Failure yawFailure(const PairInput& in, const PairVerdict& pair);
 
 }  // namespace uav_landing

@@ -36,6 +36,7 @@ Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPo
   const Eigen::Matrix2d turn = T.transpose() * B;
   mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
   mean.inlier_count = left.inlier_count + right.inlier_count;
+  mean.runway_margin = std::max(left.runway_margin, right.runway_margin);
   return mean;
 }
 

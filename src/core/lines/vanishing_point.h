@@ -18,6 +18,9 @@ struct VanishingPoint {
   /// How many points as well supported are expected of as many lines of random direction; infinite where
   /// that was not asked.
   double coincidences = std::numeric_limits<double>::infinity();
+  /// Evidence by which the runway that vanishes here exceeds any other one (RunwayChoice::margin); 0 where no
+  /// runway is known to.
+  double runway_margin = 0;
 };
 
 /// Both views see the same direction: their mean weighted by covariance. The runway's own slope and curve

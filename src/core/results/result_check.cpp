@@ -191,6 +191,8 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepMotion(kept.window);
   keepRunway(kept.runway);
   keepImu(kept.imu);
+  if (!(kept.other_runway_probability >= 0 && kept.other_runway_probability <= 1))
+    kept.other_runway_probability = 1;
   if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);
   return kept;
 }

@@ -14,6 +14,7 @@
 #include "lines/vanishing_search.h"
 #include "runway/ground_direction.h"
 #include "runway/right_view.h"
+#include "runway/runway_hypothesis.h"
 
 namespace uav_landing {
 namespace {
@@ -23,7 +24,10 @@ constexpr double kSure = 1e-3;  // expected coincidences of a point that is not 
 constexpr Sigmas kGate(3);      // between a point and the ground
 // 1 sigma between the two, beyond which they say little of each other.
 constexpr double kVague = 0.4 * kDegree;
-constexpr double kEnough = 0.5;  // of the lines through the other view's point
+constexpr double kEnough = 0.5;              // of the lines through the other view's point
+constexpr double kSlope = 0.5 * kDegree;     // 1 sigma of a runway's own slope against the ground
+constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
+constexpr double kClear = 3;                 // least lead of a runway that outweighs other lines
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   Eigen::Matrix3d K = rig.K();
@@ -55,7 +59,10 @@ struct View {
 struct Found {
   std::vector<LineSegment> lines, straight;
   Expected<VanishingPoint> point = tl::make_unexpected(Failure{Reason::kNotYet, ""});
+  bool refused = false;  // there is a point, but not of a runway
 };
+
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).norm(); }
 
 ApproachAngleResult::View reportOf(const Found& found) {
   ApproachAngleResult::View view;
@@ -133,13 +140,22 @@ class Search {
                                       ground_->plane.normalCovariance(), maxYaw());
     if (!along) return;
     const auto retry = [&](const View& view, Found& found, const std::vector<char>& members) {
-      if (found.point) return;
+      if (found.point || found.refused) return;
       Expected<VanishingPoint> fitted =
           fitVanishingPoint(found.straight, view.K, parameters_, members, normal());
-      if (fitted) found.point = std::move(fitted);
+      if (!fitted) return;
+      found.point = std::move(fitted);
+      found.point = ofRunway(view, found);
     };
     retry(left_view, left, along->front());
     retry(right_view, right, along->back());
+  }
+
+  // Where the other view's lines are those of no runway, a point that is not clearly one's is one view's word
+  // against the other's.
+  void settle(Found& view, const Found& other) const {
+    if (!other.refused || !view.point || view.point->runway_margin >= kClear) return;
+    view.point = tl::make_unexpected(other.point.error());
   }
 
  private:
@@ -149,7 +165,49 @@ class Search {
     found.straight = straight(view, found.lines);
     ScopedTimer timer(timings_, "ransac");
     found.point = findVanishingPoint(found.straight, view.K, parameters_, normal());
+    if (ground_ == nullptr) return found;
+    const bool any = found.point.has_value();
+    found.point = ofRunway(view, found);
+    found.refused = any && !found.point;
     return found;
+  }
+
+  /// Lines that meet may be those of a town. A runway among them has the say; without one, the point has to
+  /// be on the ground.
+  Expected<VanishingPoint> ofRunway(const View& view, const Found& found) const {
+    const Expected<RunwayChoice> choice =
+        findRunwayHypothesis(found.straight, view.K, prior(), parameters_.ransac_tolerance);
+    if (!choice) {
+      if (!found.point || isNearGround(*found.point)) return found.point;
+      return tl::make_unexpected(Failure{Reason::kNoVanishingPoint, "the lines meet off the ground"});
+    }
+    if (found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway) {
+      Expected<VanishingPoint> point = found.point;
+      point->runway_margin = choice->margin;
+      return point;
+    }
+    if (choice->lead < kClear)
+      return tl::make_unexpected(
+          Failure{Reason::kNoVanishingPoint, "lines meet, but not clearly those of a runway"});
+    Expected<VanishingPoint> point =
+        fitVanishingPoint(found.straight, view.K, parameters_, choice->best.members, normal());
+    if (point) point->runway_margin = choice->margin;
+    return point;
+  }
+
+  RunwayPrior prior() const {
+    return {normal_,
+            ground_->plane.normalCovariance() + kSlope * kSlope * Eigen::Matrix3d::Identity(),
+            ground_->plane.height(),
+            ground_->path,
+            ground_->last,
+            maxYaw()};
+  }
+
+  bool isNearGround(const VanishingPoint& point) const {
+    const double variance = point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
+                            normal_.dot(point.covariance * normal_) + kSlope * kSlope;
+    return kGate.admits(normal_.dot(point.direction), variance);
   }
 
   std::vector<LineSegment> straight(const View& view, const std::vector<LineSegment>& lines) const {
@@ -203,6 +261,9 @@ RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, c
           ? search.following(right_view, linesInRightView(rig, *ground, in_left.lines), *in_left.point)
           : search.in(right_view);
   search.tryTogether(left_view, right_view, in_left, in_right);
+
+  search.settle(in_left, in_right);
+  search.settle(in_right, in_left);
 
   RunwayDirection result;
   result.left = reportOf(in_left);

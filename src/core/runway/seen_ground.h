@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -11,6 +13,8 @@ struct SeenGround {
   RigRotation rows;  ///< what vertical disparities tell, or unknown
   /// Whether a runway is followed on it already: then nothing depends on lines that are not there.
   bool has_runway = false;
+  /// Directions in the pair before, unit, frame of the camera: of flight, and of the runway.
+  std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
 };
 
 }  // namespace uav_landing

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/image_check.h"
+#include "integrity/runway_identity.h"
 #include "motion/angle_by_foe.h"
 #include "motion/angle_normal.h"
 #include "motion/motion_corners.h"
@@ -27,6 +28,8 @@ struct ApproachAngleStage::Implementation {
   cv::Mat left_mask, right_mask;  // eroded, for lines and corners
   MotionTracker tracker;
   RunwayTracker runway;
+  RunwayIdentity identity;
+  std::optional<Eigen::Vector3d> last_path, last_direction;  // of flight, of the runway; in the pair before
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
@@ -50,7 +53,8 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp)};
+    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp), last_path,
+                            last_direction};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
@@ -62,6 +66,11 @@ struct ApproachAngleStage::Implementation {
     }
     straightenPlan(result);
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
+    if (repeated(stereo)) {
+      result.other_runway_probability = identity.otherProbability();
+    } else {
+      identify(stamp, direction, result);
+    }
     ScopedTimer timer(timings, "runway_position");
     if (repeated(stereo)) {
       result.runway.failure = result.runway.threshold_failure = result.step.failure;
@@ -72,8 +81,22 @@ struct ApproachAngleStage::Implementation {
     return result;
   }
 
+  void identify(double stamp, const RunwayDirection& direction, ApproachAngleResult& result) {
+    identity.follow(stamp, {result.vanishing_direction, result.vanishing_covariance},
+                    direction.combined ? direction.combined->runway_margin : 0, result.n, result.step);
+    result.other_runway_probability = identity.otherProbability();
+    const Eigen::Vector3d& t = result.step.translation_over_height;
+    last_path.reset();
+    if (!result.step.failure && t.allFinite()) last_path = t.normalized();
+    last_direction.reset();
+    if (result.vanishing_direction.allFinite()) last_direction = result.vanishing_direction;
+  }
+
   void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
+    last_path.reset();
+    last_direction.reset();
     if (repeated(stereo)) return;
+    identity.skip(stamp);
     tracker.skip(stamp, left);
     runway.skip(stamp);
   }
@@ -170,6 +193,9 @@ ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& lef
 void ApproachAngleStage::reset() {
   implementation_->tracker.reset();
   implementation_->runway.reset();
+  implementation_->identity = RunwayIdentity();
+  implementation_->last_path.reset();
+  implementation_->last_direction.reset();
 }
 
 const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }

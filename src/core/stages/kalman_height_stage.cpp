@@ -116,7 +116,7 @@ struct KalmanHeightStage::Implementation {
     reportAngle(in, ground, parts->doubt, pair.velocity, result);
     judgeAngle(in, refusalOf(measured, pair, waiting ? result.failure : jump),
                parameters.max_angle_stddev_deg, result);
-    reportDirections(in, ground, result);
+    reportDirections(in, ground, pair, result);
     if (motionBelieved(ground, pair))
       reportTwist(believedTwist(rig, in, ground, pair, result, doubtOfStep(in, ground)), result);
     timer.emplace(timings, "runway_filter");
@@ -166,9 +166,13 @@ struct KalmanHeightStage::Implementation {
     return waiting;
   }
 
-  void reportDirections(const PairInput& in, const Ground& ground, LandingResult& result) {
+  void reportDirections(const PairInput& in, const Ground& ground, const PairVerdict& pair,
+                        LandingResult& result) {
     const GroundNormal normal = ground.normalOr(in.normal());
-    const VanishingMemory::Direction runway = parts->heading.follow(in, normal.n);
+    VanishingMemory::Direction runway = parts->heading.follow(in, normal.n);
+    result.other_runway_probability = in.approach.other_runway_probability;
+    result.yaw_failure = yawFailure(in, pair);
+    if (result.yaw_failure) runway.direction.setConstant(kUnknown);
     reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
   }
 

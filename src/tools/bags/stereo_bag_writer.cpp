@@ -47,6 +47,7 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   message.pitch_variance = varianceOf(truth.pitch);
   message.roll = truth.roll;
   message.roll_variance = varianceOf(truth.roll);
+  message.yaw_known = !std::isnan(truth.yaw);
   message.yaw = truth.yaw;
   message.yaw_variance = varianceOf(truth.yaw);
   message.foe = {truth.foe.x(), truth.foe.y()};

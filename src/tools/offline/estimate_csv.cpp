@@ -17,7 +17,8 @@ const char* const kHeader =
     "height_valid,angle_valid,raw_approach_angle_deg,height_protection_level_m,reason,x_stddev_m,y_stddev_m,"
     "runway_width_m,width_height_m,width_height_stddev_m,rig_rx_deg,rig_ry_deg,rig_rz_deg,rig_rx_stddev_deg,"
     "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests,"
-    "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s";
+    "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s,yaw_stddev_deg,yaw_known,"
+    "yaw_reason,other_runway_probability";
 
 }  // namespace
 
@@ -49,6 +50,8 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.number(landing.height_alert_limit).text(landing.protection_source).text(failedTests(landing.tests));
   row.number(landing.height_above_runway).number(std::sqrt(landing.height_above_runway_variance));
   row.number(landing.speed()).number(std::sqrt(landing.speedVariance()));
+  row.number(std::sqrt(landing.yaw_variance) * kDegrees).flag(std::isfinite(landing.yaw));
+  row.text(toString(landing.yaw_failure.reason)).number(landing.other_runway_probability);
   file_ << '\n';
 }
 

@@ -36,6 +36,7 @@ TEST(KalmanHeightAttitude, ReportsAttitudeFromThePlaneAndYawFromTheVanishingDire
   ApproachAngleResult approach = angleAt(0);
   approach.vanishing_direction = optical_from_runway * Eigen::Vector3d(1, 0, 0);
   approach.vanishing_covariance = std::pow(0.2 * kDegree, 2) * Eigen::Matrix3d::Identity();
+  approach.other_runway_probability = 0;
 
   KalmanHeightStage stage(usualRig(), {});
   const LandingResult result = stage.process(stereo, approach);
@@ -81,6 +82,7 @@ TEST(KalmanHeightAttitude, AnAngleAgainstAPlaneThatTheVanishingPointContradictsI
     approach.window.angle_variance = 1e-6;
     approach.vanishing_direction = {0, -std::sin(vanishing_elevation), std::cos(vanishing_elevation)};
     approach.vanishing_covariance = 1e-8 * Eigen::Matrix3d::Identity();
+    approach.other_runway_probability = 0;
     result = stage.process(stereo, approach);
     stamp += kStep;
   };
@@ -121,6 +123,7 @@ ApproachAngleResult levelFlight(const StereoDepthResult& stereo, double vanishin
   approach.window.angle_variance = std::pow(0.06 * kDegree, 2);
   approach.vanishing_direction = {0, -std::sin(vanishing_elevation), std::cos(vanishing_elevation)};
   approach.vanishing_covariance = std::pow(vanishing_stddev, 2) * Eigen::Matrix3d::Identity();
+  approach.other_runway_probability = 0;
   return approach;
 }
 

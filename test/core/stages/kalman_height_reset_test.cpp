@@ -66,6 +66,7 @@ struct Flight {
     approach.vanishing_covariance =
         1e-6 * (Eigen::Matrix3d::Identity() -
                 approach.vanishing_direction * approach.vanishing_direction.transpose());
+    approach.other_runway_probability = 1e-4;
     if (wild) approach.vanishing_direction = (p + 0.05 * approach.n).normalized();
     for (ApproachAngleResult::Motion* motion : {&approach.step, &approach.window}) {
       motion->duration = motion == &approach.step ? kT : 0.4;

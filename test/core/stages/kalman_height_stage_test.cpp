@@ -202,6 +202,7 @@ TEST(KalmanHeightStage, LearnsNoVerticalSpeedByAPlaneThatTheVanishingPointContra
       approach.step.translation_over_height = {0, 0, 0.2};
       approach.vanishing_direction = Eigen::Vector3d(0, std::sin(seen_pitch), std::cos(seen_pitch));
       approach.vanishing_covariance = std::pow(0.05 * kDegree, 2) * Eigen::Matrix3d::Identity();
+      approach.other_runway_probability = 0;
       result = stage.process(stereoAt(i * kStep, 10, 2 * kDegree, 0, 0.05), approach);
     }
     return result.vertical_speed;

@@ -1,0 +1,62 @@
+#include "integrity/runway_identity.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kPatience = 1;  // s, without a pair: then it may be any runway
+constexpr double kMean = 0.5;    // s, over which margins are averaged
+constexpr double kFade = 3;      // s, in which a margin fades while no runway is told from other lines
+constexpr int kMostLeaps = 3;    // in a row, of a direction that is not believed
+
+}  // namespace
+
+void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen, double margin,
+                            const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn) {
+  const double seconds = advance(stamp);
+  other_probability_ = 1;
+  const Eigen::Vector3d across = normal.cross(seen.direction).normalized();
+  const bool leaps = memory_.leaps(stamp, seen, across, turn);
+  if (!seen.direction.allFinite()) {
+    margin_ *= std::exp(-seconds / kFade);
+    return;
+  }
+  if (leaps) {
+    if (++leaps_ > kMostLeaps) {
+      *this = RunwayIdentity();
+      follow(stamp, seen, margin, normal, turn);
+    }
+    return;
+  }
+  leaps_ = 0;
+  if (memory_.agreements() == 0) pairs_ = 0;  // another direction than in the pair before
+  follow(seconds, margin);
+}
+
+void RunwayIdentity::follow(double seconds, double margin) {
+  if (margin == 0 && pairs_ >= kConfirmations) {
+    margin_ *= std::exp(-seconds / kFade);
+  } else {
+    const double gain = std::max(1.0 / (pairs_ + 1), 1 - std::exp(-seconds / kMean));
+    margin_ += gain * (margin - margin_);
+    ++pairs_;
+  }
+  if (pairs_ >= kConfirmations) other_probability_ = std::min(1.0, std::exp(-margin_));
+}
+
+void RunwayIdentity::skip(double stamp) {
+  margin_ *= std::exp(-advance(stamp) / kFade);
+  other_probability_ = 1;
+}
+
+double RunwayIdentity::advance(double stamp) {
+  const double seconds = stamp - stamp_;
+  if (!(seconds > 0 && seconds <= kPatience)) *this = RunwayIdentity();
+  stamp_ = stamp;
+  return seconds > 0 && seconds <= kPatience ? seconds : 0;
+}
+
+}  // namespace uav_landing

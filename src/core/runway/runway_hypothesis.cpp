@@ -1,0 +1,308 @@
+#include "runway/runway_hypothesis.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "base/text.h"
+#include "estimation/limits.h"
+#include "lines/vanishing_candidate.h"
+#include "lines/vanishing_chance.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kLeastCrossing = 3 * kDegree;    // in the picture, between two edges
+constexpr double kLeastSlope = 1e-3;              // n.r of the horizon's neighbourhood
+constexpr double kFarOff = 5 * kDegree;           // from the horizon: not on the ground
+constexpr double kSameEdge = 0.04;                // of the width: lines this near to an edge are its pieces
+constexpr double kLeastExtent = 0.14;             // log(far / near) of both edges
+constexpr double kAcross = 12 * kDegree;          // of the horizon: lines of a threshold, in the picture
+constexpr double kStraightness = 1.0;             // px by which an edge may differ from a straight line
+constexpr Sigmas kGate(4);                        // of a line's own errors
+constexpr double kOther = 1 * kDegree;            // between directions of two runways
+constexpr double kPathSigma = 3 * kDegree;        // between path and runway: wind and corrections
+constexpr double kStepSigma = 0.7 * kDegree;      // by which the camera turns between pairs
+constexpr double kNarrowest = 0.4, kWidest = 90;  // m
+
+// Evidence.
+constexpr double kRunwayShare = 0.25;  // of the lines that point there, that are the runway's
+constexpr double kEnoughOfEdges = 14;  // more lines along the edges do not make it more of a runway
+constexpr double kEnoughInside = 10;   // nor do more marks
+constexpr double kAstray = 1.2;        // against it, for each line between the edges that runs elsewhere
+constexpr double kUsualLength = 6;     // widths; a runway is longer, even the part in view
+constexpr double kMostOff = 6;         // against it at most, for what was believed before
+
+struct Interval {
+  double begin, end;
+};
+
+/// Length of the union of intervals. Sorts them.
+double lengthOfUnion(std::vector<Interval>& intervals) {
+  std::sort(intervals.begin(), intervals.end(),
+            [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  double length = 0, end = -1e9;
+  for (const Interval& i : intervals) {
+    length += std::max(0.0, i.end - std::max(i.begin, end));
+    end = std::max(end, i.end);
+  }
+  return length;
+}
+
+/// A line as all hypotheses need it.
+struct GroundLine {
+  VanishingCandidate line;
+  Eigen::Vector3d a, b, middle;  ///< rays of its ends and its middle
+  Eigen::Vector3d plane;         ///< normal of the plane through camera and line
+  double azimuth;                ///< on the ground, left of the axis, rad
+  double tolerance;              ///< px by which its ends may miss the point where it vanishes
+  bool on_ground;                ///< below the horizon
+  bool ahead;                    ///< and may run along a runway
+  bool across;                   ///< or may be of a threshold
+};
+
+/// The ground that has a direction in it.
+struct Plane {
+  Eigen::Vector3d direction, down, left;
+
+  Plane(const Eigen::Vector3d& normal, const Eigen::Vector3d& towards)
+      : direction(towards),
+        down((normal - normal.dot(towards) * towards).normalized()),
+        left(towards.cross(down)) {}
+
+  double lateral(const GroundLine& line) const {
+    return left.dot(line.middle) / std::max(down.dot(line.middle), kLeastSlope);
+  }
+  /// Nearest and farthest place.
+  std::pair<double, double> forward(const GroundLine& line) const {
+    return std::minmax({direction.dot(line.a) / std::max(down.dot(line.a), kLeastSlope),
+                        direction.dot(line.b) / std::max(down.dot(line.b), kLeastSlope)});
+  }
+};
+
+/// The lines as one direction has them.
+struct Pencil {
+  std::vector<double> lateral, near, far;  ///< per line, in heights
+  std::vector<double> evidence;            ///< per line that passes; 0 where it does not
+  std::vector<char> passes;
+};
+
+class Search {
+ public:
+  Search(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K, const RunwayPrior& prior,
+         double tolerance)
+      : K_(K), Kinv_(K.inverse()), prior_(prior) {
+    forward_ = (Eigen::Vector3d::UnitZ() - prior.normal.z() * prior.normal).normalized();
+    left_ = forward_.cross(prior.normal);
+    const Eigen::Vector3d horizon = Kinv_.transpose() * prior.normal;
+    horizon_ = Eigen::Vector2d(horizon.y(), -horizon.x()).normalized();
+    for (const LineSegment& line : lines) add(line, tolerance);
+  }
+
+  std::vector<RunwayHypothesis> all() const {
+    std::vector<RunwayHypothesis> found;
+    for (size_t i = 0; i < lines_.size(); ++i) {
+      if (!lines_[i].ahead) continue;
+      for (size_t j = 0; j < i; ++j) {
+        const auto direction = lines_[j].ahead ? meeting(lines_[i], lines_[j]) : std::nullopt;
+        if (!direction) continue;
+        if (const auto hypothesis = between(i, j, *direction)) found.push_back(*hypothesis);
+      }
+    }
+    return found;
+  }
+
+  double azimuth(const Eigen::Vector3d& direction) const {
+    return std::atan2(direction.dot(left_), direction.dot(forward_));
+  }
+
+ private:
+  void add(const LineSegment& segment, double tolerance) {
+    GroundLine line{VanishingCandidate(segment),
+                    Kinv_ * segment.a.homogeneous(),
+                    Kinv_ * segment.b.homogeneous(),
+                    Kinv_ * segment.middle().homogeneous(),
+                    K_.transpose() * segment.line,
+                    0,
+                    0,
+                    false,
+                    false,
+                    false};
+    line.tolerance = std::min(std::max(kStraightness, kGate.bound(line.line.endVariance())), tolerance);
+    line.azimuth = azimuthOf(line.plane);
+    line.on_ground = std::min(prior_.normal.dot(line.a), prior_.normal.dot(line.b)) > kLeastSlope;
+    line.ahead = line.on_ground && std::abs(line.azimuth) < prior_.max_yaw;
+    line.across = std::abs(line.line.along.dot(horizon_)) > std::cos(kAcross);
+    lines_.push_back(line);
+  }
+
+  double azimuthOf(const Eigen::Vector3d& plane) const {
+    Eigen::Vector3d along = plane.cross(prior_.normal);
+    if (along.dot(forward_) < 0) along = -along;
+    return azimuth(along);
+  }
+
+  /// Where two lines meet, if that may be the end of a runway.
+  std::optional<Eigen::Vector3d> meeting(const GroundLine& a, const GroundLine& b) const {
+    const Eigen::Vector2d &p = a.line.along, &q = b.line.along;
+    if (std::abs(p.x() * q.y() - p.y() * q.x()) < std::sin(kLeastCrossing)) return std::nullopt;
+    Eigen::Vector3d direction = a.plane.cross(b.plane).normalized();
+    if (direction.z() < 0) direction = -direction;
+    if (!direction.allFinite() || std::abs(prior_.normal.dot(direction)) > std::sin(kFarOff))
+      return std::nullopt;
+    if (std::abs(azimuth(direction)) > prior_.max_yaw) return std::nullopt;
+    return direction;
+  }
+
+  Pencil pencil(const Plane& plane) const {
+    const Eigen::Vector3d V = K_ * plane.direction;
+    const double per_pixel = V.z() / (Kinv_ * V).squaredNorm();
+    Pencil pencil;
+    const size_t count = lines_.size();
+    pencil.lateral.resize(count);
+    pencil.near.resize(count);
+    pencil.far.resize(count);
+    pencil.evidence.assign(count, 0);
+    pencil.passes.assign(count, 0);
+    for (size_t i = 0; i < count; ++i) {
+      const GroundLine& l = lines_[i];
+      if (!l.on_ground) continue;
+      pencil.lateral[i] = plane.lateral(l);
+      std::tie(pencil.near[i], pencil.far[i]) = plane.forward(l);
+      const double miss2 = l.ahead ? l.line.endMiss2(V) / (l.tolerance * l.tolerance) : 2;
+      if (!(miss2 < 1)) continue;
+      pencil.passes[i] = 1;
+      const double sine = std::abs(l.line.along.x() * horizon_.y() - l.line.along.y() * horizon_.x());
+      const double turn = l.tolerance / l.line.half * l.line.towards(V).norm() * per_pixel /
+                          (K_(0, 0) * std::max(sine, 1e-6));
+      const double chance = std::min(1.0, std::max(1e-4, chanceWithin(turn)));
+      pencil.evidence[i] = std::log(1 - kRunwayShare + kRunwayShare / chance) * (1 - miss2);
+    }
+    return pencil;
+  }
+
+  /// Whether two lines that vanish there are as far apart, and seen side by side, as the edges of a runway.
+  bool mayBeEdges(const GroundLine& left, const GroundLine& right, const Plane& plane) const {
+    // The brighter side is that of the line's normal.
+    if ((left.line.line.x() < 0) == (right.line.line.x() < 0)) return false;
+    const auto [near_left, far_left] = plane.forward(left);
+    const auto [near_right, far_right] = plane.forward(right);
+    if (std::min(far_left, far_right) < 1.05 * std::max(near_left, near_right)) return false;
+    if (!prior_.height) return true;
+    const double width = (plane.lateral(left) - plane.lateral(right)) * *prior_.height;
+    return width >= kNarrowest && width <= kWidest;
+  }
+
+  std::optional<RunwayHypothesis> between(size_t i, size_t j, const Eigen::Vector3d& direction) const {
+    const Plane plane(prior_.normal, direction);
+    const bool i_is_left = plane.lateral(lines_[i]) > plane.lateral(lines_[j]);
+    const size_t l = i_is_left ? i : j, r = i_is_left ? j : i;
+    if (!mayBeEdges(lines_[l], lines_[r], plane)) return std::nullopt;
+    const Pencil p = pencil(plane);
+    RunwayHypothesis h;
+    h.direction = direction;
+    h.left = p.lateral[l];
+    h.right = p.lateral[r];
+    const double width = h.width(), slack = kSameEdge * width;
+    if (!(width > 0)) return std::nullopt;
+    const auto isOn = [&](size_t k, double edge) {
+      return p.passes[k] != 0 && std::abs(p.lateral[k] - edge) < slack;
+    };
+    double near_left = 1e9, near_right = 1e9, far_left = 0, far_right = 0, edges = 0;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      if (isOn(k, h.left)) {
+        near_left = std::min(near_left, p.near[k]);
+        far_left = std::max(far_left, p.far[k]);
+      } else if (isOn(k, h.right)) {
+        near_right = std::min(near_right, p.near[k]);
+        far_right = std::max(far_right, p.far[k]);
+      } else {
+        continue;
+      }
+      edges += p.evidence[k];
+    }
+    h.near = std::max(near_left, near_right);
+    h.far = std::min(far_left, far_right);
+    if (!(h.near > 0) || !(std::log(h.far / h.near) > kLeastExtent)) return std::nullopt;
+    const double extent = std::log(h.far / h.near);
+    const double coverage = std::min(covered(p, h, h.left, slack), covered(p, h, h.right, slack)) / extent;
+
+    h.members.assign(lines_.size(), 0);
+    double inside = 0;
+    int astray = 0;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      if (!lines_[k].on_ground || p.lateral[k] > h.left + slack || p.lateral[k] < h.right - slack) continue;
+      if (p.far[k] < 0.97 * h.near || p.near[k] > 1.03 * h.far) continue;
+      if (p.passes[k] != 0) {
+        h.members[k] = 1;
+        if (!isOn(k, h.left) && !isOn(k, h.right)) inside += p.evidence[k];
+      } else if (!lines_[k].across) {
+        ++astray;
+      }
+    }
+    h.evidence = std::min(edges, kEnoughOfEdges) + std::min(inside, kEnoughInside) - kAstray * astray +
+                 2 * std::log(std::max(coverage, 0.05)) +
+                 3 * std::min(0.0, std::log((h.far - h.near) / width / kUsualLength)) +
+                 std::min(extent, 2.0) - against(direction);
+    h.lead = h.evidence - againstLast(direction);
+    return h;
+  }
+
+  /// log(far / near) of what is seen of an edge.
+  double covered(const Pencil& p, const RunwayHypothesis& h, double edge, double slack) const {
+    std::vector<Interval> pieces;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      if (p.passes[k] == 0 || std::abs(p.lateral[k] - edge) >= slack) continue;
+      const double begin = std::max(p.near[k], h.near), end = std::min(p.far[k], h.far);
+      if (begin < end) pieces.push_back({std::log(begin), std::log(end)});
+    }
+    return lengthOfUnion(pieces);
+  }
+
+  static double penalty(double off, double variance) {
+    return std::min(kMostOff, 0.5 * off * off / variance);
+  }
+  /// Evidence against a direction by ground and path.
+  double against(const Eigen::Vector3d& direction) const {
+    double sum = penalty(prior_.normal.dot(direction), direction.dot(prior_.normal_covariance * direction));
+    if (prior_.path) sum += penalty(azimuth(direction) - azimuth(*prior_.path), kPathSigma * kPathSigma);
+    return sum;
+  }
+  /// By the pair before.
+  double againstLast(const Eigen::Vector3d& direction) const {
+    if (!prior_.last) return 0;
+    return penalty(azimuth(direction) - azimuth(*prior_.last), kStepSigma * kStepSigma);
+  }
+
+  Eigen::Matrix3d K_, Kinv_;
+  RunwayPrior prior_;
+  Eigen::Vector3d forward_, left_;
+  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
+  std::vector<GroundLine> lines_;
+};
+
+}  // namespace
+
+Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,
+                                            const RunwayPrior& prior, double tolerance) {
+  const Search search(lines, K, prior, tolerance);
+  std::vector<RunwayHypothesis> found = search.all();
+  const auto best = std::max_element(found.begin(), found.end(),
+                                     [](const auto& a, const auto& b) { return a.lead < b.lead; });
+  if (best == found.end())
+    return tl::make_unexpected(
+        Failure{Reason::kNoRunway, text("no two of ", lines.size(), " lines may be the edges of a runway")});
+  double evidence = 0, lead = 0;  // of two lines that are there by chance
+  for (const RunwayHypothesis& h : found) {
+    if (std::abs(search.azimuth(h.direction) - search.azimuth(best->direction)) <= kOther) continue;
+    evidence = std::max(evidence, h.evidence);
+    lead = std::max(lead, h.lead);
+  }
+  return RunwayChoice{*best, best->evidence - evidence, best->lead - lead};
+}
+
+}  // namespace uav_landing

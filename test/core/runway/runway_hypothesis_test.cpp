@@ -1,0 +1,210 @@
+#include "runway/runway_hypothesis.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "support/ground_renderer.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::Pose;
+
+enum class Brighter { kLeft, kRight };
+
+/// A camera 30 m above the ground, 300 m before a runway of 45 m by 1500 m along x, which it sees at an
+/// angle.
+struct Scene {
+  StereoRig rig = test::makeRig(640, 480, 1.0);
+  Pose pose;
+  std::vector<LineSegment> lines;
+  double tolerance = 1.5;
+  RunwayPrior prior;
+
+  Scene() {
+    pose.position = {-300, 5, 30};
+    pose.yaw = 4 * kDegree;
+    pose.pitch = -4 * kDegree;
+    pose.roll = 3 * kDegree;
+    prior.normal = pose.down();
+    prior.normal_covariance = Eigen::Matrix3d::Identity() * std::pow(0.5 * kDegree, 2);
+    prior.max_yaw = 30 * kDegree;
+  }
+  Eigen::Vector2d pixel(const Eigen::Vector2d& point) const {
+    const Eigen::Vector3d seen = pose.seen(Eigen::Vector3d(point.x(), point.y(), 0) - pose.position);
+    return {rig.fx * seen.x() / seen.z() + rig.cx, rig.fy * seen.y() / seen.z() + rig.cy};
+  }
+  /// An edge on the ground.
+  void add(const Eigen::Vector2d& from, const Eigen::Vector2d& to, Brighter brighter) {
+    const Eigen::Vector2d a = pixel(from), b = pixel(to), along = (b - a).normalized();
+    Eigen::Vector2d normal(along.y(), -along.x());
+    if ((normal.x() > 0) == (brighter == Brighter::kLeft)) normal = -normal;
+    lines.push_back({a, b, {normal.x(), normal.y(), -normal.dot(a)}, 0.05, 0.17 / (b - a).norm()});
+  }
+  /// A dark strip: its left edge is brighter on the left.
+  void addStrip(const Eigen::Vector2d& begin, double width, double length, double heading = 0) {
+    const Eigen::Vector2d along(std::cos(heading), std::sin(heading)), left(-along.y(), along.x());
+    const Eigen::Vector2d l = begin + 0.5 * width * left, r = begin - 0.5 * width * left;
+    add(l, l + length * along, Brighter::kLeft);
+    add(r, r + length * along, Brighter::kRight);
+  }
+  void addRunway() {
+    addStrip({0, 0}, 45, 1500);
+    for (const double y : {-12, -4, 4, 12}) {  // bars of the threshold
+      add({20, y + 1}, {50, y + 1}, Brighter::kRight);
+      add({20, y - 1}, {50, y - 1}, Brighter::kLeft);
+    }
+  }
+  /// Roofs and streets in many directions, not on the runway.
+  void addTown(int count) {
+    std::mt19937 random(3);
+    const auto uniform = [&](double from, double to) {
+      return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
+    };
+    for (int i = 0; i < count; ++i) {
+      const double heading = uniform(-1.5, 1.5), side = i % 2 == 0 ? 1 : -1;
+      const Eigen::Vector2d from(uniform(-150, 900), side * uniform(60, 250));
+      const Eigen::Vector2d to =
+          from + uniform(10, 60) * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+      add(from, to, i % 3 == 0 ? Brighter::kLeft : Brighter::kRight);
+    }
+  }
+  Expected<RunwayChoice> find() const { return findRunwayHypothesis(lines, rig.K(), prior, tolerance); }
+  /// Of a direction against one on the ground, rad.
+  double off(const Eigen::Vector3d& direction, double heading = 0) const {
+    return (direction - pose.seen({std::cos(heading), std::sin(heading), 0})).norm();
+  }
+};
+
+TEST(RunwayHypothesis, IsTheRunwayInTheMidstOfATown) {
+  Scene scene;
+  scene.addRunway();
+  scene.addTown(80);
+  const auto found = scene.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_LT(scene.off(found->best.direction), 0.05 * kDegree);
+  EXPECT_GT(found->margin, 7) << "another one in 1000 cases";
+  // Exact places: 22.5 m to either side of the middle, which is 5 m to the right of the camera.
+  EXPECT_NEAR(found->best.left * 30, 17.5, 0.2);
+  EXPECT_NEAR(found->best.right * 30, -27.5, 0.2);
+  // The runway itself has 10 lines.
+  for (size_t i = 0; i < scene.lines.size(); ++i) EXPECT_EQ(found->best.members[i], i < 10 ? 1 : 0) << i;
+}
+
+TEST(RunwayHypothesis, ATownAloneIsNoClearRunway) {
+  Scene scene;
+  scene.addTown(80);
+  const auto found = scene.find();
+  EXPECT_LT(found ? found->margin : 0, 7);
+}
+
+TEST(RunwayHypothesis, TwoEdgesThatAreBrighterOnTheSameSideAreNone) {
+  Scene scene;
+  scene.add({0, 22}, {1500, 22}, Brighter::kLeft);
+  scene.add({0, -22}, {1500, -22}, Brighter::kLeft);
+  const auto found = scene.find();
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().reason, Reason::kNoRunway);
+}
+
+TEST(RunwayHypothesis, EdgesThatAreNotSideBySideAreNone) {
+  Scene scene;
+  scene.add({0, 22}, {100, 22}, Brighter::kLeft);
+  scene.add({400, -22}, {1500, -22}, Brighter::kRight);
+  EXPECT_FALSE(scene.find());
+}
+
+TEST(RunwayHypothesis, AStripThatIsHardlyLongerThanWideHasLessEvidence) {
+  Scene runway, field;
+  runway.addStrip({0, 0}, 45, 1500);
+  field.addStrip({0, 0}, 200, 300);
+  const auto long_one = runway.find(), short_one = field.find();
+  ASSERT_TRUE(long_one && short_one);
+  EXPECT_GT(long_one->best.evidence, short_one->best.evidence + 3);
+}
+
+TEST(RunwayHypothesis, LinesAstrayOnTheSurfaceAreEvidenceAgainstIt) {
+  Scene clean, cluttered;
+  clean.addStrip({0, 0}, 45, 1500);
+  cluttered.addStrip({0, 0}, 45, 1500);
+  for (const double x : {20, 60, 120}) cluttered.add({x, -10}, {x + 60, 0}, Brighter::kLeft);
+  const auto a = clean.find(), b = cluttered.find();
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(a->best.evidence - b->best.evidence, 3 * 1.2, 1e-6);
+}
+
+TEST(RunwayHypothesis, TwoRunwaysAreNotDecidedUnlessThePathOrThePairBeforeSays) {
+  const double heading = -10 * kDegree;
+  Scene scene;
+  scene.addStrip({0, 0}, 45, 1500);
+  scene.addStrip({0, -90}, 45, 1500, heading);
+  const auto undecided = scene.find();
+  ASSERT_TRUE(undecided);
+  EXPECT_LT(undecided->margin, 3);
+  for (const double there : {0.0, heading}) {
+    const Eigen::Vector3d direction = scene.pose.seen({std::cos(there), std::sin(there), -0.05});
+    Scene flown = scene, followed = scene;
+    flown.prior.path = direction.normalized();
+    followed.prior.last = direction.normalized();
+    for (const Scene& known : {flown, followed}) {
+      const auto found = known.find();
+      ASSERT_TRUE(found);
+      EXPECT_LT(known.off(found->best.direction, there), 0.05 * kDegree);
+      EXPECT_GT(found->lead, 3);
+    }
+  }
+}
+
+TEST(RunwayHypothesis, EnoughEvidenceOutweighsThePath) {
+  Scene scene;
+  scene.addRunway();
+  scene.prior.path = scene.pose.seen({std::cos(0.4), std::sin(0.4), -0.05}).normalized();
+  const auto found = scene.find();
+  ASSERT_TRUE(found);
+  EXPECT_LT(scene.off(found->best.direction), 0.05 * kDegree);
+}
+
+TEST(RunwayHypothesis, OffTheHorizonCostsEvidenceUpToALimit) {
+  Scene level, wrong;
+  level.addRunway();
+  wrong.addRunway();
+  // Ground that is known to 0.5 degrees and is wrong by 1: (1 / 0.5)^2 / 2.
+  wrong.prior.normal = Eigen::AngleAxisd(1 * kDegree, Eigen::Vector3d::UnitX()) * wrong.pose.down();
+  auto a = level.find(), b = wrong.find();
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(a->best.evidence - b->best.evidence, 2, 0.1);
+  wrong.prior.normal = Eigen::AngleAxisd(4 * kDegree, Eigen::Vector3d::UnitX()) * wrong.pose.down();
+  b = wrong.find();
+  ASSERT_TRUE(b);
+  EXPECT_LT(wrong.off(b->best.direction), 0.05 * kDegree) << "the lines say where they vanish";
+  EXPECT_NEAR(a->best.evidence - b->best.evidence, 6, 0.3);
+}
+
+TEST(RunwayHypothesis, ADirectionFarOffTheGroundIsNone) {
+  Scene scene;
+  scene.addRunway();
+  scene.prior.normal = Eigen::AngleAxisd(8 * kDegree, Eigen::Vector3d::UnitX()) * scene.pose.down();
+  EXPECT_FALSE(scene.find());
+}
+
+TEST(RunwayHypothesis, WidthsThatNoRunwayHasAreNoneWhereTheHeightIsKnown) {
+  for (const double width : {0.2, 150.0}) {
+    Scene scene;
+    scene.addStrip({0, 0}, width, 1500);
+    scene.prior.height = 30;
+    EXPECT_FALSE(scene.find()) << width;
+  }
+  for (const double width : {18.0, 60.0}) {
+    Scene scene;
+    scene.addStrip({0, 0}, width, 1500);
+    scene.prior.height = 30;
+    EXPECT_TRUE(scene.find()) << width;
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing
