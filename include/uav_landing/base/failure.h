@@ -20,6 +20,7 @@ enum class Reason {
   kNoGroundNormal,      ///< neither stereo nor a vanishing point gives the ground normal
   kNoMotion,            ///< standing still or too slow for a direction of motion
   kMotionInconsistent,  ///< temporal matches do not agree on one motion
+  kPlaneUnproven,       ///< without stereo, too few corners move as those of one plane do
   kTimeJump,            ///< stamps went back or far ahead, or the clock was set: started anew
   kRejected,            ///< a measurement failed the innovation gate
   kTimeout,             ///< no measurement for too long

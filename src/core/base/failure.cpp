@@ -30,6 +30,8 @@ const char* toString(Reason reason) {
       return "no_motion";
     case Reason::kMotionInconsistent:
       return "motion_inconsistent";
+    case Reason::kPlaneUnproven:
+      return "plane_unproven";
     case Reason::kTimeJump:
       return "time_jump";
     case Reason::kRejected:

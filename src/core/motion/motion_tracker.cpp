@@ -11,6 +11,7 @@
 #include "image/corners.h"
 #include "image/image_check.h"
 #include "motion/approach_angle.h"
+#include "motion/plane_proof.h"
 
 namespace uav_landing {
 namespace {
@@ -123,7 +124,7 @@ void MotionTracker::skip(double stamp, const cv::Mat& left) {
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                                              const Eigen::Matrix3d& normal_covariance,
                                              const Corners& all_corners, Timings& timings,
-                                             const AttitudePrior& imu) {
+                                             const AttitudePrior& imu, GroundProof proof) {
   Result result;
   step_matches_.clear();
   textures_.clear();
@@ -140,7 +141,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
   } else {
     ScopedTimer timer(timings, "feature_matching_motion");
     const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
-    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, result);
+    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, proof, result);
   }
   ScopedTimer timer(timings, "window_motion");
   estimateWindow(now, normal, normal_covariance, corners, result);
@@ -151,18 +152,25 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
 
 void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
                                  const Eigen::Matrix3d& covariance, const Corners& corners,
-                                 const RotationPrior* rotation, Result& result) {
+                                 const RotationPrior* rotation, GroundProof proof, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
   const StepImages step{now.image, past_.back().image, corners,  textures_,
                         normal,    covariance,         rotation, regular};
-  const Expected<MotionEstimate> estimate =
-      search_.find(step, predictions(duration, rotation), step_matches_);
+  Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
+  if (estimate) {
+    last_duration_ = duration;
+    last_sink_ = estimate->normal.dot(estimate->motion.t);
+    const Failure failure = proof == GroundProof::kMotion
+                                ? doubtOfPlane(now.image.fine, corners, step_matches_, *estimate)
+                                : Failure();
+    if (failure) {
+      result.unproven = estimate->motion;
+      estimate = tl::make_unexpected(failure);
+    }
+  }
   result.step = describe(estimate, duration, step_matches_.size(), result.step_angle);
-  if (!estimate) return;
-  result.step_estimate = *estimate;
-  last_duration_ = duration;
-  last_sink_ = estimate->normal.dot(estimate->motion.t);
+  if (estimate) result.step_estimate = *estimate;
 }
 
 // As the camera moved last, with the known rotation first.
@@ -274,7 +282,7 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
     }
   }
   last_window_ = result.window;
-  last_step_.reset();
+  last_step_ = result.unproven;
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
   if (past_.size() == 1) takeMemory(now);
   // Wide searches, at the coarse level, are in the frame before only.

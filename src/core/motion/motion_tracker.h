@@ -16,6 +16,12 @@
 
 namespace uav_landing {
 
+/// How it is known that corners lie on the ground.
+enum class GroundProof {
+  kGiven,  ///< by their disparities, or they have a depth of their own; or it is assumed, as in the paper
+  kMotion  ///< not beforehand: most of them have to move as the points of one plane do
+};
+
 /// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
 /// Keeps the images of that time, the motion since each of them, and the last step as the next prediction.
 class MotionTracker {
@@ -25,16 +31,18 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
+    std::optional<CameraMotion> unproven;  ///< a step that may not be one over a plane
     std::optional<PathAngleFilter::Measurement> step_angle, window_angle;  ///< as far as they have one
   };
 
   /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
   /// units of the height. imu: its rotation since the frame before leads the search, helps where the corners
   /// leave the rotation uncertain, and makes up for half of the corners; one that contradicts them is left
-  /// out. Without a ground normal call skip().
+  /// out. Without a ground normal call skip(). Corners that have to show by their motion that they are on the
+  /// ground make a step fail (plane_unproven) when too few do.
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
-                 Timings& timings, const AttitudePrior& imu = {});
+                 Timings& timings, const AttitudePrior& imu = {}, GroundProof proof = GroundProof::kGiven);
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when
@@ -55,7 +63,7 @@ class MotionTracker {
   using Corners = std::vector<TrackedCorner>;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                    const Corners& corners, const RotationPrior* rotation, Result& result);
+                    const Corners& corners, const RotationPrior* rotation, GroundProof proof, Result& result);
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);

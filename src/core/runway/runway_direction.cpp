@@ -26,6 +26,7 @@ constexpr Sigmas kGate(3);      // between a point and the ground
 constexpr double kVague = 0.4 * kDegree;
 constexpr double kEnough = 0.5;              // of the lines through the other view's point
 constexpr double kSlope = 0.5 * kDegree;     // 1 sigma of a runway's own slope against the ground
+constexpr double kAnyGround = 2 * kDegree;   // the same without stereo
 constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
 constexpr double kClear = 3;                 // least lead of a runway that outweighs other lines
 
@@ -165,7 +166,10 @@ class Search {
     found.straight = straight(view, found.lines);
     ScopedTimer timer(timings_, "ransac");
     found.point = findVanishingPoint(found.straight, view.K, parameters_, normal());
-    if (ground_ == nullptr) return found;
+    if (ground_ == nullptr) {
+      if (found.point) found.point->runway_margin = marginOnLevelGround(view, found);
+      return found;
+    }
     const bool any = found.point.has_value();
     found.point = ofRunway(view, found);
     found.refused = any && !found.point;
@@ -193,6 +197,21 @@ class Search {
         fitVanishingPoint(found.straight, view.K, parameters_, choice->best.members, normal());
     if (point) point->runway_margin = choice->margin;
     return point;
+  }
+
+  // How clearly a point is that of a runway where nothing is known of the ground but what the point itself
+  // says.
+  double marginOnLevelGround(const View& view, const Found& found) const {
+    const Eigen::Vector3d& p = found.point->direction;
+    const RunwayPrior prior{normalFromVanishingPoint(*found.point, 0, 0).n,
+                            kAnyGround * kAnyGround * Eigen::Matrix3d::Identity(),
+                            std::nullopt,
+                            std::nullopt,
+                            std::nullopt,
+                            maxYaw()};
+    const Expected<RunwayChoice> choice =
+        findRunwayHypothesis(found.straight, view.K, prior, parameters_.ransac_tolerance);
+    return choice && angleBetween(p, choice->best.direction) < kSameRunway ? choice->margin : 0;
   }
 
   RunwayPrior prior() const {

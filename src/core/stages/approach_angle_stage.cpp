@@ -159,9 +159,11 @@ struct ApproachAngleStage::Implementation {
                     ApproachAngleResult& result) {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(model.rig, *stereo) : cornersWithoutStereo(left, result.n);
-    const MotionTracker::Result motion =
-        repeated ? tracker.repeat(stamp)
-                 : tracker.process(stamp, left, result.n, result.n_covariance, corners, timings, result.imu);
+    const GroundProof proof = stereo || hasPaperForm(parameters) ? GroundProof::kGiven : GroundProof::kMotion;
+    const MotionTracker::Result motion = repeated
+                                             ? tracker.repeat(stamp)
+                                             : tracker.process(stamp, left, result.n, result.n_covariance,
+                                                               corners, timings, result.imu, proof);
     ScopedTimer timer(timings, "foe_and_angle");
     const StepFoe found =
         findStepFoe(model.rig, tracker, motion, {result.n, result.n_covariance}, parameters);

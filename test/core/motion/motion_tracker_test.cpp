@@ -34,6 +34,7 @@ struct Scene {
   ApproachAngleParameters parameters;
   Timings timings;
   MotionTracker tracker{test::makeModel(rig), parameters};
+  GroundProof proof = GroundProof::kGiven;
 
   cv::Mat image(const Pose& pose) const { return ground.left(rig, pose); }
 
@@ -50,7 +51,7 @@ struct Scene {
     }
     const Eigen::Vector3d n = pose.down();
     return tracker.process(stamp, left, n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose()), corners,
-                           timings);
+                           timings, {}, proof);
   }
 };
 
@@ -285,6 +286,33 @@ TEST(MotionTracker, FailsOnAnotherSceneAndRecovers) {
   EXPECT_TRUE(cut.window.failure);
   EXPECT_TRUE(std::isnan(cut.step.angle) && std::isnan(cut.window.angle));
   expectStep(scene.process(0.3, makePose(0.15, 1.8), other(0.15)), makePose(0, 1.8), makePose(0.15, 1.8));
+}
+
+TEST(MotionTracker, OverBareGroundTheCornersThemselvesShowThatTheyLieOnIt) {
+  Scene scene;
+  scene.proof = GroundProof::kMotion;
+  for (int i = 0; i < 5; ++i) {
+    const Pose then = makePose(0.1 * (i - 1), 1.62 - 0.01 * i), now = makePose(0.1 * i, 1.61 - 0.01 * i);
+    const MotionTracker::Result result = scene.process(i, now);
+    if (i > 0) expectStep(result, then, now);
+  }
+}
+
+TEST(MotionTracker, BetweenHousesNoStepIsBelievedUnlessStereoTellsTheirDepths) {
+  Scene scene;
+  scene.proof = GroundProof::kMotion;
+  for (const double side : {-1.0, 1.0}) {
+    const double near = 0.4 * side, far = 8 * side;
+    scene.ground.boxes.push_back({{-5, std::min(near, far), -0.1}, {60, std::max(near, far), 4}});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const MotionTracker::Result result = scene.process(i, makePose(0.1 * i, 1.6));
+    if (i == 0) continue;
+    for (const ApproachAngleResult::Motion* motion : {&result.step, &result.window}) {
+      EXPECT_EQ(motion->failure.reason, Reason::kPlaneUnproven) << i << ' ' << motion->failure.message();
+      EXPECT_FALSE(std::isfinite(motion->angle)) << i;
+    }
+  }
 }
 
 TEST(MotionTracker, HoldsNoMoreImagesTheLongerItRuns) {
