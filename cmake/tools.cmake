@@ -20,6 +20,9 @@ target_link_libraries(simulate_approach PRIVATE uav_landing_tools)
 add_executable(measure_noise_bound src/tools/simulation/measure_noise_bound.cpp)
 target_link_libraries(measure_noise_bound PRIVATE uav_landing_tools)
 
+add_executable(measure_runways src/tools/offline/measure_runways.cpp)
+target_link_libraries(measure_runways PRIVATE uav_landing_tools)
+
 add_executable(process_bag
   src/tools/offline/process_bag.cpp src/tools/offline/estimate_bag.cpp src/tools/offline/estimate_csv.cpp
   src/tools/offline/offline_chain.cpp src/tools/offline/pair_count.cpp src/tools/offline/report_data.cpp
@@ -39,7 +42,7 @@ target_link_libraries(inject_faults PRIVATE uav_landing_tools)
 # programs: links in bin/ lead it there. In a catkin workspace there is nothing to do.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   file(MAKE_DIRECTORY ${PROJECT_SOURCE_DIR}/bin)
-  foreach(program dataset_to_bag inject_faults measure_noise_bound process_bag simulate_approach simulate_campaign)
+  foreach(program dataset_to_bag inject_faults measure_noise_bound measure_runways process_bag simulate_approach simulate_campaign)
     file(CREATE_LINK ${CATKIN_DEVEL_PREFIX}/lib/${PROJECT_NAME}/${program} ${PROJECT_SOURCE_DIR}/bin/${program} SYMBOLIC)
   endforeach()
 endif()

@@ -8,6 +8,7 @@ uav_landing_add_python_test(test/tools/dataset_to_bag_test.py DEPENDENCIES datas
 uav_landing_add_python_test(test/tools/simulate_approach_test.py DEPENDENCIES dataset_to_bag simulate_approach)
 uav_landing_add_python_test(test/tools/simulate_campaign_test.py DEPENDENCIES simulate_campaign)
 uav_landing_add_python_test(test/tools/measure_noise_bound_test.py DEPENDENCIES measure_noise_bound)
+uav_landing_add_python_test(test/tools/measure_runways_test.py DEPENDENCIES measure_runways)
 uav_landing_add_gtest(bag_structure_test test/tools/bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(old_bag_structure_test test/tools/old_bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(dataset_calibrations_test test/tools/dataset_calibrations_test.cpp LIBS uav_landing_tools)

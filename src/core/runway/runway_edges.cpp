@@ -50,11 +50,13 @@ struct Symmetry {
 
 class Search {
  public:
-  Search(const GroundAxes& axes, const std::vector<GroundEdge>& edges) : axes_(axes), edges_(edges) {
+  Search(const GroundAxes& axes, const std::vector<GroundEdge>& edges, double widest)
+      : axes_(axes), edges_(edges) {
     if (edges_.size() > kMaxEdges) edges_.resize(kMaxEdges);
     for (size_t i = 0; i < edges_.size(); ++i)
       for (size_t j = 0; j < edges_.size(); ++j)
-        if (edges_[i].lateral > edges_[j].lateral && edges_[i].brighter_left != edges_[j].brighter_left)
+        if (edges_[i].lateral > edges_[j].lateral && edges_[i].brighter_left != edges_[j].brighter_left &&
+            edges_[i].lateral - edges_[j].lateral <= widest)
           pairs_.push_back(mirrored(i, j));
     paint_ = std::pow(kAsymmetry * widthOfLongest(), 2);
     for (const MirroredPair& pair : pairs_) columns_.add(pair.centre, pair.variance, pair.by_rotation);
@@ -295,29 +297,30 @@ Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}
 }  // namespace
 
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
-                                             double width, const std::optional<ExpectedCentre>& expected,
+                                             const RunwayWidth& width,
+                                             const std::optional<ExpectedCentre>& expected,
                                              const Outlook* outlook) {
-  const Search search(axes, edges);
+  const Search search(axes, edges, width.widest);
   const double longest = search.longest();
   const std::vector<Symmetry> found = search.symmetries();
   const auto best = std::find_if(found.begin(), found.end(), [&](const Symmetry& s) {
     return (!expected || std::abs(s.centre - expected->centre) <= expected->tolerance) &&
-           outermostPair(s, width, longest) != nullptr;
+           outermostPair(s, width.known, longest) != nullptr;
   });
   if (best == found.end())
     return tl::make_unexpected(noRunway(text("none of ", edges.size(), " edges are those of the runway")));
-  const MirroredPair& outermost = *outermostPair(*best, width, longest);
-  if (width <= 0 && search.isHalf(outermost))
+  const MirroredPair& outermost = *outermostPair(*best, width.known, longest);
+  if (width.known <= 0 && search.isHalf(outermost))
     return tl::make_unexpected(noRunway("the runway reaches as far again beyond its seeming edges"));
   if (!expected) {
     const bool outermost_lines = outlook != nullptr && search.areOutermost(*best, outermost, *outlook);
-    if (width <= 0 && !hasMoreThanTwoLines(*best, outermost, edges) && !search.areTwoLines(*best) &&
+    if (width.known <= 0 && !hasMoreThanTwoLines(*best, outermost, edges) && !search.areTwoLines(*best) &&
         !search.isStrip(outermost) && !outermost_lines)
       return tl::make_unexpected(noRunway("one pair of lines alone does not make a runway"));
     for (const Symmetry& other : found) {
       if (other.score * kLeastMargin <= best->score) break;
       if (std::abs(other.centre - best->centre) > other.tolerance + best->tolerance &&
-          outermostPair(other, width, 0.5 * longest) != nullptr)
+          outermostPair(other, width.known, 0.5 * longest) != nullptr)
         return tl::make_unexpected(noRunway("the edges have more than one symmetry"));
     }
   }

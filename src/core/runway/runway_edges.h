@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,15 @@ struct Outlook {
   const std::vector<GroundEdge>& edges;  ///< seen by at least one view
 };
 
+/// What is known of the runway's width, multiples of the height.
+struct RunwayWidth {
+  double known = 0;                                         ///< 0: not known
+  double widest = std::numeric_limits<double>::infinity();  ///< shores and fields are wider
+
+  RunwayWidth(double width = 0, double limit = std::numeric_limits<double>::infinity())  // NOLINT: a number
+      : known(width), widest(limit) {}
+};
+
 /// The runway's edges.
 ///
 /// A runway is painted symmetrically. Each edge on its left has a counterpart on the right whose brighter
@@ -28,7 +38,7 @@ struct Outlook {
 /// one side of a pair, and none beyond the other. Then the pair is an edge and the centre line, and nothing
 /// is found unless the width is known.
 ///
-/// edges: of the ground along the runway. width: of the runway, multiples of the height; 0: not known.
+/// edges: of the ground along the runway.
 /// expected: from frames before. Without it a symmetry is believed only if no other one with long edges comes
 /// near it, and if it is more than that of any two lines. One of these has to hold:
 /// - a stripe is in the middle;
@@ -37,7 +47,8 @@ struct Outlook {
 /// - they are two lines with room beyond either, and the outlook shows no third one there;
 /// - the only pair is a dark strip that begins within the picture or has the known width.
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
-                                             double width, const std::optional<ExpectedCentre>& expected,
+                                             const RunwayWidth& width,
+                                             const std::optional<ExpectedCentre>& expected,
                                              const Outlook* outlook = nullptr);
 
 }  // namespace uav_landing

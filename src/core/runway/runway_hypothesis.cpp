@@ -16,18 +16,17 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kLeastCrossing = 3 * kDegree;    // in the picture, between two edges
-constexpr double kLeastSlope = 1e-3;              // n.r of the horizon's neighbourhood
-constexpr double kFarOff = 5 * kDegree;           // from the horizon: not on the ground
-constexpr double kSameEdge = 0.04;                // of the width: lines this near to an edge are its pieces
-constexpr double kLeastExtent = 0.14;             // log(far / near) of both edges
-constexpr double kAcross = 12 * kDegree;          // of the horizon: lines of a threshold, in the picture
-constexpr double kStraightness = 1.0;             // px by which an edge may differ from a straight line
-constexpr Sigmas kGate(4);                        // of a line's own errors
-constexpr double kOther = 1 * kDegree;            // between directions of two runways
-constexpr double kPathSigma = 3 * kDegree;        // between path and runway: wind and corrections
-constexpr double kStepSigma = 0.7 * kDegree;      // by which the camera turns between pairs
-constexpr double kNarrowest = 0.4, kWidest = 90;  // m
+constexpr double kLeastCrossing = 3 * kDegree;  // in the picture, between two edges
+constexpr double kLeastSlope = 1e-3;            // n.r of the horizon's neighbourhood
+constexpr double kFarOff = 5 * kDegree;         // from the horizon: not on the ground
+constexpr double kSameEdge = 0.04;              // of the width: lines this near to an edge are its pieces
+constexpr double kLeastExtent = 0.14;           // log(far / near) of both edges
+constexpr double kAcross = 12 * kDegree;        // of the horizon: lines of a threshold, in the picture
+constexpr double kStraightness = 1.0;           // px by which an edge may differ from a straight line
+constexpr Sigmas kGate(4);                      // of a line's own errors
+constexpr double kOther = 1 * kDegree;          // between directions of two runways
+constexpr double kPathSigma = 3 * kDegree;      // between path and runway: wind and corrections
+constexpr double kStepSigma = 0.7 * kDegree;    // by which the camera turns between pairs
 
 // Evidence.
 constexpr double kRunwayShare = 0.25;  // of the lines that point there, that are the runway's
@@ -194,7 +193,7 @@ class Search {
     if (std::min(far_left, far_right) < 1.05 * std::max(near_left, near_right)) return false;
     if (!prior_.height) return true;
     const double width = (plane.lateral(left) - plane.lateral(right)) * *prior_.height;
-    return width >= kNarrowest && width <= kWidest;
+    return width >= kNarrowestRunway && width <= kWidestRunway;
   }
 
   std::optional<RunwayHypothesis> between(size_t i, size_t j, const Eigen::Vector3d& direction) const {

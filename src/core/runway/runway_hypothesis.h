@@ -9,6 +9,9 @@
 
 namespace uav_landing {
 
+/// Widths that runways have, m: from a laboratory's to an airport's.
+constexpr double kNarrowestRunway = 0.4, kWidestRunway = 90;
+
 /// Two edges side by side on the ground that may be those of a runway, with what lies between them.
 struct RunwayHypothesis {
   Eigen::Vector3d direction;  ///< in which the edges vanish, unit, frame of the view

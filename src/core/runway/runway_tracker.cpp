@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "estimation/limits.h"
+#include "runway/runway_hypothesis.h"
 #include "runway/runway_threshold.h"
 
 namespace uav_landing {
@@ -157,7 +158,8 @@ RunwayTracker::Edges RunwayTracker::edgesOf(const GroundAxes& axes, const Runway
 void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction,
                                double height, ApproachAngleResult::Runway& result) {
   const Edges edges = edgesOf(axes, direction, height);
-  const double width = std::isfinite(height) && known_width_ > 0 ? known_width_ / height : 0;
+  RunwayWidth width;
+  if (std::isfinite(height)) width = {known_width_ / height, kWidestRunway / height};
   const Outlook outlook{model_.rig, edges.either};
   Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt, &outlook);
   if (centre_.confirmations() >= kConfirmations) {

@@ -66,6 +66,21 @@ TEST(RunwayEdges, EdgesOfOtherThingsDoNotMoveIt) {
   EXPECT_NEAR(found->centre, 0.3, 1e-6);
 }
 
+// The shores of an island, 157 m apart, with a runway of 45 m between them, from 40 m up.
+TEST(RunwayEdges, ShoresBesideTheRunwayAreTooFarApart) {
+  std::vector<GroundEdge> edges;
+  for (const int side : {-1, 1}) addStripe(edges, side * 45.0 / 80, 0.02);
+  addStripe(edges, 0, 0.02, 0.6);
+  edges.push_back(edge(157.0 / 80, true, 2));
+  edges.push_back(edge(-157.0 / 80, false, 2));
+  const auto shores = findRunwayEdges(level(1e-4), edges, 0, std::nullopt);
+  ASSERT_TRUE(shores) << shores.error().message();
+  EXPECT_NEAR(shores->width, 157.0 / 40, 0.01);
+  const auto found = findRunwayEdges(level(1e-4), edges, {0, 90.0 / 40}, std::nullopt);
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->width, 45.0 / 40 + 0.02, 0.01);
+}
+
 TEST(RunwayEdges, OneStripeAloneIsNoRunway) {
   std::vector<GroundEdge> edges;
   addStripe(edges, 0.4, 0.05);
