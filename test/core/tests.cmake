@@ -2,8 +2,11 @@
 
 # base
 uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
-uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
 uav_landing_add_gtest(steadiness_test test/core/base/steadiness_test.cpp)
+
+# kernels
+uav_landing_add_gtest(order_statistic_test test/core/kernels/order_statistic_test.cpp)
+uav_landing_add_gtest(parabolic_window_test test/core/kernels/parabolic_window_test.cpp)
 
 # estimation
 uav_landing_add_gtest(convergence_test test/core/estimation/convergence_test.cpp)
@@ -26,7 +29,6 @@ uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 # image
 uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
-uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp

@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "image/harris_rows.h"
 #include "image/mask_bounds.h"
+#include "kernels/image/harris_rows.h"
 
 namespace uav_landing {
 namespace {

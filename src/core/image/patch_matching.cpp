@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "image/parabolic_window.h"
-#include "image/window_layout.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/window/parabolic_window.h"
+#include "kernels/window/window_layout.h"
 
 namespace uav_landing {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 #if defined(__x86_64__) && defined(__GNUC__)
 #define UAV_LANDING_HAS_SHUFFLE
 #include <immintrin.h>

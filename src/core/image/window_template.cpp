@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "image/window_layout.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/window/window_layout.h"
 
 namespace uav_landing {
 namespace {

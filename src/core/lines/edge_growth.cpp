@@ -3,7 +3,7 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 

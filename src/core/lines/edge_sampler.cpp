@@ -5,7 +5,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <tuple>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing::line_fit {
 

@@ -4,9 +4,9 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <tuple>
 
-#include "base/multiversion.h"
-#include "base/order_statistic.h"
 #include "estimation/robust.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/lanes/order_statistic.h"
 #include "lines/line_segment.h"
 
 namespace uav_landing::line_fit {

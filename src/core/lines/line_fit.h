@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/lanes.h"
+#include "kernels/lanes/lanes.h"
 #include "lines/line_segment.h"
 
 /// Straight lines through edges seen at single rows or columns of an image.

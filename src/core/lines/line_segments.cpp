@@ -9,7 +9,7 @@
 
 #include "base/image_memory.h"
 #include "image/mask_bounds.h"
-#include "image/transpose.h"
+#include "kernels/image/transpose.h"
 #include "lines/line_refinement.h"
 #include "lines/segment_scanner.h"
 #include "lines/straight_edge.h"

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 
-#include "base/multiversion.h"
-#include "image/transpose.h"
+#include "kernels/image/transpose.h"
+#include "kernels/lanes/multiversion.h"
 #include "lines/edge_growth.h"
 #include "lines/straight_edge.h"
 

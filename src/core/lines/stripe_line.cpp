@@ -7,7 +7,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <optional>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 #include "lines/line_fit.h"
 
 namespace uav_landing {

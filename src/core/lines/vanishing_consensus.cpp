@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 #include "lines/vanishing_chance.h"
 
 namespace uav_landing {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/lanes.h"
+#include "kernels/lanes/lanes.h"
 #include "motion/motion_state.h"
 
 namespace uav_landing {

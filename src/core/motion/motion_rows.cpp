@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/robust.h"
 #include "geometry/rotation.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 #include "motion/motion_lanes.h"
 
 namespace uav_landing {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/order_statistic.h"
 #include "base/touch_ahead.h"
 #include "image/clipping.h"
 #include "image/image_check.h"
 #include "image/patch_matching.h"
 #include "image/patch_refiner.h"
+#include "kernels/lanes/order_statistic.h"
 #include "motion/common_gain.h"
 
 namespace uav_landing {

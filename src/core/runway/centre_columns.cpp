@@ -1,6 +1,6 @@
 #include "runway/centre_columns.h"
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 

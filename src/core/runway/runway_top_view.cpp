@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "base/order_statistic.h"
 #include "estimation/robust.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/lanes/order_statistic.h"
 
 namespace uav_landing {
 

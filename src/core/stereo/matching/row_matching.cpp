@@ -6,10 +6,10 @@
 #include <limits>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "base/interpolation.h"
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "image/window_layout.h"
+#include "kernels/lanes/interpolation.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/window/window_layout.h"
 
 namespace uav_landing {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

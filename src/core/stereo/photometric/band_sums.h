@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "stereo/photometric/block_sums.h"
+#include "kernels/block/block_sums.h"
 
 namespace uav_landing {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/robust.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

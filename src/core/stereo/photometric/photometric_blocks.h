@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/block/block_sums.h"
 #include "stereo/matching/shift_model.h"
-#include "stereo/photometric/block_sums.h"
 #include "stereo/photometric/shift_evidence.h"
 #include "stereo/photometric/shift_matching.h"
 

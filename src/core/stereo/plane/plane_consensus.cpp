@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/ransac.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 #include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {

@@ -8,12 +8,12 @@
 #include <limits>
 #include <string>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "base/order_statistic.h"
 #include "estimation/convergence.h"
 #include "estimation/robust.h"
 #include "geometry/bias_variance.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
+#include "kernels/lanes/order_statistic.h"
 
 namespace uav_landing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/order_statistic.h"
+#include "kernels/lanes/order_statistic.h"
 #include "stereo/plane/plane_fit.h"
 
 namespace uav_landing {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
-#include "base/interpolation.h"
-#include "base/multiversion.h"
 #include "base/thinned.h"
 #include "image/image_check.h"
 #include "image/patch_matching.h"
 #include "image/patch_refiner.h"
+#include "kernels/lanes/interpolation.h"
+#include "kernels/lanes/multiversion.h"
 #include "rig/rig_rotation.h"
 #include "stereo/matching/shift_model.h"
 #include "stereo/rows/row_fit.h"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/robust.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

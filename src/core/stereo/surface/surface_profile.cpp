@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "base/order_statistic.h"
 #include "geometry/bias_variance.h"
+#include "kernels/lanes/order_statistic.h"
 #include "stereo/surface/profile_samples.h"
 
 namespace uav_landing {

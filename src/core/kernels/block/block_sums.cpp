@@ -1,11 +1,11 @@
-#include "stereo/photometric/block_sums.h"
+#include "kernels/block/block_sums.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/interpolation.h"
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/interpolation.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {
@@ -21,7 +21,7 @@ class RowPixels {
   static bool possible(float step) { return std::abs(step - 1) * (kWidth - 1) < 0.99f; }
 
   // starts: the first places of the rows.
-  [[gnu::always_inline]] inline void read(const cv::Mat& right, int top,
+  [[gnu::always_inline]] inline void read(const cv::Mat& image, int top,
                                           const std::array<float, kHeight>& starts, float step) {
     static_assert(kHeight == kLanes, "a number for each row");
     drift_ = step - 1;
@@ -40,8 +40,8 @@ class RowPixels {
       store(here, begin_[k].data());
       store(none_further, none_further_[k].data());
     }
-    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(right.step);
-    const uchar* above = right.ptr<uchar>(top) - 1;
+    const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(image.step);
+    const uchar* above = image.ptr<uchar>(top) - 1;
     for (int y = 0; y < kHeight; ++y) {
       const uchar* row = above + y * stride + first[y];
       for (int i = 0; i < kRead; i += kLanes) {
@@ -121,18 +121,18 @@ float sumOf(const BlockRow& row) {
   return total;
 }
 
-UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& right, int row, double first, double down, float step,
+UAV_LANDING_MULTIVERSION BlockSums addUp(const cv::Mat& image, int row, double first, double down, float step,
                                          float reference, const float* grey, const float* slope) {
   std::array<float, kHeight> starts;
   for (int y = 0; y < kHeight; ++y) starts[y] = static_cast<float>(first + down * y);
   ColumnSums sums;
   if (RowPixels::possible(step)) {
     RowPixels pixels;
-    pixels.read(right, row, starts, step);
+    pixels.read(image, row, starts, step);
     sums.addUp([&](int y, int k, Lanes& value) { pixels.interpolate(y, k, value); }, reference, grey, slope);
   } else {
     std::array<BlockRow, kHeight> sampled;
-    for (int y = 0; y < kHeight; ++y) sampleRow(right.ptr<uchar>(row + y), starts[y], step, sampled[y]);
+    for (int y = 0; y < kHeight; ++y) sampleRow(image.ptr<uchar>(row + y), starts[y], step, sampled[y]);
     sums.addUp([&](int y, int k, Lanes& value) { load(&sampled[y][k * kLanes], value); }, reference, grey,
                slope);
   }

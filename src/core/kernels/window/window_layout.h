@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <opencv2/core.hpp>
 
-#include "base/lanes.h"
+#include "kernels/lanes/lanes.h"
 #include "uav_landing/parameters/window_radius.h"
 
 /// How windows lie in memory while they are matched: rows filled up to a multiple of four, and all of it to

@@ -1,10 +1,10 @@
-#include "image/harris_rows.h"
+#include "kernels/image/harris_rows.h"
 
 #include <algorithm>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

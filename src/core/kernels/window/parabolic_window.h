@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "base/interpolation.h"
-#include "image/window_layout.h"
+#include "kernels/lanes/interpolation.h"
+#include "kernels/window/window_layout.h"
 
 namespace uav_landing {
 

@@ -1,10 +1,10 @@
-#include "base/order_statistic.h"
+#include "kernels/lanes/order_statistic.h"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 

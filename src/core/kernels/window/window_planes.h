@@ -3,7 +3,7 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "image/window_layout.h"
+#include "kernels/window/window_layout.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "base/order_statistic.h"
+#include "kernels/lanes/order_statistic.h"
 
 #include <gtest/gtest.h>
 

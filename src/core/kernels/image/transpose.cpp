@@ -1,10 +1,10 @@
-#include "image/transpose.h"
+#include "kernels/image/transpose.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 

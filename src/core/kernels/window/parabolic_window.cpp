@@ -1,10 +1,10 @@
-#include "image/parabolic_window.h"
+#include "kernels/window/parabolic_window.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

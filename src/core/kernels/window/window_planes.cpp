@@ -1,9 +1,9 @@
-#include "image/window_planes.h"
+#include "kernels/window/window_planes.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "base/multiversion.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {

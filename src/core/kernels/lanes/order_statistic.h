@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "base/lanes.h"
+#include "kernels/lanes/lanes.h"
 
 namespace uav_landing {
 

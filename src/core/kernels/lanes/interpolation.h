@@ -1,6 +1,6 @@
 #pragma once
 
-#include "base/lanes.h"
+#include "kernels/lanes/lanes.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "image/parabolic_window.h"
+#include "kernels/window/parabolic_window.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "image/smoothing.h"
+#include "kernels/image/smoothing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
 namespace {
