@@ -27,6 +27,8 @@ struct ApproachAngleStage::Implementation {
   cv::Mat left_mask, right_mask;  // eroded, for lines and corners
   MotionTracker tracker;
   RunwayTracker runway;
+  RunwayDirectionMemory direction_memory;
+  CornerMemory corner_memory;
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
@@ -88,8 +90,8 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
-    RunwayDirection direction =
-        findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground, parameters, timings);
+    RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground,
+                                                    parameters, direction_memory, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;
@@ -152,7 +154,7 @@ struct ApproachAngleStage::Implementation {
 
   std::vector<TrackedCorner> cornersWithoutStereo(const cv::Mat& left, const Eigen::Vector3d& normal) {
     ScopedTimer timer(timings, "harris_corners_motion");
-    return groundCorners(model.rig, left, left_mask, normal, parameters);
+    return groundCorners(model.rig, left, left_mask, normal, parameters, corner_memory);
   }
 };
 
