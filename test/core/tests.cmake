@@ -5,8 +5,8 @@ uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
 uav_landing_add_gtest(steadiness_test test/core/base/steadiness_test.cpp)
 
 # kernels
-uav_landing_add_gtest(order_statistic_test test/core/kernels/order_statistic_test.cpp)
-uav_landing_add_gtest(parabolic_window_test test/core/kernels/parabolic_window_test.cpp)
+uav_landing_add_gtest(order_statistic_test test/core/kernels/lanes/order_statistic_test.cpp)
+uav_landing_add_gtest(parabolic_window_test test/core/kernels/window/parabolic_window_test.cpp)
 
 # estimation
 uav_landing_add_gtest(convergence_test test/core/estimation/convergence_test.cpp)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/edges/edge_peaks.h"
 #include "kernels/lanes/lanes.h"
 #include "kernels/samples/line_sums.h"
 #include "lines/line_segment.h"
@@ -16,9 +17,7 @@ constexpr int kMaxStations = 160;
 
 /// Where the edge is at one station: distances along and across the current line, px, and its gradient,
 /// grey/px.
-struct Peak {
-  double along, across, gradient;
-};
+using Peak = EdgePeak;
 
 /// A value of each peak; filled up to whole lanes.
 using Values = std::array<float, 2 * kMaxStations>;

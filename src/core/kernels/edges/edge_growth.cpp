@@ -1,4 +1,4 @@
-#include "lines/edge_growth.h"
+#include "kernels/edges/edge_growth.h"
 
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
@@ -43,10 +43,10 @@ struct Side {
 
 }  // namespace
 
-UAV_LANDING_MULTIVERSION GrownEdge growEdge(const PixelRows& image, const Ground& mask, const Seed& seed,
+UAV_LANDING_MULTIVERSION GrownEdge growEdge(const PixelRows& image, const EdgeMask& mask, const Seed& seed,
                                             const GrowthLimits& limits) {
   const PixelRows pixels = image;
-  const Ground ground = mask;
+  const EdgeMask allowed = mask;
   const int u = seed.u, sign = seed.sign, least = limits.least;
   Side sides[] = {{1, pixels.rows - 2 - seed.v}, {-1, seed.v - 1}};
   GrowingLine line(seed.slope);
@@ -72,7 +72,8 @@ UAV_LANDING_MULTIVERSION GrownEdge growEdge(const PixelRows& image, const Ground
         found = strongestStep(pixels, v, guess, sign, least);
         if (guess != middle) found = strongestStep(pixels, v, middle, sign, least);
       }
-      if (found >= 0 && expected >= kLeft && ground.has(found, v) && std::abs(found - expected) < kSameEdge) {
+      if (found >= 0 && expected >= kLeft && allowed.has(found, v) &&
+          std::abs(found - expected) < kSameEdge) {
         line.add(station, found - u);
         side.end = station;
         side.misses = 0;

@@ -52,9 +52,9 @@ class GrowingLine {
 };
 
 /// Where edges may be, in an image or in a transposed one.
-class Ground {
+class EdgeMask {
  public:
-  Ground(const cv::Mat& mask, bool transposed)
+  EdgeMask(const cv::Mat& mask, bool transposed)
       : mask_(mask.ptr<uchar>()),
         along_row_(transposed ? static_cast<std::ptrdiff_t>(mask.step) : 1),
         to_next_row_(transposed ? 1 : static_cast<std::ptrdiff_t>(mask.step)) {}
@@ -99,6 +99,7 @@ struct GrownEdge {
 };
 
 /// Follows an edge to both sides from a seed, until it ends or turns out to be texture.
-GrownEdge growEdge(const PixelRows& image, const Ground& mask, const Seed& seed, const GrowthLimits& limits);
+GrownEdge growEdge(const PixelRows& image, const EdgeMask& mask, const Seed& seed,
+                   const GrowthLimits& limits);
 
 }  // namespace uav_landing
