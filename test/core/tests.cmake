@@ -2,8 +2,37 @@
 
 # base
 uav_landing_add_gtest(text_test test/core/base/text_test.cpp)
-uav_landing_add_gtest(order_statistic_test test/core/base/order_statistic_test.cpp)
 uav_landing_add_gtest(steadiness_test test/core/base/steadiness_test.cpp)
+
+# kernels
+uav_landing_add_gtest(order_statistic_test test/core/kernels/lanes/order_statistic_test.cpp)
+uav_landing_add_gtest(bilinear_rows_test test/core/kernels/image/bilinear_rows_test.cpp)
+uav_landing_add_gtest(harris_rows_test test/core/kernels/image/harris_rows_test.cpp)
+uav_landing_add_gtest(line_shades_test test/core/kernels/image/line_shades_test.cpp)
+uav_landing_add_gtest(line_view_test test/core/kernels/image/line_view_test.cpp)
+uav_landing_add_gtest(slanted_row_test test/core/kernels/image/slanted_row_test.cpp)
+uav_landing_add_gtest(smoothing_test test/core/kernels/image/smoothing_test.cpp)
+uav_landing_add_gtest(transpose_test test/core/kernels/image/transpose_test.cpp)
+uav_landing_add_gtest(parabolic_window_test test/core/kernels/window/parabolic_window_test.cpp)
+uav_landing_add_gtest(shifts_test test/core/kernels/window/shifts_test.cpp)
+uav_landing_add_gtest(strip_test test/core/kernels/window/strip_test.cpp)
+uav_landing_add_gtest(window_copy_test test/core/kernels/window/window_copy_test.cpp)
+uav_landing_add_gtest(window_planes_test test/core/kernels/window/window_planes_test.cpp)
+uav_landing_add_gtest(block_sums_test test/core/kernels/block/block_sums_test.cpp)
+uav_landing_add_gtest(block_texture_test test/core/kernels/block/block_texture_test.cpp)
+uav_landing_add_gtest(pair_sums_test test/core/kernels/block/pair_sums_test.cpp)
+uav_landing_add_gtest(apart_test test/core/kernels/samples/apart_test.cpp)
+uav_landing_add_gtest(line_passes_test test/core/kernels/samples/line_passes_test.cpp)
+uav_landing_add_gtest(line_sums_test test/core/kernels/samples/line_sums_test.cpp)
+uav_landing_add_gtest(plane_sums_test test/core/kernels/samples/plane_sums_test.cpp)
+uav_landing_add_gtest(plane_votes_test test/core/kernels/samples/plane_votes_test.cpp)
+uav_landing_add_gtest(seen_rays_test test/core/kernels/samples/seen_rays_test.cpp)
+uav_landing_add_gtest(shares_test test/core/kernels/samples/shares_test.cpp)
+uav_landing_add_gtest(surface_places_test test/core/kernels/samples/surface_places_test.cpp)
+uav_landing_add_gtest(edge_growth_test test/core/kernels/edges/edge_growth_test.cpp)
+uav_landing_add_gtest(edge_peaks_test test/core/kernels/edges/edge_peaks_test.cpp)
+uav_landing_add_gtest(edge_starts_test test/core/kernels/edges/edge_starts_test.cpp)
+uav_landing_add_gtest(falls_test test/core/kernels/edges/falls_test.cpp)
 
 # estimation
 uav_landing_add_gtest(convergence_test test/core/estimation/convergence_test.cpp)
@@ -26,7 +55,6 @@ uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 # image
 uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
-uav_landing_add_gtest(parabolic_window_test test/core/image/parabolic_window_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/order_statistic.h"
+#include "kernels/lanes/order_statistic.h"
 
 namespace uav_landing {
 

@@ -8,20 +8,17 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "image/harris_rows.h"
 #include "image/mask_bounds.h"
+#include "kernels/image/harris_rows.h"
 
 namespace uav_landing {
 namespace {
 
-struct Candidate {
-  float response;  // > 0
-  short x, y;
-};
+using Candidate = CornerCandidate;
 
 /// The local maxima of an image, by rows.
 struct Maxima {
-  std::vector<Candidate> memory;  // the first count of them
+  std::vector<Candidate>& memory;  // the first count of them
   size_t count = 0;
   float strongest = 0;
 
@@ -47,15 +44,16 @@ struct Maxima {
 };
 
 /// Of the Harris response inside the mask.
-void findMaxima(const cv::Mat& image, const cv::Mat& mask, double harris_k, Maxima& maxima) {
+Maxima findMaxima(const cv::Mat& image, const cv::Mat& mask, double harris_k,
+                  std::vector<Candidate>& memory) {
   HarrisRows harris(image, harris_k);
-  maxima.count = 0;
-  maxima.strongest = 0;
+  Maxima maxima{memory};
   for (int v = 2; v + 2 < image.rows; ++v) {
     harris.compute(v);
     if (v >= 4)
       maxima.addRow(harris.maxima(v - 1), mask.ptr<uchar>(v - 1), harris.response(v - 1), image.cols, v - 1);
   }
+  return maxima;
 }
 
 /// Candidates of at least a least response in classes of nearly the same one, the strongest first. The bits
@@ -188,13 +186,11 @@ void accept(Candidate* begin, Candidate* end, Cells& cells,
 }  // namespace
 
 std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
-                                   double min_distance, double harris_k) {
+                                   double min_distance, double harris_k, CornerMemory& memory) {
   const cv::Rect area = boundsOf(mask);
   if (area.width < 7 || area.height < 7) return {};
-  static thread_local Maxima maxima;  // their memory is kept, as there are many
-  static thread_local std::vector<Candidate> candidates;
-  findMaxima(image(area), mask(area), harris_k, maxima);
-  const Classes classes(maxima, static_cast<float>(quality) * maxima.strongest, candidates);
+  const Maxima maxima = findMaxima(image(area), mask(area), harris_k, memory.maxima);
+  const Classes classes(maxima, static_cast<float>(quality) * maxima.strongest, memory.sorted);
 
   // Rank within cells first, so that strong markings do not take all corners, then by strength.
   Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
@@ -207,6 +203,12 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
   std::sort(corners.begin(), corners.end(),
             [](const cv::Point& a, const cv::Point& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   return corners;
+}
+
+std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
+                                   double min_distance, double harris_k) {
+  CornerMemory memory;
+  return findCorners(image, mask, count, quality, min_distance, harris_k, memory);
 }
 
 int cornerBudget(const cv::Size& image, int most, int pixels_per_corner) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/smoothing.h"
+#include "kernels/image/smoothing.h"
 
 namespace uav_landing {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "image/window_template.h"
+#include "kernels/window/shifts.h"
 
 namespace uav_landing {
 
@@ -34,6 +35,7 @@ class PatchSearch {
   WindowTemplate template_;
   int stride_ = 0;  // of the rows of the area
   std::vector<float> area_, scores_;
+  ShiftRows rows_;  // memory
 };
 
 }  // namespace uav_landing

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "image/parabolic_window.h"
+#include "kernels/window/parabolic_window.h"
 
 namespace uav_landing {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "image/patch_refinement.h"
-#include "image/window_planes.h"
+#include "kernels/window/window_planes.h"
 
 namespace uav_landing {
 

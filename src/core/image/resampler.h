@@ -1,20 +1,11 @@
 #pragma once
 
-#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "kernels/image/bilinear_rows.h"
+
 namespace uav_landing {
-
-/// Where sixteen pixels side by side come from, each half of them inside a window of 16 x 3 pixels. Bytes, as
-/// reading these takes much of the time.
-struct SourceWindows {
-  static constexpr int kPixels = 16, kHalf = 8, kColumns = 16, kRows = 3;
-  static constexpr uchar kNextRow = 0x80;
-
-  std::array<short, 2> x{}, y{};                         // first pixel of each half's window
-  std::array<uchar, kPixels> place{}, right{}, below{};  // column, plus kNextRow; weights in 1/32
-};
 
 /// Bilinear interpolation of images at places that are the same for each, in fixed point: several times as
 /// fast as cv::remap, and the same bits on every processor.

@@ -2,38 +2,10 @@
 
 #include <algorithm>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/samples/shares.h"
 
 namespace uav_landing {
-namespace {
-
-struct Window {
-  float u, v, extent;
-};
-
-// Sum of the shares that windows from a whole block on up to the last one before count have of one.
-UAV_LANDING_MULTIVERSION float sharedWith(const float* us, const float* vs, size_t first, size_t count,
-                                          const Window& window) {
-  const float at_u = window.u, at_v = window.v, share = 1 / window.extent;
-  const Lanes none{};
-  Lanes sums{}, index;
-  progress(0, 1, index);
-  index -= static_cast<float>(count - first);  // below zero where it counts
-  for (size_t i = first; i < count; i += kLanes, index += kLanes) {
-    Lanes u, v;
-    load(us + i, u);
-    load(vs + i, v);
-    u -= at_u;
-    v -= at_v;
-    const Lanes across = 1 - share * (u < 0 ? -u : u), down = 1 - share * (v < 0 ? -v : v);
-    sums += (across > 0) & (down > 0) & (index < 0) ? across * down : none;
-  }
-  return sum(sums);
-}
-
-}  // namespace
-
 WindowOverlap::WindowOverlap(size_t count) {
   for (std::vector<float>* values : {&u_, &v_, &extents_, &lowest_}) values->reserve(count + kLanes);
 }
@@ -58,7 +30,7 @@ double WindowOverlap::factor() const {
 
 // Sum of the shares that the windows before have of this one.
 float WindowOverlap::shared(size_t i) const {
-  return sharedWith(u_.data(), v_.data(), firstNear(i), i, {u_[i], v_[i], extents_[i]});
+  return sumOfShares(u_.data(), v_.data(), firstNear(i), i, {u_[i], v_[i], extents_[i]});
 }
 
 // All before it are too far above. Whole blocks, so that they end where the columns do.

@@ -1,24 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstddef>
 #include <opencv2/core.hpp>
 
+#include "kernels/edges/edge_peaks.h"
 #include "lines/edge_picture.h"
 #include "lines/line_fit.h"
 
 namespace uav_landing::line_fit {
-
-/// A vector's parts along the image axis that a line runs along, and along the other one.
-struct Parts {
-  double major, minor;
-
-  Parts(const Eigen::Vector2d& v, const Axis& axis) : major(v[axis.major]), minor(v[axis.minor]) {}
-  double dot(double other_major, double other_minor) const {
-    return major * other_major + minor * other_minor;
-  }
-};
 
 /// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
 /// interpolating between them biases the peak by up to 0.1 px.
@@ -32,36 +22,12 @@ struct Station {
   int twiceGradient(int k) const { return grey[k + 1] - grey[k - 1]; }
 };
 
-/// Equally spaced rows or columns.
-struct Stations {
-  int first, step, count;
-
-  int at(int i) const { return first + i * step; }
-};
-
-/// The strongest one of the gradients across a line at a station: twice itself and its neighbours.
-struct Edge {
-  int station, place;  ///< row and column, or the other way round
-  int twice, before, after;
-};
-
-/// A line's axes, and what gradients along rows or columns are across it.
-struct LineFrame {
-  Parts origin, along, across;
-  double scale;  ///< grey/px, positive when brighter `across`, of one grey level along a row or column
-
+/// A line's axes, and what gradients along rows or columns are across it: positive when brighter `across`.
+struct LineFrame : LineAxes {
   explicit LineFrame(const Axis& axis)
-      : origin(axis.origin, axis),
-        along(axis.along, axis),
-        across(axis.across, axis),
-        scale(0.5 / across.minor) {}
-
-  /// Interpolated by a parabola.
-  [[gnu::always_inline]] inline Peak peakOf(const Edge& edge) const {
-    const double top = 0.5 * (edge.before - edge.after) / (edge.before - 2 * edge.twice + edge.after);
-    const double major = edge.station - origin.major, minor = edge.place + top - origin.minor;
-    return {along.dot(major, minor), across.dot(major, minor), std::abs(scale) * edge.twice};
-  }
+      : LineAxes{axis.origin[axis.major],      axis.origin[axis.minor], axis.along[axis.major],
+                 axis.along[axis.minor],       axis.across[axis.major], axis.across[axis.minor],
+                 0.5 / axis.across[axis.minor]} {}
 };
 
 /// An edge of one kind: its sign (+1: brighter towards `across`) and the weakest gradient, grey/px.
@@ -86,12 +52,11 @@ class EdgeSampler {
   }
 
   /// The strongest gradient within a pixel of the line; false when there is none of this kind.
-  bool findEdge(int station, Edge& edge) const;
+  bool findEdge(int station, StationEdge& edge) const;
 
-  /// The same within kReach px (1 or 2), at so many rows or columns, or all, between two distances along the
+  /// The same within reach px (1 or 2), at so many rows or columns, or all, between two distances along the
   /// line.
-  template <int kReach>
-  void collect(double from, double to, int most, Peaks& peaks) const;
+  void collect(int reach, double from, double to, int most, Peaks& peaks) const;
 
  private:
   /// pixels: with a row for each station.

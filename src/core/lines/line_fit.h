@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "base/lanes.h"
+#include "kernels/edges/edge_peaks.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/samples/line_sums.h"
 #include "lines/line_segment.h"
 
 /// Straight lines through edges seen at single rows or columns of an image.
@@ -15,13 +17,11 @@ constexpr int kMaxStations = 160;
 
 /// Where the edge is at one station: distances along and across the current line, px, and its gradient,
 /// grey/px.
-struct Peak {
-  double along, across, gradient;
-};
+using Peak = EdgePeak;
 
 /// A value of each peak; filled up to whole lanes.
 using Values = std::array<float, 2 * kMaxStations>;
-static_assert(2 * kMaxStations % kLanes == 0, "whole lanes");
+static_assert(2 * kMaxStations % kLanes == 0 && 2 * kMaxStations <= kMostLineSamples, "whole lanes");
 
 /// The peaks along a line and their weights.
 struct Peaks {
@@ -39,6 +39,7 @@ struct Peaks {
   void pad() {
     for (int i = count; i < wholeLanes(count); ++i) along[i] = across[i] = gradient[i] = 0;
   }
+  LineSamples samples() const { return {along.data(), across.data(), weight.data(), count}; }
   /// How many have a weight.
   int used() const {
     int used = 0;
@@ -64,9 +65,7 @@ struct Axis {
 };
 
 /// Weighted straight line across = offset + slope (along - centre).
-struct Fit {
-  float centre = 0, offset = 0, slope = 0, weight = 0, spread = 0;  // spread: sum w (along - centre)^2
-};
+using Fit = LineFit;
 
 /// Iteratively reweighted: the peak's variance falls with the gradient squared, and Tukey's biweight
 /// removes stations at which something else was taken for the edge; their weight is 0 then. scale: robust

@@ -26,7 +26,7 @@ double grow(const EdgeSampler& sampler, double from, int step) {
   double end = from;
   int misses = 0;
   for (int station = cvRound(axis.point(from)[axis.major]) + step; misses < kMaxMisses; station += step) {
-    Edge edge;
+    StationEdge edge;
     const bool is_edge = sampler.findEdge(station, edge);
     const Peak peak = is_edge ? sampler.frame().peakOf(edge) : Peak();
     if (is_edge && std::abs(peak.across) < 1) {
@@ -75,7 +75,7 @@ std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSeg
     const int used = peaks.used();
     return used >= kMinStations && used >= kMinSupport * peaks.stations && scale <= kMaxScatter;
   };
-  EdgeSampler(picture, axis, kind).collect<2>(from, to, kFewStations, peaks);
+  EdgeSampler(picture, axis, kind).collect(2, from, to, kFewStations, peaks);
   if (peaks.count < kMinStations) return std::nullopt;
   const Fit coarse = fitRobustly(peaks, scale);
   if (!isLine()) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<LineSegment> refineLine(const EdgePicture& picture, const RoughSeg
   const EdgeSampler sampler(picture, axis, kind);
   from = grow(sampler, from - coarse.centre, -kGrowStep);
   to = grow(sampler, to - coarse.centre, kGrowStep);
-  sampler.collect<1>(from, to, kMaxStations, peaks);
+  sampler.collect(1, from, to, kMaxStations, peaks);
   if (peaks.count < kMinStations) return std::nullopt;
   const Fit fit = refit(peaks, scale);
   if (!isLine()) return std::nullopt;

@@ -7,11 +7,9 @@
 #include <optional>
 #include <tuple>
 
-#include "base/image_memory.h"
 #include "image/mask_bounds.h"
-#include "image/transpose.h"
+#include "kernels/image/transpose.h"
 #include "lines/line_refinement.h"
-#include "lines/segment_scanner.h"
 #include "lines/straight_edge.h"
 
 namespace uav_landing {
@@ -116,14 +114,13 @@ std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
   return segments;
 }
 
-/// Also transposes the image; that is good until the next call.
+/// Also transposes the image; that is good until the next use of the scanner.
 std::vector<RoughSegment> roughSegments(EdgePicture& picture, double min_length,
-                                        const ApproachAngleParameters& parameters) {
+                                        const ApproachAngleParameters& parameters, SegmentScanner& scanner) {
   if (parameters.hough_method != HoughMethod::kScanLines) {
     cv::transpose(picture.image, picture.transposed);
     return houghSegments(straightEdges(picture.image, picture.ground, parameters), min_length, parameters);
   }
-  static thread_local SegmentScanner scanner;  // keeps its memory
   std::vector<RoughSegment> segments =
       scanner.find(picture.image, picture.ground,
                    {parameters.canny_low, parameters.canny_high, min_length, parameters.max_line_gap});
@@ -266,11 +263,12 @@ std::optional<Part> partWithLines(const cv::Mat& image, const cv::Mat& ground, c
 }  // namespace
 
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
-                                   const ApproachAngleParameters& parameters, const HeadingGate* gate) {
+                                   const ApproachAngleParameters& parameters, const HeadingGate* gate,
+                                   LineMemory& memory) {
   std::optional<Part> part = partWithLines(image, ground, gate);
   if (!part) return {};
   const double min_length = parameters.min_line_length * image.rows;
-  std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters);
+  std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters, memory.scanner);
   keepLongest(candidates, candidates.size(), [](const RoughSegment& s) { return Ends(s.a, s.b); });
   if (candidates.size() > kMaxCandidates) {
     // Texture may have more lines across than are looked at.
@@ -284,14 +282,20 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                       *part);
 }
 
+std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
+                                   const ApproachAngleParameters& parameters, const HeadingGate* gate) {
+  LineMemory memory;
+  return findLines(image, ground, parameters, gate, memory);
+}
+
 std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
                                        const std::vector<RoughSegment>& expected,
-                                       const ApproachAngleParameters& parameters, const HeadingGate& gate) {
+                                       const ApproachAngleParameters& parameters, const HeadingGate& gate,
+                                       LineMemory& memory) {
   std::optional<Part> part = partWithLines(image, ground, &gate);
   if (!part) return {};
-  static thread_local ImageMemory memory;
   const cv::Size size = part->picture.image.size();
-  part->picture.transposed = memory.image({size.height, size.width});
+  part->picture.transposed = memory.transposed.image({size.height, size.width});
   transpose(part->picture.image, part->picture.transposed);
   const cv::Rect2d inside(0, 0, size.width - 1, size.height - 1);
   std::vector<RoughSegment> candidates;

@@ -4,17 +4,29 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "base/image_memory.h"
 #include "lines/heading_gate.h"
 #include "lines/line_segment.h"
+#include "lines/segment_scanner.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
+
+/// Memory that lines are looked for in. The contents mean nothing.
+struct LineMemory {
+  SegmentScanner scanner;
+  ImageMemory transposed;
+};
 
 /// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
 /// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:
 /// mono8, 255 where lines are looked for (already eroded). gate: only lines that pass it are fitted; the
 /// others come after them and stay as they were found, good to half a pixel. Null: all are fitted.
 /// Deterministic. Returns an empty list when there are none.
+std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
+                                   const ApproachAngleParameters& parameters, const HeadingGate* gate,
+                                   LineMemory& memory);
+/// The same with memory of its own.
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                                    const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate = nullptr);
@@ -23,6 +35,7 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
 /// expected: off by up to 2 px; they may reach beyond the image.
 std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
                                        const std::vector<RoughSegment>& expected,
-                                       const ApproachAngleParameters& parameters, const HeadingGate& gate);
+                                       const ApproachAngleParameters& parameters, const HeadingGate& gate,
+                                       LineMemory& memory);
 
 }  // namespace uav_landing

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <opencv2/core.hpp>
 
-#include "base/multiversion.h"
-#include "image/transpose.h"
-#include "lines/edge_growth.h"
+#include "kernels/edges/edge_growth.h"
+#include "kernels/edges/edge_starts.h"
+#include "kernels/image/transpose.h"
 #include "lines/straight_edge.h"
 
 namespace uav_landing {
@@ -20,35 +20,10 @@ constexpr double kMaxScatter = 0.6;  // px, RMS of the stations about the line; 
 constexpr double kMaxSlope = 1.1;    // px to the side a row; what is flatter belongs to the other axis
 constexpr double kLargestResponse = 4 * 255 * 2;  // across and along together
 
-/// 3x3 Sobel responses of the middle one of three rows.
-UAV_LANDING_MULTIVERSION void sobel(const uchar* __restrict a, const uchar* __restrict b,
-                                    const uchar* __restrict c, int columns, short* __restrict across,
-                                    short* __restrict along) {
-  for (int u = 1; u < columns - 1; ++u) {
-    const int left = a[u - 1] + 2 * b[u - 1] + c[u - 1], right = a[u + 1] + 2 * b[u + 1] + c[u + 1];
-    const int above = a[u - 1] + 2 * a[u] + a[u + 1], below = c[u - 1] + 2 * c[u] + c[u + 1];
-    across[u] = static_cast<short>(right - left);
-    along[u] = static_cast<short>(below - above);
-  }
-}
-
-/// 1 where the response across the row is a maximum of at least this strength in all, and not less than that
-/// along the row; at 2 .. columns - 3.
-UAV_LANDING_MULTIVERSION void markStarts(const short* __restrict across, const short* __restrict along,
-                                         int columns, short least, uchar* __restrict starts) {
-  const auto size = [](short s) { return static_cast<short>(s < 0 ? -s : s); };
-  for (int u = 2; u < columns - 2; ++u) {
-    const short here = size(across[u]), side = size(along[u]);
-    const short before = size(across[u - 1]), after = size(across[u + 1]);
-    const bool strong = static_cast<short>(here + side) >= least && here >= side;
-    starts[u] = static_cast<uchar>(strong && before < here && after <= here);
-  }
-}
-
 /// Steep edges (nearer to the rows' normal than to the rows) of one image.
 class SteepEdges {
  public:
-  SteepEdges(const cv::Mat& image, const Ground& ground, const EdgeLimits& limits, ImageMemory& taken)
+  SteepEdges(const cv::Mat& image, const EdgeMask& ground, const EdgeLimits& limits, ImageMemory& taken)
       : image_(image),
         ground_(ground),
         limits_(limits),
@@ -70,9 +45,9 @@ class SteepEdges {
     const short least = static_cast<short>(std::min(std::ceil(limits_.high), kLargestResponse));
     for (int row = 0, v = spacing_ / 2; v < image_.rows; ++row, v += spacing_) {
       if (v < 1 || v + 1 >= image_.rows) continue;
-      sobel(image_.ptr<uchar>(v - 1), image_.ptr<uchar>(v), image_.ptr<uchar>(v + 1), image_.cols,
-            across.data(), along.data());
-      markStarts(across.data(), along.data(), image_.cols, least, starts.data());
+      sobelRow(image_.ptr<uchar>(v - 1), image_.ptr<uchar>(v), image_.ptr<uchar>(v + 1), image_.cols,
+               across.data(), along.data());
+      markEdgeStarts(across.data(), along.data(), image_.cols, least, starts.data());
       const uchar* taken = taken_.ptr<uchar>(row);
       const auto next = [&](int from) {
         const void* start = std::memchr(&starts[from], 1, starts.size() - from);
@@ -129,13 +104,12 @@ class SteepEdges {
       const int middle = cvRound(u + line.at(station));
       const int begin = std::max(0, middle - 2), end = std::min(taken_.cols, middle + 3);
       uchar* taken = taken_.ptr<uchar>(row);
-      UAV_LANDING_UNROLL
       for (int k = begin; k < end; ++k) taken[k] |= static_cast<uchar>(bit(sign));
     }
   }
 
   const cv::Mat& image_;
-  const Ground ground_;
+  const EdgeMask ground_;
   const EdgeLimits& limits_;
   cv::Mat taken_;
   int spacing_;  // of the scan rows
@@ -148,13 +122,13 @@ class SteepEdges {
 std::vector<RoughSegment> SegmentScanner::find(const cv::Mat& image, const cv::Mat& ground,
                                                const EdgeLimits& limits) {
   std::vector<RoughSegment> segments;
-  SteepEdges(image, Ground(ground, false), limits, taken_)
+  SteepEdges(image, EdgeMask(ground, false), limits, taken_)
       .scan(across_, along_, starts_, [&](double u0, double v0, double u1, double v1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {sign, 0}});
       });
   transposed_ = memory_.image({image.rows, image.cols});
   transpose(image, transposed_);
-  SteepEdges(transposed_, Ground(ground, true), limits, taken_)
+  SteepEdges(transposed_, EdgeMask(ground, true), limits, taken_)
       .scan(across_, along_, starts_, [&](double v0, double u0, double v1, double u1, double sign) {
         segments.push_back({{u0, v0}, {u1, v1}, {0, sign}});
       });

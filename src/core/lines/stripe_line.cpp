@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/core/hal/intrin.hpp>
 #include <optional>
 
-#include "base/multiversion.h"
+#include "kernels/edges/falls.h"
 #include "lines/line_fit.h"
 
 namespace uav_landing {
@@ -16,9 +15,9 @@ using namespace line_fit;
 
 namespace {
 
-constexpr int kReach = 12;     // px to both sides of the line, where its other side is looked for
-constexpr int kOffLine = 1;    // px by which the edge may be off its line
-constexpr int kStations = 40;  // rows or columns looked at, roughly
+constexpr int kReach = kFallReach;  // px to both sides of the line, where its other side is looked for
+constexpr int kOffLine = 1;         // px by which the edge may be off its line
+constexpr int kStations = 40;       // rows or columns looked at, roughly
 constexpr int kMinStations = 6;
 constexpr double kApart = 4.0;       // px between sides that do not disturb each other, at blurs up to 1.3 px
 constexpr double kBlur = 0.8;        // px, 1 sigma: by how much it misplaces a side that cannot be mended
@@ -28,7 +27,7 @@ constexpr double kMaxScatter = 0.6;  // px
 
 /// What is seen across the line at one station.
 struct Profile {
-  static constexpr int kMargin = kReach + 2;  // pixels to each side
+  static constexpr int kMargin = kFallMargin;  // pixels to each side
 
   const uchar* grey;    // of the middle, among the pixels across
   int station, centre;  // row and column of the middle, or the other way round
@@ -42,20 +41,6 @@ struct Profile {
   double peak(int k) const {
     const int curvature = at(k - 1) - 2 * at(k) + at(k + 1);
     return curvature == 0 ? k : k + 0.5 * (at(k - 1) - at(k + 1)) / curvature;
-  }
-  /// Where the gradient has a minimum of at most -least < 0: bit k + kReach for pixel k, |k| <= kReach.
-  unsigned minima(int least) const {
-    constexpr int kAtOnce = cv::v_uint8x16::nlanes;
-    // By how much pixels get darker. Bytes will do: where they get brighter there is 0, and no minimum.
-    const auto fall = [&](int k) { return cv::v_load(grey + k - sign) - cv::v_load(grey + k + sign); };
-    const cv::v_uint8x16 lowest = cv::v_setall_u8(static_cast<uchar>(least));
-    unsigned found = 0;
-    for (const int first : {-kReach, kReach + 1 - kAtOnce}) {
-      const cv::v_uint8x16 is_minimum =
-          fall(first) >= cv::v_max(lowest, cv::v_max(fall(first - 1), fall(first + 1)));
-      found |= static_cast<unsigned>(cv::v_signmask(is_minimum)) << (first + kReach);
-    }
-    return found;
   }
 };
 
@@ -86,7 +71,6 @@ class Profiles {
     profile.sign = sign_;
     if (neighbour_ == 1) return true;
     const uchar* grey = profile.grey - kMargin * neighbour_;
-    UAV_LANDING_UNROLL
     for (uchar& to : profile.column) {
       to = *grey;
       grey += neighbour_;
@@ -128,7 +112,9 @@ std::optional<Station> stationOf(const Profiles& profiles, const Profile& profil
     return std::nullopt;
   const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
   Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
-  const unsigned minima = profile.minima(static_cast<int>(std::ceil(kMinShare * strength)));
+  // Where the gradient has minima.
+  const unsigned minima =
+      markFalls(profile.grey, profile.sign, static_cast<int>(std::ceil(kMinShare * strength)));
   const unsigned before = minima & ((1U << (own + kReach)) - 1), after = minima >> (own + kReach + 1);
   const auto set = [&](int side, int k) {
     station.other[side] = profiles.place(profile, profile.peak(k)).y();

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "base/multiversion.h"
+#include "kernels/samples/line_passes.h"
 #include "lines/vanishing_chance.h"
 
 namespace uav_landing {
@@ -19,49 +19,19 @@ constexpr double kRunwayShare = 0.25;  // of the lines, that are along the runwa
 // likely: not every one of them meets where it should.
 constexpr double kPairsOfBest = 20;
 
-/// The lines' numbers that most attempts need, by column.
-struct LineColumns {
-  std::vector<double> middle_u, middle_v, along_u, along_v, across_u, across_v, top_u, top_v;
-  std::vector<double> half2, reach, tolerance2;  // half: length; reach: with the clearance
-
-  void reserve(size_t count) {
-    for (std::vector<double>* column : {&middle_u, &middle_v, &along_u, &along_v, &across_u, &across_v,
-                                        &top_u, &top_v, &half2, &reach, &tolerance2})
-      column->reserve(count);
-  }
-  void add(const VanishingCandidate& line, double tolerance) {
-    middle_u.push_back(line.middle.x());
-    middle_v.push_back(line.middle.y());
-    along_u.push_back(line.along.x());
-    along_v.push_back(line.along.y());
-    across_u.push_back(line.line.x());
-    across_v.push_back(line.line.y());
-    top_u.push_back(line.top.x());
-    top_v.push_back(line.top.y());
-    half2.push_back(line.half * line.half);
-    reach.push_back(line.half + VanishingCandidate::kClearance);
-    tolerance2.push_back(tolerance * tolerance);
-  }
-};
-
-constexpr double kAbove = 2;  // instead of a fit, which is 1 at most
-
-/// How well each line passes through the homogeneous point (x, y, z): 1 when exactly, 0 when its ends miss it
-/// by the tolerance, kAbove when part of the line is above the horizon. As VanishingCandidate has it for one.
-UAV_LANDING_MULTIVERSION void fitLines(const LineColumns& lines, double x, double y, double z, int count,
-                                       double* __restrict fit) {
-  const double *mu = lines.middle_u.data(), *mv = lines.middle_v.data(), *au = lines.along_u.data(),
-               *av = lines.along_v.data(), *nu = lines.across_u.data(), *nv = lines.across_v.data(),
-               *tu = lines.top_u.data(), *tv = lines.top_v.data(), *half2 = lines.half2.data(),
-               *reach = lines.reach.data(), *tolerance2 = lines.tolerance2.data();
-  for (int i = 0; i < count; ++i) {
-    const double eu = x - z * mu[i], ev = y - z * mv[i];
-    const double ahead = std::abs(au[i] * eu + av[i] * ev), across = nu[i] * eu + nv[i] * ev;
-    const double miss2 = half2[i] * across * across / (across * across + ahead * ahead);
-    const double passing = ahead < reach[i] * z ? -1.0 : 1 - miss2 / tolerance2[i];
-    const double above = (y - z * tv[i]) - VanishingCandidate::kMaxHorizonSlope * std::abs(x - z * tu[i]);
-    fit[i] = above > 0 ? kAbove : passing;
-  }
+/// The line as most attempts need it.
+void add(const VanishingCandidate& line, double tolerance, LineColumns& columns) {
+  columns.middle_u.push_back(line.middle.x());
+  columns.middle_v.push_back(line.middle.y());
+  columns.along_u.push_back(line.along.x());
+  columns.along_v.push_back(line.along.y());
+  columns.across_u.push_back(line.line.x());
+  columns.across_v.push_back(line.line.y());
+  columns.top_u.push_back(line.top.x());
+  columns.top_v.push_back(line.top.y());
+  columns.half2.push_back(line.half * line.half);
+  columns.reach.push_back(line.half + VanishingCandidate::kClearance);
+  columns.tolerance2.push_back(tolerance * tolerance);
 }
 
 /// How much the lines speak for a direction.
@@ -73,7 +43,7 @@ class Score {
     turns_.reserve(lines.all().size());
     impossible_.reserve(lines.all().size());
     for (const VanishingCandidate& line : lines.all()) {
-      columns_.add(line, lines.toleranceOf(line));
+      add(line, lines.toleranceOf(line), columns_);
       turns_.push_back(lines.toleranceOf(line) / line.half * lines.perTurn(line));
       impossible_.push_back(std::log1p(line.half / lines.parameters().ransac_tolerance));
     }
@@ -87,13 +57,15 @@ class Score {
   double of(const Eigen::Vector3d& direction) {
     length_ = 0;
     const Eigen::Vector3d V = lines_.K() * direction;
-    fitLines(columns_, V.x(), V.y(), V.z(), lines_.count(), fit_.data());
+    // As VanishingCandidate has it for one line.
+    fitLines(columns_, V.x(), V.y(), V.z(), VanishingCandidate::kMaxHorizonSlope, lines_.count(),
+             fit_.data());
     const double per_pixel = lines_.perPixel(V);
     std::fill(agreeing_.begin(), agreeing_.end(), 0.0);
     double impossible = 0;
     for (size_t i = 0; i < fit_.size(); ++i) {
       if (fit_[i] <= 0) continue;
-      if (fit_[i] == kAbove) {
+      if (fit_[i] == kTopAbove) {
         impossible += impossible_[i];
         continue;
       }

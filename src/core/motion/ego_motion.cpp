@@ -17,7 +17,6 @@
 #include "geometry/rotation.h"
 #include "image/image_cells.h"
 #include "image/window_overlap.h"
-#include "motion/motion_rows.h"
 
 namespace uav_landing {
 namespace {
@@ -42,11 +41,12 @@ bool solveTriple(MotionRows& triple, MotionState& state) {
   return true;
 }
 
-MotionState bestByConsensus(const MotionRows& all, const MotionState& start) {
+MotionState bestByConsensus(const MotionState& start, MotionMemory& memory) {
+  const MotionRows& all = memory.all;
+  MotionRows& triple = memory.drawn;
   MotionState best = start;
   MotionSupport most = all.support(start);
   if (most.telling >= kFewestTelling && most.telling_close >= kMostlyClose * most.telling) return start;
-  static thread_local MotionRows triple;  // kept for its memory
   std::mt19937 random(20100602u);
   RansacBudget budget{RansacOptions()};
   budget.found(double(most.close) / all.size());
@@ -138,17 +138,17 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, const RotationPrior* rotation) {
+                                        int min_matches, MotionMemory& memory,
+                                        const RotationPrior* rotation) {
   constexpr int kIterations = 8;
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
                                                                    " corners followed, at least " +
                                                                    std::to_string(min_matches) + " needed"});
   }
-  static thread_local MotionRows kept;  // as they are large
-  MotionRows& rows = kept;              // where that is takes a call to find
+  MotionRows& rows = memory.all;
   rows.assign(rig, matches);
-  MotionState state = bestByConsensus(rows, {start.R.transpose(), start.t, normal});
+  MotionState state = bestByConsensus({start.R.transpose(), start.t, normal}, memory);
   const Eigen::Matrix3d prior = priorInformation(normal, normal_covariance);
   MotionEstimate result;
   result.inliers.assign(matches.size(), 0);
@@ -200,6 +200,14 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
         own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor, step);
   }
   return result;
+}
+
+Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                                        const Eigen::Vector3d& normal,
+                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
+                                        int min_matches, const RotationPrior* rotation) {
+  MotionMemory memory;
+  return estimateMotion(rig, matches, normal, normal_covariance, start, min_matches, memory, rotation);
 }
 
 }  // namespace uav_landing

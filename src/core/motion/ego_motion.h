@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "motion/camera_motion.h"
+#include "motion/motion_rows.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
@@ -29,11 +30,22 @@ struct MotionEstimate {
   int inlier_count = 0;
 };
 
+/// Memory that the estimate works in: all matches, and the three that are drawn.
+struct MotionMemory {
+  MotionRows all, drawn;
+};
+
 /// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then
 /// Gauss-Newton with redescending weights over rotation, translation and normal, the latter with its prior
 /// covariance (rank 2), and with the rotation prior when there is one. Covariances are less than the matches
 /// claim where these agree better (the variance factor a posteriori of least squares), and more where their
 /// windows overlap. Fixed seed. Fails when fewer than min_matches agree.
+Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                                        const Eigen::Vector3d& normal,
+                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
+                                        int min_matches, MotionMemory& memory,
+                                        const RotationPrior* rotation = nullptr);
+/// The same with memory of its own.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,

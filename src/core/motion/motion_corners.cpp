@@ -1,7 +1,6 @@
 #include "motion/motion_corners.h"
 
 #include "geometry/half_plane.h"
-#include "image/corners.h"
 
 namespace uav_landing {
 
@@ -19,7 +18,7 @@ std::vector<TrackedCorner> stereoCorners(const StereoRig& rig, const StereoDepth
 
 std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& image, const cv::Mat& mask,
                                          const Eigen::Vector3d& normal,
-                                         const ApproachAngleParameters& parameters) {
+                                         const ApproachAngleParameters& parameters, CornerMemory& memory) {
   // Nearer the horizon than this (as a tangent) the ground hardly moves.
   constexpr double kLeastSlope = 0.01;
   // What is texture enough, matching decides; corners spread over the ground as for stereo.
@@ -29,7 +28,7 @@ std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& im
   keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope, ground);
   const int count = cornerBudget(image.size(), parameters.corner_count, parameters.pixels_per_corner);
   std::vector<TrackedCorner> corners;
-  for (const cv::Point& point : findCorners(image, ground, count, kQuality, kDistance, kHarris))
+  for (const cv::Point& point : findCorners(image, ground, count, kQuality, kDistance, kHarris, memory))
     corners.push_back({point.x, point.y, true, 0, 0});
   return corners;
 }

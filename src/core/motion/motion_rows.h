@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "kernels/samples/seen_rays.h"
 #include "motion/motion_state.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/geometry/calibration.h"
@@ -12,11 +13,7 @@ namespace uav_landing {
 
 /// How well a motion is supported: votes weighted by closeness, and how many matches it fits well. Telling
 /// are matches that know both of their coordinates; others, as along a line, fit nearly any motion well.
-struct MotionSupport {
-  double votes = 0;
-  int close = 0;
-  int telling = 0, telling_close = 0;
-};
+using MotionSupport = RaySupport;
 
 /// Sums of the normal equations by (rotation, t, n).
 struct MotionNormal {
@@ -56,17 +53,12 @@ class MotionRows {
   Eigen::Matrix<double, 6, 1> solveExactly() const;
 
  private:
-  static constexpr int kUnknowns = 9, kResidual = 9, kPrecision = 10, kRowColumns = 11;
-  // Of both rows, and then for both: squared error in pixels, the same over the covariance, weight.
-  static constexpr int kSquares = 2 * kRowColumns, kRatio = kSquares + 1, kWeight = kSquares + 2;
-  static constexpr int kOutputs = kSquares + 3;
-
   void resize(size_t count);
   double residualScale();
 
-  double fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
+  Eigen::Vector4d camera_ = Eigen::Vector4d::Zero();  // fx, fy, cx, cy
   size_t count_ = 0, padded_ = 0;
-  std::vector<double> inputs_, outputs_;  // by columns of padded_
+  std::vector<double> inputs_, outputs_;  // by columns of padded_, as seen_rays.h has them
   std::vector<double> ratios_;
 };
 

@@ -15,24 +15,4 @@ struct MotionState {
   MotionState apply(const Vector9d& step) const;
 };
 
-/// Columns of what is known of matches. kSeen: where a mixture of the corner and its neighbours was seen;
-/// kRight, kBelow: their shares, by rows.
-enum MotionInput {
-  kX,
-  kY,
-  kU,
-  kV,
-  kXX,
-  kXY,
-  kYY,
-  kOnPlane,
-  kDepth,
-  kDepthStddev,
-  kSeenU,
-  kSeenV,
-  kRight,
-  kBelow = kRight + 4,
-  kMotionInputs = kBelow + 4
-};
-
 }  // namespace uav_landing

@@ -155,7 +155,7 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const RotationPrior* rotation, GroundProof proof, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{now.image, past_.back().image, corners,  textures_,
+  const StepImages step{now.image, past_.back().image, corners,  textures_, memory_,
                         normal,    covariance,         rotation, regular};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
@@ -213,9 +213,9 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
                                     {parameters_.window_radius, parameters_.min_zncc, 0}, textures_,
-                                    std::move(window_matches_));
-    const Expected<MotionEstimate> estimate =
-        estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches);
+                                    memory_.matching, std::move(window_matches_));
+    const Expected<MotionEstimate> estimate = estimateMotion(
+        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
     result.window = describe(estimate, duration, window_matches_.size(), result.window_angle);
     return;

@@ -83,6 +83,7 @@ class MotionTracker {
   cv::Mat spare_coarse_;
   std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
   CornerTextures textures_;                                   // of the image now
+  MotionSearchMemory memory_;
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // s, of it
   double last_sink_ = 0;      // in it, in heights at its end

@@ -60,9 +60,9 @@ TemporalMatchOptions StepSearch::options(int coarse_steps) const {
 std::vector<TemporalMatch> StepSearch::match(const StepImages& step,
                                              const std::vector<TrackedCorner>& corners,
                                              const CameraMotion& predicted, int coarse_steps,
-                                             std::vector<TemporalMatch> memory) const {
+                                             std::vector<TemporalMatch> list) const {
   return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
-                       options(coarse_steps), step.textures, std::move(memory));
+                       options(coarse_steps), step.textures, step.memory.matching, std::move(list));
 }
 
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,
@@ -131,8 +131,8 @@ Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const Ca
   const int wide = wideSteps();
   for (const int steps : {std::min(kSmallSteps, wide), wide}) {
     const std::vector<TemporalMatch> found = match(step, scouts, predicted, steps);
-    const Expected<MotionEstimate> scouted =
-        estimateMotion(rig_, found, step.normal, step.normal_covariance, predicted, kFewestScouts);
+    const Expected<MotionEstimate> scouted = estimateMotion(rig_, found, step.normal, step.normal_covariance,
+                                                            predicted, kFewestScouts, step.memory.motion);
     if (scouted) start = scouted->motion;
     if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * found.size()))
       break;
@@ -146,11 +146,12 @@ Expected<MotionEstimate> StepSearch::estimate(const StepImages& step, const Came
   if (step.rotation != nullptr) {
     // Three of the six unknowns are known already.
     const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
-    const Expected<MotionEstimate> aided =
-        estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.rotation);
+    const Expected<MotionEstimate> aided = estimateMotion(rig_, matches, step.normal, step.normal_covariance,
+                                                          start, needed, step.memory.motion, step.rotation);
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
-  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, parameters_.min_matches);
+  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, parameters_.min_matches,
+                        step.memory.motion);
 }
 
 CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix3d& R) {
@@ -164,7 +165,7 @@ CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix
   for (const CameraMotion& guess : candidates) {
     const std::vector<TemporalMatch> matches = match(step, some, guess, wideSteps());
     const Expected<MotionEstimate> estimate =
-        estimateMotion(rig_, matches, step.normal, loose, guess, kFewestScouts);
+        estimateMotion(rig_, matches, step.normal, loose, guess, kFewestScouts, step.memory.motion);
     if (estimate && estimate->inlier_count > most) {
       most = estimate->inlier_count;
       best = estimate->motion;

@@ -11,11 +11,18 @@
 
 namespace uav_landing {
 
+/// Memory that a search works in, kept from image to image.
+struct MotionSearchMemory {
+  MatchingMemory matching;
+  MotionMemory motion;
+};
+
 /// Two images of the left camera, and what is known of the later one.
 struct StepImages {
   const MatchImage &now, &then;
   const std::vector<TrackedCorner>& corners;  ///< of the image now
   CornerTextures& textures;
+  MotionSearchMemory& memory;
   Eigen::Vector3d normal;                   ///< of the ground, unit, now
   Eigen::Matrix3d normal_covariance;        ///< rank 2
   const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
@@ -43,7 +50,7 @@ class StepSearch {
   int wideSteps() const;  // of the coarse level, to both sides
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,
-                                   std::vector<TemporalMatch> memory = {}) const;
+                                   std::vector<TemporalMatch> list = {}) const;
   /// By a narrow search for all corners at once; fails unless what it finds is as predicted.
   Expected<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
                                           std::vector<TemporalMatch>& matches);

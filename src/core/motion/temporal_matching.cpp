@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/order_statistic.h"
 #include "base/touch_ahead.h"
 #include "image/clipping.h"
 #include "image/image_check.h"
 #include "image/patch_matching.h"
 #include "image/patch_refiner.h"
+#include "kernels/lanes/order_statistic.h"
 #include "motion/common_gain.h"
 
 namespace uav_landing {
@@ -165,46 +165,42 @@ class Follower {
   PatchSearch coarse_, fine_;
 };
 
-// A corner that was found, with the perspective of its window.
-struct Found {
-  PatchRefinement refinement;
-  Eigen::Vector2d perspective;
-};
-
 // Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
 // those that fit best have.
-double noiseVariance(const std::vector<Found>& found) {
+double noiseVariance(MatchingMemory& memory) {
   constexpr size_t kFit = 4;  // of so many, one
-  static thread_local std::vector<double> residuals;
+  std::vector<double>& residuals = memory.residuals;
   residuals.clear();
-  for (const Found& corner : found) residuals.push_back(corner.refinement.residual_variance);
+  for (const WindowOverTime& corner : memory.windows)
+    residuals.push_back(corner.refinement.residual_variance);
   return 0.5 * orderStatistic(residuals.data(), residuals.size(), residuals.size() / kFit);
 }
 
-CommonGain commonGainOf(const std::vector<Found>& found) {
-  static thread_local std::vector<WindowMeans> means;
-  means.clear();
-  for (const Found& corner : found)
-    means.push_back({corner.refinement.evidence.mean, corner.refinement.evidence.mean_there});
-  return commonGain(means);
+CommonGain commonGainOf(MatchingMemory& memory) {
+  memory.means.clear();
+  for (const WindowOverTime& corner : memory.windows)
+    memory.means.push_back({corner.refinement.evidence.mean, corner.refinement.evidence.mean_there});
+  return commonGain(memory.means);
 }
 
-void claim(const std::vector<Found>& found, const MatchImage& now, const MatchImage& then, int radius,
+// memory: with the matches' windows.
+void claim(const MatchImage& now, const MatchImage& then, int radius, MatchingMemory& memory,
            std::vector<TemporalMatch>& matches) {
   // By an exposure that changes less, clipped edges move by less than a third of the floor.
   constexpr double kLeastChange = 0.01;
   if (matches.empty()) return;
-  const double noise = noiseVariance(found);
-  const CommonGain gain = commonGainOf(found);
+  const double noise = noiseVariance(memory);
+  const CommonGain gain = commonGainOf(memory);
   const double held = kHeldGain * kGainScatter * kGainScatter / (kGainScatter * kGainScatter + gain.variance);
   const double change = gain.gain > 0 ? std::abs(std::log(gain.gain)) : 0;
   for (size_t i = 0; i < matches.size(); ++i) {
     TemporalMatch& match = matches[i];
-    const PatchRefinement::Claim claim = found[i].refinement.claim(noise);
+    const WindowOverTime& window = memory.windows[i];
+    const PatchRefinement::Claim claim = window.refinement.claim(noise);
     // Windows are warped without perspective: over half a second near the ground it is some hundredths of a
     // pixel, always to the same side, and thousandths of a degree of the approach angle.
-    const double off = held * (found[i].refinement.evidence.gain - gain.gain);
-    match.then += claim.by_perspective * found[i].perspective - off * claim.by_gain;
+    const double off = held * (window.refinement.evidence.gain - gain.gain);
+    match.then += claim.by_perspective * window.perspective - off * claim.by_gain;
     double stddev = kStddevFloor;
     if (change > kLeastChange &&
         (isClipped(now.fine, match.now, radius) || isClipped(then.fine, match.then, radius)))
@@ -220,16 +216,14 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
                                          const TemporalMatchOptions& options, CornerTextures& textures,
-                                         std::vector<TemporalMatch> memory) {
+                                         MatchingMemory& memory, std::vector<TemporalMatch> list) {
   const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius,
                                 options.coarse_steps);
   Follower follower(now, then, mask, options);
-  std::vector<TemporalMatch> matches = std::move(memory);
+  std::vector<TemporalMatch> matches = std::move(list);
   matches.clear();
   matches.reserve(corners.size());
-  static thread_local std::vector<Found> kept;  // for its memory
-  std::vector<Found>& found = kept;             // where that is takes a call to find
-  found.clear();
+  memory.windows.clear();
   LocalWarp local, next;
   bool next_seen = !corners.empty() && predictions.at(corners.front(), &next);
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -249,9 +243,9 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
     match.extent = 2 * (options.window_radius + kReach) + 1;
     matches.push_back(match);
-    found.push_back({refined, local.perspective});
+    memory.windows.push_back({refined, local.perspective});
   }
-  claim(found, now, then, options.window_radius, matches);
+  claim(now, then, options.window_radius, memory, matches);
   return matches;
 }
 

@@ -7,6 +7,7 @@
 #include "image/match_image.h"
 #include "image/patch_refinement.h"
 #include "motion/camera_motion.h"
+#include "motion/common_gain.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -41,14 +42,27 @@ class CornerTextures {
   std::vector<Window> windows_;
 };
 
+/// A window that was found over time, with the perspective of the plane around it.
+struct WindowOverTime {
+  PatchRefinement refinement;
+  Eigen::Vector2d perspective;
+};
+
+/// Memory that matching over time works in.
+struct MatchingMemory {
+  std::vector<WindowOverTime> windows;
+  std::vector<double> residuals;
+  std::vector<WindowMeans> means;
+};
+
 /// The paper's image velocity field: finds corners of the image now in the image then, with windows warped as
-/// the ground plane (unit normal n) and the predicted motion say. textures: of the image now. memory: a list
-/// that is no longer needed.
+/// the ground plane (unit normal n) and the predicted motion say. textures: of the image now. list: one that
+/// is no longer needed, for its memory.
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
                                          const TemporalMatchOptions& options, CornerTextures& textures,
-                                         std::vector<TemporalMatch> memory = {});
+                                         MatchingMemory& memory, std::vector<TemporalMatch> list = {});
 
 /// How much the surroundings of the corners now look like those of where the motion puts them then: the sum
 /// of their correlations, without a search; what is not in view, or the other way round, adds nothing.

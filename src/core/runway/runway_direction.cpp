@@ -7,7 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "base/image_memory.h"
 #include "estimation/limits.h"
 #include "geometry/half_plane.h"
 #include "lines/stripe_line.h"
@@ -37,9 +36,9 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
 }
 
 // The mask without what lies above the horizon (K^-T n) or less than a margin below it, where the far end of
-// everything on the ground merges with what stands behind it. Good until the next call.
-cv::Mat belowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal) {
-  static thread_local ImageMemory memory;
+// everything on the ground merges with what stands behind it. Good until the memory is used again.
+cv::Mat belowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal,
+                     ImageMemory& memory) {
   const double margin = 0.01 * mask.rows;
   const Eigen::Vector3d line = K.inverse().transpose() * normal;
   const double scale = line.head<2>().norm();
@@ -81,10 +80,12 @@ ApproachAngleResult::View reportOf(const Found& found) {
 // The steps, with what all of them need. ground: or null.
 class Search {
  public:
-  Search(const SeenGround* ground, const ApproachAngleParameters& parameters, Timings& timings)
+  Search(const SeenGround* ground, const ApproachAngleParameters& parameters, RunwayDirectionMemory& memory,
+         Timings& timings)
       : ground_(ground),
         normal_(ground ? ground->plane.normal() : Eigen::Vector3d::UnitY()),
         parameters_(parameters),
+        memory_(memory),
         timings_(timings) {}
 
   // By the view itself.
@@ -93,8 +94,8 @@ class Search {
     {
       ScopedTimer timer(timings_, "lines");
       const HeadingGate gate = gateOf(view);
-      lines = ground_ ? findLines(view.image, groundPart(view), parameters_, hasRunway() ? &gate : nullptr)
-                      : findLines(view.image, view.mask, parameters_);
+      lines = findLines(view.image, ground_ ? groundPart(view) : view.mask, parameters_,
+                        hasRunway() ? &gate : nullptr, memory_.lines);
     }
     return withPoint(view, std::move(lines));
   }
@@ -106,7 +107,7 @@ class Search {
     std::vector<LineSegment> lines;
     {
       ScopedTimer timer(timings_, "lines");
-      lines = findLinesNear(view.image, groundPart(view), expected, parameters_, gateOf(view));
+      lines = findLinesNear(view.image, groundPart(view), expected, parameters_, gateOf(view), memory_.lines);
     }
     Found found = withPoint(view, std::move(lines));
     if (found.point && found.point->inlier_count >= kEnough * other.inlier_count) return found;
@@ -254,7 +255,9 @@ class Search {
     return variance <= kVague * kVague && std::abs(normal_.dot(point.direction)) <= kGate.bound(variance);
   }
 
-  cv::Mat groundPart(const View& view) const { return belowHorizon(view.mask, view.K, normal_); }
+  cv::Mat groundPart(const View& view) const {
+    return belowHorizon(view.mask, view.K, normal_, memory_.ground);
+  }
   bool hasRunway() const { return ground_ != nullptr && ground_->has_runway; }
   const Eigen::Vector3d* normal() const { return ground_ ? &normal_ : nullptr; }
   double maxYaw() const { return parameters_.max_yaw_deg * kDegree; }
@@ -263,6 +266,7 @@ class Search {
   const SeenGround* ground_;
   Eigen::Vector3d normal_;
   const ApproachAngleParameters& parameters_;
+  RunwayDirectionMemory& memory_;
   Timings& timings_;
 };
 
@@ -271,9 +275,9 @@ class Search {
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    Timings& timings) {
+                                    RunwayDirectionMemory& memory, Timings& timings) {
   const View left_view{left, left_mask, viewK(rig, true)}, right_view{right, right_mask, viewK(rig, false)};
-  const Search search(ground, parameters, timings);
+  const Search search(ground, parameters, memory, timings);
   Found in_left = search.in(left_view);
   Found in_right =
       search.isSure(in_left.point)

@@ -3,7 +3,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "lines/line_segment.h"
+#include "base/image_memory.h"
+#include "lines/line_segments.h"
 #include "lines/vanishing_point.h"
 #include "runway/seen_ground.h"
 #include "uav_landing/base/timings.h"
@@ -21,6 +22,12 @@ struct RunwayDirection {
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 
+/// Memory that it is looked for in.
+struct RunwayDirectionMemory {
+  LineMemory lines;
+  ImageMemory ground;
+};
+
 /// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, the
 /// direction must lie near the ground, and where a view has too few lines for a vanishing point of its own,
 /// two long edges side by side that agree in both views are enough. Where the ground has a runway already,
@@ -30,6 +37,6 @@ struct RunwayDirection {
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    Timings& timings);
+                                    RunwayDirectionMemory& memory, Timings& timings);
 
 }  // namespace uav_landing

@@ -30,9 +30,9 @@ tl::unexpected<Failure> noThreshold(const Parts&... parts) {
 }  // namespace
 
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
-                                  const GroundAxes& axes, const RunwayCrossSection& runway) {
-  static thread_local std::vector<TopView::Across> rows;  // keep their memory
-  const TopView view(image, mask, rig, axes, runway, rows);
+                                  const GroundAxes& axes, const RunwayCrossSection& runway,
+                                  std::vector<LineGreys>& memory) {
+  const TopView view(image, mask, rig, axes, runway, memory);
   const std::optional<ThresholdBars> bars = findThresholdBars(view);
   if (!bars) return noThreshold("no threshold bars in the picture");
   const double begin = view.distance(bars->begin);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <vector>
 
+#include "kernels/image/line_view.h"
 #include "runway/ground_edges.h"
 #include "runway/runway_edges.h"
 #include "uav_landing/base/failure.h"
@@ -21,8 +23,9 @@ struct Threshold {
 /// distance between its bars, before them: told in the middle, with a systematic error that takes in both
 /// ends. Bars: at least eight edges between light and dark side by side, evenly over the
 /// runway's width, unlike the marks of the touchdown zone. image: left rectified mono8. mask: 255 where it
-/// has picture.
+/// has picture. memory: for rows seen from above.
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
-                                  const GroundAxes& axes, const RunwayCrossSection& runway);
+                                  const GroundAxes& axes, const RunwayCrossSection& runway,
+                                  std::vector<LineGreys>& memory);
 
 }  // namespace uav_landing

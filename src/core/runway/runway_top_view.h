@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "kernels/image/line_view.h"
 #include "runway/ground_edges.h"
 #include "runway/runway_cross_section.h"
 #include "uav_landing/geometry/calibration.h"
@@ -13,12 +13,12 @@ namespace uav_landing {
 /// The runway as seen from above, one row (station) for each pixel of distance. Refers to what it is made of.
 class TopView {
  public:
-  static constexpr int kColumns = 96;            ///< samples across the runway
+  static constexpr int kColumns = kLineSamples;  ///< samples across the runway
   static constexpr double kAcross = 0.92;        ///< of the width: without the lines along the edges
   static constexpr double kLeastPicture = 0.75;  ///< share of a station's samples that lie in the picture
 
   /// Grey levels across the runway from the left, not finite outside the picture.
-  using Across = std::array<float, kColumns>;
+  using Across = LineGreys;
 
   /// rows: memory for the rows, kept by the caller.
   TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
@@ -35,8 +35,6 @@ class TopView {
   double footprint(double k) const { return step_ * distance(k) * distance(k); }
 
  private:
-  using Places = std::array<double, kColumns>;
-
   bool mayBeSeen(double x) const;
   bool sample(double x, Across& row) const;
 
@@ -44,7 +42,7 @@ class TopView {
   const StereoRig& rig_;
   const GroundAxes& axes_;
   double step_;
-  Places across_;  // left of the camera, in heights
+  LinePlaces across_;  // left of the camera, in heights
   std::vector<double> inverse_;
   std::vector<Across>& rows_;
 };

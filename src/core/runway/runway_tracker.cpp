@@ -211,7 +211,7 @@ void RunwayTracker::findThresholdLine(double seconds, const cv::Mat& left, const
     return;
   }
   const Expected<Threshold> seen = findThreshold(left, model_.left_mask, model_.rig, axes,
-                                                 {-result.y, result.y_variance, width_.value(), 0});
+                                                 {-result.y, result.y_variance, width_.value(), 0}, rows_);
   if (!seen) {
     result.threshold_failure = seen.error();
     threshold_.miss(seconds, kThresholdPatience);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/image/line_view.h"
 #include "runway/runway_direction.h"
 #include "runway/runway_edges.h"
 #include "uav_landing/image/rectification.h"
@@ -84,8 +85,9 @@ class RunwayTracker {
   std::optional<double> last_stamp_;
 
   Follower centre_, threshold_;
-  Follower width_, wider_;   // between the outermost edges; edges farther out that are not confirmed yet
-  double contradicted_ = 0;  // s for which the pairs have told of another runway
+  Follower width_, wider_;       // between the outermost edges; edges farther out that are not confirmed yet
+  std::vector<LineGreys> rows_;  // memory for the view from above
+  double contradicted_ = 0;      // s for which the pairs have told of another runway
 };
 
 }  // namespace uav_landing

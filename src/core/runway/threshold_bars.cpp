@@ -5,10 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "base/order_statistic.h"
 #include "estimation/robust.h"
+#include "kernels/image/line_shades.h"
+#include "kernels/lanes/order_statistic.h"
 
 namespace uav_landing {
 
@@ -16,7 +15,6 @@ namespace {
 
 using Across = TopView::Across;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kColumns = TopView::kColumns, kBlock = TopView::kBlock;
 constexpr double kLeastContrast = 20;   // grey levels between bars and what lies between them
 constexpr int kLeastFlips = 8;          // between light and dark across the bars
@@ -27,79 +25,23 @@ constexpr double kLeastAlike = 0.6;     // share of the bars that are one pitch 
 constexpr double kUnevenBars = 0.35;    // of the width of a bar
 constexpr int kFewestBars = 4;          // that are equally wide
 
-/// What is known of a pattern, and infinity for the rest.
-struct Known {
-  PaddedValues<kColumns> greys;
-  int count = 0;
-  float darkest = 0;
-};
-
-UAV_LANDING_MULTIVERSION void takeKnown(const Across& pattern, Known& known) {
-  const Lanes infinity = Lanes{} + kInfinity;
-  Lanes darkest = infinity;
-  IntLanes counts{};
-  for (int c = 0; c < kColumns; c += kLanes) {
-    Lanes grey;
-    load(&pattern[c], grey);
-    counts -= grey == grey;
-    const Lanes kept = grey == grey ? grey : infinity;
-    darkest = kept < darkest ? kept : darkest;
-    store(kept, &known.greys.values[c]);
-  }
-  known.greys.count = kColumns;
-  known.count = 0;
-  known.darkest = darkest[0];
-  for (int i = 0; i < kLanes; ++i) {
-    known.count += counts[i];
-    known.darkest = std::min(known.darkest, darkest[i]);
-  }
-}
-
-/// Whether hardly any of what is known is so light.
-UAV_LANDING_MULTIVERSION bool fewFrom(float light, const Known& known, int few) {
-  IntLanes counts{};
-  for (int c = 0; c < kColumns; c += kLanes) {
-    Lanes grey;
-    load(&known.greys.values[c], grey);
-    counts -= grey >= light;
-  }
-  int count = known.count - kColumns;  // less the infinite ones
-  for (int i = 0; i < kLanes; ++i) count += counts[i];
-  return count <= few;
-}
-
 /// An eighth of a pattern is darker than the one, and another lighter than the other.
 struct Greys {
   float dark = 0, light = 0;
 };
 
-// What is dark is -1, and what is light 1.
-constexpr int kBetween = 0, kUnknownShade = 2;
-
-UAV_LANDING_MULTIVERSION void findShades(const Known& known, const Greys& greys,
-                                         std::array<int, kColumns>& shades) {
-  const float contrast = greys.light - greys.dark;
-  for (int c = 0; c < kColumns; c += kLanes) {
-    Lanes grey;
-    load(&known.greys.values[c], grey);
-    const Lanes level = (grey - greys.dark) / contrast;
-    const IntLanes shade = (level < 0.35F) - (level > 0.65F) - (level == kInfinity);
-    store(shade, &shades[c]);
-  }
-}
-
 /// Whether it is light and dark in turn, often enough and with no large gap.
-bool alternate(const std::array<int, kColumns>& shades) {
-  int flips = 0, last = 0, state = kBetween, gap = 0;
+bool alternate(const LineShades& shades) {
+  int flips = 0, last = 0, state = kBetweenShade, gap = 0;
   for (int c = 0; c < kColumns; ++c) {
-    if (shades[c] == kBetween || shades[c] == state) continue;
+    if (shades[c] == kBetweenShade || shades[c] == state) continue;
     if (shades[c] == kUnknownShade) {
       last = c;  // outside the picture: nothing is known to be missing
       continue;
     }
     gap = std::max(gap, c - last);
     last = c;
-    if (state != kBetween) ++flips;
+    if (state != kBetweenShade) ++flips;
     state = shades[c];
   }
   gap = std::max(gap, kColumns - last);
@@ -109,7 +51,7 @@ bool alternate(const std::array<int, kColumns>& shades) {
 /// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars, or of less contrast. greys:
 /// of the station before, which are much the same, if they are known; then of this one.
 double barContrast(const Across& pattern, double least, Greys& greys) {
-  Known known;
+  KnownGreys known;
   takeKnown(pattern, known);
   if (known.count < TopView::kLeastPicture * kColumns) return 0;
   // Most of the runway is nearly of one grey: too few are lighter by so much than the darkest, or than what
@@ -117,17 +59,17 @@ double barContrast(const Across& pattern, double least, Greys& greys) {
   constexpr float kSafe = 0.999F;
   const int outermost = known.count / 8;
   const float lighter = known.darkest + kSafe * static_cast<float>(least);
-  if (fewFrom(lighter, known, outermost)) return 0;
+  if (countFrom(lighter, known) <= outermost) return 0;
   const auto statistic = [&](int rank, float guess) {
     return orderStatistic(known.greys, rank, guess > 0 ? guess : lighter);
   };
   greys.dark = statistic(outermost, greys.dark);
-  if (fewFrom(greys.dark + kSafe * static_cast<float>(least), known, outermost)) return 0;
+  if (countFrom(greys.dark + kSafe * static_cast<float>(least), known) <= outermost) return 0;
   greys.light = statistic(known.count - 1 - outermost, greys.light);
   const float contrast = greys.light - greys.dark;
   if (contrast < least) return 0;
-  std::array<int, kColumns> shades;
-  findShades(known, greys, shades);
+  LineShades shades;
+  findShades(known, greys.dark, greys.light, shades);
   return alternate(shades) ? contrast : 0;
 }
 

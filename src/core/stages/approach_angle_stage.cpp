@@ -30,6 +30,8 @@ struct ApproachAngleStage::Implementation {
   RunwayTracker runway;
   RunwayIdentity identity;
   std::optional<Eigen::Vector3d> last_path, last_direction;  // of flight, of the runway; in the pair before
+  RunwayDirectionMemory direction_memory;
+  CornerMemory corner_memory;
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
@@ -111,8 +113,8 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
-    RunwayDirection direction =
-        findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground, parameters, timings);
+    RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground,
+                                                    parameters, direction_memory, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;
@@ -177,7 +179,7 @@ struct ApproachAngleStage::Implementation {
 
   std::vector<TrackedCorner> cornersWithoutStereo(const cv::Mat& left, const Eigen::Vector3d& normal) {
     ScopedTimer timer(timings, "harris_corners_motion");
-    return groundCorners(model.rig, left, left_mask, normal, parameters);
+    return groundCorners(model.rig, left, left_mask, normal, parameters, corner_memory);
   }
 };
 

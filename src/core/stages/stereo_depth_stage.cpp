@@ -43,6 +43,8 @@ struct StereoDepthStage::Implementation {
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   RepeatedImage left_repeated, right_repeated;
+  CornerMemory search_memory;
+  SurfaceMemory surface_memory;
   int failed_searches = 0;
   bool looks_swapped = false;
   Timings timings;
@@ -167,10 +169,10 @@ struct StereoDepthStage::Implementation {
   Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
-    const Consensus found = searchPlane(coarse, parameters, limits);
+    const Consensus found = searchPlane(coarse, parameters, limits, search_memory);
     if (found.found || failed_searches % kSwapCheckInterval == 0) {
       // Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
-      const Consensus behind = searchPlane(swapped(coarse), parameters, limits);
+      const Consensus behind = searchPlane(swapped(coarse), parameters, limits, search_memory);
       looks_swapped = behind.found && behind.score > found.score;
     }
     if (found.found && !looks_swapped) return found.g;
@@ -217,7 +219,7 @@ struct StereoDepthStage::Implementation {
     const PlaneFit& fit = corners.fit;
     result.plane = fit.plane;
     result.residual_stddev = fit.residual_stddev;
-    result.surface_variance = surfaceVariance(model.rig, samples, fit, window());
+    result.surface_variance = surfaceVariance(model.rig, samples, fit, window(), surface_memory);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = fit.agrees[i] != 0;
     result.disparity_bias_stddev = parameters.disparity_bias_stddev;
     result.row_bias_stddev = parameters.row_bias_stddev;
@@ -260,7 +262,7 @@ struct StereoDepthStage::Implementation {
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
     // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.
-    result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, 1);
+    result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, 1, surface_memory);
     bend(direct->samples(), *fit, result.row_covariance, result);
     return true;
   }

@@ -321,8 +321,9 @@ TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
   const RoughSegment nowhere = edgeOf({100, 150}, {130, 300}), outside = edgeOf({-90, 150}, {-30, 300});
   RoughSegment darker = right;
   darker.brighter = -darker.brighter;
+  LineMemory memory;
   const auto find = [&](const std::vector<RoughSegment>& expected) {
-    return findLinesNear(image, allGround(), expected, {}, runwayGate());
+    return findLinesNear(image, allGround(), expected, {}, runwayGate(), memory);
   };
   EXPECT_TRUE(find({nowhere, outside, darker}).empty());
   const std::vector<LineSegment> lines = find({nowhere, right, outside, left});
@@ -334,7 +335,8 @@ TEST(FindLinesNear, AreThoseOfTheExpectedOnesThatAreThere) {
     EXPECT_GT(line->length(), 0.85 * cv::norm(b - a));
     EXPECT_GT(line->line.dot(Eigen::Vector3d(322, 300, 1)), 0) << "brighter inside";
   }
-  EXPECT_TRUE(findLinesNear(image, cv::Mat::zeros(kSize, CV_8UC1), {right, left}, {}, runwayGate()).empty());
+  EXPECT_TRUE(
+      findLinesNear(image, cv::Mat::zeros(kSize, CV_8UC1), {right, left}, {}, runwayGate(), memory).empty());
 }
 
 TEST(FindLinesNear, AreAsFindLinesHasThemButForThoseAcross) {
@@ -343,7 +345,8 @@ TEST(FindLinesNear, AreAsFindLinesHasThemButForThoseAcross) {
   const std::vector<LineSegment> found = findLines(image, allGround(), {}, &gate);
   std::vector<RoughSegment> expected;
   for (const LineSegment& line : found) expected.push_back({line.a, line.b, line.line.head<2>()});
-  const std::vector<LineSegment> again = findLinesNear(image, allGround(), expected, {}, gate);
+  LineMemory memory;
+  const std::vector<LineSegment> again = findLinesNear(image, allGround(), expected, {}, gate, memory);
   ASSERT_EQ(found.size(), 4U);
   ASSERT_EQ(again.size(), 2U);
   for (size_t i = 0; i < again.size(); ++i) {

@@ -57,7 +57,9 @@ struct Frames {
     TemporalMatchOptions options;
     options.coarse_steps = coarse_steps;
     CornerTextures textures;
-    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options, textures);
+    MatchingMemory memory;
+    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options, textures,
+                         memory);
   }
 
   /// Where the point of the world that is seen at a pixel now, at this depth, was then.
@@ -160,8 +162,9 @@ TEST(MatchOverTime, HasNoBiasByPerspective) {
   TemporalMatchOptions options;
   options.coarse_steps = 0;
   CornerTextures textures;
+  MatchingMemory memory;
   const std::vector<TemporalMatch> matches =
-      matchOverTime(rig, match_now, match_then, mask, corners, normal, truth, options, textures);
+      matchOverTime(rig, match_now, match_then, mask, corners, normal, truth, options, textures, memory);
   ASSERT_GT(matches.size(), 500u);
   double sum = 0;
   for (const TemporalMatch& match : matches)

@@ -40,13 +40,14 @@ struct Scene {
 
   RunwayDirection find(bool with_normal) {
     Timings timings;
+    RunwayDirectionMemory memory;
     const Eigen::Vector3d down = Eigen::AngleAxisd(plane_pitch_error, Eigen::Vector3d::UnitX()) * pose.down();
     const SeenGround ground_seen{
         {down / (pose.height() * (1 + plane_height_error)), Eigen::Matrix3d::Identity() * 1e-8},
         {},
         has_runway};
     return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
-                               with_normal ? &ground_seen : nullptr, parameters, timings);
+                               with_normal ? &ground_seen : nullptr, parameters, memory, timings);
   }
   /// The runway runs along x.
   double error(const Eigen::Vector3d& direction) const {

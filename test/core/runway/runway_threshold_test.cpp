@@ -58,7 +58,8 @@ struct Bars {
     const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * std::pow(0.02 * kDegree, 2);
     const GroundAxes axes(pose.down(), covariance, pose.seen(Eigen::Vector3d::UnitX()), covariance);
     const double h = pose.height();
-    return findThreshold(image, model.left_mask, rig, axes, {-0.1 / h, 1e-6, 2 / h, 1e-6});
+    std::vector<LineGreys> memory;
+    return findThreshold(image, model.left_mask, rig, axes, {-0.1 / h, 1e-6, 2 / h, 1e-6}, memory);
   }
 };
 
@@ -178,8 +179,9 @@ TEST(RunwayThreshold, TextureIsNone) {
   grass.grain = 0.05;
   const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * 1e-8;
   const GroundAxes axes(bars.pose.down(), covariance, bars.pose.seen(Eigen::Vector3d::UnitX()), covariance);
+  std::vector<LineGreys> memory;
   EXPECT_FALSE(findThreshold(grass.left(bars.rig, bars.pose), bars.model.left_mask, bars.rig, axes,
-                             {0, 1e-6, 2 / 1.5, 1e-6}));
+                             {0, 1e-6, 2 / 1.5, 1e-6}, memory));
 }
 
 TEST(RunwayThreshold, ARunwayBesideTheCameraIsOutsideThePicture) {
@@ -189,8 +191,9 @@ TEST(RunwayThreshold, ARunwayBesideTheCameraIsOutsideThePicture) {
   const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * 1e-8;
   const GroundAxes axes(Eigen::Vector3d::UnitY(), covariance, Eigen::Vector3d::UnitX(), covariance);
   const double step = 0.92 * 2 / 96;
+  std::vector<LineGreys> memory;
   EXPECT_FALSE(
-      findThreshold(image, bars.model.left_mask, bars.rig, axes, {0.5 * step + 1e-9, 1e-6, 2, 1e-6}));
+      findThreshold(image, bars.model.left_mask, bars.rig, axes, {0.5 * step + 1e-9, 1e-6, 2, 1e-6}, memory));
 }
 
 }  // namespace

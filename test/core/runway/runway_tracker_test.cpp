@@ -52,10 +52,11 @@ struct Approach {
       right.setTo(100);
     }
     Timings timings;
+    RunwayDirectionMemory memory;
     const Eigen::Vector3d n = now.down();
     const SeenGround ground_seen{{n / now.height(), Eigen::Matrix3d::Identity() * 1e-8}, {}};
     const RunwayDirection direction = findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
-                                                          &ground_seen, parameters, timings);
+                                                          &ground_seen, parameters, memory, timings);
     ApproachAngleResult approach;
     approach.left = direction.left;
     approach.right = direction.right;

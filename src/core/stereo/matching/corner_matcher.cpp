@@ -8,7 +8,7 @@ class RowMatcher : public CornerMatcher {
   explicit RowMatcher(const StereoDepthParameters& parameters) : parameters_(parameters) {}
 
   std::vector<cv::Point> detect(const StereoLevel& level, const Eigen::Vector3d& g, int count) override {
-    return findGroundCorners(level, g, count, parameters_);
+    return findGroundCorners(level, g, count, parameters_, memory_);
   }
   RowMatches match(const StereoLevel& level, const std::vector<cv::Point>& corners,
                    const Eigen::Vector3d& g) override {
@@ -17,6 +17,7 @@ class RowMatcher : public CornerMatcher {
 
  private:
   StereoDepthParameters parameters_;
+  GroundCornerMemory memory_;
 };
 
 }  // namespace

@@ -5,11 +5,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/image_memory.h"
 #include "base/thinned.h"
 #include "base/touch_ahead.h"
 #include "geometry/half_plane.h"
-#include "image/corners.h"
 #include "image/image_check.h"
 #include "stereo/matching/row_matching.h"
 #include "stereo/matching/row_refinement.h"
@@ -111,15 +109,21 @@ struct GroundLimits {
 }  // namespace
 
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
-                                         const StereoDepthParameters& parameters) {
-  static thread_local ImageMemory memory;
-  cv::Mat mask = level.left_mask, kept = memory.image(mask.size());
+                                         const StereoDepthParameters& parameters,
+                                         GroundCornerMemory& memory) {
+  cv::Mat mask = level.left_mask, kept = memory.ground.image(mask.size());
   for (const Eigen::Vector3d& side : GroundLimits(level, g).sides) {
     keepHalfPlane(mask, side.x(), side.y(), side.z(), kept);
     mask = kept;
   }
   return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
-                     parameters.harris_k);
+                     parameters.harris_k, memory.corners);
+}
+
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+                                         const StereoDepthParameters& parameters) {
+  GroundCornerMemory memory;
+  return findGroundCorners(level, g, count, parameters, memory);
 }
 
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/image_memory.h"
+#include "image/corners.h"
 #include "results/disparity_sample.h"
 #include "stereo/matching/row_refinement.h"
 #include "stereo/matching/stereo_level.h"
@@ -11,7 +13,16 @@
 
 namespace uav_landing {
 
+/// Memory that corners on the ground are looked for in.
+struct GroundCornerMemory {
+  CornerMemory corners;
+  ImageMemory ground;
+};
+
 /// Harris corners of the left image below the horizon of the plane g (1/m), where it predicts a disparity.
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+                                         const StereoDepthParameters& parameters, GroundCornerMemory& memory);
+/// The same with memory of its own.
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "image/window_template.h"
+#include "kernels/window/strip.h"
 #include "stereo/matching/row_warp.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
@@ -32,10 +33,6 @@ class RowSearch {
   std::vector<RowCandidate> peaks(double min_score, int count) const;
 
  private:
-  /// Fills the strip with the values around all positions, less the template's mean; NaN outside the image,
-  /// any behind the width.
-  void resample(int v, int width, const RowWarp& warp);
-  void scoreAll();
   RowCandidate interpolated(int index) const;
 
   const cv::Mat& reference_;
@@ -45,9 +42,8 @@ class RowSearch {
   int steps_ = 0;
   double centre_ = 0, scale_ = 1;
   WindowTemplate template_;
-  int padded_ = 0, stride_ = 0;  // positions filled up to whole blocks; of the rows in the strip
-  std::vector<float> strip_;     // resampled rows of the other image
-  std::vector<float> column_sums_, column_squares_;
+  std::vector<float> strip_;  // rows of the other image around all positions, less the template's mean
+  StripColumns columns_;
   std::vector<float> scores_;
 };
 

@@ -3,7 +3,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "stereo/photometric/block_sums.h"
+#include "kernels/block/block_sums.h"
+#include "kernels/block/pair_sums.h"
 
 namespace uav_landing {
 
@@ -19,13 +20,10 @@ struct BlockGrid {
 constexpr int kGridColumn = 4, kGridRow = 4;
 
 /// Sums over the pixels of a block of one band: of what the aligned images (their means are zero) have in
-/// common, and of the left one's derivative along the row, the slope, per pixel of the whole images.
-struct BandSums {
-  float count = 0;                          ///< pixels
-  float left = 0, right = 0, products = 0;  ///< left^2, right^2, left right
-  float slope_left = 0, slope_right = 0;    ///< slope left, slope right
-  float slopes = 0, down = 0;               ///< slope^2, slope (derivative down the column)
-  float signal = 0;  ///< slope (right one's derivative): slopes without the noise, which is not in common
+/// common, and of their derivatives, per pixel of the whole images. The signal is slopes without the noise,
+/// which is not in common.
+struct BandSums : PairSums {
+  float count = 0;  ///< pixels
 
   void add(const BandSums& other);
 };

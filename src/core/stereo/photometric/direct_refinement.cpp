@@ -84,6 +84,7 @@ struct DirectRefinement::Implementation {
   double common_variance = 0;            // of an error that all of them have, pixels^2
   int agreeing = 0;                      // blocks that look alike and are on the plane
   RowsByEdges edges;
+  PlaneColumns memory;
 
   Implementation(const RigModel& model, int margin) : rig(model.rig), disparities(model, margin) {}
 
@@ -191,7 +192,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
       for (DisparitySample& sample : own.samples)
         sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
     }
-    Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev);
+    Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev, own.memory);
     own.agreeing = fit ? own.blocksOn(*fit) : 0;
     if (!fit) return fit;
     if (own.agreeing < kLeastShare * own.disparities.informative())

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "kernels/block/block_texture.h"
 #include "stereo/matching/shift_model.h"
-#include "stereo/photometric/block_sums.h"
 #include "stereo/photometric/shift_evidence.h"
 #include "stereo/photometric/shift_matching.h"
 
@@ -20,7 +20,7 @@ namespace uav_landing {
 /// the left one's derivatives are independent, so that interpolation does not pull towards whole pixels.
 class PhotometricBlocks {
  public:
-  static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kWidth * kHeight;
+  static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kBlockPixels;
   static constexpr int kTogether = 8;  ///< blocks in a row that may speak together
   static constexpr int kMargin = 2;  ///< pixels to the left and right that interpolation and derivatives read
 
@@ -42,15 +42,9 @@ class PhotometricBlocks {
     int energy;
     bool chosen;
   };
-  struct Block {
-    int u, v;                               // first pixel
-    float centre_u, centre_v;               // where its gradients are
-    float grey_energy, slope_energy, both;  // sums of grey^2, slope^2, grey slope
-    // Sums of the exact derivatives along the row and down the column times grey, slope.
-    float along_grey, along_slope;
-    float down_grey, down_slope;       // sums of (derivative down the column) times grey, slope
-    std::array<float, kPixels> grey;   // without their mean
-    std::array<float, kPixels> slope;  // derivative along the row without its mean
+  struct Block : BlockTexture {
+    int u, v;                  // first pixel
+    float centre_u, centre_v;  // where its gradients are
   };
   // What the warped right image r has in common with a block.
   struct Products {

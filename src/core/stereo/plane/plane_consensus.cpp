@@ -6,9 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/ransac.h"
+#include "kernels/samples/plane_votes.h"
 #include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
@@ -24,82 +23,42 @@ constexpr double kRollPenalty = 1.0;
 // Least disparity of the plane at a sample that counts: nearer the horizon everything agrees.
 constexpr double kMinDisparity = 1.0;
 
-struct Votes {
-  double agreeing = 0;  // MSAC votes of the samples on the plane
-  double penalty = 0;   // of those off it
-  double net() const { return agreeing - penalty; }
-};
-
-// The samples by columns, filled up to whole lanes with what has no vote.
-struct VoteColumns {
-  static constexpr double kNowhere = -1e18;
-
-  std::vector<double> x, y;  // derivatives of the disparity by the plane vector; by its third component: fb
-  std::vector<double> u, disparity;  // the first disparity
-  double fb, offset;
-  bool ambiguous = false;  // samples with several disparities
-
-  VoteColumns(const StereoRig& rig, const std::vector<DisparitySample>& samples)
-      : x(wholeDoubleLanes(samples.size()), 0),
-        y(x),
-        u(x.size(), kNowhere),
-        disparity(u),
-        fb(rig.fb()),
-        offset(rig.principalOffset()) {
-    for (size_t i = 0; i < samples.size(); ++i) {
-      const Eigen::Vector3d row = fb * rig.ray(samples[i].u, samples[i].v);
-      x[i] = row.x();
-      y[i] = row.y();
-      u[i] = samples[i].u;
-      disparity[i] = samples[i].disparity;
-      ambiguous |= !samples[i].others.empty();
-    }
+// The samples: x and y are derivatives of the disparity by the plane vector; by its third component it is fb.
+// Of several disparities of a sample the first one.
+VoteColumns columnsOf(const StereoRig& rig, const std::vector<DisparitySample>& samples) {
+  VoteColumns columns(samples.size());
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3d row = rig.fb() * rig.ray(samples[i].u, samples[i].v);
+    columns.x[i] = row.x();
+    columns.y[i] = row.y();
+    columns.u[i] = samples[i].u;
+    columns.value[i] = samples[i].disparity;
   }
-};
-
-// A sample whose place in the right image is outside of it says nothing against the plane, whatever it
-// matched instead.
-UAV_LANDING_MULTIVERSION void addVotes(const VoteColumns& columns, const Eigen::Vector3d& g, double tolerance,
-                                       Votes& votes) {
-  const double gx = g.x(), gy = g.y(), constant = g.z() * columns.fb;
-  const double unit = 1 / (tolerance * tolerance), far = 2 * tolerance;
-  const DoubleLanes none{}, below = none + kBelowPenalty, above = none + kAbovePenalty;
-  DoubleLanes agreeing{}, penalty{};
-  for (size_t i = 0; i < columns.x.size(); i += kDoubleLanes) {
-    DoubleLanes x, y, u, disparity;
-    load(&columns.x[i], x);
-    load(&columns.y[i], y);
-    load(&columns.u[i], u);
-    load(&columns.disparity[i], disparity);
-    const DoubleLanes expected = gx * x + gy * y + constant, residual = disparity - expected;
-    const DoubleLanes missing = 1 - residual * residual * unit;
-    const auto counts = expected >= kMinDisparity;
-    const auto seen = u - expected >= columns.offset;
-    const DoubleLanes price = residual < -far ? below : above;
-    agreeing += (counts & (missing > 0)) ? missing : none;
-    penalty += (counts & seen & (missing <= 0)) ? price : none;
-  }
-  votes.agreeing += sum(agreeing);
-  votes.penalty += sum(penalty);
+  return columns;
 }
 
-// The same for samples that may have several disparities: the nearest one votes, and only when all are too
-// small does it lie below.
+bool areAmbiguous(const std::vector<DisparitySample>& samples) {
+  return std::any_of(samples.begin(), samples.end(),
+                     [](const DisparitySample& sample) { return !sample.others.empty(); });
+}
+
+// Adds the votes of samples that may have several disparities: the nearest one votes, and only when all are
+// too small does it lie below.
 void addAmbiguousVotes(const VoteColumns& columns, const std::vector<DisparitySample>& samples,
-                       const Eigen::Vector3d& g, double tolerance, Votes& votes) {
+                       const LinearValue& plane, const VoteRules& rules, Votes& votes) {
   for (size_t i = 0; i < samples.size(); ++i) {
-    const double expected = g.x() * columns.x[i] + g.y() * columns.y[i] + g.z() * columns.fb;
-    if (expected < kMinDisparity) continue;
+    const double expected = plane.x_slope * columns.x[i] + plane.y_slope * columns.y[i] + plane.constant;
+    if (expected < rules.least) continue;
     double nearest = std::abs(samples[i].disparity - expected), largest = samples[i].disparity;
     for (const double disparity : samples[i].others) {
       nearest = std::min(nearest, std::abs(disparity - expected));
       largest = std::max(largest, disparity);
     }
-    const double ratio = nearest / tolerance;
+    const double ratio = nearest / rules.tolerance;
     if (ratio < 1) {
       votes.agreeing += 1 - ratio * ratio;
-    } else if (columns.u[i] - expected >= columns.offset) {
-      votes.penalty += largest < expected - 2 * tolerance ? kBelowPenalty : kAbovePenalty;
+    } else if (columns.u[i] - expected >= rules.offset) {
+      votes.penalty += largest < expected - 2 * rules.tolerance ? rules.below : rules.above;
     }
   }
 }
@@ -108,16 +67,23 @@ void addAmbiguousVotes(const VoteColumns& columns, const std::vector<DisparitySa
 struct Voters {
   const StereoRig& rig;
   const std::vector<DisparitySample>& samples;
-  VoteColumns columns{rig, samples};
+  VoteColumns columns = columnsOf(rig, samples);
+  bool ambiguous = areAmbiguous(samples);  // samples with several disparities
 
+  // A sample whose place in the right image is outside of it says nothing against the plane, whatever it
+  // matched instead.
   Votes votesFor(const Eigen::Vector3d& g, double tolerance) const {
-    Votes votes;
     const double tens = rollOf(g) * 18.0 / M_PI;
-    votes.penalty = kRollPenalty * tens * tens;
-    if (columns.ambiguous) {
-      addAmbiguousVotes(columns, samples, g, tolerance, votes);
+    const double by_roll = kRollPenalty * tens * tens;
+    const LinearValue plane{g.x(), g.y(), g.z() * rig.fb()};
+    const VoteRules rules{tolerance, kMinDisparity, rig.principalOffset(), kBelowPenalty, kAbovePenalty};
+    Votes votes;
+    if (ambiguous) {
+      votes.penalty = by_roll;
+      addAmbiguousVotes(columns, samples, plane, rules, votes);
     } else {
-      addVotes(columns, g, tolerance, votes);
+      votes = voteForPlane(columns, plane, rules);
+      votes.penalty += by_roll;
     }
     return votes;
   }
@@ -133,7 +99,7 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (size_t i = 0; i < voters.samples.size(); ++i) {
-      const Eigen::Vector3d row(voters.columns.x[i], voters.columns.y[i], voters.columns.fb);
+      const Eigen::Vector3d row(voters.columns.x[i], voters.columns.y[i], voters.rig.fb());
       const auto add = [&](double disparity) {
         const double ratio = (disparity - row.dot(best.g)) / limits.tolerance;
         if (std::abs(ratio) >= 1) return;

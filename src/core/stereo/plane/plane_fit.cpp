@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
-#include "base/order_statistic.h"
 #include "estimation/convergence.h"
 #include "estimation/robust.h"
 #include "geometry/bias_variance.h"
+#include "kernels/lanes/order_statistic.h"
 
 namespace uav_landing {
 namespace {
@@ -25,124 +22,63 @@ struct NormalEquations {
   int count = 0;
 };
 
-// The least squares problem by columns, filled up to whole lanes with samples of no weight. Keeps its memory.
+// The least squares problem. x and y are derivatives of a disparity by the plane vector; by its third
+// component it is fb. Uses the memory of the columns.
 class PlaneProblem {
  public:
-  void assign(const StereoRig& rig, const std::vector<DisparitySample>& samples) {
-    count_ = samples.size();
-    fb_ = rig.fb();
-    const size_t filled = wholeDoubleLanes(count_);
-    for (std::vector<double>* column : {&x_, &y_, &disparity_, &precision_, &expected_, &weight_, &ratios_})
-      column->resize(filled);
+  PlaneProblem(const StereoRig& rig, const std::vector<DisparitySample>& samples, PlaneColumns& columns)
+      : columns_(columns), count_(samples.size()), fb_(rig.fb()) {
+    columns_.resize(count_);
     for (size_t i = 0; i < count_; ++i) {
       const Eigen::Vector3d row = fb_ * rig.ray(samples[i].u, samples[i].v);
-      x_[i] = row.x();
-      y_[i] = row.y();
-      disparity_[i] = samples[i].disparity;
-      precision_[i] = 1 / samples[i].stddev;
+      columns_.x[i] = row.x();
+      columns_.y[i] = row.y();
+      columns_.value[i] = samples[i].disparity;
+      columns_.precision[i] = 1 / samples[i].stddev;
     }
-    for (size_t i = count_; i < filled; ++i) x_[i] = y_[i] = disparity_[i] = precision_[i] = 0;
   }
 
   // Derivatives of a sample's disparity by the plane vector.
-  Eigen::Vector3d row(size_t i) const { return {x_[i], y_[i], fb_}; }
+  Eigen::Vector3d row(size_t i) const { return {columns_.x[i], columns_.y[i], fb_}; }
 
   // The disparities that a plane gives.
-  UAV_LANDING_MULTIVERSION void expect(const Eigen::Vector3d& g) {
-    const double gx = g.x(), gy = g.y(), constant = g.z() * fb_;
-    const double *x = x_.data(), *y = y_.data();
-    double* __restrict expected = expected_.data();
-    for (size_t i = 0; i < x_.size(); ++i) expected[i] = gx * x[i] + gy * y[i] + constant;
-  }
+  void expect(const Eigen::Vector3d& g) { expectValues({g.x(), g.y(), g.z() * fb_}, columns_); }
 
   // Robust size of the residuals as a multiple of the claimed stddevs, at least 1, over samples near the
   // plane. What stands on the ground makes residuals positive only, so the negative ones alone tell the size
   // of the ground's own.
   double residualScale(double tolerance) {
-    const Nearby nearby = measureNearby(tolerance);
+    const NearbyCount nearby = measureBelow(2 * tolerance, kPerMedian, columns_);
     if (nearby.small > nearby.all / 2 || nearby.all == 0) return 1;  // the median is among the small ones
-    return std::max(1.0, kPerMedian * orderStatistic(ratios_.data(), ratios_.size(), nearby.all / 2));
+    return std::max(
+        1.0, kPerMedian * orderStatistic(columns_.ratio.data(), columns_.ratio.size(), nearby.all / 2));
   }
 
   // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
-  UAV_LANDING_MULTIVERSION NormalEquations accumulate(double scale) {
+  NormalEquations accumulate(double scale) {
     constexpr double kEnd = TukeyEnd::kDisparity;
-    const double unit = 1 / (kEnd * kEnd * scale * scale);
-    const DoubleLanes none{}, one = none + 1;
-    DoubleLanes w{}, wx{}, wy{}, wxx{}, wxy{}, wyy{}, wd{}, wxd{}, wyd{}, squares{}, count{};
-    for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
-      DoubleLanes x, y, precision, disparity, expected;
-      load(&x_[i], x);
-      load(&y_[i], y);
-      load(&precision_[i], precision);
-      load(&disparity_[i], disparity);
-      load(&expected_[i], expected);
-      const DoubleLanes residual = disparity - expected, information = precision * precision;
-      const DoubleLanes missing = 1 - residual * residual * information * unit;
-      const auto inside = (missing > 0) & (expected > 0) & (information > 0);
-      const DoubleLanes weight = inside ? missing * missing * information : none;
-      const DoubleLanes weight_x = weight * x, weight_y = weight * y;
-      store(weight, &weight_[i]);
-      count += inside ? one : none;
-      w += weight;
-      wx += weight_x;
-      wy += weight_y;
-      wxx += weight_x * x;
-      wxy += weight_x * y;
-      wyy += weight_y * y;
-      wd += weight * disparity;
-      wxd += weight_x * disparity;
-      wyd += weight_y * disparity;
-      squares += weight * residual * residual;
-    }
+    const PlaneSums s = addUpTukey(1 / (kEnd * kEnd * scale * scale), columns_);
     NormalEquations sums;
-    sums.information << sum(wxx), sum(wxy), fb_ * sum(wx),  //
-        sum(wxy), sum(wyy), fb_ * sum(wy),                  //
-        fb_ * sum(wx), fb_ * sum(wy), fb_ * fb_ * sum(w);
-    sums.right << sum(wxd), sum(wyd), fb_ * sum(wd);
-    sums.weighted_squares = sum(squares);
-    sums.count = static_cast<int>(sum(count));
+    sums.information << s.wxx, s.wxy, fb_ * s.wx,  //
+        s.wxy, s.wyy, fb_ * s.wy,                  //
+        fb_ * s.wx, fb_ * s.wy, fb_ * fb_ * s.w;
+    sums.right << s.wxd, s.wyd, fb_ * s.wd;
+    sums.weighted_squares = s.squares;
+    sums.count = s.count;
     return sums;
   }
 
   // Which samples had a weight.
   std::vector<char> agreeing() const {
     std::vector<char> agrees(count_);
-    for (size_t i = 0; i < count_; ++i) agrees[i] = weight_[i] > 0;
+    for (size_t i = 0; i < count_; ++i) agrees[i] = columns_.weight[i] > 0;
     return agrees;
   }
 
  private:
-  // Samples below the plane and near it, and those of them that are not farther off than claimed.
-  struct Nearby {
-    size_t all, small;
-  };
-
-  // Counts them and sets the ratios of their residuals to the claimed stddevs, of other samples to infinity.
-  UAV_LANDING_MULTIVERSION Nearby measureNearby(double tolerance) {
-    const DoubleLanes none{}, one = none + 1, infinity = none + std::numeric_limits<double>::infinity();
-    const double farthest = -2 * tolerance;
-    DoubleLanes all{}, small{};
-    for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
-      DoubleLanes precision, disparity, expected;
-      load(&precision_[i], precision);
-      load(&disparity_[i], disparity);
-      load(&expected_[i], expected);
-      const DoubleLanes residual = disparity - expected;
-      const auto near = (residual <= 0) & (residual > farthest) & (precision > 0);
-      const DoubleLanes ratio = near ? -residual * precision : infinity;
-      store(ratio, &ratios_[i]);
-      all += near ? one : none;
-      small += kPerMedian * ratio <= 1 ? one : none;
-    }
-    return {static_cast<size_t>(sum(all)), static_cast<size_t>(sum(small))};
-  }
-
-  size_t count_ = 0;
-  double fb_ = 0;
-  std::vector<double> x_, y_;  // derivatives of the disparity by the plane vector; by its third component: fb
-  std::vector<double> disparity_, precision_;  // precision: 1 / stddev
-  std::vector<double> expected_, weight_, ratios_;
+  PlaneColumns& columns_;
+  size_t count_;
+  double fb_;
 };
 
 // How much larger the covariance is than independent errors would make it. Surfaces are not planes, and their
@@ -178,13 +114,12 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
 }  // namespace
 
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
+                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev,
+                               PlaneColumns& memory) {
   constexpr int kIterations = 6;
   Eigen::Vector3d g = start;
   double scale = 1;
-  static thread_local PlaneProblem kept;  // for its memory
-  PlaneProblem& problem = kept;           // where that is takes a call to find
-  problem.assign(rig, samples);
+  PlaneProblem problem(rig, samples, memory);
   NormalEquations sums;
   Convergence convergence;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -213,6 +148,12 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.plane.covariance = inflation * information.inverse();
   fit.plane.covariance(2, 2) += biasVariance(rig, bias_stddev);
   return fit;
+}
+
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
+  PlaneColumns memory;
+  return refinePlane(rig, samples, start, limits, bias_stddev, memory);
 }
 
 }  // namespace uav_landing

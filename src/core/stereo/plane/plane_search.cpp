@@ -4,10 +4,8 @@
 #include <cmath>
 
 #include "base/thinned.h"
-#include "image/corners.h"
 #include "image/image_check.h"
 #include "image/match_image.h"
-#include "stereo/matching/corner_matching.h"
 #include "stereo/matching/row_matching.h"
 #include "stereo/matching/shift_model.h"
 
@@ -103,10 +101,11 @@ bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least)
 }  // namespace
 
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits) {
+                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
+                     GroundCornerMemory& memory) {
   constexpr int kCorners = 250, kIterations = 150;
   constexpr double kLeastShare = 0.2;
-  const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters);
+  const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters, memory);
   const std::vector<DisparitySample> samples =
       matchCorners(level, corners, predicted, parameters, trackingReach(parameters)).samples;
   Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr);
@@ -132,7 +131,7 @@ Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Poi
 }
 
 Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
-                      const PlaneLimits& limits) {
+                      const PlaneLimits& limits, CornerMemory& memory) {
   constexpr int kCorners = 500, kIterations = 400;
   // Votes of a rival plane as a share of those of the strongest: a bar off has about as many.
   constexpr double kRivalShare = 0.8;
@@ -140,7 +139,7 @@ Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& par
   const std::vector<double> slopes = {0.0, 0.04, 0.09, 0.16, 0.25, 0.37, 0.52, 0.72, 1.0, 1.4};
   const std::vector<cv::Point> corners =
       findCorners(level.left, level.left_mask, kCorners, parameters.corner_quality,
-                  parameters.min_corner_distance, parameters.harris_k);
+                  parameters.min_corner_distance, parameters.harris_k, memory);
   std::vector<Hypothesis> hypotheses;
   for (size_t i = 0; i < slopes.size(); ++i) {
     const Eigen::Vector2d range(i == 0 ? 0.0 : slopes[i - 1],

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "stereo/matching/corner_matching.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/plane/plane_consensus.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
@@ -12,7 +13,8 @@ namespace uav_landing {
 
 /// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits);
+                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
+                     GroundCornerMemory& memory);
 
 /// The same by a few of the corners found at full size, this factor larger than the level. Not found unless
 /// most of them agree.
@@ -23,6 +25,6 @@ Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Poi
 /// Plane with nothing known: full disparity range, windows sheared as for a range of heights, all peaks kept
 /// as candidates and resolved by consensus, so that repeated texture does not decide.
 Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
-                      const PlaneLimits& limits);
+                      const PlaneLimits& limits, CornerMemory& memory);
 
 }  // namespace uav_landing

@@ -104,7 +104,7 @@ std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, con
   const Consensus scouted = trackPlaneByScouts(coarse, corners_, factor, last_, parameters_, limits_);
   if (scouted.found) return scouted.g;
   corners_.clear();
-  const Consensus tracked = trackPlane(coarse, last_, parameters_, limits_);
+  const Consensus tracked = trackPlane(coarse, last_, parameters_, limits_, memory_);
   if (!tracked.found) return std::nullopt;
   return tracked.g;
 }

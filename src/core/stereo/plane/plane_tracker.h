@@ -70,6 +70,7 @@ class PlaneTracker {
   std::vector<cv::Point> corners_;
   Eigen::Vector3d corners_of_ = Eigen::Vector3d::Zero();
   Steadiness steadiness_;
+  GroundCornerMemory memory_;
 };
 
 }  // namespace uav_landing

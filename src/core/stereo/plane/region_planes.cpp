@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/order_statistic.h"
+#include "kernels/lanes/order_statistic.h"
 #include "stereo/plane/plane_fit.h"
 
 namespace uav_landing {
@@ -66,7 +66,8 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   samples.reserve(points.size());
   for (const StereoDepthResult::Point& point : points)
     samples.push_back({point.u, point.v, point.disparity_stddev, {point.disparity}});
-  const Expected<PlaneFit> all = refinePlane(rig, samples, plane, limits, 0);
+  PlaneColumns memory;
+  const Expected<PlaneFit> all = refinePlane(rig, samples, plane, limits, 0, memory);
   if (!all) return planes;
   planes.all = all->plane;
   // By where the plane says that a point lies: what stands on the ground is sorted as the ground behind it.
@@ -80,7 +81,7 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
     rest.clear();
     for (size_t k = 0; k < samples.size(); ++k)
       if (!isIn(static_cast<ImageRegion>(i), borders, samples[k].u, expected[k])) rest.push_back(samples[k]);
-    const Expected<PlaneFit> fit = refinePlane(rig, rest, plane, limits, 0);
+    const Expected<PlaneFit> fit = refinePlane(rig, rest, plane, limits, 0, memory);
     if (!fit) continue;
     planes.without[i] = fit->plane;
     const double least = planes.all.heightVariance() * all->count / fit->count;

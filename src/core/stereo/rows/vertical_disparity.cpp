@@ -5,12 +5,11 @@
 #include <cmath>
 #include <optional>
 
-#include "base/interpolation.h"
-#include "base/multiversion.h"
 #include "base/thinned.h"
 #include "image/image_check.h"
 #include "image/patch_matching.h"
 #include "image/patch_refiner.h"
+#include "kernels/image/slanted_row.h"
 #include "rig/rig_rotation.h"
 #include "stereo/matching/shift_model.h"
 #include "stereo/rows/row_fit.h"
@@ -99,29 +98,6 @@ BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
   return {fit->value.tail<2>(), covariance.bottomRightCorner<2, 2>()};
 }
 
-// A row of the image seen aslant: place down the image by column.
-struct SlantedRow {
-  double first, slope, lowest;  // at the first column, per column, largest place
-
-  double at(int column) const { return std::clamp(first + slope * column, 1.0, lowest); }
-};
-
-// Columns begin .. end - 1 of a slanted row between the same four rows of the image.
-UAV_LANDING_MULTIVERSION void interpolateColumns(const float* above, size_t stride, SlantedRow row, int whole,
-                                                 int begin, int end, float* __restrict out) {
-  const float *a = above, *b = a + stride, *c = b + stride, *d = c + stride;
-  for (int u = begin; u < end; ++u) {
-    const double place = row.first + row.slope * u;
-    const double inside = place < 1.0 ? 1.0 : (place > row.lowest ? row.lowest : place);
-    out[u] = parabolicBetween(a[u], b[u], c[u], d[u], static_cast<float>(inside - whole));
-  }
-}
-
-void interpolateRow(const cv::Mat& image, const SlantedRow& row, int begin, int end, float* out) {
-  const int whole = static_cast<int>(row.at(begin));
-  interpolateColumns(image.ptr<float>(whole - 1), image.step1(), row, whole, begin, end, out);
-}
-
 cv::Mat levelled(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& buffer) {
   if (w.isZero()) return right;
   straightenRows(rig, w, right, buffer);
@@ -185,19 +161,12 @@ double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) 
 }
 
 void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
-  constexpr int kSpan = 32;  // columns that mostly come from the same rows
   out.create(right.size(), CV_32F);
   for (int v = 0; v < out.rows; ++v) {
     // Linear in the column.
     const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
     const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
-    const SlantedRow row{first, (last - first) / (out.cols - 1), right.rows - 2.001};
-    for (int begin = 0; begin < out.cols; begin += kSpan) {
-      const int end = std::min(begin + kSpan, out.cols);
-      const bool same = static_cast<int>(row.at(begin)) == static_cast<int>(row.at(end - 1));
-      const int step = same ? end - begin : 1;
-      for (int u = begin; u < end; u += step) interpolateRow(right, row, u, u + step, out.ptr<float>(v));
-    }
+    sampleSlantedRow(right, {first, (last - first) / (out.cols - 1)}, out.ptr<float>(v));
   }
 }
 

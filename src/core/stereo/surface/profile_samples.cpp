@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/lanes.h"
-#include "base/multiversion.h"
 #include "estimation/robust.h"
+#include "kernels/lanes/lanes.h"
+#include "kernels/samples/surface_places.h"
 
 namespace uav_landing {
 namespace {
@@ -30,26 +30,11 @@ ProfileSamples::ProfileSamples(const StereoRig& rig, const std::vector<Disparity
 }
 
 void ProfileSamples::findPlaces(const GroundPlane& plane) {
-  const Eigen::Vector3d n = plane.normal();
-  placeAll(plane.g, (Eigen::Vector3d::UnitZ() - n.z() * n).normalized());
-}
-
-UAV_LANDING_MULTIVERSION void ProfileSamples::placeAll(const Eigen::Vector3d& g,
-                                                       const Eigen::Vector3d& forward) {
-  const double gx = g.x(), gy = g.y(), gz = g.z(), fb = fb_;
-  const double forward_x = forward.x(), forward_y = forward.y(), forward_z = forward.z();
-  const DoubleLanes least = DoubleLanes{} + kLeastDisparity;
-  for (size_t i = 0; i < x_.size(); i += kDoubleLanes) {
-    DoubleLanes x, y, disparity, flat;
-    load(&x_[i], x);
-    load(&y_[i], y);
-    load(&disparity_[i], disparity);
-    load(&flat_[i], flat);
-    const DoubleLanes by_plane = fb * (gx * x + gy * y + gz), on_surface = by_plane + (disparity - flat);
-    store(by_plane, &by_plane_[i]);
-    store(on_surface < least ? least : on_surface, &expected_[i]);
-    store(fb * (forward_x * x + forward_y * y + forward_z), &reaches_[i]);
-  }
+  const Eigen::Vector3d n = plane.normal(), g = plane.g;
+  const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - n.z() * n).normalized();
+  placeOnSurface({g.x(), g.y(), g.z()}, {forward.x(), forward.y(), forward.z()}, fb_, kLeastDisparity,
+                 {x_.data(), y_.data(), disparity_.data(), flat_.data(), by_plane_.data(), expected_.data(),
+                  reaches_.data(), x_.size()});
 }
 
 void ProfileSamples::calmDown(const PlaneFit& fit) {

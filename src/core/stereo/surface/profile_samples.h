@@ -50,8 +50,6 @@ class ProfileSamples {
   ProfileSums sums(const PlaneFit& fit, double noise) const;
 
  private:
-  void placeAll(const Eigen::Vector3d& g, const Eigen::Vector3d& forward);
-
   double fb_, top_;
   size_t count_;
   std::vector<DisparitySample> flattened_;

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "base/order_statistic.h"
 #include "geometry/bias_variance.h"
+#include "kernels/lanes/order_statistic.h"
 #include "stereo/surface/profile_samples.h"
 
 namespace uav_landing {
@@ -182,7 +182,7 @@ class ProfileFit {
     for (size_t i = 0; i < samples_.size(); ++i)
       samples_.takeOff(i, byKinks(samples_.expected(i), samples_.reach(i)).dot(bend));
     const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend;
-    Expected<PlaneFit> fit = refinePlane(rig_, samples_.flattened(), start, limits, bias_stddev);
+    Expected<PlaneFit> fit = refinePlane(rig_, samples_.flattened(), start, limits, bias_stddev, memory_);
     if (fit) plane_ = std::move(*fit);
     return fit.has_value();
   }
@@ -252,6 +252,7 @@ class ProfileFit {
 
   const StereoRig& rig_;
   ProfileSamples samples_;
+  PlaneColumns memory_;
   PlaneFit plane_;
   std::optional<Kinked> kinks_;
 

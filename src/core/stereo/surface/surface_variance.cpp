@@ -12,11 +12,7 @@ constexpr int kColumns = 10;  // patches along a row of the image; square
 constexpr int kRounds = 10;
 constexpr size_t kFewest = 3;  // points of a patch
 
-struct Point {
-  double u, v;
-  double height;     // over the plane, m
-  double precision;  // 1 over the claimed stddev of the height, 1/m
-};
+using Point = SurfaceMemory::Point;
 
 // Share of the error that two matches have in common: that of the pixels that both their windows are of.
 double inCommon(const Point& a, const Point& b, int window) {
@@ -80,7 +76,7 @@ double varianceBetween(const std::vector<Patch>& patches) {
 }  // namespace
 
 double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
-                       int window) {
+                       int window, SurfaceMemory& memory) {
   const Eigen::Vector3d row = rig.fb() * fit.plane.g;
   std::vector<double> expected;
   expected.reserve(samples.size());
@@ -91,7 +87,7 @@ double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>&
   }
   const double side = static_cast<double>(rig.size.width) / kColumns, unit = 1 / fit.plane.g.norm();
   const int rows = static_cast<int>(rig.size.height / side) + 1;
-  static thread_local std::vector<std::vector<Point>> areas;  // keep their memory
+  std::vector<std::vector<Point>>& areas = memory.patches;
   areas.resize(static_cast<size_t>(kColumns * rows));
   for (std::vector<Point>& points : areas) points.clear();
   for (size_t i = 0; i < samples.size(); ++i) {
@@ -111,6 +107,12 @@ double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>&
   if (!(factor > 0)) return 0;
   for (Patch& patch : patches) patch.of_mean *= factor;
   return varianceBetween(patches);
+}
+
+double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
+                       int window) {
+  SurfaceMemory memory;
+  return surfaceVariance(rig, samples, fit, window, memory);
 }
 
 }  // namespace uav_landing

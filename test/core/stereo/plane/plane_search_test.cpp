@@ -50,7 +50,10 @@ struct Tracking {
   Consensus byScouts() const {
     return trackPlaneByScouts(coarse, corners, left_images.factor, before, parameters, limits);
   }
-  Consensus byAll() const { return trackPlane(coarse, before, parameters, limits); }
+  Consensus byAll() const {
+    GroundCornerMemory memory;
+    return trackPlane(coarse, before, parameters, limits, memory);
+  }
   /// Largest error of the disparity over the lowest row of the image, pixels at full size.
   double error(const Consensus& found, const Pose& now) const {
     const Eigen::Vector3d difference = found.g - now.down() / now.height();

@@ -1,0 +1,206 @@
+#include "kernels/lanes/order_statistic.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "kernels/lanes/multiversion.h"
+
+namespace uav_landing {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kFew = 2;     // values in a range that are looked at one by one
+constexpr int kSlow = 3;    // limits in turn that leave most of a range, before a value of it is looked at
+constexpr int kTries = 10;  // limits after the samples
+
+[[gnu::always_inline]] inline int sumOf(const IntLanes& n) {
+  return ((n[0] + n[4]) + (n[2] + n[6])) + ((n[1] + n[5]) + (n[3] + n[7]));
+}
+
+[[gnu::always_inline]] inline int countBelow(const float* values, int count, float limit) {
+  const Lanes limits = Lanes{} + limit;
+  IntLanes below{};
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes v;
+    load(values + i, v);
+    below -= v < limits;
+  }
+  return sumOf(below);
+}
+
+[[gnu::always_inline]] inline int countUpTo(const float* values, int count, float limit) {
+  const Lanes limits = Lanes{} + limit;
+  IntLanes up_to{};
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes v;
+    load(values + i, v);
+    up_to -= v <= limits;
+  }
+  return sumOf(up_to);
+}
+
+/// The smallest of the values that are larger than a limit, or as large.
+[[gnu::always_inline]] inline float smallestFrom(const float* values, int count, float limit) {
+  const Lanes limits = Lanes{} + limit, infinity = Lanes{} + kInfinity;
+  Lanes smallest = infinity;
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes v;
+    load(values + i, v);
+    const Lanes candidate = v >= limits ? v : infinity;
+    smallest = candidate < smallest ? candidate : smallest;
+  }
+  float result = smallest[0];
+  for (int i = 1; i < kLanes; ++i) result = smallest[i] < result ? smallest[i] : result;
+  return result;
+}
+
+/// The largest of the values that are smaller than a limit, which some are.
+[[gnu::always_inline]] inline float largestBelow(const float* values, int count, float limit) {
+  const Lanes limits = Lanes{} + limit, lowest = Lanes{} - kInfinity;
+  Lanes largest = lowest;
+  UAV_LANDING_UNROLL
+  for (int i = 0; i < count; i += kLanes) {
+    Lanes v;
+    load(values + i, v);
+    const Lanes candidate = v < limits ? v : lowest;
+    largest = candidate > largest ? candidate : largest;
+  }
+  float result = largest[0];
+  for (int i = 1; i < kLanes; ++i) result = largest[i] > result ? largest[i] : result;
+  return result;
+}
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+[[gnu::always_inline]] inline size_t countBelow(const double* values, size_t count, double limit) {
+  using LongLanes = long long __attribute__((vector_size(32)));
+  const DoubleLanes limits = DoubleLanes{} + limit;
+  LongLanes first{}, second{};  // of their own, so that one need not wait for the other
+  size_t i = 0;
+  UAV_LANDING_UNROLL
+  for (; i + 2 * kDoubleLanes <= count; i += 2 * kDoubleLanes) {
+    DoubleLanes a, b;
+    load(values + i, a);
+    load(values + i + kDoubleLanes, b);
+    first -= a < limits;
+    second -= b < limits;
+  }
+  first += second;
+  size_t below = static_cast<size_t>((first[0] + first[1]) + (first[2] + first[3]));
+  for (; i < count; ++i) below += values[i] < limit;
+  return below;
+}
+
+/// The smallest of the values that are larger than a limit, or as large.
+[[gnu::always_inline]] inline double smallestFrom(const double* values, size_t count, double limit) {
+  const DoubleLanes limits = DoubleLanes{} + limit, far = DoubleLanes{} + kFar;
+  DoubleLanes smallest = far;
+  size_t i = 0;
+  for (; i + kDoubleLanes <= count; i += kDoubleLanes) {
+    DoubleLanes v;
+    load(values + i, v);
+    const DoubleLanes candidate = v >= limits ? v : far;
+    smallest = candidate < smallest ? candidate : smallest;
+  }
+  double result = kFar;
+  for (int k = 0; k < kDoubleLanes; ++k) result = smallest[k] < result ? smallest[k] : result;
+  for (; i < count; ++i) result = values[i] >= limit && values[i] < result ? values[i] : result;
+  return result;
+}
+
+/// A range of values, [low, high), that holds the one looked for, and how many values are smaller than
+/// either.
+struct Range {
+  double low = -kFar, high = kFar;
+  size_t below_low = 0, below_high;
+};
+
+/// The value itself once it is found, else NaN and a range of few values or of values that do not differ.
+UAV_LANDING_MULTIVERSION double narrow(const double* values, size_t count, size_t rank, Range& range) {
+  constexpr int kSamples = 16;
+  std::array<double, kSamples> samples;
+  for (int i = 0; i < kSamples; ++i) samples[i] = values[i * count / kSamples];
+  std::sort(samples.begin(), samples.end());
+  int next = static_cast<int>(rank * kSamples / count);
+  for (int i = 0; i < kSamples + kTries; ++i) {
+    double limit;
+    if (range.low > -kFar && range.high < kFar) {
+      const double share = (static_cast<double>(rank - range.below_low) + 0.5) /
+                           static_cast<double>(range.below_high - range.below_low);
+      limit = range.low + share * (range.high - range.low);
+    } else if (next >= 0 && next < kSamples) {
+      limit = samples[next];
+    } else {
+      break;
+    }
+    if (!(limit > range.low && limit < range.high)) break;
+    const size_t below = countBelow(values, count, limit);
+    if (below == rank) return smallestFrom(values, count, limit);
+    (below < rank ? range.low : range.high) = limit;
+    (below < rank ? range.below_low : range.below_high) = below;
+    next += below < rank ? 1 : -1;
+    if (range.below_high - range.below_low <= 1) break;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+double orderStatistic(const double* values, size_t count, size_t rank) {
+  constexpr size_t kWorthIt = 64;
+  Range range;
+  range.below_high = count;
+  if (count >= kWorthIt) {
+    const double found = narrow(values, count, rank, range);
+    if (found < kFar) return found;
+  }
+  std::vector<double> left;
+  left.reserve(range.below_high - range.below_low);
+  for (size_t i = 0; i < count; ++i)
+    if (!(values[i] < range.low || values[i] >= range.high)) left.push_back(values[i]);
+  if (rank - range.below_low >= left.size()) return std::numeric_limits<double>::quiet_NaN();
+  const auto wanted = left.begin() + static_cast<std::ptrdiff_t>(rank - range.below_low);
+  std::nth_element(left.begin(), wanted, left.end());
+  return *wanted;
+}
+
+UAV_LANDING_MULTIVERSION float orderStatistic(const float* values, int count, int rank, float guess) {
+  // What is looked for is in [low, high): below_low values are smaller than low, below_high than high.
+  float low = 0, high = kInfinity, limit = guess;
+  int below_low = 0, below_high = count, slow = 0;
+  for (;;) {
+    const int inside = below_high - below_low;
+    if (inside > kFew && slow < kSlow && limit > low && limit < high) {
+      const int below = countBelow(values, count, limit);
+      if (below == rank) return smallestFrom(values, count, limit);
+      if (below == rank + 1) return largestBelow(values, count, limit);
+      (below < rank ? low : high) = limit;
+      (below < rank ? below_low : below_high) = below;
+      // Many values may be the same, or far from the others.
+      slow = 4 * (below_high - below_low) > 3 * inside ? slow + 1 : 0;
+    } else {
+      const float next = smallestFrom(values, count, low);
+      if (!(next < kInfinity)) return next;
+      const int up_to = countUpTo(values, count, next);
+      if (up_to > rank) return next;
+      low = __builtin_nextafterf(next, kInfinity);
+      below_low = up_to;
+      slow = 0;
+    }
+    if (high < kInfinity) {
+      const float share =
+          (static_cast<float>(rank - below_low) + 0.5F) / static_cast<float>(below_high - below_low);
+      limit = low + (slow > 0 ? 0.5F : share) * (high - low);
+    } else {
+      limit *=
+          std::min(2.F, 1.1F * static_cast<float>(rank + 1) / static_cast<float>(std::max(below_low, 1)));
+    }
+  }
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,44 @@
+#include "kernels/samples/plane_votes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/random_values.h"
+
+namespace uav_landing {
+namespace {
+
+TEST(PlaneVotes, AreOfEachSample) {
+  const LinearValue plane{0.05, 0.2, 0.3};
+  const VoteRules rules{0.8, 1.0, 2.0, 0.5, 0.1};
+  for (const size_t count : {0U, 1U, 3U, 4U, 5U, 64U, 301U}) {
+    VoteColumns columns(count);
+    const auto set = [&](std::vector<double>& column, double low, double high, unsigned seed) {
+      const std::vector<double> values = test::randomValues<double>(count, low, high, seed);
+      std::copy(values.begin(), values.end(), column.begin());
+    };
+    set(columns.x, -20, 20, 3);
+    set(columns.y, 0, 30, 4);
+    set(columns.u, 0, 20, 5);
+    set(columns.value, 0, 9, 6);
+    double agreeing = 0, penalty = 0;
+    for (size_t i = 0; i < count; ++i) {
+      const double expected = plane.x_slope * columns.x[i] + plane.y_slope * columns.y[i] + plane.constant;
+      const double off = columns.value[i] - expected;
+      if (expected < rules.least) continue;
+      if (std::abs(off) < rules.tolerance) {
+        agreeing += 1 - std::pow(off / rules.tolerance, 2);
+      } else if (columns.u[i] - expected >= rules.offset) {
+        penalty += off < -2 * rules.tolerance ? rules.below : rules.above;
+      }
+    }
+    const Votes votes = voteForPlane(columns, plane, rules);
+    EXPECT_NEAR(votes.agreeing, agreeing, 1e-10) << count;
+    EXPECT_NEAR(votes.penalty, penalty, 1e-10) << count;
+    EXPECT_EQ(votes.net(), votes.agreeing - votes.penalty);
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing
