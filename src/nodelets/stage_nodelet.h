@@ -75,6 +75,7 @@ class StageNodelet : public nodelet::Nodelet {
     const Failure shared_failure = loadSharedParameters(getNodeHandle(), shared_);
     if (shared_failure) refuseToLoad(shared_failure.detail);
     if (shared_.runway.width > 0) node_.drawn_runway_width = shared_.runway.width;
+    if (shared_.runway.length > 0) node_.drawn_runway_length = shared_.runway.length;
     Section parameters;
     const Failure failure = loadParameters(getPrivateNodeHandle(), section_, parameters, node_);
     if (failure) refuseToLoad(failure.detail);

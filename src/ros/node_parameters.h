@@ -53,8 +53,10 @@ struct NodeParameters {
     v.number("drawn_runway_width", drawn_runway_width, 0.1, 200.0, "m",
              "width of the runway as drawn until it has been measured; where runway/width is given, that is "
              "the default (kalman_height markers)");
-    v.number("drawn_runway_length", drawn_runway_length, 0.1, 10000.0, "m",
-             "length of the runway as drawn (kalman_height markers)");
+    v.number(
+        "drawn_runway_length", drawn_runway_length, 0.1, 10000.0, "m",
+        "length of the runway as drawn; where runway/length is given, that is the default (kalman_height "
+        "markers)");
     v.number(
         "ellipsoid_scale", ellipsoid_scale, 1.0, 1000.0, "",
         "the ellipsoid of three sigma is drawn larger by this factor: centimetres are too small to be seen "

@@ -1,12 +1,18 @@
 #pragma once
 
+#include <sstream>
+
+#include "uav_landing/base/failure.h"
+
 namespace uav_landing {
 
 // visit(): see parameters.h.
 
 /// What charts say of the runway, for all stages.
 struct RunwayParameters {
-  double width = 0;  ///< 0: unknown
+  double width = 0, length = 0;  ///< m; 0: unknown
+  double side_stripe_inset = 0;  ///< m
+  bool paved = true;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -15,6 +21,27 @@ struct RunwayParameters {
              "width, and kalman_height gets a second height from it (fuse_width_height). That height follows "
              "the width, so give one that is right to 0.2 %. 0: unknown; kalman_height then learns the width "
              "while the stereo height is good");
+    v.number("length", length, 0.0, 10000.0, "m",
+             "length of the runway, as charts have it. What is longer is not the runway. 0: unknown");
+    v.number("side_stripe_inset", side_stripe_inset, 0.0, 20.0, "m",
+             "by how much the painted stripes along the sides lie inside the runway's width. An object of "
+             "either width may be the runway");
+    v.flag("paved", paved,
+           "false for a strip of grass: it has a direction only where its two edges show, and other lines "
+           "that meet are not believed");
+  }
+
+  /// What cannot be true of any runway.
+  Failure check() const {
+    std::ostringstream problem;
+    if (length > 0 && length < width)
+      problem << "runway/length: " << length << " m, expected at least runway/width, " << width << " m";
+    else if (width > 0 && 2 * side_stripe_inset >= width)
+      problem << "runway/side_stripe_inset: " << side_stripe_inset
+              << " m, expected less than half of runway/width, " << width << " m";
+    else
+      return {};
+    return {Reason::kInputInvalid, problem.str()};
   }
 };
 

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -86,10 +87,20 @@ class SectionLoader {
   Failure failure_;
 };
 
+/// Parameters of a section that contradict each other; a section that may have some has a check() of its own.
+template <class ParameterStruct, class = void>
+struct SectionCheck {
+  static Failure of(const ParameterStruct&) { return {}; }
+};
+template <class ParameterStruct>
+struct SectionCheck<ParameterStruct, std::void_t<decltype(std::declval<const ParameterStruct&>().check())>> {
+  static Failure of(const ParameterStruct& parameters) { return parameters.check(); }
+};
+
 /// Reads one section's values into a parameter struct (defaults stay where nothing is given). The failure
 /// names the parameter with its section, the value and what was expected: a key that does not exist (with
 /// the nearest name that does, or where it belongs), a value of another type, out of range, or not one of the
-/// choices. The parameters are then as before.
+/// choices, or contradicts another one. The parameters are then as before.
 template <class ParameterStruct>
 Failure loadSection(const YAML::Node& node, const std::string& section, ParameterStruct& parameters) {
   const Failure failure = checkMap(node, section);
@@ -97,7 +108,8 @@ Failure loadSection(const YAML::Node& node, const std::string& section, Paramete
   ParameterStruct loaded = parameters;
   SectionLoader loader(node, section);
   loaded.visit(loader);
-  const Failure wrong = loader.finish();
+  Failure wrong = loader.finish();
+  if (!wrong) wrong = SectionCheck<ParameterStruct>::of(loaded);
   if (!wrong) parameters = loaded;
   return wrong;
 }

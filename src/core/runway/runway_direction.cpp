@@ -182,11 +182,15 @@ class Search {
   Expected<VanishingPoint> ofRunway(const View& view, const Found& found) const {
     const Expected<RunwayChoice> choice =
         findRunwayHypothesis(found.straight, view.K, prior(), parameters_.ransac_tolerance);
+    const bool needs_edges = !ground_->runway.paved;
+    if (!choice && needs_edges) return tl::make_unexpected(choice.error());
     if (!choice) {
       if (!found.point || isNearGround(*found.point)) return found.point;
       return tl::make_unexpected(Failure{Reason::kNoVanishingPoint, "the lines meet off the ground"});
     }
-    if (found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway) {
+    const bool agrees =
+        found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway;
+    if (agrees && (!needs_edges || choice->lead >= kClear)) {
       Expected<VanishingPoint> point = found.point;
       point->runway_margin = choice->margin;
       return point;
@@ -221,7 +225,8 @@ class Search {
             ground_->plane.height(),
             ground_->path,
             ground_->last,
-            maxYaw()};
+            maxYaw(),
+            ground_->runway};
   }
 
   bool isNearGround(const VanishingPoint& point) const {

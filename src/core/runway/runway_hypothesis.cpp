@@ -27,6 +27,7 @@ constexpr Sigmas kGate(4);                      // of a line's own errors
 constexpr double kOther = 1 * kDegree;          // between directions of two runways
 constexpr double kPathSigma = 3 * kDegree;      // between path and runway: wind and corrections
 constexpr double kStepSigma = 0.7 * kDegree;    // by which the camera turns between pairs
+constexpr double kSizeSigma = 0.06;             // share of the runway's size by which it seems to be another
 
 // Evidence.
 constexpr double kRunwayShare = 0.25;  // of the lines that point there, that are the runway's
@@ -246,7 +247,7 @@ class Search {
     h.evidence = std::min(edges, kEnoughOfEdges) + std::min(inside, kEnoughInside) - kAstray * astray +
                  2 * std::log(std::max(coverage, 0.05)) +
                  3 * std::min(0.0, std::log((h.far - h.near) / width / kUsualLength)) +
-                 std::min(extent, 2.0) - against(direction);
+                 std::min(extent, 2.0) - against(direction) - againstSize(h);
     h.lead = h.evidence - againstLast(direction);
     return h;
   }
@@ -269,6 +270,20 @@ class Search {
   double against(const Eigen::Vector3d& direction) const {
     double sum = penalty(prior_.normal.dot(direction), direction.dot(prior_.normal_covariance * direction));
     if (prior_.path) sum += penalty(azimuth(direction) - azimuth(*prior_.path), kPathSigma * kPathSigma);
+    return sum;
+  }
+  /// By what charts say.
+  double againstSize(const RunwayHypothesis& h) const {
+    const RunwayParameters& runway = prior_.runway;
+    if (!prior_.height) return 0;
+    const bool too_long =
+        runway.length > 0 && (h.far - h.near) * *prior_.height > (1 + 2 * kSizeSigma) * runway.length;
+    double sum = too_long ? kMostOff : 0;
+    if (runway.width > 0) {
+      const double stripes = runway.width - 2 * runway.side_stripe_inset;
+      const auto off = [&](double width) { return std::log(h.width() * *prior_.height / width); };
+      sum += penalty(std::min(std::abs(off(runway.width)), std::abs(off(stripes))), kSizeSigma * kSizeSigma);
+    }
     return sum;
   }
   /// By the pair before.

@@ -6,6 +6,7 @@
 
 #include "lines/line_segment.h"
 #include "uav_landing/base/failure.h"
+#include "uav_landing/parameters/runway_parameters.h"
 
 namespace uav_landing {
 
@@ -39,6 +40,7 @@ struct RunwayPrior {
   std::optional<Eigen::Vector3d> path;  ///< direction of flight, unit
   std::optional<Eigen::Vector3d> last;  ///< direction of the runway in the pair before, unit
   double max_yaw;                       ///< largest angle between runway and optical axis, rad
+  RunwayParameters runway = {};         ///< what charts say of it; used where the height is known
 };
 
 /// The runway among the lines of one view.
@@ -47,8 +49,9 @@ struct RunwayPrior {
 /// the search compares objects and not directions. An object is two edges with opposite contrast that vanish
 /// at one point of the ground's horizon. Its evidence is how surely the lines along both edges and between
 /// them point there, how much of both edges is seen, how long it is for its width, and how few lines run
-/// elsewhere between the edges. A direction off the horizon, or far from the path or from the direction in
-/// the pair before, costs evidence, up to a limit: enough evidence of lines outweighs what was believed.
+/// elsewhere between the edges. An object of another width than the chart's, or longer, loses evidence. A
+/// direction off the horizon, or far from the path or from the direction in the pair before, costs evidence,
+/// up to a limit: enough evidence of lines outweighs what was believed.
 ///
 /// lines: of the view, fitted. K: 3x3 of the view. Fails when no two lines may be such edges.
 Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "uav_landing/geometry/ground_plane.h"
+#include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -15,6 +16,7 @@ struct SeenGround {
   bool has_runway = false;
   /// Directions in the pair before, unit, frame of the camera: of flight, and of the runway.
   std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
+  RunwayParameters runway = {};  ///< what charts say of it
 };
 
 }  // namespace uav_landing

@@ -25,6 +25,7 @@ constexpr double kDegree = M_PI / 180.0;
 struct ApproachAngleStage::Implementation {
   RigModel model;
   ApproachAngleParameters parameters;
+  RunwayParameters known_runway;
   cv::Mat left_mask, right_mask;  // eroded, for lines and corners
   MotionTracker tracker;
   RunwayTracker runway;
@@ -35,7 +36,7 @@ struct ApproachAngleStage::Implementation {
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
-      : model(rig), parameters(p), tracker(rig, p), runway(rig, p, known) {
+      : model(rig), parameters(p), known_runway(known), tracker(rig, p), runway(rig, p, known) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
   }
@@ -55,8 +56,8 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp), last_path,
-                            last_direction};
+    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp),
+                            last_path,    last_direction,           known_runway};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,

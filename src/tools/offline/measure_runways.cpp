@@ -108,9 +108,11 @@ std::optional<Eigen::Vector3d> onGround(const Photograph& photo, const Eigen::Ve
 std::optional<Eigen::Vector3d> onUnknownGround(const Photograph& photo) {
   const cv::Mat everywhere = erodeMask(cv::Mat(photo.image.size(), CV_8UC1, cv::Scalar(255)),
                                        ApproachAngleParameters().window_radius + 2);
+  RunwayDirectionMemory memory;
   Timings timings;
-  const RunwayDirection found = findRunwayDirection(photo.rig, photo.image, photo.image, everywhere,
-                                                    everywhere, nullptr, ApproachAngleParameters(), timings);
+  const RunwayDirection found =
+      findRunwayDirection(photo.rig, photo.image, photo.image, everywhere, everywhere, nullptr,
+                          ApproachAngleParameters(), memory, timings);
   if (!found.combined || found.combined->runway_margin < kClear) return std::nullopt;
   return found.combined->direction;
 }

@@ -97,6 +97,23 @@ TEST(ParameterFile, TakesWhatStagesShareFromSectionsOfTheirOwn) {
   EXPECT_EQ(Parameters().runway.width, 0) << "unknown";
 }
 
+TEST(ParameterFile, RefusesARunwayThatContradictsItself) {
+  EXPECT_EQ(errorOf("runway: {width: 45, length: 20}\n"),
+            "test.yaml: runway/length: 20 m, expected at least runway/width, 45 m");
+  EXPECT_EQ(errorOf("runway: {width: 18, side_stripe_inset: 9}\n"),
+            "test.yaml: runway/side_stripe_inset: 9 m, expected less than half of runway/width, 18 m");
+  EXPECT_TRUE(parseParameters("runway: {width: 45, length: 45, side_stripe_inset: 2}\n", "test.yaml"));
+  EXPECT_TRUE(parseParameters("runway: {length: 20, side_stripe_inset: 9, paved: false}\n", "test.yaml"))
+      << "nothing is known of the width";
+}
+
+TEST(ParameterFile, RefusesAWidthThatNoRunwayHas) {
+  EXPECT_EQ(errorOf("runway: {width: -1}\n"),
+            "test.yaml: runway/width: -1 is out of range, expected 0 to 200 m");
+  EXPECT_EQ(errorOf("runway: {width: 4500}\n"),
+            "test.yaml: runway/width: 4500 is out of range, expected 0 to 200 m");
+}
+
 TEST(ParameterFile, SaysWhereAKeyBelongs) {
   EXPECT_EQ(errorOf("approach_angle: {runway_width: 30}\n"),
             "test.yaml: approach_angle/runway_width: has moved to runway/width");

@@ -24,6 +24,7 @@ struct Scene {
   Pose pose;
   double plane_pitch_error = 0, plane_height_error = 0;  // rad, share
   bool has_runway = true;
+  RunwayParameters runway;
   cv::Mat left, right;
 
   Scene() {
@@ -45,7 +46,10 @@ struct Scene {
     const SeenGround ground_seen{
         {down / (pose.height() * (1 + plane_height_error)), Eigen::Matrix3d::Identity() * 1e-8},
         {},
-        has_runway};
+        has_runway,
+        std::nullopt,
+        std::nullopt,
+        runway};
     return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
                                with_normal ? &ground_seen : nullptr, parameters, memory, timings);
   }
@@ -81,6 +85,36 @@ TEST(RunwayDirection, IsFreeOfWhatBlurDoesToStripes) {
     ASSERT_FALSE(found.left.failure || found.right.failure) << with_normal;
     EXPECT_LT(scene.error(found.left.vanishing_direction), 0.02 * kDegree) << with_normal;
     EXPECT_LT(scene.error(found.right.vanishing_direction), 0.02 * kDegree) << with_normal;
+  }
+}
+
+/// Strips of 1 m along x, each brighter than the one to its right: no two of their edges are those of a
+/// runway.
+cv::Mat stairs(const Scene& scene, double offset, double cx) {
+  const Eigen::Matrix3d R = scene.pose.worldFromOptical();
+  const Eigen::Vector3d camera = scene.pose.position + R * Eigen::Vector3d(offset, 0, 0);
+  cv::Mat image(scene.rig.size, CV_8UC1, cv::Scalar(120));
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) {
+      const Eigen::Vector3d ray =
+          R * Eigen::Vector3d((u - cx) / scene.rig.fx, (v - scene.rig.cy) / scene.rig.fy, 1);
+      if (ray.z() >= 0) continue;
+      const double y = camera.y() - camera.z() / ray.z() * ray.y();
+      image.at<uchar>(v, u) = cv::saturate_cast<uchar>(40 + 30 * std::clamp(std::floor(y + 3), 0.0, 6.0));
+    }
+  }
+  cv::GaussianBlur(image, image, {}, 0.8);
+  return image;
+}
+
+TEST(RunwayDirection, OfAGrassStripIsBelievedOnlyWhereItsTwoEdgesShow) {
+  for (const bool paved : {true, false}) {
+    Scene scene;
+    scene.runway.paved = paved;
+    EXPECT_TRUE(scene.find(true).combined) << "with edges";
+    scene.left = stairs(scene, 0, scene.rig.cx);
+    scene.right = stairs(scene, scene.rig.baseline, scene.rig.cx_right);
+    EXPECT_EQ(scene.find(true).combined.has_value(), paved) << "without";
   }
 }
 

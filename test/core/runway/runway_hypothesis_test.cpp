@@ -191,6 +191,34 @@ TEST(RunwayHypothesis, ADirectionFarOffTheGroundIsNone) {
   EXPECT_FALSE(scene.find());
 }
 
+TEST(RunwayHypothesis, AnotherSizeThanTheChartsCostsEvidenceUpToALimit) {
+  const auto evidence = [](double height, const RunwayParameters& runway) {
+    Scene scene;
+    scene.addStrip({0, 0}, 45, 1500);
+    scene.prior.height = height;
+    scene.prior.runway = runway;
+    const auto found = scene.find();
+    return found ? found->best.evidence : 0;
+  };
+  RunwayParameters charted, painted, narrow, wide, short_one;
+  charted.width = 45;
+  painted.width = 48;
+  painted.side_stripe_inset = 1.5;
+  narrow.width = 43;
+  wide.width = 75;
+  short_one.length = 300;
+  const double unknown = evidence(30, {});
+  EXPECT_NEAR(evidence(30, charted), unknown, 0.01);
+  EXPECT_NEAR(evidence(30, painted), unknown, 0.01) << "between its side stripes";
+  // 1 sigma is 6 % of the width.
+  EXPECT_NEAR(unknown - evidence(30, narrow), 0.5 * std::pow(std::log(45.0 / 43) / 0.06, 2), 0.05);
+  EXPECT_NEAR(unknown - evidence(30, wide), 6, 1e-6);
+  EXPECT_NEAR(unknown - evidence(30, short_one), 6, 1e-6);
+  RunwayParameters long_one;
+  long_one.length = 1500;
+  EXPECT_NEAR(evidence(30, long_one), unknown, 1e-6);
+}
+
 TEST(RunwayHypothesis, WidthsThatNoRunwayHasAreNoneWhereTheHeightIsKnown) {
   for (const double width : {0.2, 150.0}) {
     Scene scene;
