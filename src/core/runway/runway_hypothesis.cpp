@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -34,6 +35,11 @@ constexpr double kRunwayShare = 0.25;  // of the lines that point there, that ar
 constexpr double kEnoughOfEdges = 14;  // more lines along the edges do not make it more of a runway
 constexpr double kEnoughInside = 10;   // nor do more marks
 constexpr double kAstray = 1.2;        // against it, for each line between the edges that runs elsewhere
+constexpr double kUnbroken = 2;        // per log of the share of an edge that is seen
+constexpr double kLeastSeen = 0.05;    // of an edge
+constexpr double kSlender = 3;         // per log of the length that is missing
+constexpr double kEnoughExtent = 2;    // log(far / near)
+constexpr double kSameEnd = 0.03;      // of the distance: lines this near to an end are at it
 constexpr double kUsualLength = 6;     // widths; a runway is longer, even the part in view
 constexpr double kMostOff = 6;         // against it at most, for what was believed before
 
@@ -66,10 +72,10 @@ struct GroundLine {
 };
 
 /// The ground that has a direction in it.
-struct Plane {
+struct GroundAlong {
   Eigen::Vector3d direction, down, left;
 
-  Plane(const Eigen::Vector3d& normal, const Eigen::Vector3d& towards)
+  GroundAlong(const Eigen::Vector3d& normal, const Eigen::Vector3d& towards)
       : direction(towards),
         down((normal - normal.dot(towards) * towards).normalized()),
         left(towards.cross(down)) {}
@@ -82,6 +88,13 @@ struct Plane {
     return std::minmax({direction.dot(line.a) / std::max(down.dot(line.a), kLeastSlope),
                         direction.dot(line.b) / std::max(down.dot(line.b), kLeastSlope)});
   }
+};
+
+/// The lines along one edge of a hypothesis.
+struct Edge {
+  std::vector<size_t> pieces;
+  double near = std::numeric_limits<double>::infinity(), far = 0;  ///< in heights
+  double evidence = 0;
 };
 
 /// The lines as one direction has them.
@@ -158,8 +171,8 @@ class Search {
     return direction;
   }
 
-  Pencil pencil(const Plane& plane) const {
-    const Eigen::Vector3d V = K_ * plane.direction;
+  Pencil pencil(const GroundAlong& ground) const {
+    const Eigen::Vector3d V = K_ * ground.direction;
     const double per_pixel = V.z() / (Kinv_ * V).squaredNorm();
     Pencil pencil;
     const size_t count = lines_.size();
@@ -171,8 +184,8 @@ class Search {
     for (size_t i = 0; i < count; ++i) {
       const GroundLine& l = lines_[i];
       if (!l.on_ground) continue;
-      pencil.lateral[i] = plane.lateral(l);
-      std::tie(pencil.near[i], pencil.far[i]) = plane.forward(l);
+      pencil.lateral[i] = ground.lateral(l);
+      std::tie(pencil.near[i], pencil.far[i]) = ground.forward(l);
       const double miss2 = l.ahead ? l.line.endMiss2(V) / (l.tolerance * l.tolerance) : 2;
       if (!(miss2 < 1)) continue;
       pencil.passes[i] = 1;
@@ -186,81 +199,89 @@ class Search {
   }
 
   /// Whether two lines that vanish there are as far apart, and seen side by side, as the edges of a runway.
-  bool mayBeEdges(const GroundLine& left, const GroundLine& right, const Plane& plane) const {
+  bool mayBeEdges(const GroundLine& left, const GroundLine& right, const GroundAlong& ground) const {
     // The brighter side is that of the line's normal.
     if ((left.line.line.x() < 0) == (right.line.line.x() < 0)) return false;
-    const auto [near_left, far_left] = plane.forward(left);
-    const auto [near_right, far_right] = plane.forward(right);
+    const auto [near_left, far_left] = ground.forward(left);
+    const auto [near_right, far_right] = ground.forward(right);
     if (std::min(far_left, far_right) < 1.05 * std::max(near_left, near_right)) return false;
     if (!prior_.height) return true;
-    const double width = (plane.lateral(left) - plane.lateral(right)) * *prior_.height;
+    const double width = (ground.lateral(left) - ground.lateral(right)) * *prior_.height;
     return width >= kNarrowestRunway && width <= kWidestRunway;
   }
 
+  /// What is seen of an edge at this place.
+  Edge edgeAt(const Pencil& p, double lateral, double slack) const {
+    Edge edge;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      if (p.passes[k] == 0 || std::abs(p.lateral[k] - lateral) >= slack) continue;
+      edge.pieces.push_back(k);
+      edge.near = std::min(edge.near, p.near[k]);
+      edge.far = std::max(edge.far, p.far[k]);
+      edge.evidence += p.evidence[k];
+    }
+    return edge;
+  }
+
   std::optional<RunwayHypothesis> between(size_t i, size_t j, const Eigen::Vector3d& direction) const {
-    const Plane plane(prior_.normal, direction);
-    const bool i_is_left = plane.lateral(lines_[i]) > plane.lateral(lines_[j]);
+    const GroundAlong ground(prior_.normal, direction);
+    const bool i_is_left = ground.lateral(lines_[i]) > ground.lateral(lines_[j]);
     const size_t l = i_is_left ? i : j, r = i_is_left ? j : i;
-    if (!mayBeEdges(lines_[l], lines_[r], plane)) return std::nullopt;
-    const Pencil p = pencil(plane);
+    if (!mayBeEdges(lines_[l], lines_[r], ground)) return std::nullopt;
+    const Pencil p = pencil(ground);
     RunwayHypothesis h;
     h.direction = direction;
     h.left = p.lateral[l];
     h.right = p.lateral[r];
-    const double width = h.width(), slack = kSameEdge * width;
-    if (!(width > 0)) return std::nullopt;
-    const auto isOn = [&](size_t k, double edge) {
-      return p.passes[k] != 0 && std::abs(p.lateral[k] - edge) < slack;
-    };
-    double near_left = 1e9, near_right = 1e9, far_left = 0, far_right = 0, edges = 0;
-    for (size_t k = 0; k < lines_.size(); ++k) {
-      if (isOn(k, h.left)) {
-        near_left = std::min(near_left, p.near[k]);
-        far_left = std::max(far_left, p.far[k]);
-      } else if (isOn(k, h.right)) {
-        near_right = std::min(near_right, p.near[k]);
-        far_right = std::max(far_right, p.far[k]);
-      } else {
-        continue;
-      }
-      edges += p.evidence[k];
-    }
-    h.near = std::max(near_left, near_right);
-    h.far = std::min(far_left, far_right);
+    if (!(h.width() > 0)) return std::nullopt;
+    const double slack = kSameEdge * h.width();
+    const Edge left = edgeAt(p, h.left, slack), right = edgeAt(p, h.right, slack);
+    h.near = std::max(left.near, right.near);
+    h.far = std::min(left.far, right.far);
     if (!(h.near > 0) || !(std::log(h.far / h.near) > kLeastExtent)) return std::nullopt;
-    const double extent = std::log(h.far / h.near);
-    const double coverage = std::min(covered(p, h, h.left, slack), covered(p, h, h.right, slack)) / extent;
-
     h.members.assign(lines_.size(), 0);
-    double inside = 0;
-    int astray = 0;
-    for (size_t k = 0; k < lines_.size(); ++k) {
-      if (!lines_[k].on_ground || p.lateral[k] > h.left + slack || p.lateral[k] < h.right - slack) continue;
-      if (p.far[k] < 0.97 * h.near || p.near[k] > 1.03 * h.far) continue;
-      if (p.passes[k] != 0) {
-        h.members[k] = 1;
-        if (!isOn(k, h.left) && !isOn(k, h.right)) inside += p.evidence[k];
-      } else if (!lines_[k].across) {
-        ++astray;
-      }
-    }
-    h.evidence = std::min(edges, kEnoughOfEdges) + std::min(inside, kEnoughInside) - kAstray * astray +
-                 2 * std::log(std::max(coverage, 0.05)) +
-                 3 * std::min(0.0, std::log((h.far - h.near) / width / kUsualLength)) +
-                 std::min(extent, 2.0) - against(direction) - againstSize(h);
+    for (const Edge* edge : {&left, &right})
+      for (const size_t k : edge->pieces) h.members[k] = 1;
+    h.evidence = std::min(left.evidence + right.evidence, kEnoughOfEdges) +
+                 ofShape(h, std::min(seenLength(p, left, h), seenLength(p, right, h))) +
+                 ofSurface(p, slack, h) - against(direction) - againstSize(h);
     h.lead = h.evidence - againstLast(direction);
     return h;
   }
 
-  /// log(far / near) of what is seen of an edge.
-  double covered(const Pencil& p, const RunwayHypothesis& h, double edge, double slack) const {
+  /// log(far / near) of what is seen of an edge where both are.
+  static double seenLength(const Pencil& p, const Edge& edge, const RunwayHypothesis& h) {
     std::vector<Interval> pieces;
-    for (size_t k = 0; k < lines_.size(); ++k) {
-      if (p.passes[k] == 0 || std::abs(p.lateral[k] - edge) >= slack) continue;
+    for (const size_t k : edge.pieces) {
       const double begin = std::max(p.near[k], h.near), end = std::min(p.far[k], h.far);
       if (begin < end) pieces.push_back({std::log(begin), std::log(end)});
     }
     return lengthOfUnion(pieces);
+  }
+
+  /// Evidence of a long object whose edges are not broken. seen: length of the edge that shows less.
+  static double ofShape(const RunwayHypothesis& h, double seen) {
+    const double extent = std::log(h.far / h.near), lengths = (h.far - h.near) / h.width();
+    return kUnbroken * std::log(std::max(seen / extent, kLeastSeen)) +
+           kSlender * std::min(0.0, std::log(lengths / kUsualLength)) + std::min(extent, kEnoughExtent);
+  }
+
+  /// Evidence of what lies between the edges; adds what runs along the runway to the members.
+  double ofSurface(const Pencil& p, double slack, RunwayHypothesis& h) const {
+    double marks = 0;
+    int astray = 0;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      if (!lines_[k].on_ground || p.lateral[k] > h.left + slack || p.lateral[k] < h.right - slack) continue;
+      if (p.far[k] < (1 - kSameEnd) * h.near || p.near[k] > (1 + kSameEnd) * h.far) {
+        h.members[k] = 0;
+      } else if (p.passes[k] == 0) {
+        astray += lines_[k].across ? 0 : 1;
+      } else if (h.members[k] == 0) {
+        h.members[k] = 1;
+        marks += p.evidence[k];
+      }
+    }
+    return std::min(marks, kEnoughInside) - kAstray * astray;
   }
 
   static double penalty(double off, double variance) {

@@ -95,20 +95,6 @@ TEST(WidthHeight, NothingIsMadeOfNothing) {
   EXPECT_FALSE(width.height(0, 1e-4));
 }
 
-TEST(WidthHeight, AResetForgetsALearnedWidthAndKeepsAKnownOne) {
-  WidthHeight learned(0), known(kWidth);
-  for (int i = 0; i < 8; ++i) learned.learn(3, 1e-8, 15, 1e-4);
-  EXPECT_FALSE(known.isSame(42.6 / 15, 1e-8, 15, 1e-4));
-  EXPECT_FALSE(learned.isSame(42.6 / 15, 1e-8, 15, 1e-4));
-  learned.reset();
-  known.reset();
-  EXPECT_FALSE(learned.height(3, 1e-8));
-  EXPECT_TRUE(learned.isSame(42.6 / 15, 1e-8, 15, 1e-4)) << "there is nothing to differ from";
-  ASSERT_TRUE(known.height(3, 1e-8));
-  EXPECT_NEAR(known.height(3, 1e-8)->height, 15, 1e-9);
-  EXPECT_TRUE(known.isSame(42.6 / 15, 1e-8, 15, 1)) << "nor have other edges been seen";
-}
-
 TEST(WidthHeight, LearnedOnceIsAsUncertainAsHeightsBySamplesOfIt) {
   // A width that is seen at 15 m to 0.1 m of height, and again at 10 m; both to 0.01 heights.
   std::mt19937 random(5);
