@@ -27,6 +27,7 @@ constexpr double kEnough = 0.5;              // of the lines through the other v
 constexpr double kSlope = 0.5 * kDegree;     // 1 sigma of a runway's own slope against the ground
 constexpr double kAnyGround = 2 * kDegree;   // the same without stereo
 constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
+const double kBeyondDoubt = std::log(1000);  // least margin of one that counts against stereo
 constexpr double kClear = 3;                 // least lead of a runway that outweighs other lines
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
@@ -190,17 +191,22 @@ class Search {
     }
     const bool agrees =
         found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway;
-    if (agrees && (!needs_edges || choice->lead >= kClear)) {
-      Expected<VanishingPoint> point = found.point;
-      point->runway_margin = choice->margin;
-      return point;
-    }
+    if (agrees && (!needs_edges || choice->lead >= kClear)) return believed(found.point, *choice);
     if (choice->lead < kClear)
       return tl::make_unexpected(
           Failure{Reason::kNoVanishingPoint, "lines meet, but not clearly those of a runway"});
     Expected<VanishingPoint> point =
         fitVanishingPoint(found.straight, view.K, parameters_, choice->best.members, normal());
-    if (point) point->runway_margin = choice->margin;
+    return believed(point, *choice);
+  }
+
+  // A point off the ground contradicts stereo. It counts where it is a runway's beyond doubt.
+  Expected<VanishingPoint> believed(Expected<VanishingPoint> point, const RunwayChoice& choice) const {
+    if (!point) return point;
+    if (!isNearGround(*point) && choice.margin < kBeyondDoubt)
+      return tl::make_unexpected(Failure{Reason::kNoVanishingPoint,
+                                         "lines meet off the ground, and are not clearly those of a runway"});
+    point->runway_margin = choice.margin;
     return point;
   }
 

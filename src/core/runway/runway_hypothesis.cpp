@@ -41,7 +41,9 @@ constexpr double kSlender = 3;         // per log of the length that is missing
 constexpr double kEnoughExtent = 2;    // log(far / near)
 constexpr double kSameEnd = 0.03;      // of the distance: lines this near to an end are at it
 constexpr double kUsualLength = 6;     // widths; a runway is longer, even the part in view
-constexpr double kMostOff = 6;         // against it at most, for what was believed before
+constexpr double kByChance = 4;        // of two lines that meet somewhere, as any two do
+constexpr double kMostOff = 10;        // against it at most, for ground, path, or chart
+constexpr double kMostTurned = 6;      // for the pair before
 
 struct Interval {
   double begin, end;
@@ -284,8 +286,8 @@ class Search {
     return std::min(marks, kEnoughInside) - kAstray * astray;
   }
 
-  static double penalty(double off, double variance) {
-    return std::min(kMostOff, 0.5 * off * off / variance);
+  static double penalty(double off, double variance, double most = kMostOff) {
+    return std::min(most, 0.5 * off * off / variance);
   }
   /// Evidence against a direction by ground and path.
   double against(const Eigen::Vector3d& direction) const {
@@ -310,7 +312,7 @@ class Search {
   /// By the pair before.
   double againstLast(const Eigen::Vector3d& direction) const {
     if (!prior_.last) return 0;
-    return penalty(azimuth(direction) - azimuth(*prior_.last), kStepSigma * kStepSigma);
+    return penalty(azimuth(direction) - azimuth(*prior_.last), kStepSigma * kStepSigma, kMostTurned);
   }
 
   Eigen::Matrix3d K_, Kinv_;
@@ -331,7 +333,7 @@ Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& line
   if (best == found.end())
     return tl::make_unexpected(
         Failure{Reason::kNoRunway, text("no two of ", lines.size(), " lines may be the edges of a runway")});
-  double evidence = 0, lead = 0;  // of two lines that are there by chance
+  double evidence = kByChance, lead = kByChance;
   for (const RunwayHypothesis& h : found) {
     if (std::abs(search.azimuth(h.direction) - search.azimuth(best->direction)) <= kOther) continue;
     evidence = std::max(evidence, h.evidence);

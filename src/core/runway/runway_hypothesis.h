@@ -26,7 +26,8 @@ struct RunwayHypothesis {
 };
 
 /// The hypothesis with the largest lead. margin, lead: by how much its evidence and its lead exceed those of
-/// any in another direction. The margin is of this pair alone: that of several pairs may be averaged.
+/// any in another direction, and those of two lines that are there by chance. The margin is of this pair
+/// alone: that of several pairs may be averaged.
 struct RunwayChoice {
   RunwayHypothesis best;
   double margin, lead;

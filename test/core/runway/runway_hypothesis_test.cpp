@@ -181,7 +181,7 @@ TEST(RunwayHypothesis, OffTheHorizonCostsEvidenceUpToALimit) {
   b = wrong.find();
   ASSERT_TRUE(b);
   EXPECT_LT(wrong.off(b->best.direction), 0.05 * kDegree) << "the lines say where they vanish";
-  EXPECT_NEAR(a->best.evidence - b->best.evidence, 6, 0.3);
+  EXPECT_NEAR(a->best.evidence - b->best.evidence, 10, 0.3);
 }
 
 TEST(RunwayHypothesis, ADirectionFarOffTheGroundIsNone) {
@@ -212,8 +212,8 @@ TEST(RunwayHypothesis, AnotherSizeThanTheChartsCostsEvidenceUpToALimit) {
   EXPECT_NEAR(evidence(30, painted), unknown, 0.01) << "between its side stripes";
   // 1 sigma is 6 % of the width.
   EXPECT_NEAR(unknown - evidence(30, narrow), 0.5 * std::pow(std::log(45.0 / 43) / 0.06, 2), 0.05);
-  EXPECT_NEAR(unknown - evidence(30, wide), 6, 1e-6);
-  EXPECT_NEAR(unknown - evidence(30, short_one), 6, 1e-6);
+  EXPECT_NEAR(unknown - evidence(30, wide), 10, 1e-6);
+  EXPECT_NEAR(unknown - evidence(30, short_one), 10, 1e-6);
   RunwayParameters long_one;
   long_one.length = 1500;
   EXPECT_NEAR(evidence(30, long_one), unknown, 1e-6);
