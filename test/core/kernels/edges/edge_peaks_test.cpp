@@ -40,7 +40,7 @@ TEST(FindEdges, AreTheStrongestGradientsNearTheCentres) {
   for (const cv::Mat& picture : {image, coarse})
     for (const int reach : {1, 2})
       for (const short sign : {1, -1})
-        for (const short least : {1, 80}) {
+        for (const short least : {1, 96}) {
           std::vector<const uchar*> pixels;
           for (int i = 0; i < 61; ++i)
             pixels.push_back(i % 9 == 4 ? &nothing[8] : picture.ptr<uchar>(i) + 5 + (i * 7) % 50);

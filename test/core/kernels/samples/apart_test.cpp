@@ -31,7 +31,9 @@ TEST(MarkApart, ComparesTheDifferenceWithItsVariance) {
         marked += apart[i];
       }
     }
-    if (count > 9) EXPECT_GT(marked, count);
+    if (count > 9) {
+      EXPECT_GT(marked, count);
+    }
   }
 }
 

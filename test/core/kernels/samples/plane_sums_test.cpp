@@ -45,7 +45,9 @@ TEST(PlaneSums, AreOfTheSamplesNearThePlane) {
     for (size_t i = 0; i < c.ratio.size(); ++i) {
       const double residual = i < count ? c.value[i] - expectedValue(c, plane, i) : 1;
       const bool near = residual <= 0 && residual > -kFarthest;
-      if (i < count) EXPECT_NEAR(c.expected[i], expectedValue(c, plane, i), 1e-12);
+      if (i < count) {
+        EXPECT_NEAR(c.expected[i], expectedValue(c, plane, i), 1e-12);
+      }
       if (near) {
         EXPECT_NEAR(c.ratio[i], -residual * c.precision[i], 1e-12);
       } else {

@@ -40,7 +40,9 @@ TEST(CorrelateShifts, IsTheCorrelationAtEachShift) {
           const double expected = other < 1e-3 * energy ? kNoScore : cross / std::sqrt(other * energy);
           ASSERT_NEAR(scores[y * count + x], expected, 1e-4) << size << ' ' << count << ' ' << x << ' ' << y;
         }
-      if (count > 3) EXPECT_EQ(scores.back(), kNoScore);
+      if (count > 3) {
+        EXPECT_EQ(scores.back(), kNoScore);
+      }
     }
 }
 
