@@ -5,11 +5,11 @@ import math
 KEYS = (("stamp_s",), ("seed", "cell_height_m", "noise", "frame"))
 TIMING = {"compute_ms"}
 FLAGS = ("valid", "height_valid", "angle_valid")
-VERDICTS = {*FLAGS, "status", "reason", "protection_source", "failed_tests"}
+VERDICTS = {*FLAGS, "status", "reason", "protection_source", "failed_tests", "yaw_known", "yaw_reason"}
 # What the simulator drew for a campaign's row, besides the columns with "_true_" in their names.
 DRAWN = {"time_s", "stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg", "lens_rows_px", "lens_tilt_deg",
          "slope_change_deg"}
-UNITS = ("_m_s", "_m", "_deg", "_px")
+UNITS = ("_m_s", "_m", "_deg", "_px", "_probability")
 
 
 def key_columns(header):

@@ -178,9 +178,9 @@ struct LandingResult {
   double roll = kUnknown, roll_variance = kUnknown;
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is certain
   Failure yaw_failure;                             ///< why the yaw is not known
-  double other_runway_probability = 1;  ///< chance that the direction seen is not the runway's, 0 to 1
-  double x = kUnknown, x_variance = kUnknown;      ///< past the threshold, m; unknown until that is seen
-  double y = kUnknown, y_variance = kUnknown;      ///< left of the centre line, m; unknown until that is seen
+  double other_runway_probability = 1;         ///< chance that the direction seen is not the runway's, 0 to 1
+  double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
+  double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
   /// Of the point above the plane of the runway's surface, m, m^2; unknown until the threshold is seen.
   double height_above_runway = kUnknown, height_above_runway_variance = kUnknown;
   void forgetPosition() {
