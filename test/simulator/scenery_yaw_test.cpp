@@ -43,7 +43,7 @@ TEST_P(SceneryYaw, IsThatOfTheRunwayWhereItIsKnownAndIsKnownMostly) {
   EXPECT_GE(known, 0.8 * pairs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SceneryYaw, testing::Values("shore", "airport", "nose"),
+INSTANTIATE_TEST_SUITE_P(Scenes, SceneryYaw, testing::Values("shore", "airport", "hills", "nose"),
                          [](const auto& info) { return std::string(info.param); });
 // Rows of houses and fields are taken for the runway in these.
 INSTANTIATE_TEST_SUITE_P(DISABLED_OpenScenes, SceneryYaw, testing::Values("town", "fields"),

@@ -167,10 +167,11 @@ struct SimulatedSurfaceParameters {
 };
 
 /// The ground's height along the runway, z(x): a straight slope, a parabola that leads over to another slope,
-/// and that slope; the same all across. 0 at the threshold (section profile).
+/// and that slope; on it a hill. The same all across. 0 at the threshold (section profile).
 struct SimulatedProfileParameters {
   double slope_before_deg = 0, slope_after_deg = 0;
   double change_start = 0, change_length = 0;
+  double hill_height = 0, hill_x = -400, hill_length = 400;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -180,6 +181,9 @@ struct SimulatedProfileParameters {
     v.number("change_start", change_start, -1e5, 1e5, "m",
              "along the runway from the threshold; negative: before it");
     v.number("change_length", change_length, 0.0, 1e5, "m", "over which the slope changes at a steady rate");
+    v.number("hill_height", hill_height, 0.0, 500.0, "m", "of a hill across the path; 0: no hill");
+    v.number("hill_x", hill_x, -1e5, 1e5, "m", "of its top, along the runway from the threshold");
+    v.number("hill_length", hill_length, 10.0, 1e5, "m", "from its foot to its other foot");
   }
 };
 
