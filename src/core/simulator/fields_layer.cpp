@@ -65,7 +65,10 @@ float FieldsLayer::crop(const Field& field, const GroundPatch& patch) const {
   if (field.rows == 0 || extent >= 1) return field.brightness;
   const float phase = static_cast<float>(M_PI) * (field.rows_along ? patch.y : patch.x) / row_spacing_;
   const float half = static_cast<float>(M_PI) * extent;
-  const float faded = half > 1e-3f ? std::sin(half) / half : 1.0f;  // the mean of a sine over the extent
+  // The mean of a sine over the extent. Rows that pixels can hardly show fade sooner, as they do in a lens:
+  // else they come back as false rows.
+  const float mean = half > 1e-3f ? std::sin(half) / half : 1.0f;
+  const float faded = mean * std::min(2 - 2 * extent, 1.0f);
   return field.brightness * (1 + field.rows * faded * std::sin(2 * phase));
 }
 
