@@ -50,8 +50,8 @@ struct Pair {
 };
 Pair renderPair(const SimulatorParameters& p, const CameraPose& pose) {
   Pair pair{makeCameraRig(p).value(), {}, {}};
-  const Renderer renderer(Scene(p.runway, p.surface, 1), placeObjects(p.objects, p.runway.width, 1), p.image,
-                          GroundProfile(p.profile));
+  const Renderer renderer(Scene(p.runway, p.surface, 1, Scenery(p.scenery, p.runway, p.surface, 1)),
+                          placeObjects(p.objects, p.runway.width, 1), p.image, GroundProfile(p.profile));
   renderer.render(pair.rig.left, pose, pair.left);
   renderer.render(pair.rig.right, pose, pair.right);
   return pair;
@@ -139,6 +139,58 @@ TEST_P(BoardTest, ThresholdLiesWhereLensRigAndAttitudePutIt) {
 
 INSTANTIATE_TEST_SUITE_P(Cameras, BoardTest, testing::Values(false, true),
                          [](const auto& info) { return info.param ? "Right" : "Left"; });
+
+TEST(Renderer, EdgesOfTheSceneryLieWhereLensRigAndAttitudePutThem) {
+  // A road that is 25 degrees off the runway's direction, and a river across: both dark on bright ground.
+  SimulatorParameters p = plainBoard();
+  p.runway.width = 0.01;
+  p.runway.length = 0.1;
+  p.scenery.road.x = 2;
+  p.scenery.road.y = 0;
+  p.scenery.road.direction_deg = 25;
+  p.scenery.road.length = 30;
+  p.scenery.road.width = 1;
+  p.scenery.road.brightness = 40;
+  p.scenery.road.contrast = 0;
+  p.scenery.river.x = 9;
+  p.scenery.river.direction_deg = -80;
+  p.scenery.river.width = 5;
+  p.scenery.river.wave = 0;
+  p.scenery.river.beach_width = 0;
+  p.scenery.river.brightness = 40;
+  p.scenery.river.contrast = 0;
+  const Pair pair = renderPair(p, kPose);
+  const Eigen::Matrix3d& R_left = pair.rig.left.calibration.R;
+  const Eigen::Vector3d along(std::cos(25 * kDegree), std::sin(25 * kDegree), 0),
+      left(-along.y(), along.x(), 0);
+  const Eigen::Vector3d bank(std::cos(80 * kDegree), -std::sin(80 * kDegree), 0);
+  for (const bool right : {false, true}) {
+    const cv::Mat& image = right ? pair.right : pair.left;
+    int road = 0, river = 0;
+    for (const double side : {-0.5, 0.5}) {
+      const Eigen::Vector3d middle = Eigen::Vector3d(2, 0, 0) + side * left;
+      for (int row = 110; row < 220; row += 6) {
+        const double expected =
+            crossing(p, kPose, R_left, right, middle - 5 * along, middle + 5 * along, 1, row);
+        if (!(expected > 10 && expected < 309)) continue;
+        const int start = static_cast<int>(std::lround(expected)) - 4;
+        EXPECT_NEAR(edgeInProfile(rowProfile(image, row, start, 9), start), expected, 0.06) << "row " << row;
+        ++road;
+      }
+    }
+    for (int column = 200; column < 310; column += 8) {
+      const Eigen::Vector3d near(9, 0, 0);
+      const double expected = crossing(p, kPose, R_left, right, near - 9 * bank, near + 9 * bank, 0, column);
+      if (!(expected > 10 && expected < 229)) continue;
+      const int start = static_cast<int>(std::lround(expected)) - 2;
+      EXPECT_NEAR(edgeInProfile(columnProfile(image, column, start, 5), start), expected, 0.06)
+          << "column " << column;
+      ++river;
+    }
+    EXPECT_GE(road, 8);
+    EXPECT_GE(river, 6);
+  }
+}
 
 TEST(Renderer, HorizonIsWhereTheGroundsDirectionsEnd) {
   SimulatorParameters p = plainBoard();

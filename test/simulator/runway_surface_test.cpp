@@ -79,6 +79,32 @@ TEST(RunwaySurface, CentreLineIsDashesOfItsLengthsBetweenItsEnds) {
   EXPECT_NEAR(paintAt(70, 0.6f), 0, 1e-3);
 }
 
+TEST(RunwaySurface, ADisplacedThresholdHasSurfaceAndEdgeLinesBeforeItAndMarksBehindIt) {
+  SimulatedRunwayParameters p = marked();
+  p.displaced_threshold = 180;
+  const RunwaySurface surface(p);
+  const auto at = [&](float x, float y) { return surface.cover({x, y, 0.1f, 0.1f}); };
+  for (const float x : {-179.9f, -1.0f, 1001.0f, 1179.9f}) {
+    EXPECT_EQ(at(x, 10).runway, 1) << x;
+    EXPECT_EQ(at(x, 10).paint, 0) << x;
+    EXPECT_EQ(at(x, -17.5f).paint, 1) << x;
+  }
+  EXPECT_EQ(at(-180.1f, 0).runway, 0);
+  EXPECT_EQ(at(1180.1f, 0).runway, 0);
+  EXPECT_EQ(at(1, 12).paint, 1) << "threshold line";
+  EXPECT_EQ(at(25, 7).paint, 1) << "bars";
+  // Shafts of 25 m every 60 m, the last ends 5 m before the threshold.
+  for (const auto& [x, painted] : std::vector<std::pair<float, bool>>{{-4, false},
+                                                                      {-6, true},
+                                                                      {-29, true},
+                                                                      {-31, false},
+                                                                      {-64, false},
+                                                                      {-66, true},
+                                                                      {-149, true},
+                                                                      {-151, false}})
+    for (const float there : {x, 1000 - x}) EXPECT_EQ(at(there, 0.2f).paint, painted ? 1 : 0) << there;
+}
+
 TEST(RunwaySurface, AreasAreExact) {
   const RunwaySurface surface(marked());
   // Across all of it, between marks: two edge lines of 1 m in 40 m.

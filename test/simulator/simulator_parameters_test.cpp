@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <sstream>
 #include <string>
 
 #include "uav_landing/simulator/approach_simulator.h"
@@ -64,6 +65,36 @@ TEST(SimulatorParameters, UnknownSectionIsNamed) {
 TEST(SimulatorParameters, ValueOutOfRangeIsNamedWithTheRange) {
   EXPECT_EQ(failureOf("image: {supersampling: 0}"),
             "my.yaml: image/supersampling: 0 is out of range, expected 1 to 8");
+}
+
+/// Tries values outside each number's range, and expects the message that says so.
+struct RangeCheck {
+  const std::string section;
+  int& checked;
+
+  template <class Number>
+  void number(const char* key, Number&, double low, double high, const char* unit, const char*) {
+    for (const double bad : {low - 1, high + 1}) {
+      std::ostringstream value, range;
+      value << bad;
+      range << "expected " << low << " to " << high << (*unit != 0 ? " " : "") << unit;
+      EXPECT_EQ(failureOf(section + ": {" + key + ": " + value.str() + "}"),
+                "my.yaml: " + section + "/" + key + ": " + value.str() + " is out of range, " + range.str());
+    }
+    EXPECT_EQ(failureOf(section + ": {" + key + ": much}"),
+              "my.yaml: " + section + "/" + key + ": 'much' is not a number");
+    ++checked;
+  }
+};
+
+TEST(SimulatorParameters, EachNumberOfTheSceneryIsRefusedOutsideItsRange) {
+  SimulatedSceneryParameters defaults;
+  int checked = 0;
+  defaults.visitSections([&](const char* name, auto& values) { values.visit(RangeCheck{name, checked}); });
+  EXPECT_GT(checked, 80);
+  EXPECT_EQ(failureOf("runway: {displaced_threshold: -1}"),
+            "my.yaml: runway/displaced_threshold: -1 is out of range, expected 0 to 2000 m");
+  EXPECT_EQ(failureOf("town: {lenght: 5}"), "my.yaml: town/lenght: no such parameter; did you mean length?");
 }
 
 TEST(SimulatorParameters, TextForANumberIsRefused) {

@@ -180,6 +180,68 @@ TEST(RandomApproach, LightGroundAndWobbleAreDifferentEveryTime) {
   wobble.expectAllVary();
 }
 
+/// Number by number, whether it is within its range; and those of a set of parameters as text.
+struct RangeCheck {
+  std::string section, text;
+  template <class Number>
+  void number(const char* name, Number& value, double low, double high, const char*, const char*) {
+    EXPECT_GE(value, low) << section << "/" << name;
+    EXPECT_LE(value, high) << section << "/" << name;
+    text += section + "/" + name + " " + std::to_string(value) + "\n";
+  }
+};
+std::string textOf(SimulatorParameters p) {
+  RangeCheck check;
+  p.visitSections([&](const char* section, auto& values) {
+    check.section = section;
+    values.visit(check);
+  });
+  return check.text;
+}
+
+TEST(RandomApproach, SceneryIsDrawnByItsSeedWithinItsRangesAndChangesNothingElse) {
+  int fields = 0, towns = 0, rivers = 0, shores = 0, strips = 0, roads = 0, taxiways = 0, crossings = 0,
+      noses = 0, posts = 0, displaced = 0;
+  constexpr int kSeeds = 400;
+  for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const SimulatorParameters plain = drawSnippet(seed, 10, 13, {});
+    SimulatorParameters with = plain, again = plain, other = plain;
+    drawScenery(seed, with);
+    drawScenery(seed, again);
+    drawScenery(seed + 1, other);
+    ASSERT_EQ(textOf(with), textOf(again));
+    ASSERT_NE(textOf(with), textOf(other));
+    const SimulatedSceneryParameters& p = with.scenery;
+    fields += p.fields.width > 0 ? 1 : 0;
+    towns += p.town.width > 0 ? 1 : 0;
+    rivers += p.river.width > 0 ? 1 : 0;
+    shores += p.shore.width > 0 ? 1 : 0;
+    strips += p.grass_strip.side > 0 ? 1 : 0;
+    roads += p.road.width > 0 ? 1 : 0;
+    taxiways += p.taxiway.width > 0 ? 1 : 0;
+    crossings += p.crossing_runway.width > 0 ? 1 : 0;
+    noses += p.own_frame.nose_height > 0 ? 1 : 0;
+    posts += p.own_frame.post_width > 0 ? 1 : 0;
+    displaced += with.runway.displaced_threshold > 0 ? 1 : 0;
+    EXPECT_GE(std::abs(p.taxiway.y), 0.5 * with.runway.width + 40);
+    with.scenery = {};
+    with.runway.displaced_threshold = 0;
+    ASSERT_EQ(textOf(with), textOf(plain));
+  }
+  // Chances of 0.5, 0.3, 0.25, 0.2 and so on, and 4 sigma of 400 draws: 0.1.
+  EXPECT_NEAR(fields, 0.5 * kSeeds, 40);
+  EXPECT_NEAR(towns, 0.3 * kSeeds, 40);
+  EXPECT_NEAR(rivers, 0.25 * kSeeds, 40);
+  EXPECT_NEAR(shores, 0.25 * kSeeds, 40);
+  EXPECT_NEAR(strips, 0.85 * kSeeds, 40);
+  EXPECT_NEAR(roads, 0.5 * kSeeds, 40);
+  EXPECT_NEAR(taxiways, 0.5 * kSeeds, 40);
+  EXPECT_NEAR(crossings, 0.25 * kSeeds, 40);
+  EXPECT_NEAR(noses, 0.14 * kSeeds, 30);
+  EXPECT_NEAR(posts, 0.1 * kSeeds, 30);
+  EXPECT_NEAR(displaced, 0.3 * kSeeds, 40);
+}
+
 TEST(RandomApproach, SeedDecidesEverything) {
   const SimulatorParameters one = drawSnippet(7, 10, 13, {}), again = drawSnippet(7, 10, 13, {});
   EXPECT_EQ(one.runway.width, again.runway.width);

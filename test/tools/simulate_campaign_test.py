@@ -66,6 +66,14 @@ class SimulateCampaignTest(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--bend: for snippets only", refused.stderr)
 
+    def test_scenery_shows_in_the_estimates_and_changes_no_truth(self):
+        options = ("--first", 1, "--count", 3, "--heights", 10, "--noise", 2)
+        bare, with_scenery = self.fly(*options), self.fly(*options, "--scenery")
+        for a, b in zip(bare, with_scenery):
+            self.assertEqual([value for name, value in a.items() if "_true_" in name],
+                             [value for name, value in b.items() if "_true_" in name])
+            self.assertNotEqual(a["height_m"], b["height_m"])
+
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
         self.assertEqual(result.returncode, 1)

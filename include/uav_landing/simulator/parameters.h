@@ -2,6 +2,8 @@
 
 #include <initializer_list>
 
+#include "uav_landing/simulator/scenery_parameters.h"
+
 namespace uav_landing {
 
 // Every parameter of the simulator: name, default, range, unit and meaning, by the same visitor as
@@ -92,6 +94,7 @@ struct SimulatedRigParameters {
 /// width of 0 leaves a mark out.
 struct SimulatedRunwayParameters {
   double length = 1500, width = 45;
+  double displaced_threshold = 0;
   double edge_line_width = 0.9, edge_line_inset = 0.5;
   double centre_line_width = 0.9, centre_dash_length = 30, centre_gap_length = 20, centre_line_start = 60;
   double threshold_line_width = 1.2;
@@ -105,6 +108,10 @@ struct SimulatedRunwayParameters {
   void visit(Visitor&& v) {
     v.number("length", length, 0.1, 1e5, "m", "from threshold to threshold");
     v.number("width", width, 0.01, 1000.0, "m", "of the surface");
+    v.number(
+        "displaced_threshold", displaced_threshold, 0.0, 2000.0, "m",
+        "of surface before the threshold and beyond the other one, not for landing; its middle is marked "
+        "by the shafts of arrows");
     v.number("edge_line_width", edge_line_width, 0.0, 10.0, "m", "of the line along each side");
     v.number("edge_line_inset", edge_line_inset, 0.0, 100.0, "m", "from the surface's edge to the line");
     v.number("centre_line_width", centre_line_width, 0.0, 10.0, "m", "of the dashed centre line");
@@ -160,10 +167,11 @@ struct SimulatedSurfaceParameters {
 };
 
 /// The ground's height along the runway, z(x): a straight slope, a parabola that leads over to another slope,
-/// and that slope; the same all across. 0 at the threshold (section profile).
+/// and that slope; on it a hill. The same all across. 0 at the threshold (section profile).
 struct SimulatedProfileParameters {
   double slope_before_deg = 0, slope_after_deg = 0;
   double change_start = 0, change_length = 0;
+  double hill_height = 0, hill_x = -400, hill_length = 400;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -173,6 +181,9 @@ struct SimulatedProfileParameters {
     v.number("change_start", change_start, -1e5, 1e5, "m",
              "along the runway from the threshold; negative: before it");
     v.number("change_length", change_length, 0.0, 1e5, "m", "over which the slope changes at a steady rate");
+    v.number("hill_height", hill_height, 0.0, 500.0, "m", "of a hill across the path; 0: no hill");
+    v.number("hill_x", hill_x, -1e5, 1e5, "m", "of its top, along the runway from the threshold");
+    v.number("hill_length", hill_length, 10.0, 1e5, "m", "from its foot to its other foot");
   }
 };
 
@@ -318,6 +329,7 @@ struct SimulatorParameters {
   SimulatedSurfaceParameters surface;
   SimulatedProfileParameters profile;
   SimulatedObjectsParameters objects;
+  SimulatedSceneryParameters scenery;  ///< each of its elements is a section
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
   SimulatedGustParameters gust;
@@ -347,6 +359,7 @@ struct SimulatorParameters {
     v("surface", surface);
     v("profile", profile);
     v("objects", objects);
+    scenery.visitSections(v);
     v("path", path);
     v("wobble", wobble);
     v("gust", gust);

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <vector>
 
+#include "simulator/own_frame.h"
 #include "simulator/renderer.h"
 #include "simulator/sensor.h"
 
@@ -31,6 +32,7 @@ struct ApproachSimulator::World {
   Trajectory trajectory;
   GroundProfile profile;
   Renderer renderer;
+  OwnFrame left_frame, right_frame;
   int frames;
 
   World(const SimulatorParameters& p, CameraRig cameras)
@@ -38,8 +40,11 @@ struct ApproachSimulator::World {
         rig(std::move(cameras)),
         trajectory(p.path, p.wobble, p.gust, p.random.seed),
         profile(p.profile),
-        renderer(Scene(p.runway, p.surface, p.random.seed),
-                 standOn(profile, placeObjects(p.objects, p.runway.width, p.random.seed)), p.image, profile),
+        renderer(
+            Scene(p.runway, p.surface, p.random.seed, Scenery(p.scenery, p.runway, p.surface, p.random.seed)),
+            standOn(profile, placeObjects(p.objects, p.runway.width, p.random.seed)), p.image, profile),
+        left_frame(p.scenery.own_frame, p.image, OwnFrame::Side::kLeft),
+        right_frame(p.scenery.own_frame, p.image, OwnFrame::Side::kRight),
         frames(1 + static_cast<int>(std::floor(p.path.duration * p.path.rate + 1e-6))) {}
 
   double timeOf(int index) const { return index / parameters.path.rate; }
@@ -58,7 +63,7 @@ struct ApproachSimulator::World {
     return {};
   }
 
-  cv::Mat lightIn(const SimulatedCamera& camera, int index) const {
+  cv::Mat lightIn(const SimulatedCamera& camera, const OwnFrame& own, int index) const {
     const SimulatedImageParameters& image = parameters.image;
     const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
     cv::Mat grey, sum;
@@ -71,6 +76,7 @@ struct ApproachSimulator::World {
         sum += grey;
     }
     if (samples > 1) sum /= samples;
+    own.draw(sum);
     return sum;
   }
 
@@ -106,7 +112,8 @@ SimulatedImu ApproachSimulator::imu() const {
 }
 
 ApproachSimulator::Light ApproachSimulator::light(int index) const {
-  return {index, world_->lightIn(world_->rig.left, index), world_->lightIn(world_->rig.right, index)};
+  return {index, world_->lightIn(world_->rig.left, world_->left_frame, index),
+          world_->lightIn(world_->rig.right, world_->right_frame, index)};
 }
 
 ApproachSimulator::Frame ApproachSimulator::expose(const Light& light, double noise) const {

@@ -10,17 +10,43 @@ namespace {
 constexpr double kRadiansPerDegree = M_PI / 180;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// A slope that changes at a steady rate to another one.
+struct SlopeChange {
+  double start, end, before, after;
+  double curvature() const { return end > start ? (after - before) / (end - start) : 0; }
+};
+
 }  // namespace
 
 GroundProfile::GroundProfile(const SimulatedProfileParameters& p)
-    : flat_(p.slope_before_deg == 0 && p.slope_after_deg == 0) {
-  const double before = std::tan(p.slope_before_deg * kRadiansPerDegree);
-  const double after = std::tan(p.slope_after_deg * kRadiansPerDegree);
-  const double start = p.change_start, end = p.change_start + p.change_length;
-  const double curvature = p.change_length > 0 ? (after - before) / p.change_length : 0;
-  pieces_[0] = {-kInfinity, start, start, 0, before, 0};
-  pieces_[1] = {start, end, start, 0, before, curvature};
-  pieces_[2] = {end, kInfinity, end, pieces_[1].at(end), after, 0};
+    : flat_(p.slope_before_deg == 0 && p.slope_after_deg == 0 && p.hill_height == 0) {
+  std::vector<SlopeChange> changes{{p.change_start, p.change_start + p.change_length,
+                                    std::tan(p.slope_before_deg * kRadiansPerDegree),
+                                    std::tan(p.slope_after_deg * kRadiansPerDegree)}};
+  if (p.hill_height > 0) {
+    // Up over two quarters of the length: the slope grows over the first and goes back to 0 over the second.
+    const double quarter = 0.25 * p.hill_length, steepest = p.hill_height / quarter;
+    const double foot = p.hill_x - 2 * quarter;
+    changes.push_back({foot, foot + quarter, 0, steepest});
+    changes.push_back({foot + quarter, foot + 3 * quarter, 0, -2 * steepest});
+    changes.push_back({foot + 3 * quarter, foot + 4 * quarter, 0, steepest});
+  }
+  std::vector<double> borders;
+  for (const SlopeChange& change : changes) borders.insert(borders.end(), {change.start, change.end});
+  std::sort(borders.begin(), borders.end());
+  pieces_.push_back({-kInfinity, borders.front(), borders.front(), 0, changes.front().before, 0});
+  for (size_t i = 0; i < borders.size(); ++i) {
+    const double from = borders[i], to = i + 1 < borders.size() ? borders[i + 1] : kInfinity;
+    Piece piece{from, to, from, pieces_.back().at(from), 0, 0};
+    for (const SlopeChange& change : changes) {
+      const bool under_way = from >= change.start && from < change.end;
+      piece.slope += from >= change.end ? change.after
+                     : under_way        ? change.before + change.curvature() * (from - change.start)
+                                        : change.before;
+      if (under_way) piece.curvature += change.curvature();
+    }
+    pieces_.push_back(piece);
+  }
   const double threshold = height(0);
   for (Piece& piece : pieces_) piece.height -= threshold;
 }
@@ -54,7 +80,7 @@ double GroundProfile::Piece::meet(const Eigen::Vector3d& centre, const Eigen::Ve
 }
 
 const GroundProfile::Piece& GroundProfile::pieceAt(double x) const {
-  return x < pieces_[1].begin ? pieces_[0] : x < pieces_[1].end ? pieces_[1] : pieces_[2];
+  return *std::find_if(pieces_.begin(), pieces_.end() - 1, [x](const Piece& piece) { return x < piece.end; });
 }
 
 double GroundProfile::height(double x) const { return pieceAt(x).at(x); }
@@ -70,7 +96,7 @@ GroundProfile::Line GroundProfile::seen(const Eigen::Vector3d& centre,
     met = &piece;
   }
   if (met != nullptr) return met->tangent(centre.x() + nearest * direction.x());
-  const Piece& far = direction.x() >= 0 ? pieces_[2] : pieces_[0];
+  const Piece& far = direction.x() >= 0 ? pieces_.back() : pieces_.front();
   return far.tangent(far.from);
 }
 

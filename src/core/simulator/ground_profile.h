@@ -1,14 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <vector>
 
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {
 
 /// The ground's height along the runway, z(x) in the runway frame: a slope, a parabola, another slope,
-/// without a kink. The same for all y, and 0 at x = 0.
+/// without a kink, and a hill of four parabolas on it. The same for all y, and 0 at x = 0.
 class GroundProfile {
  public:
   explicit GroundProfile(const SimulatedProfileParameters& parameters = {});
@@ -38,7 +38,7 @@ class GroundProfile {
   const Piece& pieceAt(double x) const;
 
   bool flat_;
-  std::array<Piece, 3> pieces_;
+  std::vector<Piece> pieces_;  ///< from near to far, without gaps
 };
 
 }  // namespace uav_landing

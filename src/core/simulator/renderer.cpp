@@ -37,13 +37,12 @@ struct Renderer::Sample {
     measure();
   }
 
-  /// The ground it covers: a box of the same variance as the parallelogram that its corners make.
-  RunwaySurface::Patch patch(const Eigen::Vector3f& centre, float range, float fall) const {
+  /// The ground it covers.
+  GroundFootprint footprint(const Eigen::Vector3f& centre, float range, float fall) const {
     const Eigen::Vector2f slope = direction.head<2>() / fall;
     const Eigen::Vector2f u = range * (along_u.head<2>() + slope * along_u.z());
     const Eigen::Vector2f v = range * (along_v.head<2>() + slope * along_v.z());
-    return {centre.x() + range * direction.x(), centre.y() + range * direction.y(),
-            std::sqrt(u.x() * u.x() + v.x() * v.x()), std::sqrt(u.y() * u.y() + v.y() * v.y())};
+    return {centre.x() + range * direction.x(), centre.y() + range * direction.y(), u, v};
   }
 };
 
@@ -75,8 +74,8 @@ float Renderer::ground(const View& view, const OnGround& on) const {
   // On the horizon itself: the ground as far as can be told apart from it.
   const float fall = std::max(-sample.direction.z(), 0.25f * sample.extent);
   const float range = on.height / fall;  // along the direction, which is not normalised
-  const RunwaySurface::Patch patch = sample.patch(view.centre, range, fall);
-  return scene_.ground(patch, scene_.cover(patch), range * sample.direction.norm());
+  const GroundFootprint footprint = sample.footprint(view.centre, range, fall);
+  return scene_.ground(footprint, scene_.cover(footprint), range * sample.direction.norm());
 }
 
 float Renderer::sky(const Sample& sample, float share) const {
@@ -107,12 +106,10 @@ float Renderer::pixel(const View& view, const PixelRay& ray) const {
   const float fall = -on.sample.direction.z();
   if (fall < kFar * even * on.sample.extent) return mixed(view, ray);
   const float range = on.height / fall;
-  RunwaySurface::Patch patch = on.sample.patch(view.centre, range, fall);
-  const RunwaySurface::Cover cover = scene_.cover(patch);
-  if (!cover.pure()) return mixed(view, ray);
-  patch.length *= even;
-  patch.width *= even;
-  return scene_.ground(patch, cover, range * whole.direction.norm());
+  const GroundFootprint footprint = on.sample.footprint(view.centre, range, fall);
+  const RunwaySurface::Cover cover = scene_.cover(footprint);
+  if (!scene_.even(footprint, cover)) return mixed(view, ray);
+  return scene_.ground(footprint.scaled(even), cover, range * whole.direction.norm());
 }
 
 void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const {

@@ -4,26 +4,10 @@
 #include <cmath>
 
 namespace uav_landing {
-namespace {
-
-/// Share of the interval of this width around the centre that lies within [from, to]; exactly 0 or 1 when
-/// none or all of it does.
-float overlap(float centre, float width, float from, float to) {
-  const float low = centre - 0.5f * width, high = centre + 0.5f * width;
-  if (low >= from && high <= to) return 1.0f;
-  return std::max(std::min(to, high) - std::max(from, low), 0.0f) / width;
-}
-
-/// Length of dashes ([0, dash) of every period) within [0, s], s >= 0.
-float dashesUpTo(float s, float dash, float period) {
-  const float whole = std::floor(s / period);
-  return whole * dash + std::min(s - whole * period, dash);
-}
-
-}  // namespace
 
 RunwaySurface::RunwaySurface(const SimulatedRunwayParameters& p)
     : length_(p.length),
+      displaced_(p.displaced_threshold),
       half_width_(0.5 * p.width),
       centre_half_width_(0.5 * p.centre_line_width),
       centre_start_(p.centre_line_start),
@@ -38,7 +22,7 @@ RunwaySurface::RunwaySurface(const SimulatedRunwayParameters& p)
   };
   const double half = 0.5 * p.width, line = half - p.edge_line_inset;
   if (p.edge_line_width > 0) {
-    marks_.push_back({interval(0, p.length), {}});
+    marks_.push_back({interval(-p.displaced_threshold, p.length), {}});
     bothSides(marks_.back(), line - p.edge_line_width, line);
   }
   if (p.threshold_line_width > 0)  // between the edge lines, so that nothing is painted twice
@@ -56,6 +40,14 @@ RunwaySurface::RunwaySurface(const SimulatedRunwayParameters& p)
         {interval(p.aiming_point_distance, p.aiming_point_distance + p.aiming_point_length), {}});
     bothSides(marks_.back(), 0.5 * p.aiming_point_gap, 0.5 * p.aiming_point_gap + p.aiming_point_width);
   }
+  if (p.centre_line_width > 0) addArrowShafts(p);
+}
+
+void RunwaySurface::addArrowShafts(const SimulatedRunwayParameters& p) {
+  constexpr double kPitch = 60, kShaft = 25, kFree = 5;  // m; the last arrow ends this far from the threshold
+  const auto half = static_cast<float>(0.5 * p.centre_line_width);
+  for (double end = -kFree; end - kShaft >= -p.displaced_threshold; end -= kPitch)
+    marks_.push_back({{static_cast<float>(end - kShaft), static_cast<float>(end)}, {{-half, half}}});
 }
 
 float RunwaySurface::centreLine(const Patch& patch) const {
@@ -82,7 +74,7 @@ float RunwaySurface::paint(const Patch& patch) const {
 }
 
 RunwaySurface::Cover RunwaySurface::cover(const Patch& patch) const {
-  const float runway = overlap(patch.x, patch.length, 0.0f, length_) *
+  const float runway = overlap(patch.x, patch.length, -displaced_, length_ + displaced_) *
                        overlap(patch.y, patch.width, -half_width_, half_width_);
   if (runway == 0.0f) return {0.0f, 0.0f};
   return {runway, std::min(paint(patch), runway)};

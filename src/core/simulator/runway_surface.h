@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "simulator/ground_footprint.h"
 #include "uav_landing/simulator/parameters.h"
 
 namespace uav_landing {
@@ -12,11 +13,7 @@ class RunwaySurface {
  public:
   explicit RunwaySurface(const SimulatedRunwayParameters& parameters);
 
-  /// A rectangle of ground around (x, y) in the runway frame, metres.
-  struct Patch {
-    float x, y;
-    float length, width;  ///< extents along x and y, positive
-  };
+  using Patch = GroundPatch;  ///< in the runway frame
   struct Cover {
     float runway;  ///< share of the patch on the runway's surface, paint included
     float paint;   ///< share of the patch that is painted
@@ -36,10 +33,11 @@ class RunwaySurface {
     Interval along;
     std::vector<Interval> across;
   };
+  void addArrowShafts(const SimulatedRunwayParameters& parameters);
   float paint(const Patch& patch) const;
   float centreLine(const Patch& patch) const;
 
-  float length_, half_width_;
+  float length_, displaced_, half_width_;
   float centre_half_width_, centre_start_, dash_, period_;
   std::vector<Mark> marks_;  ///< of the near half; the far half mirrors it
 };

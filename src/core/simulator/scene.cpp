@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "simulator/ground_texture.h"
 
 namespace uav_landing {
 namespace {
 
-/// Ratio of the texture's scales: no small ratio of whole numbers, so that the repeats of two never coincide.
-constexpr float kScaleRatio = 19.7f;
-/// Seams of the tiles away from the runway's centre line, texels.
-constexpr float kTileShift = 161.3f;
-/// Spectra: amplitudes fall with spatial frequency f as f^-slope.
-constexpr double kGroundSlope = 0.8, kCloudSlope = 1.5;
+/// Spectrum of the clouds: amplitudes fall with spatial frequency f as f^-slope.
+constexpr double kCloudSlope = 1.5;
 
 }  // namespace
 
 Scene::Scene(const SimulatedRunwayParameters& runway, const SimulatedSurfaceParameters& surface,
-             uint64_t seed)
+             uint64_t seed, Scenery scenery)
     : runway_(runway),
       surface_(surface),
       tyre_marks_(runway.tyre_marks),
@@ -25,24 +24,10 @@ Scene::Scene(const SimulatedRunwayParameters& runway, const SimulatedSurfacePara
       tyre_half_width_(0.2 * runway.width),
       runway_tile_(seed * 4 + 0, kGroundSlope),
       grass_tile_(seed * 4 + 1, kGroundSlope),
-      cloud_tile_(seed * 4 + 2, kCloudSlope) {}
+      cloud_tile_(seed * 4 + 2, kCloudSlope),
+      scenery_(std::move(scenery)) {}
 
-float Scene::texture(const NoiseTile& tile, const RunwaySurface::Patch& patch, float grain) {
-  float sum = 0;
-  float texels_per_metre = 1.0f / grain;
-  for (int scale = 0; scale < 3; ++scale, texels_per_metre /= kScaleRatio) {
-    const float length = patch.length * texels_per_metre, width = patch.width * texels_per_metre;
-    // What is as large as the whole tile must not show its repeats.
-    constexpr float kWhole = NoiseTile::kSize, kNone = kWhole / 4;
-    const float fade = (kWhole - std::max(length, width)) / (kWhole - kNone);
-    if (fade <= 0) continue;
-    sum += std::min(fade, 1.0f) * tile.mean(patch.x * texels_per_metre + kTileShift,
-                                            patch.y * texels_per_metre + kTileShift, length, width);
-  }
-  return sum;
-}
-
-float Scene::tyreMarks(const RunwaySurface::Patch& patch) const {
+float Scene::tyreMarks(const GroundPatch& patch) const {
   const float x = std::min(patch.x, runway_.length() - patch.x) - touchdown_;
   const float along = x / touchdown_length_, across = patch.y / tyre_half_width_;
   const float density = tyre_marks_ * std::exp(-along * along - across * across);
@@ -53,23 +38,28 @@ float Scene::tyreMarks(const RunwaySurface::Patch& patch) const {
   return density * std::clamp(0.6f + 0.5f * streaks, 0.0f, 1.0f);
 }
 
-float Scene::ground(const RunwaySurface::Patch& patch, const RunwaySurface::Cover& cover,
+float Scene::ground(const GroundFootprint& footprint, const RunwaySurface::Cover& cover,
                     float distance) const {
+  const GroundPatch& patch = footprint.box;
   float grey = 0;
   if (cover.runway > 0) {
     // Paint fills the surface's pores: half the texture.
     const float texture = static_cast<float>(surface_.runway_contrast) *
-                          Scene::texture(runway_tile_, patch, surface_.runway_grain);
+                          groundTexture(runway_tile_, patch, surface_.runway_grain);
     const float bare = static_cast<float>(surface_.runway_brightness) * std::max(1.0f + texture, 0.0f);
     const float paint =
         static_cast<float>(surface_.marking_brightness) * std::max(1.0f + 0.5f * texture, 0.0f);
     grey += ((cover.runway - cover.paint) * bare + cover.paint * paint) * (1.0f - tyreMarks(patch));
   }
   if (cover.runway < 1) {
-    const float texture = static_cast<float>(surface_.grass_contrast) *
-                          Scene::texture(grass_tile_, patch, surface_.grass_grain);
-    grey += (1.0f - cover.runway) * static_cast<float>(surface_.grass_brightness) *
-            std::max(1.0f + texture, 0.0f);
+    const Scenery::Shown scenery = scenery_.shown(footprint);
+    grey += (1.0f - cover.runway) * scenery.grey;
+    if (scenery.bare > 0) {
+      const float texture = static_cast<float>(surface_.grass_contrast) *
+                            groundTexture(grass_tile_, patch, surface_.grass_grain);
+      grey += (1.0f - cover.runway) * scenery.bare * static_cast<float>(surface_.grass_brightness) *
+              std::max(1.0f + texture, 0.0f);
+    }
   }
   const float haze = 1.0f - std::exp(-distance / static_cast<float>(surface_.visibility));
   return grey + haze * (static_cast<float>(surface_.sky_horizon) - grey);

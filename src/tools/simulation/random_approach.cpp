@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
 
 #include "rig/rig_rotation.h"
+#include "simulation/draw.h"
 #include "simulator/ground_profile.h"
 #include "stereo/surface/surface_profile.h"
 
@@ -13,30 +13,6 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kRate = 20;  // Hz
-
-/// Seeds that differ by 1 become seeds that have nothing in common (the finaliser of SplitMix64, Steele et
-/// al. 2014): cv::RNG's first numbers after similar seeds are similar.
-uint64_t hashed(uint64_t seed) {
-  seed += 0x9E3779B97F4A7C15ULL;
-  seed = (seed ^ (seed >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  seed = (seed ^ (seed >> 27)) * 0x94D049BB133111EBULL;
-  return seed ^ (seed >> 31);
-}
-
-/// cv::RNG and not <random>: the same numbers with every standard library.
-class Draw {
- public:
-  explicit Draw(uint64_t seed) : random_(hashed(seed)) {}
-  double uniform(double from, double to) { return random_.uniform(from, to); }
-  /// A size for which factors count: as often between 1 and 2 as between 2 and 4.
-  double scale(double from, double to) { return from * std::exp(uniform(0, std::log(to / from))); }
-  double normal(double stddev) { return random_.gaussian(stddev); }
-  bool chance(double probability) { return uniform(0, 1) < probability; }
-  int seed() { return random_.uniform(0, 1000000000); }
-
- private:
-  cv::RNG random_;
-};
 
 void drawSensors(Draw& draw, SimulatorParameters& p) {
   p.image.blur = draw.uniform(0.4, 0.9);

@@ -31,6 +31,9 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
 /// over 100 m, in the shares and as often as surface_profile.h says; mostly it stays flat), somewhere from
 /// 100 m before the place where the snippet ends to 300 m beyond it. The height over the ground there stays.
 void bendGround(uint64_t seed, const Parameters& parameters, SimulatorParameters& snippet);
+/// Puts scenery around the runway of a snippet or an approach: each element with a chance of its own, at a
+/// place and of a size that are drawn. Everything else stays as it was.
+void drawScenery(uint64_t seed, SimulatorParameters& flight);
 /// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
 

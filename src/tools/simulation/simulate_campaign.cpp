@@ -21,7 +21,7 @@ struct Options {
   std::string config, csv, kind = "snippets";
   uint64_t first = 1;
   int count = 20, frames = 13;
-  bool imu = false, bend = false;
+  bool imu = false, bend = false, scenery = false;
   std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
 };
 
@@ -71,6 +71,7 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
       const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
       SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
       if (options.bend) bendGround(flight, parameters, drawn);
+      if (options.scenery) drawScenery(flight, drawn);
       CampaignCsv::Sample sample;
       sample.seed = seed;
       sample.cell_height = height;
@@ -86,7 +87,8 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
 void flyApproaches(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
   ProgressBar progress(options.count);
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
-    const SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
+    SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
+    if (options.scenery) drawScenery(seed, drawn);
     CampaignCsv::Sample sample;
     sample.seed = seed;
     fly(drawn, parameters, options.noise, sample,
@@ -138,6 +140,9 @@ int main(int argc, char** argv) {
   app.add_flag(
       "--bend", options.bend,
       "the ground of snippets has a vertical curve, as often and by as much as the chain is told to expect");
+  app.add_flag(
+      "--scenery", options.scenery,
+      "fields, towns, water, roads, other runways and the own nose are drawn around each runway, too");
   app.callback([&options] {
     if (options.bend && options.kind != "snippets") throw CLI::ValidationError("--bend", "for snippets only");
   });
