@@ -35,15 +35,21 @@ constexpr double kRunwayShare = 0.25;  // of the lines that point there, that ar
 constexpr double kEnoughOfEdges = 14;  // more lines along the edges do not make it more of a runway
 constexpr double kEnoughInside = 10;   // nor do more marks
 constexpr double kAstray = 1.2;        // against it, for each line between the edges that runs elsewhere
-constexpr double kUnbroken = 2;        // per log of the share of an edge that is seen
-constexpr double kLeastSeen = 0.05;    // of an edge
-constexpr double kSlender = 3;         // per log of the length that is missing
-constexpr double kEnoughExtent = 2;    // log(far / near)
-constexpr double kSameEnd = 0.03;      // of the distance: lines this near to an end are at it
-constexpr double kUsualLength = 6;     // widths; a runway is longer, even the part in view
-constexpr double kByChance = 4;        // of two lines that meet somewhere, as any two do
-constexpr double kMostOff = 10;        // against it at most, for ground, path, or chart
-constexpr double kMostTurned = 6;      // for the pair before
+constexpr double kMiddle = 0.08, kSide = 0.15;  // of the width: centre line, side stripes
+constexpr double kLane = 0.5;                   // of the length
+constexpr double kUnbroken = 2;                 // per log of the share of an edge that is seen
+constexpr double kLeastSeen = 0.05;             // of an edge
+constexpr double kSlender = 3;                  // per log of the length that is missing
+constexpr double kEnoughExtent = 2;             // log(far / near)
+constexpr double kSameEnd = 0.03;               // of the distance: lines this near to an end are at it
+constexpr double kUsualLength = 6;              // widths; a runway is longer, even the part in view
+constexpr double kUsualBeside = 30;  // evidence of lines beside a runway: taxiways, roads, edges of grass
+constexpr double kRow = 0.3;         // against it, for the evidence of more lines beside it
+constexpr double kTelling = 1;       // of a line beside it that counts
+constexpr double kMostOfRow = 15;    // against a street or a crop row at most
+constexpr double kByChance = 4;      // of two lines that meet somewhere, as any two do
+constexpr double kMostOff = 10;      // against it at most, for ground, path, or chart
+constexpr double kMostTurned = 6;    // for the pair before
 
 struct Interval {
   double begin, end;
@@ -246,7 +252,7 @@ class Search {
       for (const size_t k : edge->pieces) h.members[k] = 1;
     h.evidence = std::min(left.evidence + right.evidence, kEnoughOfEdges) +
                  ofShape(h, std::min(seenLength(p, left, h), seenLength(p, right, h))) +
-                 ofSurface(p, slack, h) - against(direction) - againstSize(h);
+                 ofSurface(p, slack, h) - againstRow(p, slack, h) - against(direction) - againstSize(h);
     h.lead = h.evidence - againstLast(direction);
     return h;
   }
@@ -268,6 +274,14 @@ class Search {
            kSlender * std::min(0.0, std::log(lengths / kUsualLength)) + std::min(extent, kEnoughExtent);
   }
 
+  /// Whether a line runs along the runway for long between its middle and its sides, where nothing is
+  /// painted.
+  static bool isLane(const Pencil& p, size_t k, const RunwayHypothesis& h) {
+    const double across = std::abs((p.lateral[k] - h.right) / h.width() - 0.5);  // 0: middle, 0.5: edge
+    const double length = std::log(std::min(p.far[k], h.far) / std::max(p.near[k], h.near));
+    return across > kMiddle && across < 0.5 - kSide && length > kLane * std::log(h.far / h.near);
+  }
+
   /// Evidence of what lies between the edges; adds what runs along the runway to the members.
   double ofSurface(const Pencil& p, double slack, RunwayHypothesis& h) const {
     double marks = 0;
@@ -280,10 +294,29 @@ class Search {
         astray += lines_[k].across ? 0 : 1;
       } else if (h.members[k] == 0) {
         h.members[k] = 1;
-        marks += p.evidence[k];
+        if (isLane(p, k, h))
+          ++astray;
+        else
+          marks += p.evidence[k];
       }
     }
     return std::min(marks, kEnoughInside) - kAstray * astray;
+  }
+
+  /// By what lies beside it in the same direction. Streets, crop rows and roofs come in rows, runways do not.
+  double againstRow(const Pencil& p, double slack, const RunwayHypothesis& h) const {
+    std::vector<double> places;
+    double beside = 0;
+    for (size_t k = 0; k < lines_.size(); ++k) {
+      const double place = p.lateral[k];
+      if (p.evidence[k] < kTelling || (place <= h.left + slack && place >= h.right - slack)) continue;
+      const bool known = std::any_of(places.begin(), places.end(),
+                                     [&](double other) { return std::abs(other - place) < slack; });
+      if (known) continue;
+      places.push_back(place);
+      beside += p.evidence[k];
+    }
+    return std::min(kMostOfRow, kRow * std::max(0.0, beside - kUsualBeside));
   }
 
   static double penalty(double off, double variance, double most = kMostOff) {

@@ -137,6 +137,38 @@ TEST(RunwayHypothesis, LinesAstrayOnTheSurfaceAreEvidenceAgainstIt) {
   EXPECT_NEAR(a->best.evidence - b->best.evidence, 3 * 1.2, 1e-6);
 }
 
+TEST(RunwayHypothesis, ARowOfStreetsIsLessOfARunwayHoweverManyLinesItHas) {
+  Scene scene;
+  scene.addRunway();
+  for (int i = 0; i < 12; ++i) scene.addStrip({-250, 70 + 30.0 * i}, 10, 1200, 8 * kDegree);
+  const auto found = scene.find();
+  ASSERT_TRUE(found);
+  EXPECT_LT(scene.off(found->best.direction), 0.05 * kDegree);
+  EXPECT_GT(found->margin, 4) << "clearly";
+}
+
+TEST(RunwayHypothesis, ATaxiwayBesideTheRunwayCostsNothing) {
+  Scene alone, airport;
+  alone.addStrip({0, 0}, 45, 1500);
+  airport.addStrip({0, 0}, 45, 1500);
+  airport.addStrip({0, 150}, 20, 1500);
+  const auto a = alone.find(), b = airport.find();
+  ASSERT_TRUE(a && b);
+  EXPECT_GE(b->best.evidence, a->best.evidence - 1e-6);
+}
+
+TEST(RunwayHypothesis, LongLinesBetweenMiddleAndSideAreThoseOfAField) {
+  Scene runway, field;
+  for (Scene* scene : {&runway, &field}) scene->addStrip({0, 0}, 45, 1500);
+  runway.addStrip({0, 0}, 1, 1500);   // a centre line
+  runway.addStrip({0, 20}, 1, 1500);  // a side stripe
+  field.addStrip({0, 11}, 1, 1500);
+  field.addStrip({0, -11}, 1, 1500);
+  const auto a = runway.find(), b = field.find();
+  ASSERT_TRUE(a && b);
+  EXPECT_GT(a->best.evidence, b->best.evidence + 4);
+}
+
 TEST(RunwayHypothesis, TwoRunwaysAreNotDecidedUnlessThePathOrThePairBeforeSays) {
   const double heading = -10 * kDegree;
   Scene scene;
