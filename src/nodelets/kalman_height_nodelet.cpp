@@ -281,6 +281,7 @@ class KalmanHeightNodelet : public StageNodelet {
       lost.status = Status::kLost;
       lost.failure = {Reason::kTimeout, last_stamp_.isZero() ? "no image pair yet, see the log of rectify"
                                                              : "no image pair any more"};
+      lost.yaw_failure = lost.failure;
     }
     note(lost);
     std_msgs::Header header;

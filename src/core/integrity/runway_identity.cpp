@@ -21,6 +21,7 @@ void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen
   const Eigen::Vector3d across = normal.cross(seen.direction).normalized();
   const bool leaps = memory_.leaps(stamp, seen, across, turn);
   if (!seen.direction.allFinite()) {
+    leaps_ = 0;
     margin_ *= std::exp(-seconds / kFade);
     return;
   }
@@ -49,6 +50,7 @@ void RunwayIdentity::follow(double seconds, double margin) {
 
 void RunwayIdentity::skip(double stamp) {
   margin_ *= std::exp(-advance(stamp) / kFade);
+  leaps_ = 0;
   other_probability_ = 1;
 }
 

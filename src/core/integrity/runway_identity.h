@@ -23,7 +23,7 @@ class RunwayIdentity {
               const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn);
   /// A pair of which nothing is known.
   void skip(double stamp);
-  /// That the direction of the last pair is not the runway's, 0 to 1.
+  /// Chance that the direction of the last pair is not the runway's, 0 to 1.
   double otherProbability() const { return other_probability_; }
 
  private:

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kLeastOnPlane = 0.7;  // of the corners that can be told from noise
 constexpr double kLeastContrast = 6;   // grey levels, 1 sigma in a window: three times a usual sensor's noise
+constexpr int kFewest = 10;            // corners that can be told from noise
 constexpr int kRadius = 4;             // of the window, px
 
 bool hasContrast(const cv::Mat& image, const cv::Point& corner) {
@@ -27,7 +28,10 @@ Failure doubtOfPlane(const cv::Mat& image, const std::vector<TrackedCorner>& cor
     if (estimate.inliers[i] != 0 &&
         hasContrast(image, {cvRound(matches[i].now.x()), cvRound(matches[i].now.y())}))
       ++on_plane;
-  if (seen > 0 && on_plane >= kLeastOnPlane * seen) return {};
+  if (seen < kFewest)
+    return {Reason::kPlaneUnproven,
+            text(seen, " corners stand out from noise, at least ", kFewest, " needed without stereo")};
+  if (on_plane >= kLeastOnPlane * seen) return {};
   return {Reason::kPlaneUnproven, text(on_plane, " of ", seen, " corners move as on one plane, at least ",
                                        100 * kLeastOnPlane, " % needed without stereo")};
 }

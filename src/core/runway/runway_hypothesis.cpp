@@ -29,6 +29,7 @@ constexpr double kOther = 1 * kDegree;          // between directions of two run
 constexpr double kPathSigma = 3 * kDegree;      // between path and runway: wind and corrections
 constexpr double kStepSigma = 0.7 * kDegree;    // by which the camera turns between pairs
 constexpr double kSizeSigma = 0.06;             // share of the runway's size by which it seems to be another
+constexpr double kFarSigma = 0.05 * kDegree;    // of the angle between the far end and the horizon
 
 // Evidence.
 constexpr double kRunwayShare = 0.25;  // of the lines that point there, that are the runway's
@@ -44,12 +45,12 @@ constexpr double kEnoughExtent = 2;             // log(far / near)
 constexpr double kSameEnd = 0.03;               // of the distance: lines this near to an end are at it
 constexpr double kUsualLength = 6;              // widths; a runway is longer, even the part in view
 constexpr double kUsualBeside = 30;  // evidence of lines beside a runway: taxiways, roads, edges of grass
-constexpr double kRow = 0.3;         // against it, for the evidence of more lines beside it
-constexpr double kTelling = 1;       // of a line beside it that counts
-constexpr double kMostOfRow = 15;    // against a street or a crop row at most
-constexpr double kByChance = 4;      // of two lines that meet somewhere, as any two do
-constexpr double kMostOff = 10;      // against it at most, for ground, path, or chart
-constexpr double kMostTurned = 6;    // for the pair before
+constexpr double kRow = 0.3;    // evidence against an object, per evidence of lines beside it above the usual
+constexpr double kTelling = 1;  // least evidence of a line that counts as lying beside an object
+constexpr double kMostOfRow = 15;  // against a street or a crop row at most
+constexpr double kByChance = 4;    // of two lines that meet somewhere, as any two do
+constexpr double kMostOff = 10;    // against it at most, for ground, path, or chart
+constexpr double kMostTurned = 6;  // for the pair before
 
 struct Interval {
   double begin, end;
@@ -215,7 +216,7 @@ class Search {
     if (std::min(far_left, far_right) < 1.05 * std::max(near_left, near_right)) return false;
     if (!prior_.height) return true;
     const double width = (ground.lateral(left) - ground.lateral(right)) * *prior_.height;
-    return width >= kNarrowestRunway && width <= kWidestRunway;
+    return width >= kNarrowestRunway && width <= std::max(kWidestRunway, prior_.runway.width);
   }
 
   /// What is seen of an edge at this place.
@@ -303,7 +304,8 @@ class Search {
     return std::min(marks, kEnoughInside) - kAstray * astray;
   }
 
-  /// By what lies beside it in the same direction. Streets, crop rows and roofs come in rows, runways do not.
+  /// Evidence against one of many objects side by side in the same direction. Streets, crop rows and roofs
+  /// come in rows, runways do not.
   double againstRow(const Pencil& p, double slack, const RunwayHypothesis& h) const {
     std::vector<double> places;
     double beside = 0;
@@ -328,13 +330,18 @@ class Search {
     if (prior_.path) sum += penalty(azimuth(direction) - azimuth(*prior_.path), kPathSigma * kPathSigma);
     return sum;
   }
-  /// By what charts say.
+  /// Evidence against an object whose size is not the chart's.
   double againstSize(const RunwayHypothesis& h) const {
     const RunwayParameters& runway = prior_.runway;
     if (!prior_.height) return 0;
-    const bool too_long =
-        runway.length > 0 && (h.far - h.near) * *prior_.height > (1 + 2 * kSizeSigma) * runway.length;
-    double sum = too_long ? kMostOff : 0;
+    double sum = 0;
+    if (runway.length > 0) {
+      // The far end is the less certain the nearer it is to the horizon.
+      const double length = (h.far - h.near) * *prior_.height,
+                   far_sigma = kFarSigma * h.far * h.far / (h.far - h.near);
+      const double longer = std::max(0.0, std::log(length / runway.length));
+      sum += penalty(longer, kSizeSigma * kSizeSigma + far_sigma * far_sigma);
+    }
     if (runway.width > 0) {
       const double stripes = runway.width - 2 * runway.side_stripe_inset;
       const auto off = [&](double width) { return std::log(h.width() * *prior_.height / width); };
@@ -342,7 +349,7 @@ class Search {
     }
     return sum;
   }
-  /// By the pair before.
+  /// Evidence against a direction other than in the pair before.
   double againstLast(const Eigen::Vector3d& direction) const {
     if (!prior_.last) return 0;
     return penalty(azimuth(direction) - azimuth(*prior_.last), kStepSigma * kStepSigma, kMostTurned);

@@ -50,7 +50,8 @@ struct RunwayPrior {
 /// the search compares objects and not directions. An object is two edges with opposite contrast that vanish
 /// at one point of the ground's horizon. Its evidence is how surely the lines along both edges and between
 /// them point there, how much of both edges is seen, how long it is for its width, and how few lines run
-/// elsewhere between the edges. An object of another width than the chart's, or longer, loses evidence. A
+/// elsewhere between the edges. Many more lines beside it in its direction are evidence against it: streets
+/// and crop rows come in rows. An object of another width than the chart's, or longer, loses evidence. A
 /// direction off the horizon, or far from the path or from the direction in the pair before, costs evidence,
 /// up to a limit: enough evidence of lines outweighs what was believed.
 ///

@@ -159,7 +159,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
                                double height, ApproachAngleResult::Runway& result) {
   const Edges edges = edgesOf(axes, direction, height);
   RunwayWidth width;
-  if (std::isfinite(height)) width = {known_width_ / height, kWidestRunway / height};
+  if (std::isfinite(height)) width = {known_width_ / height, std::max(kWidestRunway, known_width_) / height};
   const Outlook outlook{model_.rig, edges.either};
   Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt, &outlook);
   if (centre_.confirmations() >= kConfirmations) {

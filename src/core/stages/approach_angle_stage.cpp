@@ -19,6 +19,13 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+constexpr double kPatience = 1;  // s, after which directions of a pair say nothing of the next
+
+/// Directions of a pair, unit: of flight, and of the runway.
+struct SeenDirections {
+  double stamp = kUnknown;
+  std::optional<Eigen::Vector3d> path, runway;
+};
 
 }  // namespace
 
@@ -30,7 +37,7 @@ struct ApproachAngleStage::Implementation {
   MotionTracker tracker;
   RunwayTracker runway;
   RunwayIdentity identity;
-  std::optional<Eigen::Vector3d> last_path, last_direction;  // of flight, of the runway; in the pair before
+  SeenDirections last;
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   Timings timings;
@@ -56,8 +63,10 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
-    const SeenGround ground{stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp),
-                            last_path,    last_direction,           known_runway};
+    if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
+    const SeenGround ground{
+        stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp), last.path, last.runway,
+        known_runway};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
@@ -89,16 +98,14 @@ struct ApproachAngleStage::Implementation {
                     direction.combined ? direction.combined->runway_margin : 0, result.n, result.step);
     result.other_runway_probability = identity.otherProbability();
     const Eigen::Vector3d& t = result.step.translation_over_height;
-    last_path.reset();
-    if (!result.step.failure && t.allFinite()) last_path = t.normalized();
-    last_direction.reset();
-    if (result.vanishing_direction.allFinite()) last_direction = result.vanishing_direction;
+    last = {result.stamp, std::nullopt, std::nullopt};
+    if (!result.step.failure && t.allFinite()) last.path = t.normalized();
+    if (result.vanishing_direction.allFinite()) last.runway = result.vanishing_direction;
   }
 
   void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
-    last_path.reset();
-    last_direction.reset();
     if (repeated(stereo)) return;
+    last = {};
     identity.skip(stamp);
     tracker.skip(stamp, left);
     runway.skip(stamp);
@@ -199,8 +206,7 @@ void ApproachAngleStage::reset() {
   implementation_->tracker.reset();
   implementation_->runway.reset();
   implementation_->identity = RunwayIdentity();
-  implementation_->last_path.reset();
-  implementation_->last_direction.reset();
+  implementation_->last = {};
 }
 
 const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }

@@ -196,7 +196,7 @@ struct KalmanHeightStage::Implementation {
 
   // A pair of no time says nothing, and what is known stays as it is.
   LandingResult withoutStamp(LandingResult result) const {
-    result.failure = {Reason::kInputInvalid, "the stamp is not a finite number"};
+    result.failure = result.yaw_failure = {Reason::kInputInvalid, "the stamp is not a finite number"};
     result.status = parts->track.status();
     result.resets = parts->track.resets();
     return result;
@@ -207,7 +207,8 @@ struct KalmanHeightStage::Implementation {
     LandingResult result;
     result.stamp = stamp;
     result.status = Status::kLost;
-    result.failure = {Reason::kTimeout, text("no image pair for ", parameters.max_age, " s")};
+    result.failure =
+        result.yaw_failure = {Reason::kTimeout, text("no image pair for ", parameters.max_age, " s")};
     result.resets = parts->track.resets();
     return result;
   }

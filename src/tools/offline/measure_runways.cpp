@@ -72,6 +72,7 @@ Expected<Photograph> read(const std::string& folder, const CsvTable& table, size
     if (!std::isfinite(*number)) return tl::make_unexpected(table.failure(row, column, "a number is needed"));
     *value = *number;
   }
+  if (!(photo.rig.fx > 0)) return tl::make_unexpected(table.failure(row, "focal_px", "expected above 0"));
   photo.rig.fy = photo.rig.fx;
   photo.rig.cx_right = photo.rig.cx;
   photo.direction = photo.rig.ray(u, v).normalized();
@@ -118,12 +119,13 @@ std::optional<Eigen::Vector3d> onUnknownGround(const Photograph& photo) {
 }
 
 Count measure(const Photograph& photo, const Options& options, std::mt19937& random) {
-  std::normal_distribution<double> error(0, options.normal_stddev_deg * kDegree);
+  const double stddev = options.normal_stddev_deg * kDegree;
+  std::normal_distribution<double> error;
   Count count;
   for (int i = 0; i < (options.normal_unknown ? 1 : options.draws); ++i) {
     Eigen::Vector3d normal = levelNormal(photo.direction);
-    normal += error(random) * Eigen::Vector3d::UnitX();
-    normal += error(random) * Eigen::Vector3d::UnitZ();
+    normal += stddev * error(random) * Eigen::Vector3d::UnitX();
+    normal += stddev * error(random) * Eigen::Vector3d::UnitZ();
     const std::optional<Eigen::Vector3d> found =
         options.normal_unknown ? onUnknownGround(photo)
                                : onGround(photo, normal.normalized(), options.normal_stddev_deg * kDegree);

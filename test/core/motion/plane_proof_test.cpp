@@ -64,5 +64,14 @@ TEST(PlaneProof, WithoutAnyCornerNothingIsShown) {
   EXPECT_TRUE(scene.doubt()) << "all of them noise";
 }
 
+TEST(PlaneProof, AFewCornersProveNothing) {
+  Scene few, enough;
+  few.add(9, 40, 9, 9);
+  EXPECT_EQ(few.doubt().message(),
+            "plane_unproven: 9 corners stand out from noise, at least 10 needed without stereo");
+  enough.add(10, 40, 10, 10);
+  EXPECT_FALSE(enough.doubt());
+}
+
 }  // namespace
 }  // namespace uav_landing
