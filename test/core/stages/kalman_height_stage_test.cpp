@@ -215,6 +215,7 @@ TEST(KalmanHeightStage, TimeoutIsLostAndNothingIsValid) {
   KalmanHeightStage stage(usualRig(), {});
   const double stamp = settle(stage, 10);
   LandingResult result = stage.timeout(stamp + 0.3);
+  EXPECT_EQ(result.yaw_failure.reason, Reason::kTimeout);
   EXPECT_EQ(result.status, Status::kLost);
   EXPECT_EQ(result.failure.reason, Reason::kTimeout);
   EXPECT_FALSE(result.height_valid || result.angle_valid);
