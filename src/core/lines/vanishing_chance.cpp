@@ -8,14 +8,6 @@ namespace uav_landing {
 
 namespace {
 
-/// Probability that a line of random direction on the ground, seen where this one is, passes through V
-/// within the tolerance at its ends. Texture seen at a grazing angle looks like lines along the horizon, so
-/// these pass near every point of it and say next to nothing; lines that rise towards it say much.
-double chance(const VanishingLines& lines, const VanishingCandidate& line, const Eigen::Vector3d& V) {
-  return chanceWithin(lines.toleranceOf(line) / line.half * lines.perTurn(line) * line.towards(V).norm() *
-                      lines.perPixel(V));
-}
-
 /// Log of Chernoff's bound of the probability that random lines with these chances pass as tellingly.
 double logBound(const std::vector<double>& chances, double evidence) {
   double lowest = 0;
@@ -29,6 +21,12 @@ double logBound(const std::vector<double>& chances, double evidence) {
 
 }  // namespace
 
+double chanceOfPassing(const VanishingLines& lines, const VanishingCandidate& line,
+                       const Eigen::Vector3d& V) {
+  return chanceWithin(lines.toleranceOf(line) / line.half * lines.perTurn(line) * line.towards(V).norm() *
+                      lines.perPixel(V));
+}
+
 // Pairs of lines that meet along the runway times the probability that the other lines pass through. Each
 // counts with -log of its own chance; those that say nothing are left out.
 double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& direction,
@@ -36,7 +34,7 @@ double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& 
   const Eigen::Vector3d V = lines.K() * direction;
   std::vector<double> passing_by, others;  // chances
   for (int i = 0; i < lines.count(); ++i) {
-    const double p = chance(lines, lines[i], V);
+    const double p = chanceOfPassing(lines, lines[i], V);
     if (p > kLikelyChance) continue;
     const bool passes = std::binary_search(used.begin(), used.end(), i);
     (passes ? passing_by : others).push_back(p);

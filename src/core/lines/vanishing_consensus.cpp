@@ -14,7 +14,6 @@ namespace uav_landing {
 
 namespace {
 
-constexpr double kRunwayShare = 0.25;  // of the lines, that are along the runway
 // Attempts end when this many pairs of lines that agree with the best direction must have been drawn, most
 // likely: not every one of them meets where it should.
 constexpr double kPairsOfBest = 20;
@@ -73,7 +72,7 @@ class Score {
       if (chance >= kLikelyChance) continue;
       length_ += lines_.all()[i].half;
       double& best = agreeing_[edge_[i]];
-      best = std::max(best, fit_[i] * evidence(chance));
+      best = std::max(best, fit_[i] * evidenceOf(chance));
     }
     return std::accumulate(agreeing_.begin(), agreeing_.end(), -impossible);
   }
@@ -81,10 +80,6 @@ class Score {
   double halfLength() const { return length_; }
 
  private:
-  /// Log-likelihood ratio of a line that passes, where a share of the lines does because they are the
-  /// runway's and the others do by chance.
-  static double evidence(double chance) { return std::log(1 - kRunwayShare + kRunwayShare / chance); }
-
   /// Numbers the edges that the lines are pieces of: lines that continue each other belong to one.
   void groupPieces() {
     constexpr double kSameEdge = 1.5;  // px

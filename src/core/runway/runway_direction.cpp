@@ -24,11 +24,10 @@ constexpr Sigmas kGate(3);      // between a point and the ground
 // 1 sigma between the two, beyond which they say little of each other.
 constexpr double kVague = 0.4 * kDegree;
 constexpr double kEnough = 0.5;              // of the lines through the other view's point
-constexpr double kSlope = 0.5 * kDegree;     // 1 sigma of a runway's own slope against the ground
-constexpr double kAnyGround = 2 * kDegree;   // the same without stereo
+constexpr double kAnyGround = 2 * kDegree;   // 1 sigma of the ground's slope along the runway, without stereo
 constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
-const double kBeyondDoubt = std::log(1000);  // least margin of one that counts against stereo
-constexpr double kClear = 3;                 // least lead of a runway that outweighs other lines
+const double kBeyondDoubt = -std::log(kLargestDoubt);  // least margin of one that counts against stereo
+constexpr double kClear = 3;                           // least lead of a runway that outweighs other lines
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   Eigen::Matrix3d K = rig.K();
@@ -181,8 +180,7 @@ class Search {
   /// Lines that meet may be those of a town. A runway among them has the say; without one, the point has to
   /// be on the ground.
   Expected<VanishingPoint> ofRunway(const View& view, const Found& found) const {
-    const Expected<RunwayChoice> choice =
-        findRunwayHypothesis(found.straight, view.K, prior(), parameters_.ransac_tolerance);
+    const Expected<RunwayChoice> choice = findRunwayHypothesis(found.straight, view.K, parameters_, prior());
     const bool needs_edges = !ground_->runway.paved;
     if (!choice && needs_edges) return tl::make_unexpected(choice.error());
     if (!choice) {
@@ -215,30 +213,29 @@ class Search {
   double marginOnLevelGround(const View& view, const Found& found) const {
     const Eigen::Vector3d& p = found.point->direction;
     const RunwayPrior prior{normalFromVanishingPoint(*found.point, 0, 0).n,
-                            kAnyGround * kAnyGround * Eigen::Matrix3d::Identity(),
-                            std::nullopt,
-                            std::nullopt,
-                            std::nullopt,
-                            maxYaw()};
-    const Expected<RunwayChoice> choice =
-        findRunwayHypothesis(found.straight, view.K, prior, parameters_.ransac_tolerance);
+                            kAnyGround * kAnyGround * Eigen::Matrix3d::Identity(), std::nullopt, std::nullopt,
+                            std::nullopt};
+    const Expected<RunwayChoice> choice = findRunwayHypothesis(found.straight, view.K, parameters_, prior);
     return choice && angleBetween(p, choice->best.direction) < kSameRunway ? choice->margin : 0;
   }
 
   RunwayPrior prior() const {
     return {normal_,
-            ground_->plane.normalCovariance() + kSlope * kSlope * Eigen::Matrix3d::Identity(),
+            ground_->plane.normalCovariance() + slope() * slope() * Eigen::Matrix3d::Identity(),
             ground_->plane.height(),
             ground_->path,
             ground_->last,
-            maxYaw(),
             ground_->runway};
   }
 
   bool isNearGround(const VanishingPoint& point) const {
-    const double variance = point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
-                            normal_.dot(point.covariance * normal_) + kSlope * kSlope;
-    return kGate.admits(normal_.dot(point.direction), variance);
+    return kGate.admits(normal_.dot(point.direction), heightVariance(point) + slope() * slope());
+  }
+
+  // Of the sine of a point's angle above the ground, without the runway's own slope.
+  double heightVariance(const VanishingPoint& point) const {
+    return point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
+           normal_.dot(point.covariance * normal_);
   }
 
   std::vector<LineSegment> straight(const View& view, const std::vector<LineSegment>& lines) const {
@@ -261,8 +258,7 @@ class Search {
 
   bool isOnGround(const VanishingPoint& point) const {
     const double straightness = parameters_.runway_straightness_deg * kDegree;
-    const double variance = point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
-                            normal_.dot(point.covariance * normal_) + straightness * straightness;
+    const double variance = heightVariance(point) + straightness * straightness;
     return variance <= kVague * kVague && std::abs(normal_.dot(point.direction)) <= kGate.bound(variance);
   }
 
@@ -271,6 +267,8 @@ class Search {
   }
   bool hasRunway() const { return ground_ != nullptr && ground_->has_runway; }
   const Eigen::Vector3d* normal() const { return ground_ ? &normal_ : nullptr; }
+  // 1 sigma of a runway's own slope against the ground.
+  double slope() const { return parameters_.runway_slope_stddev_deg * kDegree; }
   double maxYaw() const { return parameters_.max_yaw_deg * kDegree; }
   HeadingGate gateOf(const View& view) const { return {view.K, normal_, maxYaw()}; }
 

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 #include "estimation/limits.h"
-#include "runway/runway_hypothesis.h"
+#include "runway/runway_object.h"
 #include "runway/runway_threshold.h"
 
 namespace uav_landing {

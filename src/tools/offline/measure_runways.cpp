@@ -27,8 +27,7 @@ using namespace uav_landing;
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kWrong = 1 * kDegree;
-constexpr double kSlope = 0.5 * kDegree;  // 1 sigma of a runway's own
-const double kClear = std::log(1000);     // least margin of a direction that is claimed
+const double kClear = -std::log(kLargestDoubt);  // least margin of a direction that is claimed
 
 struct Options {
   std::string folder;
@@ -98,10 +97,9 @@ std::optional<Eigen::Vector3d> onGround(const Photograph& photo, const Eigen::Ve
   const HeadingGate gate(K, normal, parameters.max_yaw_deg * kDegree);
   const std::vector<LineSegment> lines =
       withoutStripeBias(photo.image, ground, findLines(photo.image, ground, parameters, &gate));
-  const double variance = stddev * stddev + kSlope * kSlope;
-  const RunwayPrior prior{normal,       variance * Eigen::Matrix3d::Identity(), std::nullopt, std::nullopt,
-                          std::nullopt, parameters.max_yaw_deg * kDegree};
-  const Expected<RunwayChoice> choice = findRunwayHypothesis(lines, K, prior, parameters.ransac_tolerance);
+  const double variance = stddev * stddev + std::pow(parameters.runway_slope_stddev_deg * kDegree, 2);
+  const RunwayPrior prior{normal, variance * Eigen::Matrix3d::Identity(), {}, {}, {}};
+  const Expected<RunwayChoice> choice = findRunwayHypothesis(lines, K, parameters, prior);
   if (!choice || choice->margin < kClear) return std::nullopt;
   return choice->best.direction;
 }
@@ -166,10 +164,9 @@ Failure run(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Looks for the runway in single photographs. Each has a row in FOLDER/vanishing_points.csv with image, "
-      "focal_px, "
-      "cx_px, cy_px, vp_u_px and vp_v_px, where its runway vanishes. The ground's normal is that of a camera "
-      "without roll, "
-      "turned at random.",
+      "focal_px, cx_px, cy_px, vp_u_px and vp_v_px, where its runway vanishes. The ground's normal is that "
+      "of "
+      "a camera without roll, turned at random.",
       "measure_runways");
   Options options;
   app.add_option("--photos", options.folder, "FOLDER")->required();

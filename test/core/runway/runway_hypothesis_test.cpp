@@ -22,7 +22,7 @@ struct Scene {
   StereoRig rig = test::makeRig(640, 480, 1.0);
   Pose pose;
   std::vector<LineSegment> lines;
-  double tolerance = 1.5;
+  ApproachAngleParameters parameters;
   RunwayPrior prior;
 
   Scene() {
@@ -32,7 +32,6 @@ struct Scene {
     pose.roll = 3 * kDegree;
     prior.normal = pose.down();
     prior.normal_covariance = Eigen::Matrix3d::Identity() * std::pow(0.5 * kDegree, 2);
-    prior.max_yaw = 30 * kDegree;
   }
   Eigen::Vector2d pixel(const Eigen::Vector2d& point) const {
     const Eigen::Vector3d seen = pose.seen(Eigen::Vector3d(point.x(), point.y(), 0) - pose.position);
@@ -73,7 +72,7 @@ struct Scene {
       add(from, to, i % 3 == 0 ? Brighter::kLeft : Brighter::kRight);
     }
   }
-  Expected<RunwayChoice> find() const { return findRunwayHypothesis(lines, rig.K(), prior, tolerance); }
+  Expected<RunwayChoice> find() const { return findRunwayHypothesis(lines, rig.K(), parameters, prior); }
   /// Of a direction against one on the ground, rad.
   double off(const Eigen::Vector3d& direction, double heading = 0) const {
     return (direction - pose.seen({std::cos(heading), std::sin(heading), 0})).norm();

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "runway/line_pencil.h"
+#include "runway/runway_object.h"
+
+namespace uav_landing {
+
+/// What speaks for and against an object that may be a runway: log-likelihood ratios to two lines that are
+/// there by chance. A pencil is that of the object's direction.
+
+/// The object with these two places of its edges: from where to where both are seen, its members, and its
+/// evidence by its lines. Nothing when the edges are not seen side by side.
+std::optional<RunwayHypothesis> runwayBetween(const GroundLines& lines, const LinePencil& pencil, double left,
+                                              double right);
+
+/// Against a direction off the ground's horizon, or far from the path of flight.
+double againstDirection(const Eigen::Vector3d& direction, const RunwayPrior& prior);
+/// Against a direction other than that of the pair before.
+double againstTurn(const Eigen::Vector3d& direction, const RunwayPrior& prior);
+/// Against an object whose size is not the chart's.
+double againstSize(const RunwayHypothesis& object, const RunwayPrior& prior);
+
+/// Angle of a direction on the ground, left of the optical axis, rad.
+double azimuthOn(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction);
+
+}  // namespace uav_landing
