@@ -181,7 +181,7 @@ uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_t
 
 # landing
 uav_landing_add_gtest(ground_estimate_test test/core/landing/ground_estimate_test.cpp)
-uav_landing_add_gtest(heading_test test/core/landing/heading_test.cpp)
+uav_landing_add_gtest(yaw_failure_test test/core/landing/yaw_failure_test.cpp)
 uav_landing_add_gtest(height_by_ground_test test/core/landing/height_by_ground_test.cpp)
 uav_landing_add_gtest(height_measurement_test test/core/landing/height_measurement_test.cpp)
 uav_landing_add_gtest(height_track_test test/core/landing/height_track_test.cpp)

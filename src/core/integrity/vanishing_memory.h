@@ -23,11 +23,10 @@ class VanishingMemory {
   /// which three have agreed, the last one within a second.
   bool leaps(double stamp, const Direction& seen, const Eigen::Vector3d& axis,
              const ApproachAngleResult::Motion& turn);
-  /// After a leap: the one of the pairs before, where the camera looks now.
+  /// The one of the pairs before, where the camera looks now.
   const std::optional<Direction>& remembered() const { return last_; }
   /// Pairs in a row that have agreed with the one before.
   int agreements() const { return agreements_; }
-  void reset() { *this = VanishingMemory(); }
 
  private:
   void carry(double stamp, const ApproachAngleResult::Motion& turn);

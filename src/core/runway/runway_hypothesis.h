@@ -10,9 +10,6 @@
 
 namespace uav_landing {
 
-/// Chance at most that a direction is that of something else, if it is told.
-constexpr double kLargestDoubt = 1e-3;
-
 /// The hypothesis with the largest lead. margin, lead: by how much its evidence and its lead exceed those of
 /// any in another direction, and those of two lines that are there by chance. The margin is of this pair
 /// alone: that of several pairs may be averaged.

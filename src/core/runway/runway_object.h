@@ -11,6 +11,9 @@ namespace uav_landing {
 /// Widths that runways have, m: from a laboratory's to an airport's.
 constexpr double kNarrowestRunway = 0.4, kWidestRunway = 90;
 
+/// Chance at most that a direction is that of something else, if it is told.
+constexpr double kLargestDoubt = 1e-3;
+
 /// Two edges side by side on the ground that may be those of a runway, with what lies between them.
 struct RunwayHypothesis {
   Eigen::Vector3d direction;  ///< in which the edges vanish, unit, frame of the view

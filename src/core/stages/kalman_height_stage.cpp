@@ -7,7 +7,6 @@
 #include "height/attitude.h"
 #include "height/runway_height.h"
 #include "landing/ground_estimate.h"
-#include "landing/heading.h"
 #include "landing/height_measurement.h"
 #include "landing/height_track.h"
 #include "landing/landing_clock.h"
@@ -18,6 +17,7 @@
 #include "landing/recovery_wait.h"
 #include "landing/sink_rate_watch.h"
 #include "landing/surface_below.h"
+#include "landing/yaw_failure.h"
 #include "runway/position_filter.h"
 
 namespace uav_landing {
@@ -33,7 +33,6 @@ struct Parts {
   RecoveryWait recovery;
   SurfaceBelow below;
   PathDoubt doubt;
-  Heading heading;
   PositionFilter position;
   FailureCounts failures;
 
@@ -169,11 +168,11 @@ struct KalmanHeightStage::Implementation {
   void reportDirections(const PairInput& in, const Ground& ground, const PairVerdict& pair,
                         LandingResult& result) {
     const GroundNormal normal = ground.normalOr(in.normal());
-    VanishingMemory::Direction runway = parts->heading.follow(in, normal.n);
     result.other_runway_probability = in.approach.other_runway_probability;
     result.yaw_failure = yawFailure(in, pair);
-    if (result.yaw_failure) runway.direction.setConstant(kUnknown);
-    reportAttitude(normal.n, normal.covariance, runway.direction, runway.covariance, result);
+    Eigen::Vector3d runway = in.approach.vanishing_direction;
+    if (result.yaw_failure) runway.setConstant(kUnknown);
+    reportAttitude(normal.n, normal.covariance, runway, in.approach.vanishing_covariance, result);
   }
 
   // A step that the velocity before contradicts may be of another period of a pattern, or of the other

@@ -1,30 +1,9 @@
-#include "landing/heading.h"
-
-#include <Eigen/Geometry>
+#include "landing/yaw_failure.h"
 
 #include "base/text.h"
+#include "runway/runway_object.h"
 
 namespace uav_landing {
-namespace {
-
-// Chance at most that the direction is that of something else.
-constexpr double kLargestDoubt = 1e-3;
-
-}  // namespace
-
-VanishingMemory::Direction Heading::follow(const PairInput& in, const Eigen::Vector3d& normal) {
-  constexpr int kMostHeld = 2;
-  const VanishingMemory::Direction seen{in.approach.vanishing_direction, in.approach.vanishing_covariance};
-  if (!in.repeated()) {  // else it is as it was
-    const Eigen::Vector3d across = normal.cross(seen.direction).normalized();
-    held_ = memory_.leaps(in.approach.stamp, seen, across, in.turn) ? held_ + 1 : 0;
-    if (held_ > kMostHeld) {
-      memory_.reset();
-      held_ = 0;
-    }
-  }
-  return held_ > 0 ? *memory_.remembered() : seen;
-}
 
 Failure yawFailure(const PairInput& in, const PairVerdict& pair) {
   const ApproachAngleResult& approach = in.approach;
