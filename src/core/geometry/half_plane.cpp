@@ -1,5 +1,6 @@
 #include "geometry/half_plane.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -25,6 +26,13 @@ void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& k
     if (kept.data != mask.data) std::copy(mask.ptr<uchar>(v) + first, mask.ptr<uchar>(v) + last, row + first);
     std::fill(row + last, row + mask.cols, uchar(0));
   }
+}
+
+void keepBelowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal,
+                      cv::Mat& kept) {
+  const double margin = 0.01 * mask.rows;
+  const Eigen::Vector3d line = K.inverse().transpose() * normal;
+  keepHalfPlane(mask, line.x(), line.y(), line.z() - margin * line.head<2>().norm(), kept);
 }
 
 }  // namespace uav_landing

@@ -35,18 +35,6 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   return K;
 }
 
-// The mask without what lies above the horizon (K^-T n) or less than a margin below it, where the far end of
-// everything on the ground merges with what stands behind it. Good until the memory is used again.
-cv::Mat belowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal,
-                     ImageMemory& memory) {
-  const double margin = 0.01 * mask.rows;
-  const Eigen::Vector3d line = K.inverse().transpose() * normal;
-  const double scale = line.head<2>().norm();
-  cv::Mat ground = memory.image(mask.size());
-  keepHalfPlane(mask, line.x(), line.y(), line.z() - margin * scale, ground);
-  return ground;
-}
-
 // What lines are looked for in.
 struct View {
   const cv::Mat& image;
@@ -262,8 +250,11 @@ class Search {
     return variance <= kVague * kVague && std::abs(normal_.dot(point.direction)) <= kGate.bound(variance);
   }
 
+  // Good until the next call.
   cv::Mat groundPart(const View& view) const {
-    return belowHorizon(view.mask, view.K, normal_, memory_.ground);
+    cv::Mat ground = memory_.ground.image(view.mask.size());
+    keepBelowHorizon(view.mask, view.K, normal_, ground);
+    return ground;
   }
   bool hasRunway() const { return ground_ != nullptr && ground_->has_runway; }
   const Eigen::Vector3d* normal() const { return ground_ ? &normal_ : nullptr; }

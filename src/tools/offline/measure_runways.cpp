@@ -2,7 +2,6 @@
 // and wrong.
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -90,10 +89,8 @@ std::optional<Eigen::Vector3d> onGround(const Photograph& photo, const Eigen::Ve
   const Eigen::Matrix3d K = photo.rig.K();
   const cv::Mat everywhere =
       erodeMask(cv::Mat(photo.image.size(), CV_8UC1, cv::Scalar(255)), parameters.window_radius + 2);
-  const Eigen::Vector3d horizon = K.inverse().transpose() * normal;
   cv::Mat ground(photo.image.size(), CV_8UC1);
-  keepHalfPlane(everywhere, horizon.x(), horizon.y(),
-                horizon.z() - 0.01 * photo.image.rows * horizon.head<2>().norm(), ground);
+  keepBelowHorizon(everywhere, K, normal, ground);
   const HeadingGate gate(K, normal, parameters.max_yaw_deg * kDegree);
   const std::vector<LineSegment> lines =
       withoutStripeBias(photo.image, ground, findLines(photo.image, ground, parameters, &gate));

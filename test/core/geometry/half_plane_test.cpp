@@ -44,5 +44,25 @@ TEST(KeepHalfPlane, KeepsNothingOfNone) {
     }
 }
 
+// A camera of 100 px that looks down by atan(0.2): its horizon is 20 px above the middle row, and one px of
+// 100 rows more is left out.
+TEST(HalfPlane, BelowTheHorizonIsWhatTheGroundCanBeSeenIn) {
+  const cv::Mat mask(100, 80, CV_8UC1, cv::Scalar(255));
+  Eigen::Matrix3d K;
+  K << 100, 0, 40, 0, 100, 50, 0, 0, 1;
+  cv::Mat kept;
+  keepBelowHorizon(mask, K, Eigen::Vector3d(0, 1, 0.2).normalized(), kept);
+  for (const int u : {0, 40, 79}) {
+    EXPECT_EQ(kept.at<uchar>(30, u), 0) << u;
+    EXPECT_EQ(kept.at<uchar>(32, u), 255) << u;
+  }
+  // Rolled by atan(0.5), right side down in the picture.
+  keepBelowHorizon(mask, K, Eigen::Vector3d(-0.5, 1, 0).normalized(), kept);
+  EXPECT_EQ(kept.at<uchar>(68, 79), 0);
+  EXPECT_EQ(kept.at<uchar>(72, 79), 255);
+  EXPECT_EQ(kept.at<uchar>(29, 0), 0);
+  EXPECT_EQ(kept.at<uchar>(33, 0), 255);
+}
+
 }  // namespace
 }  // namespace uav_landing

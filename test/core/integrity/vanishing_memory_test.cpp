@@ -120,12 +120,6 @@ TEST(VanishingMemory, TellsWhereTheRunwayIsWhileOtherLinesAreSeen) {
   EXPECT_NEAR(variance, std::pow(kStddev, 2) + std::pow(0.01 * kDegree, 2), 1e-3 * variance);
 }
 
-TEST(VanishingMemory, ForgetsAtAReset) {
-  Flight flight = knownRunway();
-  flight.memory.reset();
-  EXPECT_FALSE(flight.see(-4));
-}
-
 TEST(VanishingMemory, ATurnThatNobodySawMakesTheDirectionAsUncertain) {
   Flight flight = knownRunway();
   ApproachAngleResult::Motion unknown = flight.turn(0);
