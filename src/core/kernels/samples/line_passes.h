@@ -21,10 +21,12 @@ struct LineColumns {
 /// Instead of a fit, which is 1 at most.
 constexpr double kTopAbove = 2;
 
-/// How well each of the first count lines passes through the homogeneous point (x, y, z): 1 when exactly, 0
-/// when its ends miss the line from its middle to the point by the tolerance, below that when they miss it by
-/// more, -1 when the point is too near; kTopAbove when its top is above both lines of this slope (rise over
-/// run, falling to both sides) through the point.
+/// How well each of the first count lines passes through the homogeneous point (x, y, z).
+///
+/// The fit is 1 when the line passes exactly. It is 0 when its ends miss the line from its middle to the
+/// point by the tolerance, and below 0 when they miss it by more. It is -1 when the point is too near. It is
+/// kTopAbove when the top of the line lies above every line through the point that is no steeper than the
+/// slope (rise over run).
 void fitLines(const LineColumns& lines, double x, double y, double z, double slope, int count, double* fit);
 
 }  // namespace uav_landing
