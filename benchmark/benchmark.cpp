@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <opencv2/calib3d.hpp>
@@ -21,6 +22,7 @@
 #include "peers.h"
 #include "pending_file.h"
 #include "resources.h"
+#include "searching.h"
 #include "sequences.h"
 #include "times.h"
 #include "uav_landing/parameters/parameter_file.h"
@@ -160,7 +162,37 @@ void print(const Measurement& m) {
   std::cout << "\n" << std::flush;
 }
 
-void writeJson(const std::string& path, const std::vector<Measurement>& measurements) {
+void print(const std::vector<SearchingTimes>& searching) {
+  if (searching.empty()) return;
+  std::cout
+      << "\n### Searching\n\n| CPU ms a pair, whole sequence | steady | median | 95 % | worst | worst over "
+         "steady |\n|---|---|---|---|---|---|\n"
+      << std::fixed << std::setprecision(2);
+  for (const SearchingTimes& times : searching) {
+    std::cout << "| " << times.sequence << " " << times.size.width << "x" << times.size.height << " | "
+              << times.steady << " | " << times.pairs.median() << " | " << times.pairs.quantile(0.95) << " | "
+              << times.pairs.quantile(1) << " | " << times.worstOverSteady() << " |\n";
+  }
+  std::cout << std::flush;
+}
+
+void write(const std::vector<SearchingTimes>& searching, std::ostream& out) {
+  out << "\"searching\": [";
+  const char* separator = "\n";
+  for (const SearchingTimes& times : searching) {
+    out << separator << "{\"name\": \"" << times.sequence << "\", \"width\": " << times.size.width
+        << ", \"height\": " << times.size.height << ", \"steady\": " << times.steady << ", ";
+    times.pairs.write(out);
+    out << ", \"pairs\": [";
+    for (size_t i = 0; i < times.pairs.ms.size(); ++i) out << (i > 0 ? ", " : "") << times.pairs.ms[i];
+    out << "]}";
+    separator = ",\n";
+  }
+  out << "], ";
+}
+
+void writeJson(const std::string& path, const std::vector<Measurement>& measurements,
+               const std::vector<SearchingTimes>& searching) {
   PendingFile pending(path);
   std::ofstream out(pending.temporary());
   const auto list = [&out](const std::vector<std::pair<std::string, Times>>& all) {
@@ -173,7 +205,9 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
     }
   };
   const double slope = growth(measurements);
-  out << "{\"growth\": " << (std::isfinite(slope) ? std::to_string(slope) : "null") << ", \"sequences\": [";
+  out << "{\"growth\": " << (std::isfinite(slope) ? std::to_string(slope) : "null") << ", ";
+  write(searching, out);
+  out << "\"sequences\": [";
   for (size_t i = 0; i < measurements.size(); ++i) {
     const Measurement& m = measurements[i];
     out << (i > 0 ? ",\n" : "\n") << "{\"name\": \"" << m.sequence << "\", \"width\": " << m.size.width
@@ -198,9 +232,16 @@ void writeJson(const std::string& path, const std::vector<Measurement>& measurem
 struct Options {
   std::string config = UAV_LANDING_SOURCE_DIR "/config/simulator/full_scale.yaml", parameters, json;
   std::vector<int> widths = {320, 640, 1280, 2560};
-  std::vector<std::string> datasets;
+  std::vector<std::string> datasets, searching;
+  std::string steady = UAV_LANDING_SOURCE_DIR "/config/simulator/demo.yaml";
   int pairs = 60;
 };
+
+bool isConfig(const std::string& input) {
+  const std::string ending = ".yaml";
+  return input.size() > ending.size() &&
+         input.compare(input.size() - ending.size(), ending.size(), ending) == 0;
+}
 
 Failure run(const Options& options) {
   Parameters parameters;
@@ -224,8 +265,18 @@ Failure run(const Options& options) {
     if (const Failure failure = take(simulatedSequence(options.config, width, options.pairs))) return failure;
   for (const std::string& folder : options.datasets)
     if (const Failure failure = take(recordedSequence(folder, options.pairs))) return failure;
+  std::vector<SearchingTimes> searching;
+  for (const std::string& input : options.searching) {
+    const Expected<Sequence> sequence =
+        isConfig(input) ? wholeApproach(input) : recordedSequence(input, std::numeric_limits<int>::max());
+    if (!sequence) return sequence.error();
+    const Expected<SearchingTimes> times = measureSearching(*sequence, options.steady, parameters);
+    if (!times) return times.error();
+    searching.push_back(*times);
+  }
+  print(searching);
   std::cout << "\nTime grows with pixels to the power of " << growth(measurements) << "\n";
-  if (!options.json.empty()) writeJson(options.json, measurements);
+  if (!options.json.empty()) writeJson(options.json, measurements, searching);
   return {};
 }
 
@@ -238,6 +289,11 @@ int main(int argc, char** argv) {
   app.add_option("--simulate", options.config, "what the simulator shows")->capture_default_str();
   app.add_option("--widths", options.widths, "of the simulated images, px")->capture_default_str();
   app.add_option("--datasets", options.datasets, "dataset folders to measure on as well");
+  app.add_option("--searching", options.searching,
+                 "the simulator's files and dataset folders to measure pair by pair, from the first one on");
+  app.add_option("--steady", options.steady,
+                 "the simulator's file with the flight that these are compared with")
+      ->capture_default_str();
   app.add_option("--pairs", options.pairs, "of each sequence")
       ->capture_default_str()
       ->check(CLI::Range(4, 10000));

@@ -25,6 +25,12 @@ struct Sequence {
 /// rectification. config: file of the simulator; its focal lengths are scaled with the width.
 Expected<Sequence> simulatedSequence(const std::string& config, int width, int pairs);
 
+/// The same by pictures of this size, of which the upper and lower rows are cut away or added.
+Expected<Sequence> simulatedSequence(const std::string& config, const cv::Size& size, int pairs);
+
+/// All pairs of a simulated approach as its file describes them.
+Expected<Sequence> wholeApproach(const std::string& config);
+
 /// The first pairs of a dataset folder.
 Expected<Sequence> recordedSequence(const std::string& folder, int pairs);
 

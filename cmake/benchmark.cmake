@@ -4,7 +4,7 @@ if(UAV_LANDING_BENCHMARK)
   find_package(stereo_image_proc REQUIRED)  # what the chain is compared with
   add_executable(benchmark
     benchmark/benchmark.cpp benchmark/heap.cpp benchmark/opencv_rectifier.cpp benchmark/paper_pipeline.cpp benchmark/peers.cpp
-    benchmark/resources.cpp benchmark/sequences.cpp)
+    benchmark/resources.cpp benchmark/searching.cpp benchmark/sequences.cpp)
   add_executable(nodelet_benchmark
     benchmark/copied_bytes.cpp benchmark/heap.cpp benchmark/nodelet_benchmark.cpp benchmark/nodelet_chain.cpp
     benchmark/sequences.cpp)

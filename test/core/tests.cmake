@@ -111,6 +111,8 @@ uav_landing_add_gtest(plane_tracker_test test/core/stereo/plane/plane_tracker_te
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_fit_test test/core/stereo/plane/plane_fit_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(plane_following_test test/core/stereo/plane/plane_following_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_search_test test/core/stereo/plane/plane_search_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(region_planes_test test/core/stereo/plane/region_planes_test.cpp)

@@ -21,6 +21,7 @@ struct StereoDepthParameters {
   bool warp_window = true;
   double max_disparity = 0.75;
   double search_radius = 6.0;
+  bool search_at_once = false;
   double min_zncc = 0.7;
   double uniqueness = 0.9;
   double left_right_tolerance = 0.7;
@@ -59,6 +60,9 @@ struct StereoDepthParameters {
     v.number("max_disparity", max_disparity, 0.05, 1.0, "image widths", "largest disparity searched");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched to both sides of the disparity that the previous plane predicts");
+    v.flag("search_at_once", search_at_once,
+           "a plane about which nothing is known is searched for within one pair, however long that takes; "
+           "else over some pairs, so that none takes much longer than others. For recordings of few pairs");
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match; a weaker one is rejected");
     v.number("uniqueness", uniqueness, 0.1, 1.0, "",
              "a second peak at least this good, as a share of the best, makes a match ambiguous, as "

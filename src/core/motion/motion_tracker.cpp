@@ -19,9 +19,6 @@ namespace {
 // Images kept however close their stamps are: 0.5 s of 100 Hz.
 constexpr size_t kMostFrames = 50;
 
-// Images whose memory is taken beforehand: 0.5 s of 30 Hz.
-constexpr size_t kMostAtOnce = 17;
-
 // Of the height, that a step is predicted to sink.
 constexpr double kMostSunk = 0.5;
 
@@ -101,18 +98,6 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
   if (frame.image.coarse.empty()) frame.image.coarse = std::move(spare_coarse_);
   frame.image.assign(left);
   return frame;
-}
-
-// What the frames of the window will need, as soon as their rate is known: with each of the first dozen pairs
-// it would take longer to get memory from the system than to fill it.
-void MotionTracker::takeMemory(const Frame& now) {
-  const double duration = now.stamp - past_.back().stamp;
-  const double kept = std::floor((parameters_.angle_window + kWindowSlack) / duration) + 1;
-  const size_t needed = static_cast<size_t>(std::min<double>(kMostAtOnce, kept));
-  while (past_.size() + spare_.size() < needed) {
-    spare_.emplace_back();
-    spare_.back().fine = cv::Mat::zeros(now.image.fine.size(), now.image.fine.type());
-  }
 }
 
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
@@ -284,7 +269,6 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   last_window_ = result.window;
   last_step_ = result.unproven;
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
-  if (past_.size() == 1) takeMemory(now);
   // Wide searches, at the coarse level, are in the frame before only.
   if (!past_.empty() && past_.back().image.factor > 1) spare_coarse_ = std::move(past_.back().image.coarse);
   past_.push_back(std::move(now));

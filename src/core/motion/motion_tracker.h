@@ -43,6 +43,8 @@ class MotionTracker {
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
                  Timings& timings, const AttitudePrior& imu = {}, GroundProof proof = GroundProof::kGiven);
+  /// Whether the last step is known, so that the next one needs no search.
+  bool hasLast() const { return last_step_.has_value(); }
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when
@@ -67,7 +69,6 @@ class MotionTracker {
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);
-  void takeMemory(const Frame& now);
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,

@@ -155,7 +155,7 @@ Expected<MotionEstimate> StepSearch::estimate(const StepImages& step, const Came
 }
 
 CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix3d& R) {
-  constexpr size_t kCorners = 90;
+  constexpr size_t kCorners = 60;
   constexpr double kEnough = 0.2;  // of them, that agree
   const std::vector<TrackedCorner> some = thinned(step.corners, kCorners);
   const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
@@ -184,19 +184,21 @@ CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix
 // Lines along the runway look alike wherever along them they are looked for, so that they agree with any
 // speed, the more of them the slower it is; how much all corners look alike tells which one is right.
 CameraMotion StepSearch::mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const {
+  constexpr size_t kCorners = 60;
   constexpr int kFollowed = 3;  // times from where the last one led: it falls short of what is right by half
+  const std::vector<TrackedCorner> some = thinned(step.corners, kCorners);
   CameraMotion best = guesses.front();
   double most = 0;
   std::vector<TemporalMatch> matches;
   for (const CameraMotion& guess : guesses) {
     CameraMotion motion = guess;
     for (int time = 0; time < kFollowed; ++time) {
-      matches = match(step, step.corners, motion, 0, std::move(matches));
+      matches = match(step, some, motion, 0, std::move(matches));
       const Expected<MotionEstimate> followed = estimate(step, motion, matches);
       if (!followed) break;
       motion = followed->motion;
     }
-    const double alike = likenessOverTime(rig_, step.now, step.then, mask_, step.corners, step.normal, motion,
+    const double alike = likenessOverTime(rig_, step.now, step.then, mask_, some, step.normal, motion,
                                           parameters_.window_radius);
     if (alike > most) {
       most = alike;

@@ -77,6 +77,10 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     straightenPlan(result);
+    if (isSearching(stereo) && !tracker.hasLast()) {
+      waitForPlane(stamp, left, result);
+      return result;
+    }
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
@@ -101,6 +105,23 @@ struct ApproachAngleStage::Implementation {
     last = {result.stamp, std::nullopt, std::nullopt};
     if (!result.step.failure && t.allFinite()) last.path = t.normalized();
     if (result.vanishing_direction.allFinite()) last.runway = result.vanishing_direction;
+  }
+
+  // A first step is searched for over the ground, so it waits until that is known or known not to be there.
+  // Both searches in one pair would take too long.
+  bool isSearching(const StereoDepthResult& stereo) const {
+    return parameters.use_stereo && stereo.from_search &&
+           (!stereo.failure || stereo.failure.reason == Reason::kNotYet);
+  }
+
+  void waitForPlane(double stamp, const cv::Mat& left, ApproachAngleResult& result) {
+    result.failure = {Reason::kNotYet, "the motion is searched for when the ground is known"};
+    result.step.failure = result.window.failure = result.failure;
+    result.runway.failure = result.runway.threshold_failure = result.failure;
+    last = {};
+    identity.skip(stamp);
+    tracker.skip(stamp, left);
+    runway.skip(stamp);
   }
 
   void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {

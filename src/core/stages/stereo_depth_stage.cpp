@@ -1,5 +1,7 @@
 #include "uav_landing/stages/stereo_depth_stage.h"
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,8 +24,9 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// In how many searches that find nothing one is also tried with left and right swapped.
-constexpr int kSwapCheckInterval = 10;
+// From so much time between two pairs on, s, a search is done within one: there is time, and the next pair is
+// too far away to go on with it.
+constexpr double kRare = 0.3;
 // By how much corners may be more wrong than they claim where texture is hardly more than noise: gradients in
 // their windows are the noise's own then. Measured: 1.6 in a hundred pairs of one simulated scene.
 constexpr double kNoisyCorners = 2.0;
@@ -43,10 +46,9 @@ struct StereoDepthStage::Implementation {
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   RepeatedImage left_repeated, right_repeated;
-  CornerMemory search_memory;
+  PlaneSearch search;
+  Failure not_found;  // by the last search; none where there was none
   SurfaceMemory surface_memory;
-  int failed_searches = 0;
-  bool looks_swapped = false;
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p, std::unique_ptr<CornerMatcher> given)
@@ -56,7 +58,8 @@ struct StereoDepthStage::Implementation {
         matcher(given ? std::move(given) : makeRowMatcher(p)),
         tracker(rig.rig, p, limits, cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner),
                 *matcher),
-        rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev) {
+        rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev),
+        search(rig, coarseFactor(rig.rig.size), p, limits) {
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -69,17 +72,16 @@ struct StereoDepthStage::Implementation {
     StereoDepthResult result;
     result.stamp = stamp;
     tracker.begin(stamp);
+    // The pair that is being searched is far away by now.
+    if (tracker.duration() > kRare) search.stop();
+    if (std::isinf(tracker.duration())) search.reset();
     result.failure = checkPair(model, left_image, right_image);
     if (result.failure.reason != Reason::kInputInvalid) {
       result.left_repeated = left_repeated.check(left_image);
       result.right_repeated = right_repeated.check(right_image);
     }
     if (!result.failure) estimate(left_image, right_image, result);
-    if (!result.failure) {
-      failed_searches = 0;
-    } else {
-      tracker.miss();
-    }
+    if (result.failure) tracker.miss();
     return result;
   }
 
@@ -156,7 +158,12 @@ struct StereoDepthStage::Implementation {
   MatchedCorners searchAndMatch(const cv::Mat& left_image, const cv::Mat& right_image,
                                 StereoDepthResult& result) {
     const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
-    if (!followed) extend(left_image, right_image, FirstRows());
+    if (followed) {
+      search.stop();
+      not_found = {};
+    } else {
+      extend(left_image, right_image, FirstRows());
+    }
     const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(result);
     if (!start) {
       result.failure = start.error();
@@ -169,24 +176,41 @@ struct StereoDepthStage::Implementation {
   Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
-    const Consensus found = searchPlane(coarse, parameters, limits, search_memory);
-    if (found.found || failed_searches % kSwapCheckInterval == 0) {
-      // Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
-      const Consensus behind = searchPlane(swapped(coarse), parameters, limits, search_memory);
-      looks_swapped = behind.found && behind.score > found.score;
+    switch (search.advance(coarse, searchBudget())) {
+      case PlaneSearch::State::kGoesOn:
+        return tl::make_unexpected(not_found ? not_found : stillSearching());
+      case PlaneSearch::State::kFound:
+        not_found = {};
+        return foundPlane();
+      case PlaneSearch::State::kSwapped:
+        not_found = {Reason::kNegativeDisparity,
+                     "disparities are negative: left and right images are swapped, or the baseline has the "
+                     "wrong sign"};
+        break;
+      case PlaneSearch::State::kNotFound:
+        not_found = {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+        break;
     }
-    if (found.found && !looks_swapped) return found.g;
-    ++failed_searches;
-    return tl::make_unexpected(whyNotFound());
+    return tl::make_unexpected(not_found);
   }
 
-  Failure whyNotFound() const {
-    if (looks_swapped) {
-      return {
-          Reason::kNegativeDisparity,
-          "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
-    }
-    return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+  double searchBudget() const {
+    // Of the first pair nobody knows when the next one comes.
+    const bool rare = tracker.duration() > kRare && std::isfinite(tracker.duration());
+    if (parameters.search_at_once || rare) return std::numeric_limits<double>::infinity();
+    return PlaneSearch::budgetOf(model.rig.size);
+  }
+
+  static Failure stillSearching() {
+    return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
+  }
+
+  // In this pair.
+  Expected<Eigen::Vector3d> foundPlane() {
+    if (search.beganHere()) return search.plane();
+    const std::optional<Eigen::Vector3d> followed = tracker.followFrom(search.plane(), coarse);
+    if (!followed) return tl::make_unexpected(stillSearching());
+    return *followed;
   }
 
   // With their plane, unless the result says why there is none.
@@ -307,8 +331,8 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 
 void StereoDepthStage::reset() {
   implementation_->tracker.forget();
-  implementation_->looks_swapped = false;
-  implementation_->failed_searches = 0;
+  implementation_->search.reset();
+  implementation_->not_found = {};
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();
   implementation_->left_repeated.reset();

@@ -32,7 +32,10 @@ struct Scene {
   GroundRenderer ground;
   StereoDepthParameters parameters;
 
-  explicit Scene(unsigned seed, double grain = 0.01) : ground(seed) { ground.grain = grain; }
+  explicit Scene(unsigned seed, double grain = 0.01) : ground(seed) {
+    ground.grain = grain;
+    parameters.search_at_once = true;
+  }
 
   Pair render(const Pose& pose, const Exposure& left = {}, const Exposure& right = {}) const {
     return {ground.left(rig, pose, left), ground.right(rig, pose, right)};
@@ -426,6 +429,71 @@ TEST(StereoDepthStage, HasNoPlaneOfAPairThatDoesNotMatchAfterSteadyFlight) {
   EXPECT_TRUE(result.failure);
   EXPECT_FALSE(result.plane.valid());
   for (const StereoDepthResult::Point& point : result.points) EXPECT_FALSE(point.on_plane);
+}
+
+// In half a second while it sinks, of pairs at this rate.
+StereoDepthResult searchOverPairs(const Scene& scene, StereoDepthStage& stage, double rate, Pose& pose) {
+  StereoDepthResult result;
+  for (int i = 0; i <= 0.5 * rate; ++i) {
+    pose = makePose(2 - 0.4 * i / rate, -8 + 2 * i / rate, 0);
+    const Pair pair = scene.render(pose);
+    result = stage.process(1 + i / rate, pair.left, pair.right);
+    if (!result.failure) break;
+    EXPECT_EQ(result.failure.reason, Reason::kNotYet) << result.failure.message();
+  }
+  return result;
+}
+
+TEST(StereoDepthStage, SearchesOverSomePairsAndFindsThePlaneOfTheLast) {
+  for (const double rate : {10, 20, 50}) {
+    Scene scene(14);
+    scene.parameters.search_at_once = false;
+    StereoDepthStage stage(scene.model, scene.parameters);
+    Pose pose;
+    const StereoDepthResult result = searchOverPairs(scene, stage, rate, pose);
+    expectPose(result, pose, "searched");
+    EXPECT_TRUE(result.from_search);
+    EXPECT_LT(pose.height(), 2) << "not with the first pair";
+  }
+}
+
+TEST(StereoDepthStage, SearchesWithinOnePairWherePairsAreRare) {
+  Scene scene(14);
+  scene.parameters.search_at_once = false;
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pose pose = makePose(2, -8, 0);
+  const Pair pair = scene.render(pose), other = scene.render(makePose(3, -8, 0));
+  EXPECT_EQ(stage.process(1, other.left, other.right).failure.reason, Reason::kNotYet);
+  expectPose(stage.process(1.5, pair.left, pair.right), pose, "half a second later");
+}
+
+TEST(StereoDepthStage, ForgetsThePairThatItSearchesWhenStampsJumpBackOrAfterAReset) {
+  Scene scene(14);
+  scene.parameters.search_at_once = false;
+  const Pair high = scene.render(makePose(6, -8, 0));
+  for (const bool reset : {false, true}) {
+    StereoDepthStage stage(scene.model, scene.parameters);
+    EXPECT_TRUE(stage.process(9, high.left, high.right).failure);
+    if (reset) stage.reset();
+    Pose pose;
+    expectPose(searchOverPairs(scene, stage, 20, pose), pose, "after another pair");
+  }
+}
+
+TEST(StereoDepthStage, SaysOverSomePairsThatTheImagesAreSwapped) {
+  Scene scene(10);
+  scene.parameters.search_at_once = false;
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  Reason reason = Reason::kNone;
+  for (int i = 0; i < 20; ++i) {
+    const Reason now = stage.process(1 + 0.05 * i, pair.right, pair.left).failure.reason;
+    const bool was_told = reason == Reason::kNegativeDisparity;
+    reason = now;
+    if (i >= 10 || was_told) {
+      EXPECT_EQ(reason, Reason::kNegativeDisparity) << i;
+    }
+  }
 }
 
 TEST(StereoDepthStage, RefusesAnotherSize) {

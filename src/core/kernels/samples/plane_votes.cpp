@@ -8,28 +8,76 @@ namespace uav_landing {
 VoteColumns::VoteColumns(size_t count)
     : x(wholeDoubleLanes(count), 0), y(x), u(x.size(), kNowhere), value(u) {}
 
-UAV_LANDING_MULTIVERSION Votes voteForPlane(const VoteColumns& columns, const LinearValue& plane,
-                                            const VoteRules& rules) {
-  const double x_slope = plane.x_slope, y_slope = plane.y_slope, constant = plane.constant;
-  const double unit = 1 / (rules.tolerance * rules.tolerance), far = 2 * rules.tolerance;
-  const double least = rules.least, offset = rules.offset;
-  const DoubleLanes none{}, below = none + rules.below, above = none + rules.above;
+namespace {
+
+// What samples on a line of lanes say of a plane.
+struct Voter {
+  double x_slope, y_slope, constant, unit, far, least, offset;
+  DoubleLanes below, above;
   DoubleLanes agreeing{}, penalty{};
-  for (size_t i = 0; i < columns.x.size(); i += kDoubleLanes) {
-    DoubleLanes x, y, u, value;
+
+  [[gnu::always_inline]] Voter(const LinearValue& plane, const VoteRules& rules)
+      : x_slope(plane.x_slope),
+        y_slope(plane.y_slope),
+        constant(plane.constant),
+        unit(1 / (rules.tolerance * rules.tolerance)),
+        far(2 * rules.tolerance),
+        least(rules.least),
+        offset(rules.offset),
+        below(DoubleLanes{} + rules.below),
+        above(DoubleLanes{} + rules.above) {}
+
+  [[gnu::always_inline]] void expect(const VoteColumns& columns, size_t i, DoubleLanes& expected) const {
+    DoubleLanes x, y;
     load(&columns.x[i], x);
     load(&columns.y[i], y);
+    expected = x_slope * x + y_slope * y + constant;
+  }
+  // nearest and largest: what the values of a sample have over the one that is expected.
+  [[gnu::always_inline]] void add(const VoteColumns& columns, size_t i, const DoubleLanes& expected,
+                                  const DoubleLanes& nearest, const DoubleLanes& largest) {
+    const DoubleLanes none{};
+    DoubleLanes u;
     load(&columns.u[i], u);
-    load(&columns.value[i], value);
-    const DoubleLanes expected = x_slope * x + y_slope * y + constant, residual = value - expected;
-    const DoubleLanes missing = 1 - residual * residual * unit;
+    const DoubleLanes missing = 1 - nearest * nearest * unit;
     const auto counts = expected >= least;
     const auto seen = u - expected >= offset;
-    const DoubleLanes price = residual < -far ? below : above;
+    const DoubleLanes price = largest < -far ? below : above;
     agreeing += (counts & (missing > 0)) ? missing : none;
     penalty += (counts & seen & (missing <= 0)) ? price : none;
   }
-  return {sum(agreeing), sum(penalty)};
+};
+
+}  // namespace
+
+UAV_LANDING_MULTIVERSION Votes voteForPlane(const VoteColumns& columns, const LinearValue& plane,
+                                            const VoteRules& rules) {
+  Voter voter(plane, rules);
+  const size_t ambiguous = columns.others.empty() ? 0 : columns.others.front().size();
+  for (size_t i = 0; i < ambiguous; i += kDoubleLanes) {
+    DoubleLanes expected, nearest, largest;
+    voter.expect(columns, i, expected);
+    load(&columns.value[i], nearest);
+    nearest -= expected;
+    largest = nearest;
+    for (const std::vector<double>& others : columns.others) {
+      if (i >= others.size()) break;
+      DoubleLanes other;
+      load(&others[i], other);
+      other -= expected;
+      nearest = other * other < nearest * nearest ? other : nearest;
+      largest = other > largest ? other : largest;
+    }
+    voter.add(columns, i, expected, nearest, largest);
+  }
+  for (size_t i = ambiguous; i < columns.x.size(); i += kDoubleLanes) {
+    DoubleLanes expected, residual;
+    voter.expect(columns, i, expected);
+    load(&columns.value[i], residual);
+    residual -= expected;
+    voter.add(columns, i, expected, residual, residual);
+  }
+  return {sum(voter.agreeing), sum(voter.penalty)};
 }
 
 }  // namespace uav_landing

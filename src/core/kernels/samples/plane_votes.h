@@ -11,6 +11,9 @@ struct VoteColumns {
   static constexpr double kNowhere = -1e18;
 
   std::vector<double> x, y, u, value;
+  /// Other values that the first samples may have instead, whole lanes of them: in each of these columns one
+  /// for some of the samples that the column before has one for.
+  std::vector<std::vector<double>> others;
 
   explicit VoteColumns(size_t count);
 };
@@ -35,7 +38,8 @@ struct Votes {
   double net() const { return agreeing - penalty; }
 };
 
-/// The votes of all samples.
+/// The votes of all samples. One with several values votes with that which is nearest to the plane, and is
+/// too small when all of them are.
 Votes voteForPlane(const VoteColumns& columns, const LinearValue& plane, const VoteRules& rules);
 
 }  // namespace uav_landing

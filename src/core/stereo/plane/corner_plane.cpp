@@ -48,7 +48,7 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
                 std::to_string(samples.size()) + " matches of " + std::to_string(corners) +
                     " corners, at least " + std::to_string(limits.min_points) + " needed"});
   }
-  const Consensus consensus = findPlane(rig, samples, limits, kTrials, nullptr, true, &expected);
+  const Consensus consensus = findPlane(rig, samples, limits, {kTrials, true, std::nullopt, expected});
   if (!consensus.found) {
     return tl::make_unexpected(Failure{
         Reason::kNoPlane, "no plausible ground plane in " + std::to_string(samples.size()) + " matches"});

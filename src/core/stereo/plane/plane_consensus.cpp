@@ -1,12 +1,14 @@
 #include "stereo/plane/plane_consensus.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "estimation/ransac.h"
+#include "kernels/lanes/lanes.h"
 #include "kernels/samples/plane_votes.h"
 #include "uav_landing/geometry/ground_plane.h"
 
@@ -23,69 +25,60 @@ constexpr double kRollPenalty = 1.0;
 // Least disparity of the plane at a sample that counts: nearer the horizon everything agrees.
 constexpr double kMinDisparity = 1.0;
 
-// The samples: x and y are derivatives of the disparity by the plane vector; by its third component it is fb.
-// Of several disparities of a sample the first one.
-VoteColumns columnsOf(const StereoRig& rig, const std::vector<DisparitySample>& samples) {
-  VoteColumns columns(samples.size());
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const Eigen::Vector3d row = rig.fb() * rig.ray(samples[i].u, samples[i].v);
-    columns.x[i] = row.x();
-    columns.y[i] = row.y();
-    columns.u[i] = samples[i].u;
-    columns.value[i] = samples[i].disparity;
-  }
-  return columns;
+// Places of the samples, those with the most disparities first.
+std::vector<size_t> orderOf(const std::vector<DisparitySample>& samples) {
+  std::vector<size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return samples[a].others.size() > samples[b].others.size(); });
+  return order;
 }
 
-bool areAmbiguous(const std::vector<DisparitySample>& samples) {
-  return std::any_of(samples.begin(), samples.end(),
-                     [](const DisparitySample& sample) { return !sample.others.empty(); });
-}
-
-// Adds the votes of samples that may have several disparities: the nearest one votes, and only when all are
-// too small does it lie below.
-void addAmbiguousVotes(const VoteColumns& columns, const std::vector<DisparitySample>& samples,
-                       const LinearValue& plane, const VoteRules& rules, Votes& votes) {
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const double expected = plane.x_slope * columns.x[i] + plane.y_slope * columns.y[i] + plane.constant;
-    if (expected < rules.least) continue;
-    double nearest = std::abs(samples[i].disparity - expected), largest = samples[i].disparity;
-    for (const double disparity : samples[i].others) {
-      nearest = std::min(nearest, std::abs(disparity - expected));
-      largest = std::max(largest, disparity);
-    }
-    const double ratio = nearest / rules.tolerance;
-    if (ratio < 1) {
-      votes.agreeing += 1 - ratio * ratio;
-    } else if (columns.u[i] - expected >= rules.offset) {
-      votes.penalty += largest < expected - 2 * rules.tolerance ? rules.below : rules.above;
-    }
-  }
-}
-
-// What a search for the plane has of the samples.
+// What a search for the plane has of the samples. In the columns x and y are derivatives of the disparity by
+// the plane vector; by its third component it is fb.
 struct Voters {
   const StereoRig& rig;
   const std::vector<DisparitySample>& samples;
-  VoteColumns columns = columnsOf(rig, samples);
-  bool ambiguous = areAmbiguous(samples);  // samples with several disparities
+  std::vector<size_t> order = orderOf(samples);  // of the columns
+  VoteColumns columns{samples.size()};
+
+  Voters(const StereoRig& stereo_rig, const std::vector<DisparitySample>& all)
+      : rig(stereo_rig), samples(all) {
+    for (size_t i = 0; i < order.size(); ++i) {
+      const DisparitySample& sample = samples[order[i]];
+      const Eigen::Vector3d row = rig.fb() * rig.ray(sample.u, sample.v);
+      columns.x[i] = row.x();
+      columns.y[i] = row.y();
+      columns.u[i] = sample.u;
+      columns.value[i] = sample.disparity;
+      for (size_t k = 0; k < sample.others.size(); ++k) other(k, i) = sample.others[k];
+    }
+  }
 
   // A sample whose place in the right image is outside of it says nothing against the plane, whatever it
   // matched instead.
   Votes votesFor(const Eigen::Vector3d& g, double tolerance) const {
     const double tens = rollOf(g) * 18.0 / M_PI;
-    const double by_roll = kRollPenalty * tens * tens;
     const LinearValue plane{g.x(), g.y(), g.z() * rig.fb()};
     const VoteRules rules{tolerance, kMinDisparity, rig.principalOffset(), kBelowPenalty, kAbovePenalty};
-    Votes votes;
-    if (ambiguous) {
-      votes.penalty = by_roll;
-      addAmbiguousVotes(columns, samples, plane, rules, votes);
-    } else {
-      votes = voteForPlane(columns, plane, rules);
-      votes.penalty += by_roll;
-    }
+    Votes votes = voteForPlane(columns, plane, rules);
+    votes.penalty += kRollPenalty * tens * tens;
     return votes;
+  }
+
+  // Disparities that a sample may have, on average.
+  double choices() const {
+    double all = static_cast<double>(samples.size());
+    for (const DisparitySample& sample : samples) all += static_cast<double>(sample.others.size());
+    return all / static_cast<double>(samples.size());
+  }
+
+ private:
+  double& other(size_t column, size_t sample) {
+    if (column == columns.others.size()) columns.others.emplace_back();
+    std::vector<double>& values = columns.others[column];
+    if (sample >= values.size()) values.resize(wholeDoubleLanes(sample + 1), VoteColumns::kNowhere);
+    return values[sample];
   }
 };
 
@@ -98,7 +91,8 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (size_t i = 0; i < voters.samples.size(); ++i) {
+    for (size_t i = 0; i < voters.order.size(); ++i) {
+      const DisparitySample& sample = voters.samples[voters.order[i]];
       const Eigen::Vector3d row(voters.columns.x[i], voters.columns.y[i], voters.rig.fb());
       const auto add = [&](double disparity) {
         const double ratio = (disparity - row.dot(best.g)) / limits.tolerance;
@@ -107,8 +101,8 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
         information += weight * row * row.transpose();
         right += weight * row * disparity;
       };
-      add(voters.samples[i].disparity);
-      for (const double disparity : voters.samples[i].others) add(disparity);
+      add(sample.disparity);
+      for (const double disparity : sample.others) add(disparity);
     }
     const Eigen::Vector3d g = information.ldlt().solve(right);
     if (!isPlausibleGround(g, limits)) return;
@@ -134,10 +128,11 @@ struct Draw {
 Eigen::Vector3d throughThree(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                              std::mt19937& random) {
   const Draw a(rig, samples, random), b(rig, samples, random), c(rig, samples, random);
-  Eigen::Matrix3d rays;
-  rays << a.ray.transpose(), b.ray.transpose(), c.ray.transpose();
-  if (std::abs(rays.determinant()) < 1e-4) return Eigen::Vector3d::Zero();
-  return rays.partialPivLu().solve(Eigen::Vector3d(a.disparity, b.disparity, c.disparity)) / rig.fb();
+  const Eigen::Vector3d bc = b.ray.cross(c.ray);
+  const double volume = a.ray.dot(bc);
+  if (std::abs(volume) < 1e-4) return Eigen::Vector3d::Zero();
+  return (a.disparity * bc + b.disparity * c.ray.cross(a.ray) + c.disparity * a.ray.cross(b.ray)) /
+         (volume * rig.fb());
 }
 
 // Plane through two samples with a drawn roll, small ones more often: where little of the image is ground,
@@ -153,42 +148,91 @@ Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySamp
   return {slope * gy, gy, a.disparity / rig.fb() - gy * ya};
 }
 
+bool isWithin(const Eigen::Vector2d& range, double value) { return value >= range.x() && value <= range.y(); }
+
+// Draws pairs out of samples that may have many disparities each, mostly of the wrong slope: so many that a
+// draw has to be cheap.
+class PairDraws {
+ public:
+  PairDraws(const StereoRig& rig, const std::vector<DisparitySample>& samples, double max_roll)
+      : fb_(rig.fb()), steepest_(std::tan(max_roll)) {
+    for (const DisparitySample& sample : samples) {
+      first_.push_back(disparities_.size());
+      disparities_.push_back(sample.disparity);
+      disparities_.insert(disparities_.end(), sample.others.begin(), sample.others.end());
+      rays_.push_back(rig.ray(sample.u, sample.v));
+    }
+    first_.push_back(disparities_.size());
+  }
+
+  // Plane through two of them with a drawn roll, as throughTwo().
+  Eigen::Vector3d next() {
+    const size_t a = below(rays_.size()), b = below(rays_.size());
+    const double triangular = static_cast<double>(below(1001) + below(1001)) / 1000.0 - 1.0;
+    const double slope = steepest_ * triangular;
+    const double ya = rays_[a].y() + slope * rays_[a].x(), yb = rays_[b].y() + slope * rays_[b].x();
+    if (std::abs(ya - yb) < 0.02) return Eigen::Vector3d::Zero();
+    const double da = disparityOf(a), db = disparityOf(b);
+    const double gy = (da - db) / ((ya - yb) * fb_);
+    return {slope * gy, gy, da / fb_ - gy * ya};
+  }
+
+ private:
+  size_t below(size_t n) { return (random_() * n) >> 31U; }
+  double disparityOf(size_t sample) {
+    return disparities_[first_[sample] + below(first_[sample + 1] - first_[sample])];
+  }
+
+  double fb_, steepest_;
+  std::vector<size_t> first_;
+  std::vector<double> disparities_;
+  std::vector<Eigen::Vector3d> rays_;
+  std::minstd_rand random_{20100601U};
+};
+
 }  // namespace
 
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                    const PlaneLimits& limits, int iterations, const Eigen::Vector2d* slope_range,
-                    bool until_sure, const Eigen::Vector3d* expected) {
-  // Implausible triples cost next to nothing, so that many may be drawn for each that is counted.
-  constexpr int kDrawsPerIteration = 20;
+                    const PlaneLimits& limits, const ConsensusOptions& options) {
   constexpr double kBeyondDoubt = 0.8;  // of the votes if all samples were exactly on the plane
   Consensus best;
   if (samples.size() < 3) return best;
   const Voters voters{rig, samples};
   const auto all = static_cast<double>(samples.size());
-  RansacOptions options;
-  options.most = iterations;
-  options.draws_each = kDrawsPerIteration;
-  options.of_draws = 0.5;  // every other one is a triple
-  RansacBudget budget(options);
+  RansacOptions draws;
+  draws.most = options.iterations;
+  draws.draws_each = options.draws_each;
+  draws.of_draws = 0.5;  // every other one is a triple
+  RansacBudget budget(draws);
+  const double right = 1 / voters.choices();
   const auto consider = [&](const Eigen::Vector3d& g) {
     const Votes votes = voters.votesFor(g, limits.tolerance);
     if (best.found && votes.net() <= best.score) return;
     best = {g, votes.agreeing, votes.net(), true};
     improve(voters, limits, best);
     // Penalties only take away: a better plane has at least the votes that are left of this one's.
-    if (until_sure) budget.found(best.score / all);
+    if (options.until_sure) budget.found(right * best.score / all);
   };
-  if (expected != nullptr && isPlausibleGround(*expected, limits)) {
-    consider(*expected);
+  if (options.expected && isPlausibleGround(*options.expected, limits)) {
+    consider(*options.expected);
     if (best.score >= kBeyondDoubt * all) return best;
+  }
+  if (options.slope_range) {
+    PairDraws pairs(rig, samples, limits.max_roll);
+    while (budget.goesOn()) {
+      const Eigen::Vector3d g = pairs.next();
+      // The slope first: most planes that are drawn have another one.
+      if (!isWithin(*options.slope_range, rig.fb() * g.y() / rig.fy)) continue;
+      if (!isPlausibleGround(g, limits)) continue;
+      budget.count();
+      consider(g);
+    }
+    return best;
   }
   std::mt19937 random(20100601u);
   for (int draw = 0; budget.goesOn(); ++draw) {
     const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
                                             : throughTwo(rig, samples, limits.max_roll, random);
-    // The slope first: it takes less time, and most planes that are drawn have another one.
-    const double slope = rig.fb() * g.y() / rig.fy;
-    if (slope_range && !(slope >= slope_range->x() && slope <= slope_range->y())) continue;
     if (!isPlausibleGround(g, limits)) continue;
     budget.count();
     consider(g);

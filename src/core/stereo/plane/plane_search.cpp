@@ -2,163 +2,199 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
-#include "base/thinned.h"
-#include "image/image_check.h"
-#include "image/match_image.h"
-#include "stereo/matching/row_matching.h"
-#include "stereo/matching/shift_model.h"
+#include "stereo/matching/corner_matching.h"
+#include "stereo/plane/plane_following.h"
+#include "stereo/plane/plane_rivals.h"
+#include "stereo/plane/slope_band.h"
 
 namespace uav_landing {
 namespace {
 
-// Where a plane is followed, corners are looked for within the search radius of the predicted place.
-CornerReach trackingReach(const StereoDepthParameters& parameters) {
-  return {static_cast<int>(std::ceil(parameters.search_radius)), 0};
-}
-
-// So many of the corners of the full size, from all of the image, where they are at a level reduced by this
-// factor.
-std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
-                              size_t most) {
-  std::vector<cv::Point> places;
-  for (const cv::Point& corner : thinned(corners, most)) {
-    const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
-    if (isSet(level.left_mask, place.x, place.y)) places.push_back(place);
-  }
-  return places;
-}
-
-// All places along the whole row that resemble each corner, with windows sheared for one height.
-std::vector<DisparitySample> candidates(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                        double slope, const StereoDepthParameters& parameters) {
-  constexpr double kMinScore = 0.6, kShareOfBest = 0.85;
-  constexpr int kMostPeaks = 5;
-  constexpr double kNearestToHorizon = -2.0;
-  const double largest = parameters.max_disparity * level.rig.size.width;
-  const double offset = level.rig.principalOffset();
-  const int steps = static_cast<int>((largest - kNearestToHorizon) / 2) + 1;
-  RowSearch search(level.left, level.right, parameters.window_radius, parameters.matching_cost);
-  std::vector<DisparitySample> samples;
-  for (const cv::Point& corner : corners) {
-    const double centre = corner.x - offset - (largest + kNearestToHorizon) / 2;
-    if (!search.run(corner.x, corner.y, centre, steps, RowWarp{1.0, -slope})) continue;
-    std::vector<double> disparities;
-    double strongest = -1;
-    for (const RowCandidate& peak : search.peaks(kMinScore, kMostPeaks)) {
-      strongest = std::max(strongest, peak.score);
-      if (peak.score < kShareOfBest * strongest) break;
-      if (!isSet(level.right_mask, peak.position, corner.y)) continue;
-      disparities.push_back(corner.x - peak.position - offset);
-    }
-    if (disparities.empty()) continue;
-    samples.push_back({double(corner.x),
-                       double(corner.y),
-                       0.5,
-                       disparities.front(),
-                       {disparities.begin() + 1, disparities.end()}});
-  }
-  return samples;
-}
-
-// A plane with how well each corner correlates where it says, in a window warped as it says; below 0 where
-// that is outside the right image.
-struct Hypothesis {
-  Consensus plane;
-  std::vector<double> correlation;
-};
-
-Hypothesis makeHypothesis(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                          const Consensus& plane, const StereoDepthParameters& parameters) {
-  constexpr int kSteps = 1;
-  const ShiftModel shift(level.rig, plane.g);
-  const RowWarp warp = parameters.warp_window ? shift.forward() : RowWarp{};
-  RowSearch search(level.left, level.right, parameters.window_radius, parameters.matching_cost);
-  Hypothesis hypothesis{plane, std::vector<double>(corners.size(), -1)};
-  for (size_t i = 0; i < corners.size(); ++i) {
-    const double column = corners[i].x - shift.at(corners[i].x, corners[i].y);
-    if (!isSet(level.right_mask, column, corners[i].y)) continue;
-    if (!search.run(corners[i].x, corners[i].y, column, kSteps, warp)) continue;
-    hypothesis.correlation[i] = search.best(nullptr).score;
-  }
-  return hypothesis;
-}
-
-// Whether the corners that match on both planes match better on the second. Only repeated texture matches on
-// two: where much of it is outside the other view on the right plane, the one that is a bar off may have more
-// votes, but it does not look quite the same. Sign test, so that a few corners do not decide.
-bool matchesBetter(const Hypothesis& first, const Hypothesis& second, int least) {
-  constexpr double kMatches = 0.6, kSigmas = 3.0;
-  int both = 0, better = 0;
-  for (size_t i = 0; i < first.correlation.size(); ++i) {
-    if (first.correlation[i] < kMatches || second.correlation[i] < kMatches) continue;
-    ++both;
-    better += second.correlation[i] > first.correlation[i];
-  }
-  return both >= least && 2 * better - both > kSigmas * std::sqrt(both);
-}
+constexpr size_t kCoarseCorners = 500, kWideCorners = 256;
+// A part of them tells whether images are swapped, where the plane ahead is clear.
+constexpr size_t kSample = 4;
+// In how many searches that find nothing one is also tried with left and right swapped.
+constexpr int kSwapCheckInterval = 10;
+// What takes as long as scoring so many places: a choice between planes, and a consensus, alone and by its
+// samples.
+constexpr double kChoiceCost = 40e3, kConsensusCost = 2e3, kSampleCost = 15;
+// Below so many columns of the coarse level half of it shows too little.
+constexpr int kEnoughColumns = 240;
 
 }  // namespace
 
-Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
-                     GroundCornerMemory& memory) {
-  constexpr int kCorners = 250, kIterations = 150;
-  constexpr double kLeastShare = 0.2;
-  const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters, memory);
-  const std::vector<DisparitySample> samples =
-      matchCorners(level, corners, predicted, parameters, trackingReach(parameters)).samples;
-  Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr);
-  consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
-  return consensus;
+PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthParameters& parameters,
+                         const PlaneLimits& limits)
+    : parameters_(parameters), limits_(limits) {
+  const int margin = parameters.window_radius + 2;
+  ahead_.coarse.level = reduceLevel(model, factor, margin);
+  const bool halved = ahead_.coarse.level.rig.size.width >= kEnoughColumns;
+  ahead_.wide.level = reduceLevel(model, halved ? 2 * factor : factor, margin);
 }
 
-Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
-                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
-                             const PlaneLimits& limits) {
-  // Enough for a plane good to half a pixel at full size; the search there reaches farther.
-  constexpr size_t kScouts = 64;
-  constexpr int kIterations = 150;
-  // Votes of all scouts, those without a match included: with the majority on a plane no other has as many.
-  constexpr double kLeastShare = 0.5;
-  const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
-  const std::vector<DisparitySample> samples =
-      matchCorners(level, scouts, predicted, parameters, trackingReach(parameters)).samples;
-  Consensus consensus = findPlane(level.rig, samples, limits, kIterations, nullptr, true);
-  consensus.found &= consensus.support >=
-                     std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));
-  return consensus;
+double PlaneSearch::budgetOf(const cv::Size& size) {
+  // The pair then takes about twice as long as one whose plane is followed, which grows like this with the
+  // size.
+  constexpr double kAtVga = 180e3, kVga = 640.0 * 480.0, kGrowth = 0.65;
+  return kAtVga * std::pow(size.area() / kVga, kGrowth);
 }
 
-Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
-                      const PlaneLimits& limits, CornerMemory& memory) {
-  constexpr int kCorners = 500, kIterations = 400;
-  // Votes of a rival plane as a share of those of the strongest: a bar off has about as many.
+PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget) {
+  began_here_ = phase_ == Phase::kNone;
+  if (began_here_) begin(coarse);
+  State state = State::kGoesOn;
+  while (state == State::kGoesOn && budget > 0) {
+    if (band_ < SlopeBands::kAll) {
+      budget -= searchBand();
+    } else {
+      if (phase_ != Phase::kSample) budget -= kChoiceCost;
+      state = decide();
+    }
+  }
+  return state;
+}
+
+void PlaneSearch::stop() {
+  phase_ = Phase::kNone;
+  failed_ = 0;
+}
+
+void PlaneSearch::reset() {
+  stop();
+  looks_swapped_ = false;
+}
+
+void PlaneSearch::begin(const StereoLevel& coarse) {
+  const auto take = [](const cv::Mat& from, cv::Mat& to, cv::Mat& half, const cv::Size& size) {
+    from.copyTo(to);
+    if (size == from.size()) {
+      half = to;
+    } else {
+      cv::resize(to(cv::Rect(cv::Point(), size * 2)), half, size, 0, 0, cv::INTER_AREA);
+    }
+  };
+  StereoLevel &whole = ahead_.coarse.level, &wide = ahead_.wide.level;
+  take(coarse.left, whole.left, wide.left, wide.rig.size);
+  take(coarse.right, whole.right, wide.right, wide.rig.size);
+  prepare(ahead_.coarse, kCoarseCorners);
+  prepare(ahead_.wide, kWideCorners);
+  found_.reset();
+  leaders_.clear();
+  phase_ = Phase::kAhead;
+  band_ = 0;
+}
+
+void PlaneSearch::beginBehind(Phase phase) {
+  const size_t share = phase == Phase::kSample ? kSample : 1;
+  behind_.coarse.level = swapped(ahead_.coarse.level);
+  behind_.wide.level = swapped(ahead_.wide.level);
+  prepare(behind_.coarse, kCoarseCorners / share);
+  prepare(behind_.wide, kWideCorners / share);
+  leaders_.clear();
+  phase_ = phase;
+  band_ = 0;
+}
+
+void PlaneSearch::prepare(Tier& tier, size_t corners) {
+  const StereoLevel& level = tier.level;
+  tier.right = withRoomBeside(level.right);
+  tier.corners =
+      findCorners(level.left, level.left_mask, static_cast<int>(corners), parameters_.corner_quality,
+                  parameters_.min_corner_distance, parameters_.harris_k, memory_);
+}
+
+double PlaneSearch::searchBand() {
+  constexpr int kFarIterations = 250, kNearIterations = 200, kDraws = 10;
+  const Tiers& tiers = phase_ == Phase::kAhead ? ahead_ : behind_;
+  const bool wide = band_ >= SlopeBands::kFar;
+  const Tier& tier = wide ? tiers.wide : tiers.coarse;
+  const SlopeBand band = SlopeBands::at(band_++);
+  const BandCandidates candidates =
+      candidatesOf(band, tier.level, tier.right, tier.corners, parameters_, limits_);
+  ConsensusOptions options;
+  options.iterations = wide ? kNearIterations : kFarIterations;
+  options.draws_each = kDraws;
+  options.until_sure = true;
+  options.slope_range = band.range;
+  const Consensus plane = findPlane(tier.level.rig, candidates.samples, limits_, options);
+  const int least = phase_ == Phase::kSample ? limits_.min_points / 2 : limits_.min_points;
+  if (plane.found && plane.support >= least)
+    leaders_.push_back({plane.g, plane.score / static_cast<double>(tier.corners.size()), wide});
+  return candidates.scored + kConsensusCost + kSampleCost * static_cast<double>(candidates.samples.size());
+}
+
+PlaneSearch::State PlaneSearch::decide() {
+  switch (phase_) {
+    case Phase::kAhead:
+      return decideAhead();
+    case Phase::kSample:
+      return decideBySample();
+    case Phase::kBehind:
+      return decideBehind();
+    case Phase::kNone:
+      break;
+  }
+  return end(State::kNotFound);
+}
+
+// Of the planes with nearly as many votes as the first, that on which the corners look most alike: a bar off
+// there are about as many.
+std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& leaders, const Tiers& tiers) {
   constexpr double kRivalShare = 0.8;
-  // Changes of disparity per row that windows are sheared for; each serves the range to its neighbours.
-  const std::vector<double> slopes = {0.0, 0.04, 0.09, 0.16, 0.25, 0.37, 0.52, 0.72, 1.0, 1.4};
-  const std::vector<cv::Point> corners =
-      findCorners(level.left, level.left_mask, kCorners, parameters.corner_quality,
-                  parameters.min_corner_distance, parameters.harris_k, memory);
-  std::vector<Hypothesis> hypotheses;
-  for (size_t i = 0; i < slopes.size(); ++i) {
-    const Eigen::Vector2d range(i == 0 ? 0.0 : slopes[i - 1],
-                                i + 1 == slopes.size() ? 2.0 * slopes[i] : slopes[i + 1]);
-    const std::vector<DisparitySample> samples =
-        candidates(level, corners, parameters.warp_window ? slopes[i] : 0.0, parameters);
-    const Consensus found = findPlane(level.rig, samples, limits, kIterations, &range);
-    if (!found.found || found.support < limits.min_points) continue;
-    hypotheses.push_back(makeHypothesis(level, corners, found, parameters));
+  std::stable_sort(leaders.begin(), leaders.end(),
+                   [](const Leader& a, const Leader& b) { return a.share > b.share; });
+  const StereoLevel& level = tiers.coarse.level;
+  GroundCornerMemory memory;
+  std::optional<RivalPlane> best;
+  for (const Leader& leader : leaders) {
+    if (leader.share < kRivalShare * leaders.front().share) break;
+    Eigen::Vector3d g = leader.g;
+    if (leader.wide && tiers.wide.level.rig.size != level.rig.size) {
+      const Consensus closer = trackPlane(level, g, parameters_, limits_, memory);
+      if (!closer.found) continue;
+      g = closer.g;
+    }
+    const RivalPlane rival(level, tiers.coarse.corners, g, parameters_);
+    if (!best || rival.matchesBetterThan(*best, limits_.min_points)) best = rival;
   }
-  if (hypotheses.empty()) return {};
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.plane.score > b.plane.score; });
-  const Hypothesis* best = &hypotheses.front();
-  for (const Hypothesis& other : hypotheses) {
-    if (other.plane.score < kRivalShare * hypotheses.front().plane.score) break;
-    if (matchesBetter(*best, other, limits.min_points)) best = &other;
+  if (!best) return std::nullopt;
+  return Best{best->g, leaders.front().share};
+}
+
+PlaneSearch::State PlaneSearch::decideAhead() {
+  found_ = chooseFrom(leaders_, ahead_);
+  if (!found_ && failed_ % kSwapCheckInterval != 0)
+    return end(looks_swapped_ ? State::kSwapped : State::kNotFound);
+  beginBehind(found_ ? Phase::kSample : Phase::kBehind);
+  return State::kGoesOn;
+}
+
+// Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
+PlaneSearch::State PlaneSearch::decideBySample() {
+  constexpr double kClearly = 0.5;
+  const auto clear = [&](const Leader& leader) { return leader.share < kClearly * found_->share; };
+  if (std::all_of(leaders_.begin(), leaders_.end(), clear)) return end(State::kFound);
+  beginBehind(Phase::kBehind);
+  return State::kGoesOn;
+}
+
+PlaneSearch::State PlaneSearch::decideBehind() {
+  const std::optional<Best> behind = chooseFrom(leaders_, behind_);
+  looks_swapped_ = behind && (!found_ || behind->share > found_->share);
+  if (looks_swapped_) return end(State::kSwapped);
+  return end(found_ ? State::kFound : State::kNotFound);
+}
+
+PlaneSearch::State PlaneSearch::end(State state) {
+  if (state == State::kFound) {
+    plane_ = found_->g;
+    looks_swapped_ = false;
   }
-  return best->plane;
+  failed_ = state == State::kFound ? 0 : failed_ + 1;
+  phase_ = Phase::kNone;
+  return state;
 }
 
 }  // namespace uav_landing

@@ -2,29 +2,99 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
-#include "stereo/matching/corner_matching.h"
+#include "geometry/plane_limits.h"
+#include "image/corners.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/plane/plane_consensus.h"
+#include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
 namespace uav_landing {
 
-/// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
-Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
-                     GroundCornerMemory& memory);
+/// The ground's plane with nothing known: all disparities, windows sheared as for a range of heights, all
+/// peaks kept as candidates and resolved by consensus, so that repeated texture does not decide. Small
+/// disparities are looked for at the coarse level, large ones at half of it.
+///
+/// It takes as long as several pairs whose plane is known. So it is done in steps, over the images of the
+/// pair that it began with, and each pair gives it as much time as its size allows.
+class PlaneSearch {
+ public:
+  /// model: at full size; factor: of the coarse level.
+  PlaneSearch(const RigModel& model, int factor, const StereoDepthParameters& parameters,
+              const PlaneLimits& limits);
 
-/// The same by a few of the corners found at full size, this factor larger than the level. Not found unless
-/// most of them agree.
-Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
-                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
-                             const PlaneLimits& limits);
+  enum class State {
+    kGoesOn,    ///< in the next pair
+    kFound,     ///< plane() is that of the pair that it began with
+    kNotFound,  ///< no plane
+    kSwapped,   ///< none, as left and right are exchanged, in this search or the last one that looked
+  };
 
-/// Plane with nothing known: full disparity range, windows sheared as for a range of heights, all peaks kept
-/// as candidates and resolved by consensus, so that repeated texture does not decide.
-Consensus searchPlane(const StereoLevel& level, const StereoDepthParameters& parameters,
-                      const PlaneLimits& limits, CornerMemory& memory);
+  /// Begins with this pair, when none is under way. The level's images must be whole. budget: places to
+  /// score, about; a pair goes on until it has done so many.
+  State advance(const StereoLevel& coarse, double budget);
+  /// As many as a pair of this size has time for.
+  static double budgetOf(const cv::Size& size);
+
+  const Eigen::Vector3d& plane() const { return plane_; }
+  /// Whether it began with the last pair that it was given.
+  bool beganHere() const { return began_here_; }
+  /// A plane is known again: what was begun is of no use any more.
+  void stop();
+  /// Forgets what it knows of the rig, too.
+  void reset();
+
+ private:
+  // What is looked for, band by band: the plane; with left and right exchanged by some corners, or by all.
+  enum class Phase { kNone, kAhead, kSample, kBehind };
+  // Both images at one size, with the corners that are looked for.
+  struct Tier {
+    StereoLevel level;
+    cv::Mat right;  // of the level, with room beside it
+    std::vector<cv::Point> corners;
+  };
+  // At the coarse level, and at half of it or, where that is too small, at the coarse level again.
+  struct Tiers {
+    Tier coarse, wide;
+  };
+  // The best plane of a band, with the share of the corners that speaks for it, and where it was found.
+  struct Leader {
+    Eigen::Vector3d g;
+    double share;
+    bool wide;
+  };
+  struct Best {
+    Eigen::Vector3d g;
+    double share;
+  };
+
+  void begin(const StereoLevel& coarse);
+  void beginBehind(Phase phase);
+  void prepare(Tier& tier, size_t corners);
+  // Returns its cost.
+  double searchBand();
+  State decide();
+  std::optional<Best> chooseFrom(std::vector<Leader>& leaders, const Tiers& tiers);
+  State decideAhead();
+  State decideBySample();
+  State decideBehind();
+  State end(State state);
+
+  StereoDepthParameters parameters_;
+  PlaneLimits limits_;
+  Tiers ahead_, behind_;  // behind: left and right exchanged
+  std::vector<Leader> leaders_;
+  std::optional<Best> found_;
+  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
+  Phase phase_ = Phase::kNone;
+  size_t band_ = 0;  // the next one
+  bool began_here_ = false;
+  int failed_ = 0;  // searches in a row
+  bool looks_swapped_ = false;
+  CornerMemory memory_;
+};
 
 }  // namespace uav_landing

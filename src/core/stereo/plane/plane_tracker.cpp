@@ -5,7 +5,7 @@
 
 #include "stereo/matching/corner_matching.h"
 #include "stereo/matching/shift_model.h"
-#include "stereo/plane/plane_search.h"
+#include "stereo/plane/plane_following.h"
 
 namespace uav_landing {
 namespace {
@@ -104,7 +104,11 @@ std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, con
   const Consensus scouted = trackPlaneByScouts(coarse, corners_, factor, last_, parameters_, limits_);
   if (scouted.found) return scouted.g;
   corners_.clear();
-  const Consensus tracked = trackPlane(coarse, last_, parameters_, limits_, memory_);
+  return followFrom(last_, coarse);
+}
+
+std::optional<Eigen::Vector3d> PlaneTracker::followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse) {
+  const Consensus tracked = trackPlane(coarse, g, parameters_, limits_, memory_);
   if (!tracked.found) return std::nullopt;
   return tracked.g;
 }

@@ -34,6 +34,8 @@ class PlaneTracker {
   void remember(const StereoDepthResult& result, bool certain);
 
   bool hasLast() const { return has_last_; }
+  /// Since the pair before, s; infinite for the first one.
+  double duration() const { return duration_; }
   /// The plane as it moves on from the pairs before, where it has been where they led: good enough for all
   /// corners to be matched by, without a search for it by a few. Every so often there is none nevertheless.
   std::optional<Eigen::Vector3d> steadyPlane(Timings& timings);
@@ -43,6 +45,8 @@ class PlaneTracker {
   /// level. factor: of that level.
   std::optional<Eigen::Vector3d> follow(const StereoLevel& fine, const StereoLevel& coarse, int factor,
                                         Timings& timings);
+  /// The same from a plane that a pair shortly before had.
+  std::optional<Eigen::Vector3d> followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse);
   /// Corners on the ground of this plane: those found before, as long as the horizon has hardly moved.
   std::vector<cv::Point> cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g, Timings& timings);
 

@@ -68,6 +68,7 @@ struct Scene {
   Scene() {
     ground.grain = 0.01;
     parameters.direct_refinement = false;  // it would hide what the matches are worth
+    parameters.search_at_once = true;
   }
 };
 

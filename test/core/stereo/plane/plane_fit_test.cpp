@@ -90,7 +90,7 @@ TEST(PlaneFit, IsExactOnExactData) {
       for (const double roll : {-10.0, 0.0, 10.0}) {
         const Eigen::Vector3d g = plane(height, pitch, roll);
         const std::vector<DisparitySample> samples = sampler.ground(g, 200, 0);
-        const Consensus consensus = findPlane(rig(), samples, makeLimits(), 200, nullptr);
+        const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
         ASSERT_TRUE(consensus.found) << height << " " << pitch << " " << roll;
         EXPECT_GT(consensus.support, 190);
         const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
@@ -106,7 +106,7 @@ TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
     Sampler sampler(seed);
     std::vector<DisparitySample> samples = sampler.ground(g, 300, 0.1);
     sampler.lift(samples, 0.4);
-    const Consensus consensus = findPlane(rig(), samples, makeLimits(), 200, nullptr);
+    const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
     ASSERT_TRUE(consensus.found);
     const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
     ASSERT_TRUE(fit);
@@ -129,7 +129,7 @@ TEST(FindPlane, PrefersTheGroundToALargerPlaneAboveIt) {
   std::vector<DisparitySample> samples = sampler.ground(g, 135, 0.1);
   const std::vector<DisparitySample> above = sampler.ground(roof, 165, 0.1);
   samples.insert(samples.end(), above.begin(), above.end());
-  const Consensus consensus = findPlane(rig(), samples, makeLimits(), 300, nullptr);
+  const Consensus consensus = findPlane(rig(), samples, makeLimits(), {300});
   ASSERT_TRUE(consensus.found);
   EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1);
 }
@@ -143,7 +143,7 @@ TEST(FindPlane, MayEndEarlyOnlyWhereNoBetterPlaneIsLeft) {
       std::vector<DisparitySample> samples = sampler.ground(roof, 300 - on_ground, 0.1);
       const std::vector<DisparitySample> below = sampler.ground(g, on_ground, 0.1);
       samples.insert(samples.end(), below.begin(), below.end());
-      const Consensus consensus = findPlane(rig(), samples, makeLimits(), 300, nullptr, true);
+      const Consensus consensus = findPlane(rig(), samples, makeLimits(), {300, true});
       ASSERT_TRUE(consensus.found);
       EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1) << seed << " " << on_ground;
     }
@@ -163,13 +163,13 @@ TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
   }
   // Three planes fit equally well. All of them are found below the camera; rows tell them apart only by where
   // disparity is zero, so the range of slopes must not decide either.
-  const Consensus consensus = findPlane(rig(), samples, makeLimits(), 500, nullptr);
+  const Consensus consensus = findPlane(rig(), samples, makeLimits(), {500});
   ASSERT_TRUE(consensus.found);
   EXPECT_GT(consensus.support, 150);
   // With 60 pixels of plain texture beside the zebra there is only one.
   const std::vector<DisparitySample> plain = sampler.ground(g, 60, 0.1);
   samples.insert(samples.end(), plain.begin(), plain.end());
-  const Consensus decided = findPlane(rig(), samples, makeLimits(), 500, nullptr);
+  const Consensus decided = findPlane(rig(), samples, makeLimits(), {500});
   ASSERT_TRUE(decided.found);
   EXPECT_NEAR(1 / decided.g.norm(), 4, 0.1);
 }
@@ -183,18 +183,18 @@ TEST(FindPlane, KeepsToTheRangeOfSlopes) {
   samples.insert(samples.end(), above.begin(), above.end());
   const double slope = rig().fb() * high.y() / rig().fy;
   const Eigen::Vector2d around(0.8 * slope, 1.2 * slope);
-  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), 200, nullptr).g.norm(), 4, 0.1);
-  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), 200, &around).g.norm(), 2, 0.1);
+  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), {200}).g.norm(), 4, 0.1);
+  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), {200, false, around}).g.norm(), 2, 0.1);
 }
 
 TEST(FindPlane, FindsNothingAmongFewOrImplausibleSamples) {
   Sampler sampler(7);
-  EXPECT_FALSE(findPlane(rig(), sampler.ground(plane(4, 0, 0), 2, 0), makeLimits(), 100, nullptr).found);
-  EXPECT_FALSE(findPlane(rig(), {}, makeLimits(), 100, nullptr).found);
+  EXPECT_FALSE(findPlane(rig(), sampler.ground(plane(4, 0, 0), 2, 0), makeLimits(), {100}).found);
+  EXPECT_FALSE(findPlane(rig(), {}, makeLimits(), {100}).found);
   PlaneLimits tight = makeLimits();
   tight.max_pitch = 5 * kDegree;
   const std::vector<DisparitySample> steep = sampler.ground(plane(4, -20, 0), 200, 0.02);
-  const Consensus consensus = findPlane(rig(), steep, tight, 200, nullptr);
+  const Consensus consensus = findPlane(rig(), steep, tight, {200});
   EXPECT_LT(consensus.support, 60);
 }
 
@@ -202,8 +202,8 @@ TEST(FindPlane, IsDeterministic) {
   Sampler sampler(8);
   std::vector<DisparitySample> samples = sampler.ground(plane(4, -5, 2), 200, 0.2);
   sampler.lift(samples, 0.4);
-  EXPECT_EQ(findPlane(rig(), samples, makeLimits(), 100, nullptr).g,
-            findPlane(rig(), samples, makeLimits(), 100, nullptr).g);
+  EXPECT_EQ(findPlane(rig(), samples, makeLimits(), {100}).g,
+            findPlane(rig(), samples, makeLimits(), {100}).g);
 }
 
 /// Mean of the normalised squared errors over many draws, and of each component's alone.

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "image/match_image.h"
-#include "stereo/matching/corner_matching.h"
 #include "support/ground_renderer.h"
-#include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace uav_landing {
 namespace {
@@ -18,94 +16,118 @@ using test::GroundRenderer;
 using test::kDegree;
 using test::makePose;
 using test::Pose;
+using State = PlaneSearch::State;
 
-/// A pair of one rig at full size and reduced, and the corners of the plane that was there before.
-struct Tracking {
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// A rig over textured ground, with the level that a search looks at.
+struct Ground {
   StereoRig rig = test::makeRig(640, 480, 1.0);
   RigModel model = test::makeModel(rig);
-  GroundRenderer ground{17};
+  GroundRenderer renderer{17};
   StereoDepthParameters parameters;
   PlaneLimits limits{30 * kDegree, 30 * kDegree, 20, 0.6};
-  MatchImage left_images, right_images;
-  StereoLevel fine, coarse;
-  std::vector<cv::Point> corners;
-  Eigen::Vector3d before;
+  int factor = coarseFactor(rig.size);
 
-  Tracking(const Pose& last, const Pose& now, double noise_share = 0) : before(last.down() / last.height()) {
-    ground.grain = 0.05;
-    cv::Mat left = ground.left(rig, now), right = ground.right(rig, now);
-    // The other image does not have what is seen in the left part of one.
-    if (noise_share > 0) {
-      cv::Mat part = right.colRange(0, static_cast<int>(noise_share * right.cols));
-      cv::randu(part, 0, 255);
-    }
-    left_images.assign(left, {});
-    right_images.assign(right, {});
-    fine = {rig, model.left_mask, model.right_mask, left_images.fine, right_images.fine};
-    coarse = reduceLevel(model, left_images.factor, 7);
-    coarse.left = left_images.coarse;
-    coarse.right = right_images.coarse;
-    corners = findGroundCorners(fine, before, parameters.corner_count, parameters);
+  Ground() { renderer.grain = 0.05; }
+
+  PlaneSearch search() const { return PlaneSearch(model, factor, parameters, limits); }
+  StereoLevel at(const Pose& pose) const {
+    return levelOf(renderer.left(rig, pose), renderer.right(rig, pose));
   }
-  Consensus byScouts() const {
-    return trackPlaneByScouts(coarse, corners, left_images.factor, before, parameters, limits);
+  StereoLevel swappedAt(const Pose& pose) const {
+    return levelOf(renderer.right(rig, pose), renderer.left(rig, pose));
   }
-  Consensus byAll() const {
-    GroundCornerMemory memory;
-    return trackPlane(coarse, before, parameters, limits, memory);
+  StereoLevel levelOf(const cv::Mat& left, const cv::Mat& right) const {
+    MatchImage left_image, right_image;
+    left_image.assign(left);
+    right_image.assign(right);
+    StereoLevel level = reduceLevel(model, factor, parameters.window_radius + 2);
+    level.left = left_image.coarse;
+    level.right = right_image.coarse;
+    return level;
   }
-  /// Largest error of the disparity over the lowest row of the image, pixels at full size.
-  double error(const Consensus& found, const Pose& now) const {
-    const Eigen::Vector3d difference = found.g - now.down() / now.height();
+  /// Largest error of the disparity over the lowest row, pixels at full size.
+  double error(const Eigen::Vector3d& g, const Pose& pose) const {
+    const Eigen::Vector3d off = g - pose.down() / pose.height();
     const double bottom = rig.size.height - 1, right = rig.size.width - 1;
-    return rig.fb() * std::max(std::abs(difference.dot(rig.ray(0, bottom))),
-                               std::abs(difference.dot(rig.ray(right, bottom))));
+    return rig.fb() *
+           std::max(std::abs(off.dot(rig.ray(0, bottom))), std::abs(off.dot(rig.ray(right, bottom))));
   }
 };
 
-constexpr double kUseful = 1;  // px: the search at full size reaches twice as far
+// The next step looks within six pixels of the coarse level.
+constexpr double kUseful = 3;
 
-TEST(TrackPlaneByScouts, FollowsHeightPitchAndRoll) {
-  const Pose last = makePose(12, -4, 1);
-  for (const Pose& now : {makePose(11.6, -4, 1), makePose(12, -4.6, 1), makePose(12, -3.4, 1),
-                          makePose(12.3, -4, 3), makePose(11.8, -4.3, -1)}) {
-    const Tracking tracking(last, now);
-    const Consensus found = tracking.byScouts();
-    ASSERT_TRUE(found.found);
-    EXPECT_LT(tracking.error(found, now), kUseful);
+TEST(PlaneSearch, FindsThePlaneFromFarToNear) {
+  const Ground ground;
+  for (const double height : {1.0, 2.0, 5.0, 12.0, 30.0})
+    for (const double pitch : {-15.0, -4.0})
+      for (const double roll : {0.0, 12.0}) {
+        const Pose pose = makePose(height, pitch, roll);
+        PlaneSearch search = ground.search();
+        ASSERT_EQ(search.advance(ground.at(pose), kNoLimit), State::kFound)
+            << height << " m, " << pitch << ", " << roll;
+        EXPECT_LT(ground.error(search.plane(), pose), kUseful) << height << " m, " << pitch << ", " << roll;
+        EXPECT_TRUE(search.beganHere());
+      }
+}
+
+TEST(PlaneSearch, FindsInStepsWhatItFindsAtOnceInThePairThatItBeganWith) {
+  const Ground ground;
+  const Pose pose = makePose(8, -5, 3), other = makePose(20, -12, -6);
+  PlaneSearch at_once = ground.search(), in_steps = ground.search();
+  ASSERT_EQ(at_once.advance(ground.at(pose), kNoLimit), State::kFound);
+  State state = in_steps.advance(ground.at(pose), 1);
+  EXPECT_TRUE(in_steps.beganHere());
+  int steps = 1;
+  for (; state == State::kGoesOn; ++steps) {
+    ASSERT_LT(steps, 100);
+    state = in_steps.advance(ground.at(other), 1);
+    EXPECT_FALSE(in_steps.beganHere());
+  }
+  ASSERT_EQ(state, State::kFound);
+  EXPECT_EQ(in_steps.plane(), at_once.plane());
+  EXPECT_GT(steps, 10);
+}
+
+TEST(PlaneSearch, BeginsAnewAfterItWasStopped) {
+  const Ground ground;
+  const Pose pose = makePose(8, -5, 3);
+  PlaneSearch search = ground.search();
+  ASSERT_EQ(search.advance(ground.at(makePose(20, -12, -6)), 1), State::kGoesOn);
+  search.stop();
+  ASSERT_EQ(search.advance(ground.at(pose), kNoLimit), State::kFound);
+  EXPECT_LT(ground.error(search.plane(), pose), kUseful);
+}
+
+// At 20 Hz; the pair that confirms it comes after that.
+TEST(PlaneSearch, IsDoneInLessThanHalfASecondOfPairs) {
+  for (const cv::Size& size : {cv::Size(320, 240), cv::Size(640, 480), cv::Size(1280, 960)}) {
+    Ground ground;
+    ground.rig = test::makeRig(size.width, size.height, 1.0);
+    ground.model = test::makeModel(ground.rig);
+    ground.factor = coarseFactor(size);
+    PlaneSearch search = ground.search();
+    const StereoLevel level = ground.at(makePose(8, -5, 0));
+    State state = State::kGoesOn;
+    int pairs = 0;
+    for (; state == State::kGoesOn && pairs < 10; ++pairs)
+      state = search.advance(level, PlaneSearch::budgetOf(size));
+    EXPECT_EQ(state, State::kFound) << size;
+    EXPECT_LE(pairs, 6) << size;
   }
 }
 
-TEST(TrackPlaneByScouts, LeavesItToAllCornersWhereLessThanHalfOfThePictureAgrees) {
-  const Pose last = makePose(12, -4, 1), now = makePose(11.8, -4, 1);
-  const Tracking tracking(last, now, 0.48);
-  EXPECT_FALSE(tracking.byScouts().found);
-  const Consensus found = tracking.byAll();
-  ASSERT_TRUE(found.found);
-  EXPECT_LT(tracking.error(found, now), kUseful);
-}
-
-TEST(TrackPlaneByScouts, FindsNothingWhereThePlaneJumpsOutOfReach) {
-  const Pose last = makePose(12, -4, 0);
-  for (const Pose& now : {makePose(5, -4, 0), makePose(4, -8, 0), makePose(50, -4, 0)})
-    EXPECT_FALSE(Tracking(last, now).byScouts().found);
-}
-
-TEST(CornersOnGround, AreThoseThatAPlaneGivesADisparityInTheRightImage) {
-  const Pose last = makePose(12, -4, 0);
-  const Tracking tracking(last, last);
-  // With the nose up the horizon is lower in the picture.
-  const Pose up = makePose(12, -1, 0);
-  const Eigen::Vector3d g = up.down() / up.height();
-  const std::vector<cv::Point> kept = cornersOnGround(tracking.fine, tracking.corners, g);
-  EXPECT_LT(kept.size(), tracking.corners.size());
-  EXPECT_GT(kept.size(), tracking.corners.size() / 2);
-  for (const cv::Point& corner : kept) {
-    const double disparity = tracking.rig.fb() * g.dot(tracking.rig.ray(corner.x, corner.y));
-    EXPECT_GE(disparity, 0.3);
-    EXPECT_GE(corner.x - disparity - tracking.rig.principalOffset(), 0);
-  }
-  EXPECT_EQ(cornersOnGround(tracking.fine, tracking.corners, tracking.before), tracking.corners);
+TEST(PlaneSearch, TellsThatLeftAndRightAreExchanged) {
+  const Ground ground;
+  PlaneSearch search = ground.search();
+  EXPECT_EQ(search.advance(ground.swappedAt(makePose(8, -5, 0)), kNoLimit), State::kSwapped);
+  // As long as nothing else is known, without looking again.
+  const cv::Mat black(ground.rig.size, CV_8UC1, cv::Scalar(0));
+  EXPECT_EQ(search.advance(ground.levelOf(black, black), kNoLimit), State::kSwapped);
+  search.reset();
+  EXPECT_EQ(search.advance(ground.levelOf(black, black), kNoLimit), State::kNotFound);
 }
 
 }  // namespace

@@ -1,0 +1,62 @@
+#include "stereo/plane/plane_following.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/thinned.h"
+#include "image/image_check.h"
+#include "image/match_image.h"
+
+namespace uav_landing {
+namespace {
+
+// Where a plane is followed, corners are looked for within the search radius of the predicted place.
+CornerReach trackingReach(const StereoDepthParameters& parameters) {
+  return {static_cast<int>(std::ceil(parameters.search_radius)), 0};
+}
+
+// So many of the corners of the full size, from all of the image, where they are at a level reduced by this
+// factor.
+std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                              size_t most) {
+  std::vector<cv::Point> places;
+  for (const cv::Point& corner : thinned(corners, most)) {
+    const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
+    if (isSet(level.left_mask, place.x, place.y)) places.push_back(place);
+  }
+  return places;
+}
+
+}  // namespace
+
+Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
+                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
+                     GroundCornerMemory& memory) {
+  constexpr int kCorners = 250, kIterations = 150;
+  constexpr double kLeastShare = 0.2;
+  const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters, memory);
+  const std::vector<DisparitySample> samples =
+      matchCorners(level, corners, predicted, parameters, trackingReach(parameters)).samples;
+  Consensus consensus = findPlane(level.rig, samples, limits, {kIterations});
+  consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
+  return consensus;
+}
+
+Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
+                             const PlaneLimits& limits) {
+  // Enough for a plane good to half a pixel at full size; the search there reaches farther.
+  constexpr size_t kScouts = 64;
+  constexpr int kIterations = 150;
+  // Votes of all scouts, those without a match included: with the majority on a plane no other has as many.
+  constexpr double kLeastShare = 0.5;
+  const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
+  const std::vector<DisparitySample> samples =
+      matchCorners(level, scouts, predicted, parameters, trackingReach(parameters)).samples;
+  Consensus consensus = findPlane(level.rig, samples, limits, {kIterations, true});
+  consensus.found &= consensus.support >=
+                     std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));
+  return consensus;
+}
+
+}  // namespace uav_landing
