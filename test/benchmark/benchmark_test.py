@@ -38,6 +38,22 @@ class BenchmarkTest(unittest.TestCase):
             subprocess.run([sys.executable, str(SOURCE_DIR / "benchmark/plot"), str(numbers), str(picture)], check=True)
             self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
+    def test_measures_pair_by_pair_from_the_first_one_on(self):
+        with tempfile.TemporaryDirectory() as folder:
+            numbers, scene = Path(folder) / "numbers.json", Path(folder) / "short.yaml"
+            scene.write_text("image: {width: 160, height: 120}\nleft_camera: {fx: 138, fy: 138, cx: 79.5, cy: 59.5}\n"
+                             "right_camera: {fx: 138, fy: 138, cx: 79.5, cy: 59.5}\npath: {duration: 0.4}\n",
+                             encoding="utf-8")
+            result = rosrun("benchmark", "--widths", "160", "--pairs", "4", "--searching", scene, "--json", numbers)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertIn("### Searching", result.stdout)
+            (searching,) = json.loads(numbers.read_text(encoding="utf-8"))["searching"]
+            self.assertEqual((searching["name"], searching["width"], searching["height"]), ("short", 160, 120))
+            self.assertEqual(len(searching["pairs"]), 9)
+            self.assertAlmostEqual(max(searching["pairs"]), searching["worst"], delta=1e-3)
+            self.assertGreater(min(searching["pairs"]), 0)
+            self.assertGreater(searching["steady"], 0)
+
     def test_picture_names_stages_of_a_tenth_of_some_sequence_only(self):
         plot = SourceFileLoader("benchmark_plot", str(SOURCE_DIR / "benchmark/plot")).load_module()
         small = {"stages": {"rectify": {"median": 0.1}, "ransac": {"median": 0.5}, "corners": {"median": 5.0}}}
