@@ -29,6 +29,7 @@ class StereoDepthNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<StereoDepthParameters>();
+    masks_ = loadMasksOrThrow();
     publisher_ =
         getNodeHandle().advertise<StereoDepth>("stereo_depth", kStageQueue, onConnection(), onConnection());
     pairing_ = std::make_unique<Inputs>(
@@ -66,7 +67,7 @@ class StereoDepthNodelet : public StageNodelet {
     double compute_ms = 0;
     StereoDepthResult result = attempt<StereoDepthResult>([&] {
       return stage_.run(
-          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig,
+          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig, masks_,
           [this](const RigModel& model) { return StereoDepthStage(model, parameters_); },
           [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
             auto processed = stage.process(stamp, left_view, right_view, skew);
@@ -83,6 +84,7 @@ class StereoDepthNodelet : public StageNodelet {
   }
 
   StereoDepthParameters parameters_;
+  RigMasks masks_;
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<Inputs> pairing_;

@@ -1,9 +1,14 @@
 #include "uav_landing/pipeline.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cmath>
+#include <cstdio>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "support/approach_scene.h"
 
@@ -100,6 +105,66 @@ TEST(Pipeline, TheRunwaysWidthIsKnownToItsEdgesAndToTheHeight) {
   ASSERT_FALSE(known.approach.runway.failure) << known.approach.runway.failure.message();
   EXPECT_TRUE(other.approach.runway.failure) << "edges of another width";
   EXPECT_NEAR(wide.landing.width_height / known.landing.width_height, 1.02, 1e-3);
+}
+
+/// Outputs of an approach with other grey levels in these columns of the raw images.
+struct Masked {
+  Eigen::Vector3d g;
+  double height, angle;
+  std::vector<double> columns;  // of the matched corners in the left image
+};
+
+Masked approachWith(const std::string& mask, const cv::Rect& area, int seed) {
+  test::ApproachScene scene(7);
+  scene.ground.contrast = 3;
+  const StereoRig& rig = scene.rig;
+  Parameters parameters;
+  parameters.rig.left_mask = parameters.rig.right_mask = mask;
+  Pipeline pipeline =
+      Pipeline::create(cameraOf(rig, rig.cx, 0), cameraOf(rig, rig.cx_right, rig.baseline), parameters)
+          .value();
+  const auto path = test::straight(test::attitude(-8, 0, 0), 1.8, 1.4, 10);
+  const auto picture = [&](cv::Mat image, int own) {
+    noise(seed + own, area.size()).copyTo(image(area));
+    return image;
+  };
+  Masked result;
+  for (int i = 0; i < 6; ++i) {
+    const double t = i * test::kPeriod;
+    const Pipeline::Output& output = pipeline.process(t, picture(scene.ground.left(rig, path(t)), 2 * i),
+                                                      picture(scene.ground.right(rig, path(t)), 2 * i + 1));
+    result.g = output.stereo.plane.g;
+    result.height = output.landing.height;
+    result.angle = output.landing.approach_angle;
+    for (const StereoDepthResult::Point& point : output.stereo.points) result.columns.push_back(point.u);
+  }
+  return result;
+}
+
+TEST(Pipeline, NothingUnderTheMasksTellsAnything) {
+  const cv::Rect nose(90, 150, 120, 90);
+  cv::Mat mask(240, 320, CV_8UC1, cv::Scalar(255));
+  mask(nose) = 0;
+  const std::string file = testing::TempDir() + "pipeline_test_" + std::to_string(getpid()) + ".png";
+  ASSERT_TRUE(cv::imwrite(file, mask));
+  const Masked one = approachWith(file, nose, 100), other = approachWith(file, nose, 200);
+  EXPECT_EQ(one.g, other.g);
+  EXPECT_EQ(one.height, other.height);
+  EXPECT_EQ(one.angle, other.angle);
+  EXPECT_EQ(one.columns, other.columns);
+  EXPECT_GT(one.columns.size(), 100U);
+  EXPECT_TRUE(std::isfinite(one.height) && std::isfinite(one.angle));
+  const Masked unmasked = approachWith("", nose, 100), unmasked_other = approachWith("", nose, 200);
+  EXPECT_NE(unmasked.g, unmasked_other.g) << "without masks they do";
+  std::remove(file.c_str());
+}
+
+TEST(Pipeline, RefusesAMaskThatItCannotRead) {
+  Parameters parameters;
+  parameters.rig.left_mask = "/nowhere/nose.png";
+  const Expected<Pipeline> pipeline = Pipeline::create(camera(0), camera(-70), parameters);
+  ASSERT_FALSE(pipeline);
+  EXPECT_EQ(pipeline.error().detail.find("rig/left_mask: /nowhere/nose.png: no such file"), 0U);
 }
 
 TEST(Pipeline, TimesAreThoseOfTheStagesThatThisPairWentThrough) {

@@ -64,6 +64,7 @@ uav_landing_add_gtest(patch_matching_test test/core/image/patch_matching_test.cp
 uav_landing_add_gtest(patch_refinement_test test/core/image/patch_refinement_test.cpp)
 uav_landing_add_gtest(rectification_test test/core/image/rectification_test.cpp)
 uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
+uav_landing_add_gtest(rig_masks_test test/core/image/rig_masks_test.cpp LIBS yaml-cpp)
 
 # lines
 uav_landing_add_gtest(heading_gate_test test/core/lines/heading_gate_test.cpp
