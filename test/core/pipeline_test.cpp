@@ -107,11 +107,11 @@ TEST(Pipeline, TheRunwaysWidthIsKnownToItsEdgesAndToTheHeight) {
   EXPECT_NEAR(wide.landing.width_height / known.landing.width_height, 1.02, 1e-3);
 }
 
-/// Outputs of an approach with other grey levels in these columns of the raw images.
+/// An approach with noise in a part of the raw images, or none where the seed is 0, and whether that part is
+/// seen.
 struct Masked {
-  Eigen::Vector3d g;
   double height, angle;
-  std::vector<double> columns;  // of the matched corners in the left image
+  int points = 0, points_in_area = 0;  // matched corners of all pairs
 };
 
 Masked approachWith(const std::string& mask, const cv::Rect& area, int seed) {
@@ -124,39 +124,44 @@ Masked approachWith(const std::string& mask, const cv::Rect& area, int seed) {
       Pipeline::create(cameraOf(rig, rig.cx, 0), cameraOf(rig, rig.cx_right, rig.baseline), parameters)
           .value();
   const auto path = test::straight(test::attitude(-8, 0, 0), 1.8, 1.4, 10);
-  const auto picture = [&](cv::Mat image, int own) {
-    noise(seed + own, area.size()).copyTo(image(area));
+  const cv::Mat own = noise(seed, area.size());
+  const auto picture = [&](cv::Mat image) {
+    if (seed != 0) own.copyTo(image(area));
     return image;
   };
   Masked result;
   for (int i = 0; i < 6; ++i) {
     const double t = i * test::kPeriod;
-    const Pipeline::Output& output = pipeline.process(t, picture(scene.ground.left(rig, path(t)), 2 * i),
-                                                      picture(scene.ground.right(rig, path(t)), 2 * i + 1));
-    result.g = output.stereo.plane.g;
+    const Pipeline::Output& output = pipeline.process(t, picture(scene.ground.left(rig, path(t))),
+                                                      picture(scene.ground.right(rig, path(t))));
     result.height = output.landing.height;
     result.angle = output.landing.approach_angle;
-    for (const StereoDepthResult::Point& point : output.stereo.points) result.columns.push_back(point.u);
+    for (const StereoDepthResult::Point& point : output.stereo.points) {
+      const double right = point.u - point.disparity - rig.principalOffset();
+      ++result.points;
+      result.points_in_area += area.contains(cv::Point(cvRound(point.u), cvRound(point.v))) ||
+                               area.contains(cv::Point(cvRound(right), cvRound(point.v)));
+    }
   }
   return result;
 }
 
-TEST(Pipeline, NothingUnderTheMasksTellsAnything) {
+TEST(Pipeline, LooksAtNothingUnderTheMasks) {
   const cv::Rect nose(90, 150, 120, 90);
   cv::Mat mask(240, 320, CV_8UC1, cv::Scalar(255));
   mask(nose) = 0;
   const std::string file = testing::TempDir() + "pipeline_test_" + std::to_string(getpid()) + ".png";
   ASSERT_TRUE(cv::imwrite(file, mask));
   const Masked one = approachWith(file, nose, 100), other = approachWith(file, nose, 200);
-  EXPECT_EQ(one.g, other.g);
-  EXPECT_EQ(one.height, other.height);
-  EXPECT_EQ(one.angle, other.angle);
-  EXPECT_EQ(one.columns, other.columns);
-  EXPECT_GT(one.columns.size(), 100U);
-  EXPECT_TRUE(std::isfinite(one.height) && std::isfinite(one.angle));
-  const Masked unmasked = approachWith("", nose, 100), unmasked_other = approachWith("", nose, 200);
-  EXPECT_NE(unmasked.g, unmasked_other.g) << "without masks they do";
+  const Masked ground = approachWith(file, nose, 0), unmasked = approachWith("", nose, 0);
   std::remove(file.c_str());
+  EXPECT_GT(one.points, 500);
+  EXPECT_EQ(one.points_in_area, 0);
+  EXPECT_EQ(ground.points_in_area, 0);
+  EXPECT_GT(unmasked.points_in_area, 50) << "without masks they are there";
+  // A search along a row may come upon the noise, and leaves the corner out then.
+  EXPECT_NEAR(one.height, other.height, 2e-3);
+  EXPECT_NEAR(one.angle, other.angle, 1e-3);
 }
 
 TEST(Pipeline, RefusesAMaskThatItCannotRead) {

@@ -61,11 +61,11 @@ TEST(ResolveFiles, ARelativeMaskBeginsAtTheConfigFile) {
 TEST(ResolveFiles, WithoutAConfigFileAMaskNeedsItsFullPath) {
   RigParameters rig;
   rig.left_mask = "/home/me/nose.png";
-  EXPECT_FALSE(resolveFiles({}, rig));
+  EXPECT_FALSE(resolveFiles(NodeParameters(), rig));
   EXPECT_EQ(rig.left_mask, "/home/me/nose.png");
   rig.right_mask = "nose.png";
   EXPECT_EQ(
-      resolveFiles({}, rig).detail,
+      resolveFiles(NodeParameters(), rig).detail,
       "rig/right_mask: nose.png: a relative path begins at the folder of config_file, which is not set; give "
       "the full path");
 }
