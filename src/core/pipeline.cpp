@@ -7,7 +7,9 @@ Expected<Pipeline> Pipeline::create(const CameraCalibration& left, const CameraC
                                     const Parameters& parameters) {
   const Expected<StereoRig> checked = makeStereoRig(left, right, parameters.rig);
   if (!checked) return tl::unexpected<Failure>(checked.error());
-  Expected<RigModel> rig = makeRigModel(left, right);
+  const Expected<RigMasks> masks = loadRigMasks(parameters.rig);
+  if (!masks) return tl::unexpected<Failure>(masks.error());
+  Expected<RigModel> rig = makeRigModel(left, right, *masks);
   if (!rig) return tl::unexpected<Failure>(rig.error());
   Expected<Rectifier> left_rectifier = Rectifier::create(left);
   if (!left_rectifier) return tl::unexpected<Failure>(left_rectifier.error());

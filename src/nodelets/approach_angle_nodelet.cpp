@@ -46,6 +46,7 @@ class ApproachAngleNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<ApproachAngleParameters>();
+    masks_ = loadMasksOrThrow();
     publisher_ = getNodeHandle().advertise<ApproachAngle>("approach_angle", kStageQueue, onConnection(),
                                                           onConnection());
     if (parameters_.use_stereo) {
@@ -177,7 +178,7 @@ class ApproachAngleNodelet : public StageNodelet {
     if (imu_) imu = imu_->at(left->header.stamp, left_info.header.frame_id, toCalibration(left_info).R);
     ApproachAngleResult result = attempt<ApproachAngleResult>([&] {
       return stage_.run(
-          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig,
+          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig, masks_,
           [this](const RigModel& model) { return ApproachAngleStage(model, parameters_, shared_.runway); },
           [&](ApproachAngleStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
             auto processed = stage.process(stamp, left_view, right_view, stereo, imu);
@@ -200,6 +201,7 @@ class ApproachAngleNodelet : public StageNodelet {
   }
 
   ApproachAngleParameters parameters_;
+  RigMasks masks_;
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<StereoInputs> with_stereo_;  // one of the two

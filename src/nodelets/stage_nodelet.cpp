@@ -56,6 +56,14 @@ void StageNodelet::onInit() {
       ros::WallDuration(0.001), [this](const ros::WallTimerEvent&) { updateSubscription(); }, true);
 }
 
+RigMasks StageNodelet::loadMasksOrThrow() {
+  const Failure relative = resolveFiles(node_, shared_.rig);
+  if (relative) refuseToLoad(relative.detail);
+  const Expected<RigMasks> masks = loadRigMasks(shared_.rig);
+  if (!masks) refuseToLoad(masks.error().detail);
+  return *masks;
+}
+
 void StageNodelet::refuseToLoad(const std::string& problem) {
   NODELET_FATAL("%s: %s", getName().c_str(), problem.c_str());
   throw std::invalid_argument(getName() + ": " + problem);

@@ -14,6 +14,7 @@
 #include "input_watch.h"
 #include "node_parameters.h"
 #include "stage_report.h"
+#include "uav_landing/image/rig_masks.h"
 #include "uav_landing/parameters/rectify_parameters.h"
 
 namespace uav_landing {
@@ -81,6 +82,9 @@ class StageNodelet : public nodelet::Nodelet {
     if (failure) refuseToLoad(failure.detail);
     return parameters;
   }
+
+  /// The masks that rig/left_mask and rig/right_mask name, after loadParametersOrThrow(). Throws likewise.
+  RigMasks loadMasksOrThrow();
 
   /// Throws what setUp() is to throw, after it is in the log.
   [[noreturn]] void refuseToLoad(const std::string& problem);

@@ -1,5 +1,6 @@
 #include <sensor_msgs/TimeReference.h>
 
+#include <atomic>
 #include <pluginlib/class_list_macros.hpp>
 
 #include "conversions.h"
@@ -29,6 +30,7 @@ class StereoDepthNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<StereoDepthParameters>();
+    masks_ = loadMasksOrThrow();
     publisher_ =
         getNodeHandle().advertise<StereoDepth>("stereo_depth", kStageQueue, onConnection(), onConnection());
     pairing_ = std::make_unique<Inputs>(
@@ -55,6 +57,9 @@ class StereoDepthNodelet : public StageNodelet {
     in_flight_.reset();
   }
   void forget() override { stage_.reset(); }
+  void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
+    status.addf("own frame, % of the left picture", "%.1f", 100 * own_frame_);
+  }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
 
@@ -66,11 +71,12 @@ class StereoDepthNodelet : public StageNodelet {
     double compute_ms = 0;
     StereoDepthResult result = attempt<StereoDepthResult>([&] {
       return stage_.run(
-          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig,
+          left, kLeftImage, left_info, right, kRightImage, right_info, shared_.rig, masks_,
           [this](const RigModel& model) { return StereoDepthStage(model, parameters_); },
           [&](StereoDepthStage& stage, const cv::Mat& left_view, const cv::Mat& right_view) {
             auto processed = stage.process(stamp, left_view, right_view, skew);
             compute_ms = stage.timings().total();
+            noteOwnFrame(stage.ownFrame());
             return processed;
           });
     });
@@ -82,12 +88,23 @@ class StereoDepthNodelet : public StageNodelet {
     publisher_.publish(boost::make_shared<StereoDepth>(toMessage(result, left->header, compute_ms)));
   }
 
+  void noteOwnFrame(double share) {
+    if (share > 0 && !own_frame_told_)
+      NODELET_INFO("%s: left out: %.1f %% of the left picture does not move with the ground",
+                   getName().c_str(), 100 * share);
+    own_frame_told_ = own_frame_told_ || share > 0;
+    own_frame_ = share;
+  }
+
   StereoDepthParameters parameters_;
+  RigMasks masks_;
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
   std::unique_ptr<Inputs> pairing_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
   RigStage<StereoDepthStage> stage_;
+  std::atomic<double> own_frame_{0};  // share of the left picture; the diagnostics have their own thread
+  bool own_frame_told_ = false;
 };
 
 }  // namespace uav_landing

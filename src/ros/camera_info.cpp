@@ -46,7 +46,10 @@ sensor_msgs::CameraInfo toCameraInfo(const CameraCalibration& calibration, const
   return info;
 }
 
-Failure ofCameraInfo(const Failure& failure) { return {failure.reason, kCameraInfo + failure.detail}; }
+Failure ofCameraInfo(const Failure& failure) {
+  const bool of_parameter = failure.detail.rfind("rig/", 0) == 0;
+  return of_parameter ? failure : Failure{failure.reason, kCameraInfo + failure.detail};
+}
 
 std::vector<std::string> ofCameraInfo(const std::vector<std::string>& warnings) {
   std::vector<std::string> named;

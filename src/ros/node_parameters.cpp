@@ -3,6 +3,8 @@
 #include <ros/param.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "autopilot_messages.h"
 #include "parameter_names.h"
@@ -96,6 +98,21 @@ Failure loadSharedParameters(const ros::NodeHandle& handle, SharedParameters& pa
   });
   if (!failure) parameters = loaded;
   return failure;
+}
+
+Failure resolveFiles(const NodeParameters& node_parameters, RigParameters& parameters) {
+  if (!node_parameters.config_file.empty()) {
+    resolveFiles(node_parameters.config_file, parameters);
+    return {};
+  }
+  for (const auto& [name, file] :
+       {std::pair("left_mask", &parameters.left_mask), {"right_mask", &parameters.right_mask}})
+    if (!file->empty() && std::filesystem::path(*file).is_relative())
+      return {Reason::kInputInvalid,
+              std::string("rig/") + name + ": " + *file +
+                  ": a relative path begins at the folder of config_file, which is not set; "
+                  "give the full path"};
+  return {};
 }
 
 template Failure loadParameters(const ros::NodeHandle&, const std::string&, RectifyParameters&,

@@ -42,7 +42,9 @@ struct NodeParameters {
     v.text(
         "config_file", config_file,
         "file that the launch file loaded the parameters from; it is checked as a whole, because a section "
-        "that no nodelet has would go unnoticed");
+        "that no nodelet has would go unnoticed. Files that rig/left_mask and rig/right_mask name are "
+        "relative to "
+        "its folder");
     v.text("base_frame", base_frame,
            "frame of the aircraft (x forward, y left, z up) that is estimated; empty: base_link if static tf "
            "knows it, else the rectified left camera (kalman_height)");
@@ -73,6 +75,11 @@ struct NodeParameters {
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);
+
+/// Gives the files that the shared parameters name their full path: a relative one begins at the folder of
+/// the config_file. Refuses a relative one when there is no config_file, as it would begin at the manager's
+/// folder.
+Failure resolveFiles(const NodeParameters& node_parameters, RigParameters& parameters);
 
 /// Reads what all nodelets of a namespace share: its parameters rig/* and runway/*. Defaults and failure as
 /// above.

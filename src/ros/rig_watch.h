@@ -36,12 +36,12 @@ template <class Stage>
 class RigStage {
  public:
   /// work(stage, left, right), with the images as mono8, or what is wrong with the cameras or the images. The
-  /// topics are for the message. make(rig model): a new stage.
+  /// topics are for the message. make(rig model): a new stage, for the rig with these masks.
   template <class Make, class Work>
   auto run(const sensor_msgs::ImageConstPtr& left, const std::string& left_topic,
            const sensor_msgs::CameraInfo& left_info, const sensor_msgs::ImageConstPtr& right,
            const std::string& right_topic, const sensor_msgs::CameraInfo& right_info,
-           const RigParameters& limits, Make&& make, Work&& work)
+           const RigParameters& limits, const RigMasks& masks, Make&& make, Work&& work)
       -> Expected<decltype(work(std::declval<Stage&>(), cv::Mat(), cv::Mat()))> {
     const CameraCalibration left_camera = toCalibration(left_info), right_camera = toCalibration(right_info);
     // In this order: images before a stage is made for their size, which takes memory.
@@ -52,7 +52,7 @@ class RigStage {
     if (!left_view) return tl::make_unexpected(left_view.error());
     const auto right_view = toMono8(right, right_camera, right_topic);
     if (!right_view) return tl::make_unexpected(right_view.error());
-    const Failure wrong_cameras = prepare(left_info, right_info, make);
+    const Failure wrong_cameras = prepare(left_info, right_info, masks, make);
     if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
@@ -69,10 +69,11 @@ class RigStage {
  private:
   // What is wrong with the cameras; without a failure there is a stage.
   template <class Make>
-  Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right, Make&& make) {
+  Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
+                  const RigMasks& masks, Make&& make) {
     if (!cameras_.changed(left, right)) return failure_;
     stage_.reset();
-    const auto model = makeRigModel(cameras_.left(), cameras_.right());
+    const auto model = makeRigModel(cameras_.left(), cameras_.right(), masks);
     failure_ = model ? Failure() : ofCameraInfo(model.error());
     if (model) stage_.emplace(make(*model));
     return failure_;

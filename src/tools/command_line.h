@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "uav_landing/image/rig_masks.h"
 #include "uav_landing/parameters/parameter_file.h"
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/parameters/section_loader.h"
@@ -77,10 +78,15 @@ int exitStatusOf(const CLI::App& app, const std::string& file, Work&& work) {
   return kDone;
 }
 
-/// The chain's parameters from --config, the defaults when it was not given.
+/// The chain's parameters from --config, the defaults when it was not given. Refuses masks that cannot be
+/// read before anything else is read.
 inline Expected<Parameters> parametersOf(const std::string& config) {
   if (config.empty()) return Parameters();
-  return loadParameterFile(config);
+  Expected<Parameters> parameters = loadParameterFile(config);
+  if (!parameters) return parameters;
+  const Expected<RigMasks> masks = loadRigMasks(parameters->rig);
+  if (!masks) return tl::make_unexpected(masks.error());
+  return parameters;
 }
 
 /// Check for a camera namespace such as "stereo" or "uav1/stereo".

@@ -59,11 +59,13 @@ uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(learned_frame_test test/core/image/learned_frame_test.cpp)
 uav_landing_add_gtest(mask_bounds_test test/core/image/mask_bounds_test.cpp)
 uav_landing_add_gtest(patch_matching_test test/core/image/patch_matching_test.cpp)
 uav_landing_add_gtest(patch_refinement_test test/core/image/patch_refinement_test.cpp)
 uav_landing_add_gtest(rectification_test test/core/image/rectification_test.cpp)
 uav_landing_add_gtest(resampler_test test/core/image/resampler_test.cpp)
+uav_landing_add_gtest(rig_masks_test test/core/image/rig_masks_test.cpp LIBS yaml-cpp)
 
 # lines
 uav_landing_add_gtest(heading_gate_test test/core/lines/heading_gate_test.cpp

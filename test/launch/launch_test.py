@@ -13,6 +13,8 @@ import time
 import unittest
 from pathlib import Path
 
+import cv2
+import numpy as np
 import rosbag
 import rosgraph
 import rospy
@@ -239,6 +241,22 @@ class LaunchTest(unittest.TestCase):
         offline = self.same_numbers(config)
         # The lab's runway is 1.2 m wide, and edges of another width are rejected.
         self.assertEqual([a.runway.width for a in offline["approach_angle"] if math.isfinite(a.runway.width)], [])
+
+    def test_nodelets_and_process_bag_leave_out_the_same_pixels(self):
+        # A relative path begins at the config file's folder, wherever the programs run.
+        config = self.folder / "masked" / "masks.yaml"
+        config.parent.mkdir()
+        config.write_text("rig: {left_mask: nose.png}\n")
+        with rosbag.Bag(str(self.bag)) as bag:
+            info = next(m for _, m, _ in bag.read_messages(["/stereo/left/camera_info"]))
+        mask = np.full((info.height, info.width), 255, np.uint8)
+        mask[:, : info.width // 2] = 0
+        cv2.imwrite(str(config.parent / "nose.png"), mask)
+        offline = self.same_numbers(config)
+        self.assertTrue(any(e.valid for e in offline["landing_estimate"]))
+        columns = [u for depth in offline["stereo_depth"] for u in depth.u]
+        self.assertGreater(len(columns), 100)
+        self.assertGreater(min(columns), info.width // 2 - 20, "the lens moves the mask's edge by some pixels")
 
     def test_a_silent_right_camera_is_named_and_nothing_is_valid(self):
         with launch() as launched:

@@ -101,6 +101,15 @@ TEST_F(BadConfigurationsTest, FilesAsAWhole) {
   std::remove(path.c_str());
 }
 
+TEST_F(BadConfigurationsTest, AMaskThatCannotBeUsedStopsTheNodeletsThatWouldUseIt) {
+  ros::param::set("/uav_landing/rig/left_mask", "/nowhere/nose.png");
+  for (const char* nodelet : {"stereo_depth", "approach_angle"})
+    expectExactRefusal(nodelet,
+                       "rig/left_mask: /nowhere/nose.png: no such file; a relative path begins at the config "
+                       "file's folder");
+  for (const char* nodelet : {"rectify", "kalman_height", "overlay", "autopilot"}) load(nodelet);
+}
+
 TEST_F(BadConfigurationsTest, ABadNodeletLeavesTheOthersRunning) {
   for (const char* nodelet : {"rectify", "stereo_depth", "approach_angle"}) load(nodelet);
   setParameter("kalman_height", "gate", -1);

@@ -2,6 +2,10 @@
 #include <uav_landing/ApproachAngle.h>
 #include <uav_landing/LandingEstimate.h>
 #include <uav_landing/StereoDepth.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
 
 #include "nodelets/nodelet_fixture.h"
 #include "nodelets/nodelet_test_main.h"
@@ -101,6 +105,41 @@ TEST_F(RigCheckNodeletTest, APrincipalPointOfAnotherPictureSizeIsRefusedAlsoWher
       "camera_info: left K[2]: 320, expected 96 to 224 in a picture 320 px wide: is this the calibration of "
       "another picture size? If the picture is cropped off the middle, raise "
       "rig/max_principal_point_offset");
+}
+
+TEST_F(RigCheckNodeletTest, AMaskOfAnotherSizeIsTheReasonOfEveryStage) {
+  const std::string file = testing::TempDir() + "rig_check_mask_" + std::to_string(getpid()) + ".png";
+  ASSERT_TRUE(cv::imwrite(file, cv::Mat(100, 200, CV_8UC1, cv::Scalar(255))));
+  setParameter("rig", "right_mask", file);
+  startWholeChain();
+  const std::string reason =
+      "input_invalid: rig/right_mask: " + file +
+      ": is 200x100, expected 320x240, the size of the raw pictures by camera_info; draw it "
+      "on a raw picture of this camera";
+  ASSERT_TRUE(feedUntil([&] {
+    return hasReason(depths_, reason) && hasReason(angles_, reason) && hasReason(estimates_, reason) &&
+           diagnostics_.said("stereo_depth", DiagnosticStatus::ERROR, reason) &&
+           diagnostics_.said("approach_angle", DiagnosticStatus::ERROR, reason);
+  })) << wholeLog();
+  EXPECT_TRUE(logged("/uav_landing/stereo_depth: " + reason)) << wholeLog();
+  for (const auto& estimate : estimates_.messages()) EXPECT_FALSE(estimate->height_valid);
+  std::remove(file.c_str());
+}
+
+TEST_F(RigCheckNodeletTest, NoPointIsWhereAMaskIs) {
+  const std::string file = testing::TempDir() + "rig_check_mask_" + std::to_string(getpid()) + ".png";
+  cv::Mat mask(240, 320, CV_8UC1, cv::Scalar(255));
+  mask.colRange(0, 160) = 0;
+  ASSERT_TRUE(cv::imwrite(file, mask));
+  setParameter("rig", "left_mask", file);
+  startWholeChain();
+  ASSERT_TRUE(feedUntil([&] {
+    return estimates_.waitFor([](const auto& estimate) { return estimate.height_valid; },
+                              std::chrono::milliseconds(1));
+  })) << wholeLog();
+  for (const auto& depth : depths_.messages())
+    for (const double u : depth->u) EXPECT_GT(u, 160);
+  std::remove(file.c_str());
 }
 
 TEST_F(RigCheckNodeletTest, APictureCroppedOffTheMiddleIsLetThroughByTheSharedParameter) {

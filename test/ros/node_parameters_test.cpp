@@ -48,6 +48,28 @@ TEST(ParameterNames, AreThoseOfEveryKindOfParameter) {
   EXPECT_EQ(parameterNames<EveryKind>(), (std::vector<std::string>{"length", "colour", "wanted", "frame"}));
 }
 
+TEST(ResolveFiles, ARelativeMaskBeginsAtTheConfigFile) {
+  RigParameters rig;
+  rig.left_mask = "masks/nose.png";
+  NodeParameters node;
+  node.config_file = "/home/me/rig.yaml";
+  EXPECT_FALSE(resolveFiles(node, rig));
+  EXPECT_EQ(rig.left_mask, "/home/me/masks/nose.png");
+  EXPECT_EQ(rig.right_mask, "");
+}
+
+TEST(ResolveFiles, WithoutAConfigFileAMaskNeedsItsFullPath) {
+  RigParameters rig;
+  rig.left_mask = "/home/me/nose.png";
+  EXPECT_FALSE(resolveFiles(NodeParameters(), rig));
+  EXPECT_EQ(rig.left_mask, "/home/me/nose.png");
+  rig.right_mask = "nose.png";
+  EXPECT_EQ(
+      resolveFiles(NodeParameters(), rig).detail,
+      "rig/right_mask: nose.png: a relative path begins at the folder of config_file, which is not set; give "
+      "the full path");
+}
+
 TEST(NodeParameterTable, IsTheOneInTheDocumentation) {
   test::expectPage("node_parameters.md", nodeParameterTable(), "--list-node-parameters");
 }

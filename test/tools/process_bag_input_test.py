@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import cv2
 import numpy as np
 import rosbag
 import rospy
@@ -53,6 +54,22 @@ class ProcessBagTest(unittest.TestCase):
 
 
 class FilesTest(ProcessBagTest):
+    def test_a_mask_is_refused_before_the_bag_is_read(self):
+        config = self.folder / "rig.yaml"
+        config.write_text("rig: {right_mask: nose.png}")
+        self.assert_refused(self.process("--config", config), f"rig/right_mask: {self.folder / 'nose.png'}: no such file")
+
+    def test_a_mask_of_another_size(self):
+        write_bag(self.bag, noise_frames())
+        config, mask = self.folder / "rig.yaml", self.folder / "masks"
+        mask.mkdir()
+        cv2.imwrite(str(mask / "nose.png"), np.full((2 * HEIGHT, 2 * WIDTH), 255, np.uint8))
+        config.write_text("rig: {left_mask: masks/nose.png}")
+        result = self.process("--config", config)
+        shutil.rmtree(mask)
+        self.assert_refused(result, f"no usable image pair: rig/left_mask: {mask / 'nose.png'}: is {2 * WIDTH}x{2 * HEIGHT}, "
+                                    f"expected {WIDTH}x{HEIGHT}")
+
     def test_missing_bag(self):
         self.assert_refused(self.process(), str(self.bag), "no such file")
 

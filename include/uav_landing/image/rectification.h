@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/image/rig_masks.h"
 
 namespace uav_landing {
 
@@ -30,12 +31,15 @@ class Rectifier {
   std::shared_ptr<const Resampler> resampler_;  // none where there is nothing to do but copy
 };
 
-/// What the stages behind rectification know of the cameras: the rig and where the rectified images have
-/// picture (mono8, 255 inside). The one place that derives both from the two camera_infos.
+/// What the stages behind rectification know of the cameras: the rig and which pixels of the rectified images
+/// may be used (mono8, 255 where they may): those all of whose source pixels are in the raw image, and in
+/// what its mask leaves. The one place that derives both from the two camera_infos.
 struct RigModel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;
 };
-Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right);
+/// Refuses masks of another size than the raw images.
+Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,
+                                const RigMasks& masks = {});
 
 }  // namespace uav_landing

@@ -1,13 +1,17 @@
 #pragma once
 
+#include <string>
+
 namespace uav_landing {
 
 // visit(): see parameters.h.
 
-/// Limits of what is believed of the calibration of the cameras, for all stages.
+/// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
+/// that, and which pixels see the ground.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
   double max_baseline = 50.0;
+  std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -19,6 +23,12 @@ struct RigParameters {
     v.number("max_baseline", max_baseline, 0.1, 1000.0, "m",
              "longest baseline that is believed. A longer one is refused: the right P[3] is then in "
              "centimetres or millimetres, and heights would be wrong by that factor");
+    v.text("left_mask", left_mask,
+           "image file with the pixels of the left camera that may be used: nonzero = use, 0 = leave out, as "
+           "OpenCV's masks. For what does not move with the ground: the aircraft's nose, a strut, a "
+           "propeller. One channel of 8 bit (PNG), as large as the raw pictures. A relative path begins at "
+           "the config file's folder. Empty: the whole picture is used");
+    v.text("right_mask", right_mask, "the same for the right camera");
   }
 };
 

@@ -14,7 +14,8 @@ class CornerMatcher;
 
 /// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane.
 /// Keeps the plane of the previous pair to predict where to search, by how much the right camera's rows are
-/// off (some twenty pairs), and rows of the last images to know those that come again.
+/// off (some twenty pairs), rows of the last images to know those that come again, and what of the left
+/// picture has not moved with the ground for a second.
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
@@ -29,6 +30,9 @@ class StereoDepthStage {
   StereoDepthResult process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
   /// As newly made.
   void reset();
+  /// Share of the left picture that does not move with the ground, such as the aircraft's nose: the next
+  /// pair's corners leave it out.
+  double ownFrame() const;
   const Timings& timings() const;
 
  private:

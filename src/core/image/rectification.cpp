@@ -60,36 +60,13 @@ void excludeUnreal(const CameraCalibration& c, cv::Mat& x, cv::Mat& y) {
     }
 }
 
-/// 255 where all source pixels that the interpolation weighs are in an image of this size.
-cv::Mat sourceMask(const cv::Mat& map1, const cv::Mat& map2, cv::Size source) {
-  cv::Mat mask(map1.size(), CV_8UC1);
-  for (int v = 0; v < mask.rows; ++v)
-    for (int u = 0; u < mask.cols; ++u) {
-      const cv::Vec2s p = map1.at<cv::Vec2s>(v, u);
-      const int fraction = map2.at<ushort>(v, u);
-      const int right = p[0] + (fraction % cv::INTER_TAB_SIZE > 0),
-                below = p[1] + (fraction / cv::INTER_TAB_SIZE > 0);
-      mask.at<uchar>(v, u) =
-          p[0] >= 0 && p[1] >= 0 && right < source.width && below < source.height ? 255 : 0;
-    }
-  return mask;
-}
+/// Where each rectified pixel comes from, in 1/32 px, as cv::convertMaps makes it.
+struct SourceMaps {
+  cv::Mat places, fractions;
+};
 
-/// Whether the maps lead every pixel to itself, as those of an image that is rectified already.
-bool isIdentity(const cv::Mat& map1, const cv::Mat& map2) {
-  for (int v = 0; v < map1.rows; ++v)
-    for (int u = 0; u < map1.cols; ++u)
-      if (map1.at<cv::Vec2s>(v, u) != cv::Vec2s(static_cast<short>(u), static_cast<short>(v)) ||
-          map2.at<ushort>(v, u) != 0)
-        return false;
-  return true;
-}
-
-}  // namespace
-
-Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
-  if (Failure failure = checkCalibration(calibration)) return tl::unexpected(failure);
-  const CameraCalibration c = calibration.ofDeliveredImage();
+/// c: of the delivered image, checked.
+SourceMaps sourceMaps(const CameraCalibration& c) {
   const Eigen::Matrix3d projection = c.P.leftCols<3>();
   cv::Mat K, R, P, x, y;
   cv::eigen2cv(c.K, K);
@@ -98,15 +75,60 @@ Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
   // An empty D is no distortion; R and P still count.
   cv::initUndistortRectifyMap(K, cv::Mat(c.D, true), R, P, c.imageSize(), CV_32FC1, x, y);
   excludeUnreal(c, x, y);
+  SourceMaps maps;
+  cv::convertMaps(x, y, maps.places, maps.fractions, CV_16SC2);
+  return maps;
+}
 
+/// 255 where the interpolation weighs none but these pixels of the raw image (mono8, not 0).
+cv::Mat sourceMask(const SourceMaps& maps, const cv::Mat& usable) {
+  cv::Mat mask(maps.places.size(), CV_8UC1);
+  for (int v = 0; v < mask.rows; ++v)
+    for (int u = 0; u < mask.cols; ++u) {
+      const cv::Vec2s p = maps.places.at<cv::Vec2s>(v, u);
+      const int fraction = maps.fractions.at<ushort>(v, u);
+      const int right = p[0] + (fraction % cv::INTER_TAB_SIZE > 0),
+                below = p[1] + (fraction / cv::INTER_TAB_SIZE > 0);
+      const bool inside = p[0] >= 0 && p[1] >= 0 && right < usable.cols && below < usable.rows;
+      mask.at<uchar>(v, u) = inside && usable.at<uchar>(p[1], p[0]) != 0 &&
+                                     usable.at<uchar>(p[1], right) != 0 &&
+                                     usable.at<uchar>(below, p[0]) != 0 && usable.at<uchar>(below, right) != 0
+                                 ? 255
+                                 : 0;
+    }
+  return mask;
+}
+
+/// Whether the maps lead every pixel to itself, as those of an image that is rectified already.
+bool isIdentity(const SourceMaps& maps) {
+  for (int v = 0; v < maps.places.rows; ++v)
+    for (int u = 0; u < maps.places.cols; ++u)
+      if (maps.places.at<cv::Vec2s>(v, u) != cv::Vec2s(static_cast<short>(u), static_cast<short>(v)) ||
+          maps.fractions.at<ushort>(v, u) != 0)
+        return false;
+  return true;
+}
+
+/// usable: pixels of the raw image that may be used (mono8, not 0); empty: all.
+cv::Mat validityMask(const SourceMaps& maps, const cv::Mat& usable) {
+  const cv::Size size = maps.places.size();
+  const cv::Mat mask = sourceMask(maps, usable.empty() ? cv::Mat(size, CV_8UC1, cv::Scalar(255)) : usable);
+  const bool interpolates = size.width >= 2 && size.height >= 2;
+  return interpolates || isIdentity(maps) ? mask : cv::Mat(size, CV_8UC1, cv::Scalar(0));
+}
+
+}  // namespace
+
+Expected<Rectifier> Rectifier::create(const CameraCalibration& calibration) {
+  if (Failure failure = checkCalibration(calibration)) return tl::unexpected(failure);
+  const CameraCalibration delivered = calibration.ofDeliveredImage();
+  const SourceMaps maps = sourceMaps(delivered);
   Rectifier rectifier;
   rectifier.calibration_ = calibration;
-  cv::Mat map1, map2;
-  cv::convertMaps(x, y, map1, map2, CV_16SC2);
-  rectifier.mask_ = sourceMask(map1, map2, c.imageSize());
-  if (isIdentity(map1, map2)) return rectifier;
-  if (c.width < 2 || c.height < 2) rectifier.mask_.setTo(0);  // nothing to interpolate between
-  rectifier.resampler_ = std::make_shared<Resampler>(map1, map2, rectifier.mask_, c.imageSize());
+  rectifier.mask_ = validityMask(maps, {});
+  if (isIdentity(maps)) return rectifier;
+  rectifier.resampler_ =
+      std::make_shared<Resampler>(maps.places, maps.fractions, rectifier.mask_, delivered.imageSize());
   return rectifier;
 }
 
@@ -123,11 +145,14 @@ Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
   return {};
 }
 
-Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right) {
+Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,
+                                const RigMasks& masks) {
   const Expected<StereoRig> rig = makeStereoRig(left, right);
   if (!rig) return tl::unexpected(rig.error());
-  // makeStereoRig has accepted both, so neither can fail.
-  return RigModel{*rig, Rectifier::create(left).value().mask(), Rectifier::create(right).value().mask()};
+  if (Failure failure = checkMaskSize(masks.left, left)) return tl::unexpected(failure);
+  if (Failure failure = checkMaskSize(masks.right, right)) return tl::unexpected(failure);
+  return RigModel{*rig, validityMask(sourceMaps(left.ofDeliveredImage()), masks.left.usable),
+                  validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable)};
 }
 
 }  // namespace uav_landing

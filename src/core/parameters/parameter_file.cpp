@@ -1,5 +1,6 @@
 #include "uav_landing/parameters/parameter_file.h"
 
+#include <filesystem>
 #include <sstream>
 
 #include "parameters/moved_parameters.h"
@@ -11,7 +12,17 @@ Expected<Parameters> parseParameters(const std::string& yaml_text, const std::st
   return parseSections<Parameters>(yaml_text, name);
 }
 
-Expected<Parameters> loadParameterFile(const std::string& path) { return loadSectionFile<Parameters>(path); }
+Expected<Parameters> loadParameterFile(const std::string& path) {
+  Expected<Parameters> parameters = loadSectionFile<Parameters>(path);
+  if (parameters) resolveFiles(path, parameters->rig);
+  return parameters;
+}
+
+void resolveFiles(const std::string& config_file, RigParameters& parameters) {
+  const std::filesystem::path folder = std::filesystem::absolute(config_file).parent_path();
+  for (std::string* file : {&parameters.left_mask, &parameters.right_mask})
+    if (!file->empty()) *file = (folder / *file).lexically_normal().string();
+}
 
 std::string parameterTable() {
   std::ostringstream out;

@@ -5,9 +5,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "image/corners.h"
 #include "image/image_check.h"
+#include "image/learned_frame.h"
 #include "image/match_image.h"
 #include "stereo/matching/corner_matcher.h"
 #include "stereo/matching/corner_matching.h"
@@ -40,6 +42,8 @@ struct StereoDepthStage::Implementation {
   std::unique_ptr<CornerMatcher> matcher;
   PlaneTracker tracker;
   StereoLevel fine, coarse;
+  LearnedFrame own_frame;
+  cv::Mat left_mask, left_without_frame;  // of the fine level, as made and without the aircraft's own frame
   MatchImage left, right;
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images with their rows made level
@@ -58,11 +62,13 @@ struct StereoDepthStage::Implementation {
         matcher(given ? std::move(given) : makeRowMatcher(p)),
         tracker(rig.rig, p, limits, cornerBudget(rig.rig.size, p.corner_count, p.pixels_per_corner),
                 *matcher),
+        own_frame(rig.rig.size),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev),
         search(rig, coarseFactor(rig.rig.size), p, limits) {
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
+    left_mask = fine.left_mask;
     coarse = reduceLevel(rig, coarseFactor(rig.rig.size), p.window_radius + 2);
     if (p.direct_refinement) direct = std::make_unique<DirectRefinement>(rig, p.window_radius + 2);
   }
@@ -81,8 +87,31 @@ struct StereoDepthStage::Implementation {
       result.right_repeated = right_repeated.check(right_image);
     }
     if (!result.failure) estimate(left_image, right_image, result);
-    if (result.failure) tracker.miss();
+    if (result.failure) {
+      tracker.miss();
+      own_frame.reset();
+    }
+    leaveOutOwnFrame();
     return result;
+  }
+
+  // In the next pair no corner is looked for where this one's own frame is, nor where windows would hold some
+  // of it.
+  void leaveOutOwnFrame() {
+    fine.left_mask = left_mask;
+    if (own_frame.empty()) return;
+    left_mask.copyTo(left_without_frame);
+    own_frame.leaveOut(parameters.window_radius + 2, left_without_frame);
+    fine.left_mask = left_without_frame;
+  }
+
+  void learnOwnFrame(double stamp, const cv::Mat& left_image, const MatchedCorners& corners) {
+    ScopedTimer timer(timings, "own_frame");
+    std::vector<cv::Point> on_ground;
+    const std::vector<DisparitySample>& samples = corners.matches.samples;
+    for (size_t i = 0; i < samples.size(); ++i)
+      if (corners.fit.agrees[i] != 0) on_ground.emplace_back(cvRound(samples[i].u), cvRound(samples[i].v));
+    own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
   // Width and height of corners' windows, pixels.
@@ -103,6 +132,7 @@ struct StereoDepthStage::Implementation {
     const MatchedCorners corners =
         steady ? std::move(*steady) : searchAndMatch(left_image, right_image, result);
     if (result.failure) return;
+    learnOwnFrame(result.stamp, left_image, corners);
     measureRows(corners, result);
     const bool refined = direct && refineDirectly(left_image, right_image, result);
     if (!refined) keepPlaneOf(corners, result);
@@ -333,11 +363,15 @@ void StereoDepthStage::reset() {
   implementation_->tracker.forget();
   implementation_->search.reset();
   implementation_->not_found = {};
+  implementation_->own_frame.reset();
+  implementation_->leaveOutOwnFrame();
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();
   implementation_->left_repeated.reset();
   implementation_->right_repeated.reset();
 }
+
+double StereoDepthStage::ownFrame() const { return implementation_->own_frame.share(); }
 
 const Timings& StereoDepthStage::timings() const { return implementation_->timings; }
 

@@ -257,5 +257,88 @@ TEST(RigModel, HasTheRigAndBothMasks) {
   EXPECT_FALSE(makeRigModel(left, right));
 }
 
+/// What a person left out of a raw picture: a nose with a round top, and a strut of three pixels.
+RawMask drawnMask(cv::Size size, const std::string& parameter) {
+  RawMask mask{cv::Mat(size, CV_8UC1, cv::Scalar(7)), parameter, "/home/me/nose.png"};
+  cv::ellipse(mask.usable, {size.width / 2, size.height}, {size.width / 4, size.height / 4}, 0, 0, 360, 0,
+              cv::FILLED);
+  cv::line(mask.usable, {size.width / 5, 0}, {size.width / 3, size.height}, 0, 3);
+  return mask;
+}
+
+/// 1 where the lens takes a rectified pixel from usable pixels of the raw image alone, 0 where it does not,
+/// and -1 where it comes from so near a pixel's middle that rounding decides whether the next one counts.
+int expectedUsable(const CameraCalibration& c, const cv::Mat& usable, int u, int v) {
+  constexpr double kRounding = 1.0 / 32 + 1e-3;  // px, of the places' fixed point
+  const Eigen::Vector2d raw = rawPixel(c, u, v);
+  const double x = std::floor(raw.x()), y = std::floor(raw.y());
+  for (const double fraction : {raw.x() - x, raw.y() - y})
+    if (fraction < kRounding || fraction > 1 - kRounding) return -1;
+  const cv::Point first(static_cast<int>(x), static_cast<int>(y));
+  const cv::Rect picture({}, usable.size());
+  for (const cv::Point& step : {cv::Point(0, 0), {1, 0}, {0, 1}, {1, 1}})
+    if (!picture.contains(first + step) || usable.at<uchar>(first + step) == 0) return 0;
+  return 1;
+}
+
+void expectMaskIs(const cv::Mat& mask, const CameraCalibration& c, const cv::Mat& usable) {
+  int compared = 0, left_out = 0;
+  for (int v = 0; v < mask.rows; ++v)
+    for (int u = 0; u < mask.cols; ++u) {
+      const int expected = expectedUsable(c, usable, u, v);
+      if (expected < 0) continue;
+      ++compared;
+      left_out += expected == 0;
+      ASSERT_EQ(mask.at<uchar>(v, u), 255 * expected) << u << ", " << v;
+    }
+  EXPECT_GT(compared, 0.8 * static_cast<double>(mask.total()));
+  EXPECT_GT(left_out, 0.1 * static_cast<double>(mask.total()));
+}
+
+TEST(RigModel, LeavesOutWhatTheMasksOfTheRawImagesSayAndNothingElse) {
+  for (const bool reduced : {false, true}) {
+    SCOPED_TRACE(reduced);
+    CameraCalibration left = plumbBob(), right = rationalPolynomial();
+    right.P(0, 3) = -145;
+    for (CameraCalibration* camera : {&left, &right}) {
+      if (!reduced) continue;
+      camera->roi = cv::Rect(20, 10, 280, 220);
+      camera->binning_x = camera->binning_y = 2;
+    }
+    const RigMasks masks{drawnMask(left.imageSize(), "rig/left_mask"), {}};
+    const Expected<RigModel> model = makeRigModel(left, right, masks);
+    ASSERT_TRUE(model) << model.error().message();
+    expectMaskIs(model->left_mask, left, masks.left.usable);
+    EXPECT_EQ(cv::norm(model->right_mask, Rectifier::create(right)->mask(), cv::NORM_INF), 0)
+        << "it has none";
+
+    const RigMasks other{{}, drawnMask(right.imageSize(), "rig/right_mask")};
+    const Expected<RigModel> right_masked = makeRigModel(left, right, other);
+    ASSERT_TRUE(right_masked) << right_masked.error().message();
+    expectMaskIs(right_masked->right_mask, right, other.right.usable);
+    EXPECT_EQ(cv::norm(right_masked->left_mask, Rectifier::create(left)->mask(), cv::NORM_INF), 0);
+  }
+}
+
+TEST(RigModel, LeavesOutTheSamePixelsOfImagesThatAreRectifiedAlready) {
+  CameraCalibration left = ideal();
+  left.K = left.P.leftCols<3>();
+  CameraCalibration right = left;
+  right.P(0, 3) = -145;
+  const RigMasks masks{drawnMask(left.imageSize(), "rig/left_mask"), {}};
+  const cv::Mat expected = masks.left.usable != 0;
+  EXPECT_EQ(cv::norm(makeRigModel(left, right, masks)->left_mask, expected, cv::NORM_INF), 0);
+}
+
+TEST(RigModel, RefusesAMaskOfAnotherPictureAndNamesIt) {
+  CameraCalibration left = plumbBob(), right = rationalPolynomial();
+  right.P(0, 3) = -145;
+  const RawMask small = drawnMask({160, 120}, "rig/right_mask");
+  const Expected<RigModel> model = makeRigModel(left, right, {{}, small});
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().detail.find("rig/right_mask: /home/me/nose.png: is 160x120, expected 320x240"), 0U)
+      << model.error().detail;
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -26,6 +28,7 @@ struct Writer {
     out << "  " << name << ": " << value << "\n";
   }
   void flag(const char*, bool&, const char*) {}
+  void text(const char*, std::string&, const char*) {}
   template <class Enum>
   void choice(const char*, Enum&, std::initializer_list<const char*>, const char*) {}
 };
@@ -40,6 +43,10 @@ struct NameFinder {
   }
   template <class... Rest>
   void flag(const char* candidate, Rest&&...) {
+    found = found || name == candidate;
+  }
+  template <class... Rest>
+  void text(const char* candidate, Rest&&...) {
     found = found || name == candidate;
   }
   template <class Enum>
@@ -206,6 +213,20 @@ TEST(ParameterFile, SaysWhichFileCannotBeRead) {
   EXPECT_EQ(folder.error().detail, UAV_LANDING_SOURCE_DIR ": cannot be read");
 }
 
+TEST(ParameterFile, FilesThatItNamesAreRelativeToItsFolder) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "parameter_file_test";
+  std::filesystem::create_directories(folder / "config");
+  const std::string file = (folder / "config" / "rig.yaml").string();
+  std::ofstream(file) << "rig: {left_mask: ../masks/nose.png, right_mask: /elsewhere/nose.png}";
+  const Expected<Parameters> parameters = loadParameterFile(file);
+  ASSERT_TRUE(parameters) << parameters.error().message();
+  EXPECT_EQ(parameters->rig.left_mask, (folder / "masks" / "nose.png").string());
+  EXPECT_EQ(parameters->rig.right_mask, "/elsewhere/nose.png");
+  std::ofstream(file) << "rig: {max_baseline: 20}";
+  EXPECT_EQ(loadParameterFile(file)->rig.left_mask, "") << "none, and not the folder";
+  std::filesystem::remove_all(folder);
+}
+
 TEST(ParameterFile, DefaultsLieWithinTheirOwnRanges) {
   // Every number written out at its default must load again.
   std::ostringstream yaml;
@@ -250,6 +271,8 @@ TEST(ParameterTable, HasTheWordsThatPeopleSearchFor) {
            {"false alarm", "kalman_height", "false_alarm_rate"},
            {"bent rig", "kalman_height", "rig_watch"},
            {"cropped", "rig", "max_principal_point_offset"},
+           {"nose", "rig", "left_mask"},
+           {"propeller", "rig", "left_mask"},
            {"computing time", "stereo_depth", "corner_count"}})
     EXPECT_NE(rowOf(table, section, name).find(word), std::string::npos) << word << " in " << name;
 }

@@ -530,6 +530,51 @@ TEST(StereoDepthStage, LooksInsideTheMasksOnly) {
   }
 }
 
+/// Flies over the ground for two seconds, with a nose of strong edges in view or without. speed: m/s.
+struct Flight {
+  double own_frame = 0;            // at the end
+  int on_nose = 0, on_ground = 0;  // of the last pair's corners, those on the nose, and those on the plane
+  Flight(double speed, bool has_nose, bool reset = false) {
+    const Scene scene(31);
+    const cv::Rect nose(110, 192, 96, 48);
+    cv::Mat picture(nose.size(), CV_8UC1);
+    cv::RNG(3).fill(picture, cv::RNG::UNIFORM, 0, 255);
+    cv::resize(picture, picture, {}, 0.25, 0.25, cv::INTER_AREA);
+    cv::normalize(picture, picture, 60, 160, cv::NORM_MINMAX);
+    cv::resize(picture, picture, nose.size(), 0, 0, cv::INTER_NEAREST);
+    StereoDepthStage stage(scene.model, scene.parameters);
+    for (int i = 0; i < 20; ++i) {
+      Pose pose = makePose(1.6, -8, 0);
+      pose.position.x() = 0.1 * i * speed;
+      Pair pair = scene.render(pose);
+      if (has_nose) picture.copyTo(pair.left(nose));
+      const StereoDepthResult result = stage.process(0.1 * i, pair.left, pair.right);
+      EXPECT_FALSE(result.failure) << i << ": " << result.failure.message();
+      on_nose = on_ground = 0;
+      for (const StereoDepthResult::Point& point : result.points) {
+        on_nose += nose.contains(cv::Point(cvRound(point.u), cvRound(point.v)));
+        on_ground += point.on_plane;
+      }
+    }
+    if (reset) stage.reset();
+    own_frame = stage.ownFrame();
+  }
+};
+
+TEST(StereoDepthStage, LearnsWhatDoesNotMoveWithTheGround) {
+  const Flight clear(2, false), with_nose(2, true);
+  EXPECT_EQ(clear.own_frame, 0);
+  EXPECT_GT(with_nose.own_frame, 0.5 * 96 * 48 / (320 * 240.));
+  EXPECT_LT(with_nose.own_frame, 1.1 * 96 * 48 / (320 * 240.));
+  EXPECT_EQ(with_nose.on_nose, 0);
+  EXPECT_GT(with_nose.on_ground, Flight(0, true).on_ground) << "its corners are on the ground instead";
+}
+
+TEST(StereoDepthStage, LearnsNothingWhileItStandsStillAndForgetsWithAReset) {
+  EXPECT_EQ(Flight(0, true).own_frame, 0);
+  EXPECT_EQ(Flight(2, true, true).own_frame, 0);
+}
+
 TEST(StereoDepthStage, PassesStampAndSkewOnAndIsDeterministic) {
   const Scene scene(17);
   const Pair pair = scene.render(makePose(1.6, -8, 0));

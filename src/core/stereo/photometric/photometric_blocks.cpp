@@ -22,7 +22,7 @@ PhotometricBlocks::PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask)
 
 bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, int u, int v) const {
   for (const int y : {v, v + kHeight - 1}) {
-    for (const int x : {u, u + kWidth - 1}) {
+    for (const int x : {u, u + kWidth / 2, u + kWidth - 1}) {  // a strut may be narrower than a block
       const double moved = shift.at(x, y), column = x - moved;
       if (!(moved - rig.principalOffset() >= kLeastDisparity)) return false;
       if (!(column >= kMargin && column <= right_mask_.cols - 2 - kMargin)) return false;

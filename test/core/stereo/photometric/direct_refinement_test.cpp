@@ -51,6 +51,22 @@ TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
   EXPECT_LT(scene.error(altered->plane.g), 0.05);
 }
 
+TEST(DirectRefinement, LooksAtNothingUnderAMaskNarrowerThanABlock) {
+  const auto planeBesideStruts = [](int seed) {
+    RefinedPair scene;
+    scene.render();
+    for (int u = 20; u < scene.left.cols; u += 37) {
+      scene.model.left_mask.col(u) = 0;
+      cv::RNG(static_cast<uint64>(seed + u)).fill(scene.left.col(u), cv::RNG::UNIFORM, 0, 255);
+    }
+    const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
+    return fit ? fit->plane.g : Eigen::Vector3d::Zero().eval();
+  };
+  const Eigen::Vector3d one = planeBesideStruts(1);
+  EXPECT_GT(one.norm(), 0);
+  EXPECT_EQ(one, planeBesideStruts(1000));
+}
+
 TEST(DirectRefinement, TellsHowMuchOfTheErrorIsNoNoise) {
   // A lens that is off by so many pixels here and there.
   const auto shareOf = [](double noise, double lens) {

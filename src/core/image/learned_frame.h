@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace uav_landing {
+
+/// Learns where the aircraft's own frame, such as its nose or a strut, is in one camera's picture. Corners of
+/// its edges are strong and never match, so they take the place of corners on the ground.
+///
+/// The picture is cut into cells, and each is compared with itself a moment ago. Cells with all of these
+/// belong to the frame, after several looks in a row:
+/// - They have edges, and these have stayed in place to half a pixel.
+/// - Corners in them were looked for, and none was found on the ground; or they adjoin such cells.
+/// - The ground beside and above them, which moves less, has moved.
+///
+/// So a camera that stands still leaves nothing out. Nor does ground: its corners are found on it. Nor does
+/// what is near the horizon: the ground above it stays, too. A cell comes back when its content moves. A
+/// thing that flickers, such as a propeller, has no edges that stay and is not learned, nor is a surface
+/// without edges.
+class LearnedFrame {
+ public:
+  explicit LearnedFrame(const cv::Size& size);
+
+  /// image: rectified mono8. tried: corners that were looked for in the other image; on_ground: those of them
+  /// that were found on the ground's plane. stamp: s. One that is not after the last, or long after it,
+  /// begins anew.
+  void observe(double stamp, const cv::Mat& image, const std::vector<cv::Point>& tried,
+               const std::vector<cv::Point>& on_ground);
+  void reset();
+
+  bool empty() const { return left_out_ == 0; }
+  /// Share of the picture that is the frame.
+  double share() const;
+  /// Sets a mask to 0 where the frame is, and so many pixels around it.
+  void leaveOut(int margin, cv::Mat& mask) const;
+
+ private:
+  static constexpr int kSize = 8;  // of a cell, px
+  enum class Change { kUnknown, kFlat, kStays, kMoves };
+  struct Cell {
+    std::array<uchar, kSize * kSize> grey{};  // at the last look
+    Change change = Change::kUnknown;         // since then
+    bool tried = false, on_ground = false;    // there was such a corner in it since then
+    int stays = 0, fails = 0;                 // looks in a row
+    bool own = false;
+  };
+
+  void look(const cv::Mat& image);
+  void compare(const cv::Mat& image);
+  void count(int row);
+  bool groundMoves(int row) const;
+  void findFrame();
+  void keep(const cv::Mat& image);
+  Cell* at(const cv::Point& pixel);
+
+  cv::Size size_, cells_;
+  std::vector<Cell> all_;          // row by row
+  double stamp_ = 0, looked_ = 0;  // of the last pair, and of the last look, s
+  bool known_ = false;             // cells were kept at the last look
+  int left_out_ = 0;
+};
+
+}  // namespace uav_landing
