@@ -69,6 +69,8 @@ struct Cost {
 
 struct Measurement {
   Cost nodelets, chain;
+  size_t pairs = 0;       // all, the first ones included
+  size_t late = 0;        // of them, whose estimate took longer than a period
   double idle_share = 0;  // CPU time over wall-clock time while nobody subscribes
 };
 
@@ -105,7 +107,12 @@ Measurement measure(const Sequence& sequence, Pipeline& chain, const Options& op
     const Sequence::Pair& pair = sequence.pairs[i];
     const NodeletChain::Pair message = NodeletChain::message(sequence, i, ros::Time(pair.stamp));
     std::this_thread::sleep_until(slot);
-    result.nodelets.measure(i, pair.left.total(), [&] { return nodelets.process(message); });
+    result.nodelets.measure(i, pair.left.total(), [&] {
+      const Clock::duration time = nodelets.process(message);
+      ++result.pairs;
+      if (time > period(options)) ++result.late;
+      return time;
+    });
     // The nodelets are done with it: the same pair by the chain itself.
     result.chain.measure(i, pair.left.total(), [&] {
       const auto start = Clock::now();
@@ -127,7 +134,8 @@ void print(const Measurement& m, const std::string& sequence, double rate) {
   m.chain.print("the chain itself");
   std::cout << "\nLatency over the chain's own time, median: " << std::setprecision(2)
             << m.nodelets.times.median() / m.chain.times.median()
-            << "\nCPU time while nobody subscribes: " << 100 * m.idle_share << " % of a core\n";
+            << "\nPairs that took longer than a period, the first ones included: " << m.late << " of "
+            << m.pairs << "\nCPU time while nobody subscribes: " << 100 * m.idle_share << " % of a core\n";
 }
 
 void writeJson(const Measurement& m, const std::string& sequence, const Options& options) {
@@ -137,7 +145,8 @@ void writeJson(const Measurement& m, const std::string& sequence, const Options&
   m.nodelets.write(out, "nodelets");
   out << ",\n";
   m.chain.write(out, "chain");
-  out << ",\n\"idle_cpu_share\": " << m.idle_share << "}\n";
+  out << ",\n\"pairs\": " << m.pairs << ", \"late_pairs\": " << m.late
+      << ",\n\"idle_cpu_share\": " << m.idle_share << "}\n";
   out.close();
   if (!out) throw std::runtime_error(options.json + ": cannot be written");
   pending.commit();

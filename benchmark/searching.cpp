@@ -13,8 +13,7 @@ constexpr int kFlights = 5;  // other work on the machine disturbs one, not all
 constexpr int kSteadyPairs = 40;
 constexpr size_t kUntilSteady = 10;  // pairs
 
-}  // namespace
-
+// Least CPU time of each pair over several flights of a new chain, the first pair included.
 Expected<Times> leastTimes(const Sequence& sequence, const Parameters& parameters) {
   Times least;
   least.ms.assign(sequence.pairs.size(), INFINITY);
@@ -31,6 +30,8 @@ Expected<Times> leastTimes(const Sequence& sequence, const Parameters& parameter
   return least;
 }
 
+}  // namespace
+
 Expected<SearchingTimes> measureSearching(const Sequence& sequence, const std::string& steady,
                                           const Parameters& parameters) {
   SearchingTimes result;
@@ -38,6 +39,11 @@ Expected<SearchingTimes> measureSearching(const Sequence& sequence, const std::s
   result.size = sequence.left.imageSize();
   const Expected<Sequence> reference = simulatedSequence(steady, result.size, kSteadyPairs);
   if (!reference) return tl::make_unexpected(reference.error());
+  if (reference->pairs.size() <= kUntilSteady)
+    return tl::make_unexpected(
+        Failure{Reason::kInputInvalid, steady + " has too few pairs to become steady"});
+  if (sequence.pairs.empty())
+    return tl::make_unexpected(Failure{Reason::kInputInvalid, sequence.name + " has no pairs"});
   const Expected<Times> followed = leastTimes(*reference, parameters);
   if (!followed) return tl::make_unexpected(followed.error());
   result.steady = Times{{followed->ms.begin() + kUntilSteady, followed->ms.end()}}.median();

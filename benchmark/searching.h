@@ -22,10 +22,8 @@ struct SearchingTimes {
   double worstOverSteady() const { return pairs.quantile(1) / steady; }
 };
 
-/// Least CPU time of each pair over several flights of a new chain, the first pair included.
-Expected<Times> leastTimes(const Sequence& sequence, const Parameters& parameters);
-
-/// steady: file of the simulator with the flight to compare with.
+/// Least CPU time of each pair over several flights of a new chain, the first pair included. steady: file of
+/// the simulator with the flight to compare with.
 Expected<SearchingTimes> measureSearching(const Sequence& sequence, const std::string& steady,
                                           const Parameters& parameters);
 

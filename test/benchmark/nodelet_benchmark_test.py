@@ -30,6 +30,8 @@ class NodeletBenchmarkTest(unittest.TestCase):
         self.assertLess(nodelets["copied_bytes"] - chain["copied_bytes"], WIDTH * HEIGHT / 2)
         self.assertLess(nodelets["image_allocations"] - chain["image_allocations"], 0.5)
         self.assertGreater(measured["idle_cpu_share"], 0)
+        self.assertEqual(measured["pairs"], 54)
+        self.assertIn(measured["late_pairs"], range(55))
 
     def test_refuses_a_dataset_that_is_not_there(self):
         result = rosrun("nodelet_benchmark", "--dataset", "/nowhere")

@@ -117,6 +117,8 @@ uav_landing_add_gtest(plane_following_test test/core/stereo/plane/plane_followin
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(plane_search_test test/core/stereo/plane/plane_search_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(slope_band_test test/core/stereo/plane/slope_band_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(region_planes_test test/core/stereo/plane/region_planes_test.cpp)
 uav_landing_add_gtest(row_fit_test test/core/stereo/rows/row_fit_test.cpp)
 uav_landing_add_gtest(row_matching_test test/core/stereo/matching/row_matching_test.cpp)

@@ -60,9 +60,10 @@ struct StereoDepthParameters {
     v.number("max_disparity", max_disparity, 0.05, 1.0, "image widths", "largest disparity searched");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched to both sides of the disparity that the previous plane predicts");
-    v.flag("search_at_once", search_at_once,
-           "a plane about which nothing is known is searched for within one pair, however long that takes; "
-           "else over some pairs, so that none takes much longer than others. For recordings of few pairs");
+    v.flag(
+        "search_at_once", search_at_once,
+        "search for an unknown plane within one pair, however long it takes; otherwise the search is spread "
+        "over several pairs, and no pair takes much longer than others. Use it for recordings of few pairs");
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match; a weaker one is rejected");
     v.number("uniqueness", uniqueness, 0.1, 1.0, "",
              "a second peak at least this good, as a share of the best, makes a match ambiguous, as "

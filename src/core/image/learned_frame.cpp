@@ -136,13 +136,17 @@ void LearnedFrame::keep(const cv::Mat& image) {
 
 double LearnedFrame::share() const { return left_out_ * kSize * kSize / static_cast<double>(size_.area()); }
 
-void LearnedFrame::leaveOut(int margin, cv::Mat& mask) const {
+cv::Mat LearnedFrame::leftOut(const cv::Mat& mask, int margin) {
+  if (empty()) return mask;
+  mask.copyTo(mask_);
   const cv::Rect picture({}, mask.size());
   const int size = kSize + 2 * margin;
-  for (int i = 0; i < cells_.area(); ++i)
-    if (all_[i].own)
-      mask(cv::Rect(i % cells_.width * kSize - margin, i / cells_.width * kSize - margin, size, size) &
-           picture) = 0;
+  for (int i = 0; i < cells_.area(); ++i) {
+    if (!all_[i].own) continue;
+    const cv::Point first(i % cells_.width * kSize - margin, i / cells_.width * kSize - margin);
+    mask_(cv::Rect(first, cv::Size(size, size)) & picture) = 0;
+  }
+  return mask_;
 }
 
 }  // namespace uav_landing

@@ -33,8 +33,8 @@ class LearnedFrame {
   bool empty() const { return left_out_ == 0; }
   /// Share of the picture that is the frame.
   double share() const;
-  /// Sets a mask to 0 where the frame is, and so many pixels around it.
-  void leaveOut(int margin, cv::Mat& mask) const;
+  /// The mask, 0 where the frame is and so many pixels around it. Valid until the next call.
+  cv::Mat leftOut(const cv::Mat& mask, int margin);
 
  private:
   static constexpr int kSize = 8;  // of a cell, px
@@ -60,6 +60,7 @@ class LearnedFrame {
   double stamp_ = 0, looked_ = 0;  // of the last pair, and of the last look, s
   bool known_ = false;             // cells were kept at the last look
   int left_out_ = 0;
+  cv::Mat mask_;  // without the frame
 };
 
 }  // namespace uav_landing

@@ -94,7 +94,7 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
 Expected<MotionEstimate> StepSearch::followSteadily(const StepImages& step, const CameraMotion& predicted,
                                                     std::vector<TemporalMatch>& matches) {
   matches = match(step, step.corners, predicted, 0, std::move(matches));
-  Expected<MotionEstimate> found = estimate(step, predicted, matches);
+  Expected<MotionEstimate> found = estimate(step, predicted, matches, parameters_.min_matches);
   if (!found) return found;
   const double share = shareOf(*found, step), off = farthestOff(step, predicted, *found, matches);
   if (!steadiness_.bearsOut(share, off))
@@ -138,19 +138,19 @@ Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const Ca
       break;
   }
   matches = match(step, step.corners, start, 0, std::move(matches));
-  return estimate(step, start, matches);
+  return estimate(step, start, matches, parameters_.min_matches);
 }
 
 Expected<MotionEstimate> StepSearch::estimate(const StepImages& step, const CameraMotion& start,
-                                              const std::vector<TemporalMatch>& matches) const {
+                                              const std::vector<TemporalMatch>& matches, int fewest) const {
   if (step.rotation != nullptr) {
     // Three of the six unknowns are known already.
-    const int needed = std::max(kFewestScouts, parameters_.min_matches / 2);
+    const int needed = std::max(kFewestScouts, fewest / 2);
     const Expected<MotionEstimate> aided = estimateMotion(rig_, matches, step.normal, step.normal_covariance,
                                                           start, needed, step.memory.motion, step.rotation);
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
-  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, parameters_.min_matches,
+  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, fewest,
                         step.memory.motion);
 }
 
@@ -194,7 +194,7 @@ CameraMotion StepSearch::mostAlike(const StepImages& step, const std::vector<Cam
     CameraMotion motion = guess;
     for (int time = 0; time < kFollowed; ++time) {
       matches = match(step, some, motion, 0, std::move(matches));
-      const Expected<MotionEstimate> followed = estimate(step, motion, matches);
+      const Expected<MotionEstimate> followed = estimate(step, motion, matches, kFewestScouts);
       if (!followed) break;
       motion = followed->motion;
     }

@@ -58,8 +58,9 @@ class StepSearch {
                      const std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
                                       std::vector<TemporalMatch>& matches) const;
+  // fewest: matches that make a motion.
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
-                                    const std::vector<TemporalMatch>& matches) const;
+                                    const std::vector<TemporalMatch>& matches, int fewest) const;
   CameraMotion searchFirst(const StepImages& step, const Eigen::Matrix3d& R);
   CameraMotion mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const;
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "image/image_check.h"
@@ -38,6 +39,7 @@ struct ApproachAngleStage::Implementation {
   RunwayTracker runway;
   RunwayIdentity identity;
   SeenDirections last;
+  bool plane_found = false;  // in the pair before, by a search
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   Timings timings;
@@ -77,8 +79,12 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     straightenPlan(result);
-    if (isSearching(stereo) && !tracker.hasLast()) {
-      waitForPlane(stamp, left, result);
+    if (waitsForPlane(stereo)) {
+      result.failure = {Reason::kNotYet,
+                        "the motion is searched for from the pair after the ground's plane on"};
+      result.step.failure = result.window.failure = result.failure;
+      result.runway.failure = result.runway.threshold_failure = result.failure;
+      skip(stamp, left, stereo);
       return result;
     }
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
@@ -107,21 +113,14 @@ struct ApproachAngleStage::Implementation {
     if (result.vanishing_direction.allFinite()) last.runway = result.vanishing_direction;
   }
 
-  // A first step is searched for over the ground, so it waits until that is known or known not to be there.
-  // Both searches in one pair would take too long.
-  bool isSearching(const StereoDepthResult& stereo) const {
-    return parameters.use_stereo && stereo.from_search &&
-           (!stereo.failure || stereo.failure.reason == Reason::kNotYet);
-  }
-
-  void waitForPlane(double stamp, const cv::Mat& left, ApproachAngleResult& result) {
-    result.failure = {Reason::kNotYet, "the motion is searched for when the ground is known"};
-    result.step.failure = result.window.failure = result.failure;
-    result.runway.failure = result.runway.threshold_failure = result.failure;
-    last = {};
-    identity.skip(stamp);
-    tracker.skip(stamp, left);
-    runway.skip(stamp);
+  // The first step of the motion is searched for over the ground. It waits until the plane is known, and one
+  // pair more: both searches in one pair would take too long.
+  bool waitsForPlane(const StereoDepthResult& stereo) {
+    const bool found_before = std::exchange(plane_found, false);
+    if (!parameters.use_stereo || !stereo.from_search || tracker.hasLast()) return false;
+    if (stereo.failure) return stereo.failure.reason == Reason::kNotYet;
+    plane_found = true;
+    return !found_before;
   }
 
   void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
@@ -228,6 +227,7 @@ void ApproachAngleStage::reset() {
   implementation_->runway.reset();
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
+  implementation_->plane_found = false;
 }
 
 const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }

@@ -1,7 +1,5 @@
 #include "uav_landing/stages/stereo_depth_stage.h"
 
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,8 +14,8 @@
 #include "stereo/photometric/direct_refinement.h"
 #include "stereo/plane/corner_plane.h"
 #include "stereo/plane/plane_fit.h"
-#include "stereo/plane/plane_search.h"
 #include "stereo/plane/plane_tracker.h"
+#include "stereo/plane/spread_search.h"
 #include "stereo/rows/vertical_disparity.h"
 #include "stereo/surface/surface_profile.h"
 #include "stereo/surface/surface_variance.h"
@@ -26,9 +24,6 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// From so much time between two pairs on, s, a search is done within one: there is time, and the next pair is
-// too far away to go on with it.
-constexpr double kRare = 0.3;
 // By how much corners may be more wrong than they claim where texture is hardly more than noise: gradients in
 // their windows are the noise's own then. Measured: 1.6 in a hundred pairs of one simulated scene.
 constexpr double kNoisyCorners = 2.0;
@@ -43,15 +38,14 @@ struct StereoDepthStage::Implementation {
   PlaneTracker tracker;
   StereoLevel fine, coarse;
   LearnedFrame own_frame;
-  cv::Mat left_mask, left_without_frame;  // of the fine level, as made and without the aircraft's own frame
+  cv::Mat left_mask;  // of the fine level, with the aircraft's own frame
   MatchImage left, right;
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images with their rows made level
   std::unique_ptr<DirectRefinement> direct;
   cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
   RepeatedImage left_repeated, right_repeated;
-  PlaneSearch search;
-  Failure not_found;  // by the last search; none where there was none
+  SpreadSearch search;
   SurfaceMemory surface_memory;
   Timings timings;
 
@@ -78,9 +72,7 @@ struct StereoDepthStage::Implementation {
     StereoDepthResult result;
     result.stamp = stamp;
     tracker.begin(stamp);
-    // The pair that is being searched is far away by now.
-    if (tracker.duration() > kRare) search.stop();
-    if (std::isinf(tracker.duration())) search.reset();
+    search.begin(tracker.duration());
     result.failure = checkPair(model, left_image, right_image);
     if (result.failure.reason != Reason::kInputInvalid) {
       result.left_repeated = left_repeated.check(left_image);
@@ -97,13 +89,7 @@ struct StereoDepthStage::Implementation {
 
   // In the next pair no corner is looked for where this one's own frame is, nor where windows would hold some
   // of it.
-  void leaveOutOwnFrame() {
-    fine.left_mask = left_mask;
-    if (own_frame.empty()) return;
-    left_mask.copyTo(left_without_frame);
-    own_frame.leaveOut(parameters.window_radius + 2, left_without_frame);
-    fine.left_mask = left_without_frame;
-  }
+  void leaveOutOwnFrame() { fine.left_mask = own_frame.leftOut(left_mask, parameters.window_radius + 2); }
 
   void learnOwnFrame(double stamp, const cv::Mat& left_image, const MatchedCorners& corners) {
     ScopedTimer timer(timings, "own_frame");
@@ -190,7 +176,6 @@ struct StereoDepthStage::Implementation {
     const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
     if (followed) {
       search.stop();
-      not_found = {};
     } else {
       extend(left_image, right_image, FirstRows());
     }
@@ -206,41 +191,7 @@ struct StereoDepthStage::Implementation {
   Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
-    switch (search.advance(coarse, searchBudget())) {
-      case PlaneSearch::State::kGoesOn:
-        return tl::make_unexpected(not_found ? not_found : stillSearching());
-      case PlaneSearch::State::kFound:
-        not_found = {};
-        return foundPlane();
-      case PlaneSearch::State::kSwapped:
-        not_found = {Reason::kNegativeDisparity,
-                     "disparities are negative: left and right images are swapped, or the baseline has the "
-                     "wrong sign"};
-        break;
-      case PlaneSearch::State::kNotFound:
-        not_found = {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
-        break;
-    }
-    return tl::make_unexpected(not_found);
-  }
-
-  double searchBudget() const {
-    // Of the first pair nobody knows when the next one comes.
-    const bool rare = tracker.duration() > kRare && std::isfinite(tracker.duration());
-    if (parameters.search_at_once || rare) return std::numeric_limits<double>::infinity();
-    return PlaneSearch::budgetOf(model.rig.size);
-  }
-
-  static Failure stillSearching() {
-    return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
-  }
-
-  // In this pair.
-  Expected<Eigen::Vector3d> foundPlane() {
-    if (search.beganHere()) return search.plane();
-    const std::optional<Eigen::Vector3d> followed = tracker.followFrom(search.plane(), coarse);
-    if (!followed) return tl::make_unexpected(stillSearching());
-    return *followed;
+    return search.find(coarse, tracker);
   }
 
   // With their plane, unless the result says why there is none.
@@ -362,7 +313,6 @@ StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, c
 void StereoDepthStage::reset() {
   implementation_->tracker.forget();
   implementation_->search.reset();
-  implementation_->not_found = {};
   implementation_->own_frame.reset();
   implementation_->leaveOutOwnFrame();
   implementation_->rows.reset();

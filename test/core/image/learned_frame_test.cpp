@@ -61,10 +61,9 @@ struct Scene {
   }
 };
 
-cv::Mat leftOut(const LearnedFrame& frame, int margin = 0) {
-  cv::Mat mask(kSize, CV_8U, cv::Scalar(255));
-  frame.leaveOut(margin, mask);
-  return mask == 0;
+cv::Mat leftOut(LearnedFrame frame, int margin = 0) {
+  const cv::Mat mask(kSize, CV_8U, cv::Scalar(255));
+  return frame.leftOut(mask, margin) == 0;
 }
 
 TEST(LearnedFrame, IsWhatStaysWhileTheGroundMoves) {

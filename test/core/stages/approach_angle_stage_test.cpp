@@ -59,6 +59,66 @@ TEST(ApproachAngleStage, APictureOnceMoreDoesNotConfirmTheRunwayInIt) {
   EXPECT_EQ(known, "-----+-+");
 }
 
+/// What the stereo stage says of a pair while the plane is searched for.
+enum class Plane { kSearching, kFound, kFollowed, kNone };
+
+/// Pairs of a flight one after the other.
+struct Searching {
+  ApproachScene scene{7};
+  std::function<Pose(double)> path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
+  ApproachAngleStage stage{scene.model, scene.parameters};
+
+  ApproachAngleResult next(int i, Plane plane, bool repeated = false) {
+    const double stamp = i * kPeriod;
+    const Pose pose = path(repeated ? stamp - kPeriod : stamp);
+    StereoDepthResult stereo = scene.stereo(pose, stamp);
+    stereo.from_search = plane != Plane::kFollowed;
+    stereo.left_repeated = repeated;
+    if (plane == Plane::kSearching || plane == Plane::kNone) {
+      StereoDepthResult none;
+      none.stamp = stamp;
+      none.from_search = true;
+      none.left_repeated = repeated;
+      none.failure = {plane == Plane::kNone ? Reason::kNoPlane : Reason::kNotYet, "no plane"};
+      stereo = none;
+    }
+    return stage.process(stamp, scene.ground.left(scene.rig, pose), scene.ground.right(scene.rig, pose),
+                         stereo);
+  }
+};
+
+TEST(ApproachAngleStage, SearchesForTheMotionFromThePairAfterThePlaneOn) {
+  Searching flight;
+  EXPECT_EQ(flight.next(0, Plane::kSearching).step.failure.reason, Reason::kNotYet);
+  EXPECT_EQ(flight.next(1, Plane::kSearching).step.failure.reason, Reason::kNotYet);
+  EXPECT_EQ(flight.next(2, Plane::kFound).step.failure.reason, Reason::kNotYet);
+  const ApproachAngleResult result = flight.next(3, Plane::kFollowed);
+  const Pose now = flight.path(3 * kPeriod);
+  expectMotion(result.step, Movement(flight.path(2 * kPeriod), now), now.height(), "after the search");
+}
+
+TEST(ApproachAngleStage, APictureOnceMoreDuringTheSearchIsNoStepInTime) {
+  Searching flight;
+  flight.next(0, Plane::kSearching);
+  flight.next(1, Plane::kSearching, true);
+  const ApproachAngleResult result = flight.next(2, Plane::kFollowed);
+  const Pose now = flight.path(2 * kPeriod);
+  EXPECT_NEAR(result.step.duration, 2 * kPeriod, 1e-9);
+  expectMotion(result.step, Movement(flight.path(0), now), now.height(), "over the time of both");
+}
+
+TEST(ApproachAngleStage, DoesNotWaitForeverWhereEachPairIsSearched) {
+  Searching flight;
+  EXPECT_TRUE(flight.next(0, Plane::kFound).step.failure);
+  EXPECT_FALSE(flight.next(1, Plane::kFound).step.failure);
+}
+
+TEST(ApproachAngleStage, DoesNotWaitForAPlaneThatIsNotThere) {
+  Searching flight;
+  flight.next(0, Plane::kNone);
+  EXPECT_NE(flight.next(1, Plane::kNone).step.failure.reason, Reason::kNotYet);
+}
+
 TEST(ApproachAngleStage, MeasuresDescendingLevelDriftingAndRollingMotion) {
   struct Case {
     std::string name;

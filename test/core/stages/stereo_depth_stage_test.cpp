@@ -467,6 +467,26 @@ TEST(StereoDepthStage, SearchesWithinOnePairWherePairsAreRare) {
   expectPose(stage.process(1.5, pair.left, pair.right), pose, "half a second later");
 }
 
+// A pair that comes late does not make the next ones come late, too.
+TEST(StereoDepthStage, GoesOnWithTheSearchOverPairsAfterOneGap) {
+  Scene scene(14);
+  scene.parameters.search_at_once = false;
+  StereoDepthStage stage(scene.model, scene.parameters);
+  const Pair pair = scene.render(makePose(2, -8, 0));
+  stage.process(1, pair.left, pair.right);
+  stage.process(1.05, pair.left, pair.right);
+  EXPECT_EQ(stage.process(1.4, pair.left, pair.right).failure.reason, Reason::kNotYet);
+}
+
+TEST(StereoDepthStage, ForgetsWhatASearchHasSaidWhenStampsJumpBack) {
+  Scene scene(10);
+  scene.parameters.search_at_once = false;
+  const Pair pair = scene.render(makePose(1.6, -8, 0));
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 12; ++i) stage.process(5 + 0.05 * i, pair.right, pair.left);
+  EXPECT_EQ(stage.process(1, pair.left, pair.right).failure.reason, Reason::kNotYet);
+}
+
 TEST(StereoDepthStage, ForgetsThePairThatItSearchesWhenStampsJumpBackOrAfterAReset) {
   Scene scene(14);
   scene.parameters.search_at_once = false;

@@ -19,7 +19,7 @@ struct RowCandidate {
 /// Similarities of one window along a row of the other image.
 class RowSearch {
  public:
-  /// Both images CV_32F of the same size; they must outlive the search.
+  /// Both images CV_32F with as many rows; they must outlive the search.
   RowSearch(const cv::Mat& reference, const cv::Mat& other, int radius, MatchingCost cost);
 
   /// Scores the positions centre + k scale, k = -steps..steps, for the window around (u, v). False when the

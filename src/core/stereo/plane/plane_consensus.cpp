@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <random>
 
@@ -165,7 +166,7 @@ class PairDraws {
     first_.push_back(disparities_.size());
   }
 
-  // Plane through two of them with a drawn roll, as throughTwo().
+  // Plane through two of them with a drawn roll.
   Eigen::Vector3d next() {
     const size_t a = below(rays_.size()), b = below(rays_.size());
     const double triangular = static_cast<double>(below(1001) + below(1001)) / 1000.0 - 1.0;
@@ -178,7 +179,7 @@ class PairDraws {
   }
 
  private:
-  size_t below(size_t n) { return (random_() * n) >> 31U; }
+  size_t below(size_t n) { return static_cast<size_t>((std::uint64_t{random_()} * n) >> 31U); }
   double disparityOf(size_t sample) {
     return disparities_[first_[sample] + below(first_[sample + 1] - first_[sample])];
   }
@@ -195,6 +196,7 @@ class PairDraws {
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                     const PlaneLimits& limits, const ConsensusOptions& options) {
   constexpr double kBeyondDoubt = 0.8;  // of the votes if all samples were exactly on the plane
+  constexpr double kRightRoll = 0.2;    // share of the rolls drawn with which a pair on the plane gives it
   Consensus best;
   if (samples.size() < 3) return best;
   const Voters voters{rig, samples};
@@ -202,16 +204,21 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   RansacOptions draws;
   draws.most = options.iterations;
   draws.draws_each = options.draws_each;
-  draws.of_draws = 0.5;  // every other one is a triple
+  if (options.slope_range) {
+    draws.sample = 2;
+    draws.of_draws = kRightRoll;
+  } else {
+    draws.of_draws = 0.5;  // every other one is a triple
+  }
   RansacBudget budget(draws);
-  const double right = 1 / voters.choices();
+  const double right_choice = 1 / voters.choices();
   const auto consider = [&](const Eigen::Vector3d& g) {
     const Votes votes = voters.votesFor(g, limits.tolerance);
     if (best.found && votes.net() <= best.score) return;
     best = {g, votes.agreeing, votes.net(), true};
     improve(voters, limits, best);
     // Penalties only take away: a better plane has at least the votes that are left of this one's.
-    if (options.until_sure) budget.found(right * best.score / all);
+    if (options.until_sure) budget.found(right_choice * best.score / all);
   };
   if (options.expected && isPlausibleGround(*options.expected, limits)) {
     consider(*options.expected);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "stereo/matching/corner_matching.h"
+#include "stereo/plane/plane_consensus.h"
 #include "stereo/plane/plane_following.h"
 #include "stereo/plane/plane_rivals.h"
 #include "stereo/plane/slope_band.h"
@@ -57,7 +59,7 @@ PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget
 }
 
 void PlaneSearch::stop() {
-  phase_ = Phase::kNone;
+  restart();
   failed_ = 0;
 }
 
@@ -99,7 +101,7 @@ void PlaneSearch::beginBehind(Phase phase) {
 
 void PlaneSearch::prepare(Tier& tier, size_t corners) {
   const StereoLevel& level = tier.level;
-  tier.right = withRoomBeside(level.right);
+  addRoomBeside(level.right, tier.right);
   tier.corners =
       findCorners(level.left, level.left_mask, static_cast<int>(corners), parameters_.corner_quality,
                   parameters_.min_corner_distance, parameters_.harris_k, memory_);
@@ -148,19 +150,23 @@ std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& le
   const StereoLevel& level = tiers.coarse.level;
   GroundCornerMemory memory;
   std::optional<RivalPlane> best;
+  double first_share = 0, share = 0;
   for (const Leader& leader : leaders) {
-    if (leader.share < kRivalShare * leaders.front().share) break;
+    if (best && leader.share < kRivalShare * first_share) break;
     Eigen::Vector3d g = leader.g;
     if (leader.wide && tiers.wide.level.rig.size != level.rig.size) {
       const Consensus closer = trackPlane(level, g, parameters_, limits_, memory);
       if (!closer.found) continue;
       g = closer.g;
     }
-    const RivalPlane rival(level, tiers.coarse.corners, g, parameters_);
-    if (!best || rival.matchesBetterThan(*best, limits_.min_points)) best = rival;
+    RivalPlane rival(level, tiers.coarse.corners, g, parameters_);
+    if (!best) first_share = leader.share;
+    if (best && !rival.matchesBetterThan(*best, limits_.min_points)) continue;
+    best = std::move(rival);
+    share = leader.share;
   }
   if (!best) return std::nullopt;
-  return Best{best->g, leaders.front().share};
+  return Best{best->g, share};
 }
 
 PlaneSearch::State PlaneSearch::decideAhead() {
@@ -188,10 +194,7 @@ PlaneSearch::State PlaneSearch::decideBehind() {
 }
 
 PlaneSearch::State PlaneSearch::end(State state) {
-  if (state == State::kFound) {
-    plane_ = found_->g;
-    looks_swapped_ = false;
-  }
+  if (state == State::kFound) looks_swapped_ = false;
   failed_ = state == State::kFound ? 0 : failed_ + 1;
   phase_ = Phase::kNone;
   return state;

@@ -8,7 +8,6 @@
 #include "geometry/plane_limits.h"
 #include "image/corners.h"
 #include "stereo/matching/stereo_level.h"
-#include "stereo/plane/plane_consensus.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
@@ -36,13 +35,16 @@ class PlaneSearch {
   /// Begins with this pair, when none is under way. The level's images must be whole. budget: places to
   /// score, about; a pair goes on until it has done so many.
   State advance(const StereoLevel& coarse, double budget);
-  /// As many as a pair of this size has time for.
+  /// So many places have time in a pair of this size.
   static double budgetOf(const cv::Size& size);
 
-  const Eigen::Vector3d& plane() const { return plane_; }
+  /// What was found last, until the next pair.
+  const Eigen::Vector3d& plane() const { return found_->g; }
   /// Whether it began with the last pair that it was given.
   bool beganHere() const { return began_here_; }
-  /// A plane is known again: what was begun is of no use any more.
+  /// Begins anew with the next pair.
+  void restart() { phase_ = Phase::kNone; }
+  /// A plane is known again: there is nothing to search for.
   void stop();
   /// Forgets what it knows of the rig, too.
   void reset();
@@ -88,7 +90,6 @@ class PlaneSearch {
   Tiers ahead_, behind_;  // behind: left and right exchanged
   std::vector<Leader> leaders_;
   std::optional<Best> found_;
-  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
   Phase phase_ = Phase::kNone;
   size_t band_ = 0;  // the next one
   bool began_here_ = false;

@@ -107,8 +107,11 @@ std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, con
   return followFrom(last_, coarse);
 }
 
-std::optional<Eigen::Vector3d> PlaneTracker::followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse) {
-  const Consensus tracked = trackPlane(coarse, g, parameters_, limits_, memory_);
+std::optional<Eigen::Vector3d> PlaneTracker::followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse,
+                                                        double reach) {
+  StereoDepthParameters reaching = parameters_;
+  reaching.search_radius *= reach;
+  const Consensus tracked = trackPlane(coarse, g, reaching, limits_, memory_);
   if (!tracked.found) return std::nullopt;
   return tracked.g;
 }

@@ -45,8 +45,9 @@ class PlaneTracker {
   /// level. factor: of that level.
   std::optional<Eigen::Vector3d> follow(const StereoLevel& fine, const StereoLevel& coarse, int factor,
                                         Timings& timings);
-  /// The same from a plane that a pair shortly before had.
-  std::optional<Eigen::Vector3d> followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse);
+  /// The same from a plane that a pair shortly before had. reach: in search radii.
+  std::optional<Eigen::Vector3d> followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse,
+                                            double reach = 1);
   /// Corners on the ground of this plane: those found before, as long as the horizon has hardly moved.
   std::vector<cv::Point> cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g, Timings& timings);
 

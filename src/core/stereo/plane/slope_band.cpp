@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 
 #include "image/image_check.h"
-#include "kernels/window/window_layout.h"
 #include "stereo/matching/row_matching.h"
+#include "uav_landing/parameters/window_radius.h"
 
 namespace uav_landing {
 namespace {
@@ -40,19 +39,25 @@ class LargestDisparity {
 };
 
 // Columns of the right image where a corner is looked for.
-struct Columns {
-  int first, steps;  // to both sides of the middle
-  bool cut;          // the first one is not the image's
-
+class Columns {
+ public:
   Columns(const cv::Point& corner, double offset, double largest, int width) {
-    const int farthest = cvFloor(corner.x - offset - largest);
-    first = std::max(0, farthest);
-    cut = farthest > 0;
-    steps = (std::min(width - 1, cvCeil(corner.x - offset - kNearestToHorizon)) - first) / 2;
+    const int left = cvFloor(corner.x - offset - largest);
+    const int right = cvCeil(corner.x - offset - kNearestToHorizon);
+    first_ = std::max(0, left);
+    steps_ = (std::min(width - 1, right) - first_ + 1) / 2;
+    // A peak at an end of what is looked at is not known to be one, but at the image's border nothing
+    // follows.
+    least_ = left > 0 ? first_ + 0.5 : -INFINITY;
+    most_ = right < width - 1 ? right - 0.5 : INFINITY;
   }
-  int middle() const { return first + steps; }
-  // A peak at the end of what is looked at is not known to be one.
-  bool isPeak(double column) const { return !cut || column > first + 0.5; }
+  int steps() const { return steps_; }  // to both sides of the middle
+  int middle() const { return first_ + steps_; }
+  bool isPeak(double column) const { return column > least_ && column < most_; }
+
+ private:
+  int first_, steps_;
+  double least_, most_;
 };
 
 }  // namespace
@@ -64,11 +69,9 @@ SlopeBand SlopeBands::at(size_t index) {
   return {kShears[index], {before, after}};
 }
 
-cv::Mat withRoomBeside(const cv::Mat& image) {
-  cv::Mat wide;
+void addRoomBeside(const cv::Mat& image, cv::Mat& wide) {
   cv::copyMakeBorder(image, wide, 0, 0, kRoom, kRoom, cv::BORDER_CONSTANT,
                      cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
-  return wide;
 }
 
 BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, const cv::Mat& right,
@@ -85,9 +88,9 @@ BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, con
   std::vector<double> disparities;
   for (const cv::Point& corner : corners) {
     const Columns columns(corner, offset, largest.at(corner), level.right.cols);
-    if (columns.steps < 1) continue;
-    found.scored += 2 * columns.steps + 1;
-    if (!search.run(corner.x, corner.y, kRoom + columns.middle(), columns.steps, warp)) continue;
+    if (columns.steps() < 1) continue;
+    found.scored += 2 * columns.steps() + 1;
+    if (!search.run(corner.x, corner.y, kRoom + columns.middle(), columns.steps(), warp)) continue;
     disparities.clear();
     const std::vector<RowCandidate> peaks = search.peaks(kMinScore, kMostPeaks);
     for (const RowCandidate& peak : peaks) {

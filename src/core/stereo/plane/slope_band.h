@@ -18,15 +18,15 @@ struct SlopeBand {
   Eigen::Vector2d range;  ///< of the planes, likewise
 };
 
-/// Bands that overlap, from the far plane to the one that is as near as the baseline is long. The first
-/// `far` ones have small disparities.
+/// Bands that overlap. A level camera sees a slope of the baseline over the height, so the last band is for
+/// heights down to a third of the baseline. The first kFar have small disparities.
 struct SlopeBands {
   static constexpr size_t kAll = 10, kFar = 5;
   static SlopeBand at(size_t index);
 };
 
-/// A picture beside which there is room for windows: no score there.
-cv::Mat withRoomBeside(const cv::Mat& image);
+/// Copies a picture to where windows have room beside it; there is no score there.
+void addRoomBeside(const cv::Mat& image, cv::Mat& wide);
 
 /// Corners with all places along their rows that resemble them.
 struct BandCandidates {
@@ -34,7 +34,8 @@ struct BandCandidates {
   int scored = 0;  ///< places that were looked at
 };
 
-/// On planes of a band within the limits. right: the level's right image with room beside it.
+/// Looks on the planes of a band that are within the limits. right: the level's right image with room beside
+/// it.
 BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, const cv::Mat& right,
                             const std::vector<cv::Point>& corners, const StereoDepthParameters& parameters,
                             const PlaneLimits& limits);

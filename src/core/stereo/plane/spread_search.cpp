@@ -1,0 +1,84 @@
+#include "stereo/plane/spread_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace uav_landing {
+namespace {
+
+// From so much time between two pairs on, s, a search is done within one: there is time, and in the next pair
+// the plane would be far from where it was.
+constexpr double kRare = 0.3;
+// A plane that was known so long ago, s, is within the reach in which a plane is followed; the reach for
+// older ones grows with their age.
+constexpr double kUsualAge = 0.1;
+
+Failure stillSearching() {
+  return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
+}
+
+}  // namespace
+
+SpreadSearch::SpreadSearch(const RigModel& model, int factor, const StereoDepthParameters& parameters,
+                           const PlaneLimits& limits)
+    : search_(model, factor, parameters, limits),
+      size_(model.rig.size),
+      at_once_(parameters.search_at_once) {}
+
+void SpreadSearch::begin(double duration) {
+  duration_before_ = std::exchange(duration_, duration);
+  age_ += duration;
+  if (std::isinf(duration)) {
+    reset();
+  } else if (duration > kRare) {
+    search_.restart();
+  }
+}
+
+void SpreadSearch::stop() {
+  search_.stop();
+  not_found_ = {};
+}
+
+void SpreadSearch::reset() {
+  search_.reset();
+  not_found_ = {};
+}
+
+Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker) {
+  const PlaneSearch::State state = search_.advance(coarse, budget());
+  if (search_.beganHere()) age_ = 0;
+  switch (state) {
+    case PlaneSearch::State::kFound: {
+      not_found_ = {};
+      if (search_.beganHere()) return search_.plane();
+      const std::optional<Eigen::Vector3d> followed =
+          tracker.followFrom(search_.plane(), coarse, std::max(1.0, age_ / kUsualAge));
+      if (followed) return *followed;
+      return tl::make_unexpected(stillSearching());
+    }
+    case PlaneSearch::State::kGoesOn:
+      return tl::make_unexpected(not_found_ ? not_found_ : stillSearching());
+    case PlaneSearch::State::kSwapped:
+      not_found_ = {
+          Reason::kNegativeDisparity,
+          "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
+      break;
+    case PlaneSearch::State::kNotFound:
+      not_found_ = {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+      break;
+  }
+  return tl::make_unexpected(not_found_);
+}
+
+// A single gap is none of the camera's, and nobody knows when the pair after the first one comes.
+double SpreadSearch::budget() const {
+  const bool rare = std::min(duration_, duration_before_) > kRare && std::isfinite(duration_);
+  if (at_once_ || rare) return std::numeric_limits<double>::infinity();
+  return PlaneSearch::budgetOf(size_);
+}
+
+}  // namespace uav_landing

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "stereo/plane/plane_search.h"
+#include "stereo/plane/plane_tracker.h"
+
+namespace uav_landing {
+
+/// The plane of a pair about which nothing is known, by a search that takes several pairs.
+class SpreadSearch {
+ public:
+  SpreadSearch(const RigModel& model, int factor, const StereoDepthParameters& parameters,
+               const PlaneLimits& limits);
+
+  /// Before anything else of a pair. duration: since the pair before, s; infinite for the first one.
+  void begin(double duration);
+  /// The plane in this pair. As long as the search goes on it is not known why there is none, unless an
+  /// earlier search has told.
+  Expected<Eigen::Vector3d> find(const StereoLevel& coarse, PlaneTracker& tracker);
+  /// The plane is known in this pair: there is nothing to search for.
+  void stop();
+  void reset();
+
+ private:
+  double budget() const;
+
+  PlaneSearch search_;
+  cv::Size size_;  // of the pictures
+  bool at_once_;
+  double duration_ = 0, duration_before_ = 0;  // s
+  double age_ = 0;                             // of the pair that the search began with, s
+  Failure not_found_;                          // by the last search; none before it
+};
+
+}  // namespace uav_landing
