@@ -213,7 +213,8 @@ class Search {
             ground_->plane.height(),
             ground_->path,
             ground_->last,
-            ground_->runway};
+            ground_->runway,
+            ground_->last_doubt};
   }
 
   bool isNearGround(const VanishingPoint& point) const {
