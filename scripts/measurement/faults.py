@@ -12,6 +12,8 @@ from .programs import save_figure
 TITLE = "## Campaign\n"
 DATASETS = ("fg_noon", "lab", "kitti_road")
 SCENERY = ("town", "fields", "shore", "airport", "hills", "random")
+# Ground that is no plane: a height that is refused there is no false alarm.
+UNEVEN = ("hills",)
 # Nothing in the images or between the sources tells these: docs/integrity.md says why.
 UNOBSERVABLE = ("baseline_2", "baseline_8")
 # The road's 0 degrees are not the car's, which moves up and down on its springs.
@@ -139,8 +141,9 @@ class Campaign:
     def healthy(self):
         """Frames without a fault whose height may be certain enough, of them without a valid height, misleading ones."""
         rows = self.healthy_rows()
-        frames = self.total(rows, "healthy") - self.total(rows, "healthy_uncertain")
-        return frames, frames - self.total(rows, "healthy_valid"), self.total(rows, "healthy_misleading")
+        flat = [row for row in rows if row["source"] not in UNEVEN]
+        frames = self.total(flat, "healthy") - self.total(flat, "healthy_uncertain")
+        return frames, frames - self.total(flat, "healthy_valid"), self.total(rows, "healthy_misleading")
 
     def healthy_rows(self):
         """Each approach and each dataset once: the frames before a fault's onset are the same for all faults."""

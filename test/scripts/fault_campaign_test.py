@@ -75,6 +75,10 @@ class CountsTest(unittest.TestCase):
         rows[0]["healthy_valid"] = "994"
         self.assertEqual(faults.Campaign(rows).problems(), ["6 false alarms on 1000 healthy frames"])
 
+    def test_a_height_that_is_not_valid_over_a_hill_is_no_false_alarm_and_a_wrong_one_counts(self):
+        hills = {**row("none", healthy=50, healthy_valid=10, healthy_misleading=1), "source": "hills"}
+        self.assertEqual(faults.Campaign([hills, row("none", healthy=100, healthy_valid=99)]).healthy(), (100, 1, 1))
+
     def test_what_is_too_uncertain_by_itself_is_no_false_alarm(self):
         rows = [row("none", healthy=1000, healthy_valid=900, healthy_uncertain=98)]
         self.assertEqual(faults.Campaign(rows).healthy(), (902, 2, 0))
@@ -155,8 +159,10 @@ class ShortCampaignTest(unittest.TestCase):
     def test_no_yaw_misleads_over_scenery_when_stereo_is_taken_away(self):
         names = "none,black_right,fogged_right,frozen_right,copied_right"
         for scenery in ("town", "fields"):
-            rows = self.fly("--first", 1, "--frames", 60, "--scenery", scenery, "--faults", names)
+            rows = self.fly("--first", 2, "--frames", 50, "--scenery", scenery, "--faults", names)
             self.assertEqual(list(rows), names.split(","))
+            self.assertEqual(rows["none"]["healthy_yaw_known"], rows["none"]["healthy"])
+            self.assertGreater(int(rows["fogged_right"]["faulted_yaw_known"]), 0, "by the left picture")
             for name, row in rows.items():
                 self.assertEqual(row["source"], scenery)
                 self.assertEqual((row["yaw_misleading"], row["healthy_yaw_misleading"]), ("0", "0"), f"{name} {scenery}")
