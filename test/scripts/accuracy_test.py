@@ -1,5 +1,7 @@
 """scripts/accuracy: the tables of its sections, by numbers worked out here, and what it keeps."""
 
+import importlib.machinery
+import importlib.util
 import math
 import sys
 import tempfile
@@ -12,7 +14,7 @@ import numpy as np
 from project import SOURCE_DIR
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
-from measurement import ablation, approaches, consistency, kept, markdown, noise, sets  # noqa: E402
+from measurement import ablation, approaches, consistency, kept, markdown, noise, sets, yaw  # noqa: E402
 
 
 def cells(line):
@@ -148,6 +150,43 @@ class ConsistencyTest(unittest.TestCase):
             cell = [row["seed"] for row in flat if row["cell_height_m"] == str(height) and row["noise"] == "2"]
             self.assertEqual(len(cell), count)
             self.assertEqual(len(set(cell)), count)
+
+
+class YawTest(unittest.TestCase):
+    def row(self, error, stddev=0.1, height=10):
+        return {"cell_height_m": str(height), "yaw_true_deg": "5", "yaw_deg": "" if error is None else str(5 + error),
+                "yaw_stddev_deg": "" if error is None else str(stddev)}
+
+    def test_known_yaws_are_scored_and_those_of_something_else_counted(self):
+        # Errors of 1, 1.9, 2.1 and 80 claimed standard deviations.
+        scores = yaw.score([self.row(error) for error in (0.1, -0.19, 0.21, -8, None, None)])
+        self.assertEqual((scores["snippets"], scores["known"], scores["wrong"], scores["claims"]["share"]), (6, 4, 1, 0.5))
+        self.assertAlmostEqual(scores["claims"]["ratio"], ((1 + 1.9 ** 2 + 2.1 ** 2 + 6400) / 4) ** 0.5)
+        self.assertAlmostEqual(scores["errors"][-1], 8)
+        self.assertEqual(yaw.score([self.row(359.8, 0.3)])["wrong"], 0, "once round")
+
+    def test_one_degree_is_the_limit_of_another_direction(self):
+        self.assertEqual([yaw.score([self.row(error)])["wrong"] for error in (0.99, 1.01, -1.01)], [0, 1, 1])
+
+    def test_row_fits_the_header_also_when_none_is_known(self):
+        self.assertEqual(yaw.line("3 m", yaw.score([self.row(None)])), ["3 m", 1, "0 (0%)"] + 4 * ["–"] + [0])
+        cells = [["3 m", yaw.score([self.row(0.1), self.row(None)])], ["all", yaw.score([self.row(None)])]]
+        text = yaw.render({"snippets": 2, "frames": 13, "cells": cells})
+        self.assertIn("| 3 m | 2 | 1 (50%) | 100.0 (20.7–100.0); 1.00 | 0.100 | 0.100 | 0.100 | 0 |", text)
+
+
+class PageTest(unittest.TestCase):
+    def test_sections_that_are_not_measured_stay_as_they_are(self):
+        loader = importlib.machinery.SourceFileLoader("accuracy", str(SOURCE_DIR / "scripts/accuracy"))
+        accuracy = importlib.util.module_from_spec(importlib.util.spec_from_loader("accuracy", loader))
+        loader.exec_module(accuracy)
+        before = (SOURCE_DIR / "docs/accuracy.md").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, mock.patch.object(kept, "WORK", Path(folder)):
+            self.assertEqual(accuracy.page(before), before)
+            kept.keep("yaw", {"snippets": 1, "frames": 13, "cells": []})
+            after = accuracy.page(before)
+        sections = [dict(part.split("\n", 1) for part in text.split("\n## ")[1:]) for text in (before, after)]
+        self.assertEqual({title for title in sections[1] if sections[0].get(title) != sections[1][title]}, {"Yaw over scenery"})
 
 
 class NoiseTest(unittest.TestCase):

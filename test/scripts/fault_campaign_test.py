@@ -18,7 +18,8 @@ PROGRAM = BUILD_DIR / "devel/lib/uav_landing/inject_faults"
 def row(name, **counts):
     numbers = dict(healthy=0, healthy_valid=0, healthy_uncertain=0, healthy_misleading=0, faulted=0, faulted_valid=0, misleading=0,
                    worst_level_ratio=0, worst_limit_ratio=0, time_to_alert_s=0, healthy_tests="", faulted_angle_valid=0, angle_misleading=0,
-                   worst_angle_ratio=0, healthy_angle_misleading=0)
+                   worst_angle_ratio=0, healthy_angle_misleading=0, faulted_yaw_known=0, yaw_misleading=0, worst_yaw_ratio=0,
+                   healthy_yaw_known=0, healthy_yaw_misleading=0)
     return {"faults": name, "source": "simulator", "seed": "1", **{key: str(value) for key, value in
                                                                   {**numbers, **counts}.items()}}
 
@@ -52,12 +53,31 @@ class CountsTest(unittest.TestCase):
         self.assertNotIn("dirt", faults.Campaign(road).angle_table())
         self.assertIn("2 misleading angles without a fault", faults.Campaign([row("none", **misled)]).problems())
 
+    def test_a_misleading_yaw_is_a_problem_unless_nothing_could_have_seen_it(self):
+        misled = dict(faulted=40, faulted_yaw_known=20, yaw_misleading=3, worst_yaw_ratio=1.5)
+        rows = [row("camera_info", **misled), row("camera_info+dirt", **misled), {**row("dirt", **misled), "source": "town"},
+                {**row("none", healthy=9, healthy_yaw_known=6, healthy_yaw_misleading=2, healthy_valid=9), "source": "town"}]
+        campaign = faults.Campaign(rows)
+        self.assertEqual(campaign.problems(), ["2 misleading yaws without a fault", "dirt: 3 misleading yaws (dirt town 1)"])
+        self.assertRegex(campaign.yaw_table(), r"\n\| *dirt *\| *1 *\| *40 *\| *50% *\| *3 *\|.*\| *1 *\| *100.0% *\| *1.50 *\|")
+        self.assertNotIn("camera info", campaign.yaw_table())
+        self.assertIn("known on 6 of 9, and 2 are misleading", campaign.page("seed 1").replace("\n", " "))
+
+    def test_healthy_frames_of_every_scenery_and_seed_count_and_those_of_a_dataset_once(self):
+        rows = [{**row("none", healthy=10, healthy_valid=10), "source": source, "seed": seed}
+                for source in ("simulator", "town", "lab") for seed in "12"]
+        self.assertEqual(faults.Campaign(rows).healthy()[0], 50)
+
     def test_false_alarms_are_counted_on_healthy_runs_only_and_half_a_per_cent_is_too_much(self):
         rows = [row("none", healthy=1000, healthy_valid=996), row("dirt", healthy=1000, healthy_valid=0)]
         self.assertEqual(faults.Campaign(rows).problems(), [])
         self.assertEqual(faults.Campaign(rows + rows).healthy(), (1000, 4, 0), "the same frames do not count twice")
         rows[0]["healthy_valid"] = "994"
         self.assertEqual(faults.Campaign(rows).problems(), ["6 false alarms on 1000 healthy frames"])
+
+    def test_a_height_that_is_not_valid_over_a_hill_is_no_false_alarm_and_a_wrong_one_counts(self):
+        hills = {**row("none", healthy=50, healthy_valid=10, healthy_misleading=1), "source": "hills"}
+        self.assertEqual(faults.Campaign([hills, row("none", healthy=100, healthy_valid=99)]).healthy(), (100, 1, 1))
 
     def test_what_is_too_uncertain_by_itself_is_no_false_alarm(self):
         rows = [row("none", healthy=1000, healthy_valid=900, healthy_uncertain=98)]
@@ -135,6 +155,23 @@ class ShortCampaignTest(unittest.TestCase):
             faulted = [frame for frame in frames if frame["seed"] == row["seed"] and frame["faulted"] == "1"]
             self.assertTrue(any(frame["failed_tests"] for frame in faulted), row["seed"])
         self.assertGreater(sum(int(row["faulted_angle_valid"]) for row in rows), 0.2 * sum(int(row["faulted"]) for row in rows))
+
+    def test_no_yaw_misleads_over_scenery_when_stereo_is_taken_away(self):
+        names = "none,black_right,fogged_right,frozen_right,copied_right"
+        for scenery in ("town", "fields"):
+            rows = self.fly("--first", 2, "--frames", 50, "--scenery", scenery, "--faults", names)
+            self.assertEqual(list(rows), names.split(","))
+            self.assertEqual(rows["none"]["healthy_yaw_known"], rows["none"]["healthy"])
+            self.assertGreater(int(rows["fogged_right"]["faulted_yaw_known"]), 0, "by the left picture")
+            for name, row in rows.items():
+                self.assertEqual(row["source"], scenery)
+                self.assertEqual((row["yaw_misleading"], row["healthy_yaw_misleading"]), ("0", "0"), f"{name} {scenery}")
+
+    def test_scenery_is_for_the_simulator_and_has_to_be_one_that_there_is(self):
+        for options in (("--scenery", "desert"), ("--scenery", "town", "--dataset", "/tmp/none")):
+            result = run([PROGRAM, "--csv", "/tmp/none.csv", *options])
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("--scenery", result.stderr)
 
     def test_a_frozen_scene_does_not_mislead_under_noise(self):
         row = self.fly("--first", 1, "--frames", 60, "--faults", "none,frozen_both,noise", "--pairs", 4)["frozen_both+noise"]

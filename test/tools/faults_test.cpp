@@ -122,6 +122,20 @@ TEST_F(FaultsTest, WaterMirrorsTheSkyFromItsShoreOnAndLeavesTheRestAsItWas) {
   }
 }
 
+TEST_F(FaultsTest, WhatTakesStereoAwayLeavesTheLeftPictureAsItWas) {
+  cv::Mat picture(240, 320, CV_8U, cv::Scalar(60));
+  picture.colRange(160, 320).setTo(160);
+  for (const char* name : {"black_right", "fogged_right", "copied_right"})
+    EXPECT_EQ(cv::norm(spoiled(fault(name), picture).left, picture, cv::NORM_INF), 0) << name;
+  EXPECT_EQ(cv::countNonZero(spoiled(fault("black_right"), picture).right), 0);
+  // A third of the contrast far from the edge, and a tenth of that across 2 px of it.
+  const cv::Mat fogged = spoiled(fault("fogged_right"), picture).right;
+  const auto mean = [&](int column) { return cv::mean(fogged.col(column))[0]; };
+  EXPECT_NEAR(mean(300) - mean(20), 30, 1);
+  EXPECT_LT(mean(161) - mean(158), 6);
+  EXPECT_EQ(cv::norm(spoiled(fault("copied_right"), picture).right, picture, cv::NORM_INF), 0);
+}
+
 TEST_F(FaultsTest, ABentCameraSeesEverythingTurnedByItsAngle) {
   // A spot in the middle of the picture.
   cv::Mat picture(240, 320, CV_8U, cv::Scalar(0));

@@ -242,6 +242,40 @@ TEST(RandomApproach, SceneryIsDrawnByItsSeedWithinItsRangesAndChangesNothingElse
   EXPECT_NEAR(displaced, 0.3 * kSeeds, 40);
 }
 
+TEST(RandomApproach, ALandscapeHasWhatItsNameSaysAtEveryPlaceOfTheRandomOne) {
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    for (const auto& [name, kind] : sceneryKinds()) {
+      if (kind == SceneryKind::kRandom) continue;
+      SCOPED_TRACE(name);
+      SimulatorParameters p = drawSnippet(seed, 10, 13, {});
+      drawScenery(kind, seed, p);
+      EXPECT_EQ(p.scenery.town.width > 0, name == "town");
+      EXPECT_EQ(p.scenery.fields.width > 0, name == "fields" || name == "hills");
+      EXPECT_EQ(p.scenery.shore.width > 0, name == "shore");
+      EXPECT_EQ(p.scenery.river.width > 0, name == "shore");
+      EXPECT_EQ(p.scenery.taxiway.width > 0, name == "airport");
+      EXPECT_EQ(p.scenery.crossing_runway.width > 0, name == "airport");
+      EXPECT_EQ(p.scenery.road.width > 0, name == "town" || name == "fields" || name == "airport");
+      EXPECT_EQ(p.profile.hill_height > 0, name == "hills");
+      textOf(p);  // within its ranges
+    }
+  }
+}
+
+TEST(RandomApproach, AHillIsBeforeTheThresholdAndNeverInTheWay) {
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    SimulatorParameters p = drawSnippet(seed, 8, 110, {});
+    drawScenery(SceneryKind::kHills, seed, p);
+    EXPECT_LE(p.profile.hill_x + 0.5 * p.profile.hill_length, 0);
+    const GroundProfile ground(p.profile);
+    for (double x = p.path.start_x; x < 0; x += 5) {
+      const double height =
+          p.path.start_height - (x - p.path.start_x) * std::tan(p.path.glide_angle_deg * M_PI / 180);
+      ASSERT_GT(height, ground.height(x)) << seed << " at " << x;
+    }
+  }
+}
+
 TEST(RandomApproach, SeedDecidesEverything) {
   const SimulatorParameters one = drawSnippet(7, 10, 13, {}), again = drawSnippet(7, 10, 13, {});
   EXPECT_EQ(one.runway.width, again.runway.width);

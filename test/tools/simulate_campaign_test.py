@@ -74,6 +74,22 @@ class SimulateCampaignTest(unittest.TestCase):
                              [value for name, value in b.items() if "_true_" in name])
             self.assertNotEqual(a["height_m"], b["height_m"])
 
+    def yaw_error(self, seed, height):
+        """Error over scenery and its claim, deg; None where the yaw is not known."""
+        row = self.fly("--first", seed, "--count", 1, "--heights", height, "--noise", 2, "--frames", 7, "--scenery")[0]
+        if not row["yaw_deg"]:
+            return None
+        return abs(float(row["yaw_deg"]) - float(row["yaw_true_deg"])), float(row["yaw_stddev_deg"])
+
+    def test_a_field_far_off_the_path_and_a_lone_road_are_not_taken_for_a_distant_runway(self):
+        for seed, height in ((25, 60), (66, 60)):
+            known = self.yaw_error(seed, height)
+            self.assertTrue(known is None or known[0] < 1, f"{seed}: {known}")
+
+    def test_lines_of_a_field_beside_the_runway_do_not_pull_at_its_yaw(self):
+        error, stddev = self.yaw_error(25, 30)
+        self.assertLess(error, max(0.05, 5 * stddev))
+
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
         self.assertEqual(result.returncode, 1)

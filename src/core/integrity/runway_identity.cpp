@@ -15,7 +15,8 @@ constexpr int kMostLeaps = 3;    // in a row, of a direction that is not believe
 }  // namespace
 
 void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen, double margin,
-                            const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn) {
+                            bool path_known, const Eigen::Vector3d& normal,
+                            const ApproachAngleResult::Motion& turn) {
   const double seconds = advance(stamp);
   other_probability_ = 1;
   const Eigen::Vector3d across = normal.cross(seen.direction).normalized();
@@ -28,21 +29,24 @@ void RunwayIdentity::follow(double stamp, const VanishingMemory::Direction& seen
   if (leaps) {
     if (++leaps_ > kMostLeaps) {
       *this = RunwayIdentity();
-      follow(stamp, seen, margin, normal, turn);
+      follow(stamp, seen, margin, path_known, normal, turn);
     }
     return;
   }
   leaps_ = 0;
-  if (memory_.agreements() == 0) pairs_ = 0;  // another direction than in the pair before
-  follow(seconds, margin);
+  if (memory_.agreements() == 0) pairs_ = margins_ = 0;  // another direction than in the pair before
+  follow(seconds, margin, path_known);
 }
 
-void RunwayIdentity::follow(double seconds, double margin) {
+void RunwayIdentity::follow(double seconds, double margin, bool path_known) {
+  if (path_known && !path_known_) margins_ = 0;
+  path_known_ = path_known_ || path_known;
   if (margin == 0 && pairs_ >= kConfirmations) {
     margin_ *= std::exp(-seconds / kFade);
   } else {
-    const double gain = std::max(1.0 / (pairs_ + 1), 1 - std::exp(-seconds / kMean));
+    const double gain = std::max(1.0 / (margins_ + 1), 1 - std::exp(-seconds / kMean));
     margin_ += gain * (margin - margin_);
+    ++margins_;
     ++pairs_;
   }
   if (pairs_ >= kConfirmations) other_probability_ = std::min(1.0, std::exp(-margin_));

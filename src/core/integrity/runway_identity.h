@@ -18,8 +18,9 @@ class RunwayIdentity {
   static constexpr int kConfirmations = 3;
 
   /// After each pair. seen: not finite where none is in view. margin: 0 where no runway is known to be there.
+  /// path_known: the margin has what the path of flight says; those before the first such one are forgotten.
   /// normal: of the ground, unit. turn: since the pair before.
-  void follow(double stamp, const VanishingMemory::Direction& seen, double margin,
+  void follow(double stamp, const VanishingMemory::Direction& seen, double margin, bool path_known,
               const Eigen::Vector3d& normal, const ApproachAngleResult::Motion& turn);
   /// A pair of which nothing is known.
   void skip(double stamp);
@@ -27,14 +28,16 @@ class RunwayIdentity {
   double otherProbability() const { return other_probability_; }
 
  private:
-  void follow(double seconds, double margin);
+  void follow(double seconds, double margin, bool path_known);
   double advance(double stamp);
 
   VanishingMemory memory_;
   double stamp_ = kUnknown;
   double margin_ = 0;  // mean of the last pairs
   int pairs_ = 0;      // that agree, in a row
+  int margins_ = 0;    // in their mean
   int leaps_ = 0;      // in a row
+  bool path_known_ = false;
   double other_probability_ = 1;
 };
 

@@ -36,7 +36,8 @@ Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPo
   const Eigen::Matrix2d turn = T.transpose() * B;
   mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
   mean.inlier_count = left.inlier_count + right.inlier_count;
-  mean.runway_margin = std::max(left.runway_margin, right.runway_margin);
+  // Both views see much the same lines: the margins do not add up, nor is the larger one the truer one.
+  mean.runway_margin = 0.5 * (left.runway_margin + right.runway_margin);
   return mean;
 }
 

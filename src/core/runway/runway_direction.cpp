@@ -23,6 +23,7 @@ constexpr double kSure = 1e-3;  // expected coincidences of a point that is not 
 constexpr Sigmas kGate(3);      // between a point and the ground
 // 1 sigma between the two, beyond which they say little of each other.
 constexpr double kVague = 0.4 * kDegree;
+constexpr Sigmas kPulled(5);                 // between the points of all lines and of the runway's
 constexpr double kEnough = 0.5;              // of the lines through the other view's point
 constexpr double kAnyGround = 2 * kDegree;   // 1 sigma of the ground's slope along the runway, without stereo
 constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
@@ -177,13 +178,26 @@ class Search {
     }
     const bool agrees =
         found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway;
-    if (agrees && (!needs_edges || choice->lead >= kClear)) return believed(found.point, *choice);
+    if (agrees && (!needs_edges || choice->lead >= kClear))
+      return believed(withoutOthers(view, found, choice->best.members), *choice);
     if (choice->lead < kClear)
       return tl::make_unexpected(
           Failure{Reason::kNoVanishingPoint, "lines meet, but not clearly those of a runway"});
     Expected<VanishingPoint> point =
         fitVanishingPoint(found.straight, view.K, parameters_, choice->best.members, normal());
     return believed(point, *choice);
+  }
+
+  // The point of all lines that meet; that of the runway's own ones where it contradicts the former, as lines
+  // of fields hardly turned against the runway pull at it.
+  Expected<VanishingPoint> withoutOthers(const View& view, const Found& found,
+                                         const std::vector<char>& members) const {
+    const Expected<VanishingPoint> own =
+        fitVanishingPoint(found.straight, view.K, parameters_, members, normal());
+    if (!own) return found.point;
+    const Eigen::Vector3d turn = own->direction - found.point->direction;
+    const double variance = turn.dot((own->covariance + found.point->covariance) * turn);
+    return kPulled.admits(turn.squaredNorm(), variance) ? found.point : own;
   }
 
   // A point off the ground contradicts stereo. It counts where it is a runway's beyond doubt.
@@ -213,7 +227,8 @@ class Search {
             ground_->plane.height(),
             ground_->path,
             ground_->last,
-            ground_->runway};
+            ground_->runway,
+            ground_->last_doubt};
   }
 
   bool isNearGround(const VanishingPoint& point) const {

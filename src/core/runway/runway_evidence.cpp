@@ -25,14 +25,16 @@ constexpr double kSlender = 3;                  // per log of the length that is
 constexpr double kUsualLength = 6;              // widths; a runway is longer, even the part in view
 constexpr double kEnoughExtent = 2;             // log(far / near)
 constexpr double kUsualBeside = 30;  // evidence of lines beside a runway: taxiways, roads, edges of grass
-constexpr double kRow = 0.3;         // against it, per evidence of lines beside it above the usual
-constexpr double kMostOfRow = 15;    // against a street or a crop row at most
 constexpr double kTelling = 1;       // least evidence of a line that counts as lying beside an object
 
 // Evidence by what is known besides.
-constexpr double kMostOff = 10;               // against it at most, for ground, path, or chart
-constexpr double kMostTurned = 6;             // for the pair before
-constexpr double kPathSigma = 3 * kDegree;    // between path and runway: wind and corrections
+constexpr double kMostOff = 10;             // against it at most, for ground, path, or chart
+constexpr double kMostTurned = 6;           // for the pair before
+constexpr double kPathSigma = 3 * kDegree;  // between path and runway: wind and corrections
+// For a strip without marks that the path leads along. Of a thousand approaches about one has a road there:
+// as near to the path in direction (6 of 60 degrees), as near to its side, and a runway that is not in view.
+constexpr double kBareStrip = 7.3;
+constexpr double kSteepest = 60 * kDegree;    // between both, beyond which nothing is known
 constexpr double kStepSigma = 0.7 * kDegree;  // by which the camera turns between pairs
 constexpr double kSizeSigma = 0.06;           // share of its size by which a runway seems to be another
 constexpr double kFarSigma = 0.05 * kDegree;  // of the angle between the far end and the horizon
@@ -90,43 +92,55 @@ bool isLane(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
   return across > kMiddle && across < 0.5 - kSide && length > kLane * std::log(h.far / h.near);
 }
 
-/// What lies between the edges; adds what runs along the runway there to the members.
-double ofSurface(const GroundLines& lines, const LinePencil& p, double slack, RunwayHypothesis& h) {
+/// What lies between the edges: evidence of marks, and lines that no runway has.
+struct Surface {
   double marks = 0;
   int astray = 0;
+};
+
+/// Adds what runs along the runway there to the members.
+Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, RunwayHypothesis& h) {
+  Surface found;
   for (size_t k = 0; k < p.passes.size(); ++k) {
     if (!p.places[k] || p.places[k]->lateral > h.left + slack || p.places[k]->lateral < h.right - slack)
       continue;
     if (p.places[k]->far < (1 - kSameEnd) * h.near || p.places[k]->near > (1 + kSameEnd) * h.far) {
       h.members[k] = 0;
     } else if (p.passes[k] == 0) {
-      astray += lines.isAcross(static_cast<int>(k)) ? 0 : 1;
+      found.astray += lines.isAcross(static_cast<int>(k)) ? 0 : 1;
     } else if (h.members[k] == 0) {
       h.members[k] = 1;
       if (isLane(p, k, h))
-        ++astray;
+        ++found.astray;
       else
-        marks += p.evidence[k];
+        found.marks += p.evidence[k];
     }
   }
-  return std::min(marks, kEnoughMarks) - kAstray * astray;
+  return found;
 }
 
-/// Against one of many objects side by side. Streets, crop rows and roofs come in rows, runways do not.
-double againstRow(const LinePencil& p, double slack, const RunwayHypothesis& h) {
-  std::vector<double> places;
+/// Whether two lines are pieces of one: in line, and not side by side, however close together.
+bool arePieces(const LinePlace& a, const LinePlace& b, double slack) {
+  return std::abs(a.lateral - b.lateral) < slack && std::min(a.far, b.far) <= std::max(a.near, b.near);
+}
+
+/// For one of many objects side by side. Streets, crop rows and roofs come in rows, runways do not. That a
+/// row's lines point there is no wonder: each line beside the object says of the row what one of the object
+/// says of the runway, and at most it takes all that.
+double ofRow(const LinePencil& p, double slack, const RunwayHypothesis& h) {
+  std::vector<LinePlace> places;
   double beside = 0;
   for (size_t k = 0; k < p.passes.size(); ++k) {
     if (p.evidence[k] < kTelling) continue;
-    const double place = p.places[k]->lateral;
-    if (place <= h.left + slack && place >= h.right - slack) continue;
+    const LinePlace& place = *p.places[k];
+    if (place.lateral <= h.left + slack && place.lateral >= h.right - slack) continue;
     const bool known = std::any_of(places.begin(), places.end(),
-                                   [&](double other) { return std::abs(other - place) < slack; });
+                                   [&](const LinePlace& other) { return arePieces(place, other, slack); });
     if (known) continue;
     places.push_back(place);
     beside += p.evidence[k];
   }
-  return std::min(kMostOfRow, kRow * std::max(0.0, beside - kUsualBeside));
+  return std::max(0.0, beside - kUsualBeside);
 }
 
 }  // namespace
@@ -145,9 +159,13 @@ std::optional<RunwayHypothesis> runwayBetween(const GroundLines& lines, const Li
   h.members.assign(p.passes.size(), 0);
   for (const Edge* edge : {&left_edge, &right_edge})
     for (const size_t k : edge->pieces) h.members[k] = 1;
-  h.evidence = std::min(left_edge.evidence + right_edge.evidence, kEnoughOfEdges) +
-               ofShape(h, std::min(seenLength(p, left_edge, h), seenLength(p, right_edge, h))) +
-               ofSurface(lines, p, slack, h) - againstRow(p, slack, h);
+  const Surface surface = surfaceOf(lines, p, slack, h);
+  const double row = ofRow(p, slack, h);
+  h.marks = std::min(surface.marks, kEnoughMarks);
+  const double pointing = std::min(left_edge.evidence + right_edge.evidence, kEnoughOfEdges) + h.marks;
+  h.marks = std::max(0.0, h.marks - row);
+  h.evidence = std::max(0.0, pointing - row) - kAstray * surface.astray +
+               ofShape(h, std::min(seenLength(p, left_edge, h), seenLength(p, right_edge, h)));
   return h;
 }
 
@@ -156,18 +174,27 @@ double azimuthOn(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction
   return std::atan2(direction.dot(forward.cross(normal)), direction.dot(forward));
 }
 
-double againstDirection(const Eigen::Vector3d& direction, const RunwayPrior& prior) {
-  double sum =
-      penalty(prior.normal.dot(direction), direction.dot(prior.normal_covariance * direction), kMostOff);
-  if (!prior.path) return sum;
-  const double aside = azimuthOn(prior.normal, direction) - azimuthOn(prior.normal, *prior.path);
-  return sum + penalty(aside, kPathSigma * kPathSigma, kMostOff);
+double againstHorizon(const Eigen::Vector3d& direction, const RunwayPrior& prior) {
+  return penalty(prior.normal.dot(direction), direction.dot(prior.normal_covariance * direction), kMostOff);
+}
+
+double againstPath(const RunwayHypothesis& h, const RunwayPrior& prior) {
+  if (!prior.path) return 0;
+  const double aside = azimuthOn(prior.normal, *prior.path) - azimuthOn(prior.normal, h.direction);
+  const double passes = h.near * std::tan(std::clamp(aside, -kSteepest, kSteepest));  // left of the camera
+  const double beside = std::atan(std::max({0.0, passes - h.left, h.right - passes}) / h.near);
+  return std::min(kMostOff, 0.5 * (aside * aside + beside * beside) / (kPathSigma * kPathSigma));
+}
+
+double mostOfMargin(const RunwayHypothesis& h, const RunwayPrior& prior) {
+  if (!prior.path) return std::numeric_limits<double>::infinity();
+  return kBareStrip + h.marks - againstPath(h, prior);
 }
 
 double againstTurn(const Eigen::Vector3d& direction, const RunwayPrior& prior) {
   if (!prior.last) return 0;
   const double turn = azimuthOn(prior.normal, direction) - azimuthOn(prior.normal, *prior.last);
-  return penalty(turn, kStepSigma * kStepSigma, kMostTurned);
+  return penalty(turn, kStepSigma * kStepSigma, std::min(kMostTurned, -std::log(prior.last_doubt)));
 }
 
 double againstSize(const RunwayHypothesis& h, const RunwayPrior& prior) {

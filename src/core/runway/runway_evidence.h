@@ -15,9 +15,14 @@ namespace uav_landing {
 std::optional<RunwayHypothesis> runwayBetween(const GroundLines& lines, const LinePencil& pencil, double left,
                                               double right);
 
-/// Against a direction off the ground's horizon, or far from the path of flight.
-double againstDirection(const Eigen::Vector3d& direction, const RunwayPrior& prior);
-/// Against a direction other than that of the pair before.
+/// Against a direction off the ground's horizon.
+double againstHorizon(const Eigen::Vector3d& direction, const RunwayPrior& prior);
+/// Against an object that the path of flight does not lead along, or to the side of which it passes.
+double againstPath(const RunwayHypothesis& object, const RunwayPrior& prior);
+/// The largest margin that an object may have: a road or a canal may lead along the path as well, but has no
+/// marks. Infinite while no path is known.
+double mostOfMargin(const RunwayHypothesis& object, const RunwayPrior& prior);
+/// Against a direction other than that of the pair before, as far as that was the runway's.
 double againstTurn(const Eigen::Vector3d& direction, const RunwayPrior& prior);
 /// Against an object whose size is not the chart's.
 double againstSize(const RunwayHypothesis& object, const RunwayPrior& prior);

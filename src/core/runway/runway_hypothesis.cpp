@@ -41,7 +41,8 @@ class Search {
         lines_, lines_.pencil(axes), std::max(a->lateral, b->lateral), std::min(a->lateral, b->lateral));
     if (!object) return std::nullopt;
     object->direction = direction;
-    object->evidence -= againstDirection(direction, prior_) + againstSize(*object, prior_);
+    object->evidence -=
+        againstHorizon(direction, prior_) + againstPath(*object, prior_) + againstSize(*object, prior_);
     object->lead = object->evidence - againstTurn(direction, prior_);
     return object;
   }
@@ -78,7 +79,8 @@ Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& segm
     evidence = std::max(evidence, h.evidence);
     lead = std::max(lead, h.lead);
   }
-  return RunwayChoice{*best, best->evidence - evidence, best->lead - lead};
+  const double margin = std::min(best->evidence - evidence, mostOfMargin(*best, prior));
+  return RunwayChoice{*best, margin, best->lead - lead};
 }
 
 }  // namespace uav_landing

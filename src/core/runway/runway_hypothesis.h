@@ -12,7 +12,7 @@ namespace uav_landing {
 
 /// The hypothesis with the largest lead. margin, lead: by how much its evidence and its lead exceed those of
 /// any in another direction, and those of two lines that are there by chance. The margin is of this pair
-/// alone: that of several pairs may be averaged.
+/// alone: that of several pairs may be averaged. It has a limit for an object without marks (mostOfMargin()).
 struct RunwayChoice {
   RunwayHypothesis best;
   double margin, lead;
@@ -27,7 +27,8 @@ struct RunwayChoice {
 /// elsewhere between the edges. Many more lines beside it in its direction are evidence against it: streets
 /// and crop rows come in rows. An object of another width than the chart's, or longer, loses evidence. A
 /// direction off the horizon, or far from the path or from the direction in the pair before, costs evidence,
-/// up to a limit: enough evidence of lines outweighs what was believed.
+/// and so does an object that the path passes by, up to a limit: enough evidence of lines outweighs what was
+/// believed.
 ///
 /// lines: of the view, fitted. K: 3x3 of the view. Fails when no two lines may be such edges.
 Expected<RunwayChoice> findRunwayHypothesis(const std::vector<LineSegment>& lines, const Eigen::Matrix3d& K,

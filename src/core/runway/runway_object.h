@@ -20,6 +20,7 @@ struct RunwayHypothesis {
   double left, right;         ///< places of the edges across it, in heights of the camera, left positive
   double near, far;           ///< from where to where both are seen, forward, in heights
   double evidence;            ///< log of the likelihood ratio to a pair of lines that is there by chance
+  double marks = 0;           ///< part of it: what runs along the runway between the edges
   double lead;                ///< the same with what speaks for the direction in the pair before
   std::vector<char> members;  ///< per line: 1 for the edges and for what runs along the runway between them
 
@@ -34,6 +35,7 @@ struct RunwayPrior {
   std::optional<Eigen::Vector3d> path;  ///< direction of flight, unit
   std::optional<Eigen::Vector3d> last;  ///< direction of the runway in the pair before, unit
   RunwayParameters runway = {};         ///< what charts say of it; used where the height is known
+  double last_doubt = 0;                ///< chance that `last` was the direction of something else
 };
 
 }  // namespace uav_landing

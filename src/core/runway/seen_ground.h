@@ -17,6 +17,7 @@ struct SeenGround {
   /// Directions in the pair before, unit, frame of the camera: of flight, and of the runway.
   std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
   RunwayParameters runway = {};  ///< what charts say of it
+  double last_doubt = 0;         ///< chance that the last direction was not the runway's
 };
 
 }  // namespace uav_landing

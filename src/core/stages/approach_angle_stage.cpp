@@ -67,8 +67,8 @@ struct ApproachAngleStage::Implementation {
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
-        stereo.plane, stereo.vertical_rotation, runway.isSettled(stamp), last.path, last.runway,
-        known_runway};
+        stereo.plane, stereo.vertical_rotation,   runway.isSettled(stamp), last.path, last.runway,
+        known_runway, identity.otherProbability()};
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
@@ -105,7 +105,8 @@ struct ApproachAngleStage::Implementation {
 
   void identify(double stamp, const RunwayDirection& direction, ApproachAngleResult& result) {
     identity.follow(stamp, {result.vanishing_direction, result.vanishing_covariance},
-                    direction.combined ? direction.combined->runway_margin : 0, result.n, result.step);
+                    direction.combined ? direction.combined->runway_margin : 0, last.path.has_value(),
+                    result.n, result.step);
     result.other_runway_probability = identity.otherProbability();
     const Eigen::Vector3d& t = result.step.translation_over_height;
     last = {result.stamp, std::nullopt, std::nullopt};

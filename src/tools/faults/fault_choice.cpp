@@ -9,16 +9,13 @@
 namespace uav_landing {
 namespace {
 
-/// What is painted on the ground is painted on a plane: on ground of another shape it would be a picture of
-/// that plane, and not of the ground that the height is above.
 bool exclude(const Fault& a, const Fault& b) {
   const auto bends = [](const Fault& fault) {
     SimulatorParameters changed;
     if (fault.build) fault.build(changed);
     return !GroundProfile(changed.profile).flat();
   };
-  const auto paints = [](const Fault& fault) { return fault.needs_scene && fault.spoil; };
-  return (bends(a) && paints(b)) || (bends(b) && paints(a));
+  return (bends(a) && paintsGround(&b)) || (bends(b) && paintsGround(&a));
 }
 
 }  // namespace
@@ -28,6 +25,8 @@ std::string nameOf(const FaultCombination& faults) {
   for (const Fault* fault : faults) name += (name.empty() ? "" : "+") + fault->name;
   return name;
 }
+
+bool paintsGround(const Fault* fault) { return fault->needs_scene && fault->spoil; }
 
 FaultChoice::FaultChoice(const std::vector<std::string>& names, int drawn_pairs, bool simulated)
     : drawn_pairs_(drawn_pairs) {

@@ -13,6 +13,10 @@ using FaultCombination = std::vector<const Fault*>;
 /// Names with + between.
 std::string nameOf(const FaultCombination& faults);
 
+/// Whether it paints on a plane: on ground of another shape that would be a picture of that plane, and not of
+/// the ground that the height is above.
+bool paintsGround(const Fault* fault);
+
 /// Which faults are flown.
 class FaultChoice {
  public:

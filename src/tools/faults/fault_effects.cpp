@@ -66,6 +66,12 @@ void changeExposure(cv::Mat& image, double gain, double offset) {
 
 void blur(cv::Mat& image, double sigma) { cv::GaussianBlur(image, image, cv::Size(), sigma); }
 
+void fogLens(cv::Mat& image, cv::RNG& random) {
+  blur(image, 8);
+  changeExposure(image, 0.3, 120);
+  addNoise(image, 2, random);
+}
+
 void smear(cv::Mat& image, int pixels) {
   cv::Mat smeared;
   cv::blur(image, smeared, cv::Size(pixels, 1));

@@ -11,6 +11,8 @@ void turnCamera(cv::Mat& image, const CameraCalibration& camera, const Eigen::Ve
 void zoomCamera(cv::Mat& image, const CameraCalibration& camera, double factor);
 void changeExposure(cv::Mat& image, double gain, double offset);
 void blur(cv::Mat& image, double sigma);
+/// Water on a lens: what is left of the picture, its veil, and the sensor's noise.
+void fogLens(cv::Mat& image, cv::RNG& random);
 void smear(cv::Mat& image, int pixels);
 void addNoise(cv::Mat& image, double sigma, cv::RNG& random);
 /// Dark spots at fixed places.

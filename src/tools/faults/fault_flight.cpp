@@ -46,8 +46,9 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, pair.left, pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;
-    score.take(output.landing, trueHeight(flight, pair.time), trueAngle(flight, pair.time), frame >= onset,
-               now - last);
+    const FaultTruth truth{trueHeight(flight, pair.time), trueAngle(flight, pair.time),
+                           trueYaw(flight, pair.time)};
+    score.take(output.landing, truth, frame >= onset, now - last);
     if (observe) observe(now, output.landing, pair.time, frame >= onset);
     last = now;
   }

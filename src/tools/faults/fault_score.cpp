@@ -4,21 +4,30 @@
 #include <cmath>
 
 namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kSigmas = 5;
+
+double bound(double variance, double tolerated) { return std::max(kSigmas * std::sqrt(variance), tolerated); }
+
+}  // namespace
 
 // An angle has no protection level. A normal error is larger than so many standard deviations once in 1.7
 // million frames: in no campaign of a hundred thousand. What is less than a monitor of a glide path may leave
 // unnoticed, a tenth of its 3 degrees (ICAO Annex 10, volume I, 3.1.5.7), misleads nobody.
-double FaultScore::angleBound(double variance) {
-  constexpr double kSigmas = 5, kTolerated = 0.3 * M_PI / 180;
-  return std::max(kSigmas * std::sqrt(variance), kTolerated);
-}
+double FaultScore::angleBound(double variance) { return bound(variance, 0.3 * kDegree); }
 
-void FaultScore::take(const LandingResult& landing, double true_height, double true_angle, bool is_faulted,
+// Half a degree moves an aircraft by a metre in the last hundred.
+double FaultScore::yawBound(double variance) { return bound(variance, 0.5 * kDegree); }
+
+void FaultScore::take(const LandingResult& landing, const FaultTruth& truth, bool is_faulted,
                       double duration) {
-  takeAngle(landing, true_angle, is_faulted);
-  if (!std::isfinite(true_height)) return;
+  takeAngle(landing, truth.angle, is_faulted);
+  takeYaw(landing, truth.yaw, is_faulted);
+  if (!std::isfinite(truth.height)) return;
   const bool valid = landing.height_valid;
-  const double error = std::abs(landing.height - true_height);
+  const double error = std::abs(landing.height - truth.height);
   const bool over_level = valid && !(error <= landing.height_protection_level);
   const bool over_limit = valid && !(error <= landing.height_alert_limit);
   misled_for_ = over_limit ? misled_for_ + duration : 0;
@@ -65,6 +74,23 @@ void FaultScore::takeAngle(const LandingResult& landing, double true_angle, bool
   ++faulted_angle_valid;
   angle_misleading += misleads;
   worst_angle_ratio = std::max(worst_angle_ratio, ratio);
+}
+
+// A yaw that is not known is not finite.
+void FaultScore::takeYaw(const LandingResult& landing, double true_yaw, bool is_faulted) {
+  if (!std::isfinite(true_yaw) || !std::isfinite(landing.yaw)) return;
+  // The shorter way round.
+  const double error = std::abs(std::remainder(landing.yaw - true_yaw, 2 * M_PI));
+  const double ratio = error / yawBound(landing.yaw_variance);
+  const bool misleads = !(ratio <= 1);
+  if (!is_faulted) {
+    ++healthy_yaw_known;
+    healthy_yaw_misleading += misleads;
+    return;
+  }
+  ++faulted_yaw_known;
+  yaw_misleading += misleads;
+  worst_yaw_ratio = std::max(worst_yaw_ratio, ratio);
 }
 
 std::string FaultScore::testCounts() const {

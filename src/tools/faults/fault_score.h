@@ -7,6 +7,11 @@
 
 namespace uav_landing {
 
+/// What is true of one frame; NaN where it is not known. m, rad.
+struct FaultTruth {
+  double height = kUnknown, angle = kUnknown, yaw = kUnknown;
+};
+
 /// Counts of one run: before the fault's onset (healthy) and from it on (faulted). Frames of the first second
 /// and frames without a true height count for neither.
 struct FaultScore {
@@ -26,6 +31,10 @@ struct FaultScore {
   int angle_misleading = 0;          ///< valid, and the error is larger than angleBound()
   int healthy_angle_misleading = 0;  ///< the same before the onset
   double worst_angle_ratio = 0;      ///< error over angleBound(), of valid faulted angles
+  int healthy_yaw_known = 0, faulted_yaw_known = 0;
+  int yaw_misleading = 0;          ///< known, and the error is larger than yawBound()
+  int healthy_yaw_misleading = 0;  ///< the same before the onset
+  double worst_yaw_ratio = 0;      ///< error over yawBound(), of known faulted yaws
 
   struct TestCount {
     int made = 0, failed = 0;
@@ -34,15 +43,17 @@ struct FaultScore {
   /// "name made failed" of each, with semicolons between.
   std::string testCounts() const;
 
-  /// One frame. true_angle: rad, NaN where not known. duration: s since the frame before.
-  void take(const LandingResult& landing, double true_height, double true_angle, bool is_faulted,
-            double duration);
+  /// One frame. duration: s since the frame before.
+  void take(const LandingResult& landing, const FaultTruth& truth, bool is_faulted, double duration);
   /// Error beyond which a valid approach angle misleads, rad. variance: the one claimed.
   static double angleBound(double variance);
+  /// Error beyond which a known yaw misleads, rad. variance: the one claimed.
+  static double yawBound(double variance);
 
  private:
   void takeHealthy(const LandingResult& landing, bool misleads);
   void takeAngle(const LandingResult& landing, double true_angle, bool is_faulted);
+  void takeYaw(const LandingResult& landing, double true_yaw, bool is_faulted);
 
   double misled_for_ = 0;  // s
 };

@@ -86,6 +86,8 @@ void addTiming(std::vector<Fault>& all) {
                        }));
   all.push_back(spoils("swapped", Place::kTiming, "left and right exchanged",
                        [](FaultRun&, int, Delivery& pair) { std::swap(pair.left, pair.right); }));
+  all.push_back(spoils("copied_right", Place::kTiming, "right picture is the left one",
+                       [](FaultRun&, int, Delivery& pair) { pair.right = pair.left.clone(); }));
   all.push_back(
       spoils("dropped", Place::kTiming, "every second pair missing at random",
              [](FaultRun& run, int, Delivery& pair) { pair.delivered = run.random.uniform(0, 2) == 0; }));
@@ -141,6 +143,10 @@ void addLight(std::vector<Fault>& all) {
                      [](FaultRun&, int, cv::Mat& image) { blur(image, 3); }));
   all.push_back(spoils("defocus_right", Place::kOptics, "right lens out of focus, 1 sigma of 2 px",
                        [](FaultRun&, int, Delivery& pair) { blur(pair.right, 2); }));
+  all.push_back(spoils("black_right", Place::kSensor, "right picture is black",
+                       [](FaultRun&, int, Delivery& pair) { pair.right.setTo(0); }));
+  all.push_back(spoils("fogged_right", Place::kOptics, "right lens is fogged: a veil, 1 sigma of 8 px",
+                       [](FaultRun& run, int, Delivery& pair) { fogLens(pair.right, run.random); }));
   all.push_back(both("motion_blur", Place::kOptics, "9 px along the rows",
                      [](FaultRun&, int, cv::Mat& image) { smear(image, 9); }));
   all.push_back(spoils("dirt", Place::kOptics, "25 dark spots on the left lens",

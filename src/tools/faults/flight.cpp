@@ -53,14 +53,17 @@ SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const Groun
   if (!profile.flat()) flight.settled = std::max(flight.settled, timeOfKnownGround(flight, profile));
 }
 
-SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters) {
+SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
+                               const SceneryKind* scenery) {
   cv::RNG random(seed * 0x9E3779B97F4A7C15ULL + 1);
   // At the end of the run. From higher up most healthy frames would not be certain enough to be valid, so
   // that a fault has nothing to mislead.
-  const double height = 3 * std::pow(4.0, random.uniform(0.0, 1.0));
+  const double lowest = scenery == nullptr ? 3 : 8;
+  const double height = lowest * std::pow(4.0, random.uniform(0.0, 1.0));
   SimulatorParameters p = drawSnippet(seed * 1000003, height, frames, parameters);
   p.setPictures(320, 240, 277.13);
   p.rig.x = 2;
+  if (scenery != nullptr) drawScenery(*scenery, seed, p);
   return p;
 }
 
@@ -98,6 +101,7 @@ double trueHeight(const Flight& flight, double time) { return interpolate(flight
 double trueAngle(const Flight& flight, double time) {
   return interpolate(flight, time, &Truth::approach_angle);
 }
+double trueYaw(const Flight& flight, double time) { return interpolate(flight, time, &Truth::yaw); }
 double trueSpeed(const Flight& flight, double time) { return interpolate(flight, time, &Truth::speed); }
 
 }  // namespace uav_landing

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/random_approach.h"
 #include "simulator/ground_profile.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/parameters.h"
@@ -38,18 +39,20 @@ struct SimulatedFlight {
 };
 
 /// A rig and heights that a small image can do: 320 x 240 with a baseline of 2 m, as good as 640 x 480 with 1
-/// m.
-SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters);
+/// m. scenery: around the runway, or null; over it the flight is higher, where more of it is in view.
+SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
+                               const SceneryKind* scenery = nullptr);
 /// Null where the scene is in the aircraft's way.
 std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn);
 /// Of a dataset folder; throws std::runtime_error with what cannot be read.
 Flight readFlight(const std::string& folder);
 /// So many frames of it, from this one on.
 Flight cutFlight(const Flight& whole, int first, int frames);
-/// The true height, approach angle, and speed at any time between the frames, two at least: stamps and
+/// The true height, approach angle, yaw and speed at any time between the frames, two at least: stamps and
 /// pictures may be those of others.
 double trueHeight(const Flight& flight, double time);
 double trueAngle(const Flight& flight, double time);
+double trueYaw(const Flight& flight, double time);
 double trueSpeed(const Flight& flight, double time);
 
 }  // namespace uav_landing

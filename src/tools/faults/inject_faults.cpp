@@ -19,7 +19,7 @@ namespace {
 using namespace uav_landing;
 
 struct Options {
-  std::string config, csv, dataset, trace;
+  std::string config, csv, dataset, scenery, trace;
   std::vector<std::string> faults;
   uint64_t first = 1;
   int count = 10, frames = 70, pairs = 0;
@@ -28,11 +28,13 @@ struct Options {
 constexpr const char* kHeader =
     "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
     "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_uncertain,"
-    "healthy_tests,faulted_angle_valid,angle_misleading,worst_angle_ratio,healthy_angle_misleading";
+    "healthy_tests,faulted_angle_valid,angle_misleading,worst_angle_ratio,healthy_angle_misleading,"
+    "faulted_yaw_known,yaw_misleading,worst_yaw_ratio,healthy_yaw_known,healthy_yaw_misleading";
 constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
     "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
-    "valid,true_speed_m_s,speed_m_s,speed_stddev_m_s";
+    "valid,true_speed_m_s,speed_m_s,speed_stddev_m_s,true_yaw_deg,yaw_deg,yaw_stddev_deg,yaw_reason,"
+    "other_runway_probability";
 
 std::string withoutCommas(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');
@@ -74,12 +76,19 @@ class Campaign {
   }
 
  private:
+  SimulatorParameters draw(uint64_t seed) const {
+    if (options_.scenery.empty()) return drawFlight(seed, options_.frames, parameters_);
+    return drawFlight(seed, options_.frames, parameters_, &sceneryKinds().at(options_.scenery));
+  }
+
   void flySimulated(uint64_t seed) {
-    const SimulatorParameters drawn = drawFlight(seed, options_.frames, parameters_);
+    const SimulatorParameters drawn = draw(seed);
     const auto plain = simulateFlight(drawn);
     if (!plain) return;
     std::map<std::string, std::unique_ptr<SimulatedFlight>> others;  // by the faults that change the scene
+    const bool flat = GroundProfile(drawn.profile).flat();
     for (const FaultCombination& faults : choice_.combinations(seed)) {
+      if (!flat && std::any_of(faults.begin(), faults.end(), paintsGround)) continue;
       SimulatorParameters changed = drawn;
       FaultCombination builders;
       for (const Fault* fault : faults) {
@@ -90,7 +99,8 @@ class Campaign {
       const std::string name = nameOf(builders);
       if (!builders.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
       const SimulatedFlight* flight = builders.empty() ? plain.get() : others[name].get();
-      if (flight != nullptr) flyOne(flight->flight, "simulator", faults, seed);
+      if (flight != nullptr)
+        flyOne(flight->flight, options_.scenery.empty() ? "simulator" : options_.scenery, faults, seed);
     }
   }
 
@@ -139,6 +149,8 @@ class Campaign {
     row.number(score.healthy_uncertain).text(score.testCounts());
     row.number(score.faulted_angle_valid).number(score.angle_misleading).number(score.worst_angle_ratio);
     row.number(score.healthy_angle_misleading);
+    row.number(score.faulted_yaw_known).number(score.yaw_misleading).number(score.worst_yaw_ratio);
+    row.number(score.healthy_yaw_known).number(score.healthy_yaw_misleading);
     file_ << std::endl;  // what is there already can be looked at
   }
 
@@ -158,6 +170,9 @@ class Campaign {
     row.number(trueAngle(flight, pair_time) / kDegree).number(said.approach_angle / kDegree);
     row.number(std::sqrt(said.approach_angle_variance) / kDegree).flag(said.angle_valid);
     row.number(trueSpeed(flight, pair_time)).number(said.speed()).number(std::sqrt(said.speedVariance()));
+    row.number(trueYaw(flight, pair_time) / kDegree).number(said.yaw / kDegree);
+    row.number(std::sqrt(said.yaw_variance) / kDegree).text(toString(said.yaw_failure.reason));
+    row.number(said.other_runway_probability);
     trace_ << std::endl;
   }
 
@@ -178,13 +193,19 @@ Failure run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Flies approaches with faults through the chain and counts misleading heights and angles.",
-               "inject_faults");
+  CLI::App app(
+      "Flies approaches with faults through the chain and counts misleading heights, angles and yaws.",
+      "inject_faults");
   Options options;
   app.add_option("--csv", options.csv, "rows to write, one per run");
   app.add_option("--trace", options.trace, "rows of every frame to write, to see what a run was misled by");
   app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
-  app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
+  CLI::Option* dataset =
+      app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
+  app.add_option("--scenery", options.scenery,
+                 "what is around the simulator's runways; without it grass, and lower flights")
+      ->check(CLI::IsMember(sceneryKinds()))
+      ->excludes(dataset);
   app.add_option("--faults", options.faults, "only these, pairs as a+b; without it all")->delimiter(',');
   app.add_option("--pairs", options.pairs, "pairs of faults besides, for each seed")->capture_default_str();
   app.add_option("--first", options.first, "first seed")->capture_default_str();

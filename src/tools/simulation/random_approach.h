@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/simulator/parameters.h"
@@ -34,6 +36,13 @@ void bendGround(uint64_t seed, const Parameters& parameters, SimulatorParameters
 /// Puts scenery around the runway of a snippet or an approach: each element with a chance of its own, at a
 /// place and of a size that are drawn. Everything else stays as it was.
 void drawScenery(uint64_t seed, SimulatorParameters& flight);
+/// What there is of a landscape besides grass. kRandom: each element with a chance, as above.
+enum class SceneryKind { kRandom, kTown, kFields, kShore, kAirport, kHills };
+/// All of them by their names.
+const std::map<std::string, SceneryKind>& sceneryKinds();
+/// Puts the elements of such a landscape around the runway of a flight, at places and of sizes that are
+/// drawn. A hill of kHills is never in the aircraft's way.
+void drawScenery(SceneryKind kind, uint64_t seed, SimulatorParameters& flight);
 /// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
 

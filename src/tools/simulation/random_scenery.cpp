@@ -1,8 +1,13 @@
+#include <algorithm>
+#include <cmath>
+
 #include "simulation/draw.h"
 #include "simulation/random_approach.h"
 
 namespace uav_landing {
 namespace {
+
+constexpr double kDegree = M_PI / 180;
 
 void drawFields(Draw& draw, SimulatedFieldsParameters& fields) {
   fields.x = 1500;
@@ -69,43 +74,100 @@ void drawOwnFrame(Draw& draw, SimulatedOwnFrameParameters& frame) {
   frame.post_tilt_deg = draw.uniform(0, 25);
 }
 
-}  // namespace
+/// Chances of the elements.
+struct Shares {
+  double fields = 0.5, town = 0.3, grass_strip = 0.85, river = 0.25, shore = 0.25, road = 0.5, taxiway = 0.5,
+         crossing_runway = 0.25, displaced_threshold = 0.3, own_frame = 0.2;
 
-void drawScenery(uint64_t seed, SimulatorParameters& flight) {
-  Draw draw(hashed(~seed));  // of its own, so that everything else is the same with it
+  static Shares certain() { return {1, 1, 1, 1, 1, 1, 1, 1, 0.3, 0}; }
+};
+
+/// Puts each element around the runway with its chance.
+void drawElements(Draw& draw, const Shares& share, SimulatorParameters& flight) {
   SimulatedSceneryParameters& p = flight.scenery;
   const double half = 0.5 * flight.runway.width;
-  if (draw.chance(0.5)) drawFields(draw, p.fields);
-  if (draw.chance(0.3)) drawTown(draw, p.town);
-  if (draw.chance(0.85)) p.grass_strip.side = draw.uniform(20, 100);
+  if (draw.chance(share.fields)) drawFields(draw, p.fields);
+  if (draw.chance(share.town)) drawTown(draw, p.town);
+  if (draw.chance(share.grass_strip)) p.grass_strip.side = draw.uniform(20, 100);
   drawWater(draw, p.river);
   p.river.x = draw.uniform(-700, -50);
   p.river.direction_deg = -draw.uniform(30, 150);
-  if (draw.chance(0.25)) p.river.width = draw.uniform(8, 60);
+  if (draw.chance(share.river)) p.river.width = draw.uniform(8, 60);
   drawWater(draw, p.shore);
   // Its water lies to the left of it, away from the runway.
   p.shore.y = drawBothSides(draw, half + 60, half + 300);
   p.shore.direction_deg = (p.shore.y > 0 ? 0 : 180) + draw.uniform(-15, 15);
   if (p.shore.direction_deg > 180) p.shore.direction_deg -= 360;
-  if (draw.chance(0.25)) p.shore.width = draw.scale(200, 30000);
+  if (draw.chance(share.shore)) p.shore.width = draw.scale(200, 30000);
   drawStrip(draw, p.road);
   p.road.x = draw.uniform(-400, 800);
   p.road.y = drawBothSides(draw, half + 60, half + 300);
   p.road.direction_deg = draw.uniform(-25, 25);
   p.road.length = draw.uniform(1000, 5000);
-  if (draw.chance(0.5)) p.road.width = draw.uniform(5, 25);
+  if (draw.chance(share.road)) p.road.width = draw.uniform(5, 25);
   drawStrip(draw, p.taxiway);
   p.taxiway.x = 0.5 * flight.runway.length;
   p.taxiway.y = drawBothSides(draw, half + 40, half + 200);
   p.taxiway.length = flight.runway.length + draw.uniform(-200, 400);
-  if (draw.chance(0.5)) p.taxiway.width = draw.uniform(10, 30);
+  if (draw.chance(share.taxiway)) p.taxiway.width = draw.uniform(10, 30);
   p.crossing_runway.x = draw.uniform(-100, flight.runway.length);
   p.crossing_runway.y = draw.uniform(-200, 200);
   p.crossing_runway.direction_deg = drawBothSides(draw, 20, 90);
   p.crossing_runway.length = draw.uniform(600, 2500);
-  if (draw.chance(0.25)) p.crossing_runway.width = draw.uniform(18, 60);
-  if (draw.chance(0.3)) flight.runway.displaced_threshold = draw.uniform(40, 300);
-  if (draw.chance(0.2)) drawOwnFrame(draw, p.own_frame);
+  if (draw.chance(share.crossing_runway)) p.crossing_runway.width = draw.uniform(18, 60);
+  if (draw.chance(share.displaced_threshold)) flight.runway.displaced_threshold = draw.uniform(40, 300);
+  if (draw.chance(share.own_frame)) drawOwnFrame(draw, p.own_frame);
+}
+
+/// Before the threshold, and at most half as high as the flight over its top.
+void drawHill(Draw& draw, SimulatorParameters& flight) {
+  SimulatedProfileParameters& profile = flight.profile;
+  const SimulatedPathParameters& path = flight.path;
+  profile.hill_length = draw.uniform(150, 500);
+  profile.hill_x = -0.5 * profile.hill_length - draw.uniform(0, 200);
+  const double above = path.start_height - std::tan(path.glide_angle_deg * kDegree) *
+                                               std::max(0.0, profile.hill_x - path.start_x);
+  profile.hill_height = std::min(draw.uniform(3, 15), 0.5 * above);
+}
+
+/// Leaves what belongs to such a landscape.
+void keepElements(SceneryKind kind, SimulatedSceneryParameters& all) {
+  SimulatedSceneryParameters kept;
+  kept.grass_strip = all.grass_strip;
+  if (kind == SceneryKind::kTown) kept.town = all.town;
+  if (kind == SceneryKind::kFields || kind == SceneryKind::kHills) kept.fields = all.fields;
+  if (kind == SceneryKind::kTown || kind == SceneryKind::kFields || kind == SceneryKind::kAirport)
+    kept.road = all.road;
+  if (kind == SceneryKind::kShore) {
+    kept.shore = all.shore;
+    kept.river = all.river;
+  }
+  if (kind == SceneryKind::kAirport) {
+    kept.taxiway = all.taxiway;
+    kept.crossing_runway = all.crossing_runway;
+  }
+  all = kept;
+}
+
+}  // namespace
+
+const std::map<std::string, SceneryKind>& sceneryKinds() {
+  static const std::map<std::string, SceneryKind> kinds{
+      {"random", SceneryKind::kRandom}, {"town", SceneryKind::kTown},       {"fields", SceneryKind::kFields},
+      {"shore", SceneryKind::kShore},   {"airport", SceneryKind::kAirport}, {"hills", SceneryKind::kHills}};
+  return kinds;
+}
+
+void drawScenery(uint64_t seed, SimulatorParameters& flight) {
+  drawScenery(SceneryKind::kRandom, seed, flight);
+}
+
+void drawScenery(SceneryKind kind, uint64_t seed, SimulatorParameters& flight) {
+  Draw draw(hashed(~seed));  // of its own, so that everything else is the same with it
+  const bool random = kind == SceneryKind::kRandom;
+  drawElements(draw, random ? Shares() : Shares::certain(), flight);
+  if (!random) keepElements(kind, flight.scenery);
+  if (kind == SceneryKind::kHills) drawHill(draw, flight);
 }
 
 }  // namespace uav_landing

@@ -18,6 +18,8 @@ struct Flight {
   RunwayIdentity identity;
   double stamp = 10;
 
+  bool path_known = true;
+
   void see(const Eigen::Vector3d& direction, double margin) {
     ApproachAngleResult::Motion turn;
     turn.duration = kStep;
@@ -25,7 +27,7 @@ struct Flight {
     turn.covariance = std::pow(0.01 * kDegree, 2) * Matrix6d::Identity();
     stamp += kStep;
     const Eigen::Matrix3d covariance = std::pow(0.05 * kDegree, 2) * Eigen::Matrix3d::Identity();
-    identity.follow(stamp, {direction, covariance}, margin, Eigen::Vector3d::UnitY(), turn);
+    identity.follow(stamp, {direction, covariance}, margin, path_known, Eigen::Vector3d::UnitY(), turn);
   }
   void see(double aside_deg, double margin) {
     see({std::sin(aside_deg * kDegree), 0, std::cos(aside_deg * kDegree)}, margin);
@@ -51,6 +53,21 @@ TEST(RunwayIdentity, MarginsOfPairsAreAveragedAsTheySeeTheSameLines) {
   EXPECT_NEAR(std::log(flight.doubt()), -6, 1e-9);
   for (int i = 0; i < 100; ++i) flight.see(0, 4);
   EXPECT_NEAR(std::log(flight.doubt()), -4, 1e-3) << "no more certain than each of them";
+}
+
+TEST(RunwayIdentity, MarginsThatKnowNoPathCountUntilThePathIsKnown) {
+  Flight flight;
+  flight.path_known = false;
+  for (int i = 0; i < 3; ++i) flight.see(0, 15);
+  EXPECT_NEAR(std::log(flight.doubt()), -15, 1e-9);
+  flight.path_known = true;
+  flight.see(0, 5);
+  EXPECT_NEAR(std::log(flight.doubt()), -5, 1e-9) << "the path speaks against it";
+  flight.see(0, 7);
+  EXPECT_NEAR(std::log(flight.doubt()), -6, 1e-9);
+  flight.path_known = false;
+  flight.see(0, 9);
+  EXPECT_NEAR(std::log(flight.doubt()), -7, 1e-9) << "a pair without its motion is one of many";
 }
 
 TEST(RunwayIdentity, ADirectionThatAnotherOutweighsIsCertainlyDoubtful) {

@@ -190,6 +190,76 @@ TEST(RunwayHypothesis, TwoRunwaysAreNotDecidedUnlessThePathOrThePairBeforeSays) 
   }
 }
 
+TEST(RunwayHypothesis, ThePairBeforeCountsAsFarAsItsDirectionWasTheRunways) {
+  const double heading = -10 * kDegree;
+  const auto lead = [&](double doubt) {
+    Scene scene;
+    scene.addStrip({0, 0}, 45, 1500);
+    scene.prior.last = scene.pose.seen({std::cos(heading), std::sin(heading), 0}).normalized();
+    scene.prior.last_doubt = doubt;
+    const auto found = scene.find();
+    return found ? found->best.lead - found->best.evidence : 0;
+  };
+  EXPECT_NEAR(lead(1e-6), -6, 1e-9);
+  EXPECT_NEAR(lead(0.05), std::log(0.05), 1e-9);
+  EXPECT_NEAR(lead(1), 0, 1e-9);
+}
+
+TEST(RunwayHypothesis, AStripThatThePathPassesByCostsEvidence) {
+  // The camera is 5 m left of the middle of a strip that is 300 m ahead, and flies along it.
+  const auto evidence = [](double y, double path) {
+    Scene scene;
+    scene.addStrip({0, y}, 45, 1500);
+    const double without = scene.find()->best.evidence;
+    scene.prior.path = scene.pose.seen({std::cos(path), std::sin(path), -0.05}).normalized();
+    return scene.find()->best.evidence - without;
+  };
+  EXPECT_NEAR(evidence(0, 0), 0, 1e-3);
+  EXPECT_NEAR(evidence(20, 0), 0, 1e-3) << "above it";
+  // Its edge is 7.5 m and 32.5 m to the left.
+  const double sigma = 3 * kDegree;
+  EXPECT_NEAR(evidence(35, 0), -0.5 * std::pow(std::atan(7.5 / 300) / sigma, 2), 0.01);
+  EXPECT_NEAR(evidence(60, 0), -0.5 * std::pow(std::atan(32.5 / 300) / sigma, 2), 0.05);
+  EXPECT_NEAR(evidence(-50, 0), -0.5 * std::pow(std::atan(32.5 / 300) / sigma, 2), 0.05);
+  EXPECT_NEAR(evidence(120, 0), -10, 1e-6) << "at most";
+  // Flown to from the side: the path leads to its near end, 5 degrees off its direction.
+  EXPECT_NEAR(evidence(31, 5 * kDegree), -0.5 * std::pow(5 * kDegree / sigma, 2), 0.05);
+}
+
+TEST(RunwayHypothesis, AStripWithoutMarksMayBeARoadThatThePathLeadsAlong) {
+  const auto margin = [](bool marked, double path_deg) {
+    Scene scene;
+    // Edges in pieces, so that their evidence is large.
+    for (const double x : {0, 300, 600}) scene.addStrip({x, 0}, 45, 300);
+    if (marked) {
+      for (const double y : {-20, 0, 20}) scene.addStrip({0, y}, 1, 1500);
+    }
+    const double path = path_deg * kDegree;
+    scene.prior.path = scene.pose.seen({std::cos(path), std::sin(path), -0.05}).normalized();
+    return scene.find()->margin;
+  };
+  const double known = -std::log(kLargestDoubt);
+  EXPECT_GT(margin(false, 0), known);
+  EXPECT_LT(margin(false, 0), known + 1);
+  EXPECT_LT(margin(false, 4), known) << "half a road in a thousand approaches";
+  EXPECT_GT(margin(true, 4), known + 3);
+}
+
+TEST(RunwayHypothesis, OneOfManyStripsSideBySideIsWorthWhatItsShapeIs) {
+  // However many marks it has.
+  const auto evidence = [](int strips) {
+    Scene scene;
+    for (int i = 0; i < strips; ++i) {
+      scene.addStrip({-100, 60.0 * i}, 40, 1200);
+      for (const double y : {-19, 0, 19}) scene.addStrip({-100, 60.0 * i + y}, 1, 1200);
+    }
+    scene.prior.height = 30;  // or all of them would be one
+    return scene.find()->best.evidence;
+  };
+  EXPECT_GT(evidence(1), 20);
+  EXPECT_LT(evidence(15), 4);
+}
+
 TEST(RunwayHypothesis, EnoughEvidenceOutweighsThePath) {
   Scene scene;
   scene.addRunway();
