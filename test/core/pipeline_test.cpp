@@ -88,6 +88,7 @@ Pipeline::Output approachOf(double known_width) {
   const StereoRig& rig = scene.rig;
   Parameters parameters;
   parameters.runway.width = known_width;
+  parameters.stereo_depth.search_at_once = true;
   Pipeline pipeline =
       Pipeline::create(cameraOf(rig, rig.cx, 0), cameraOf(rig, rig.cx_right, rig.baseline), parameters)
           .value();
@@ -120,6 +121,7 @@ Masked approachWith(const std::string& mask, const cv::Rect& area, int seed) {
   const StereoRig& rig = scene.rig;
   Parameters parameters;
   parameters.rig.left_mask = parameters.rig.right_mask = mask;
+  parameters.stereo_depth.search_at_once = true;
   Pipeline pipeline =
       Pipeline::create(cameraOf(rig, rig.cx, 0), cameraOf(rig, rig.cx_right, rig.baseline), parameters)
           .value();

@@ -150,9 +150,9 @@ std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& le
   const StereoLevel& level = tiers.coarse.level;
   GroundCornerMemory memory;
   std::optional<RivalPlane> best;
-  double first_share = 0, share = 0;
+  double most = 0;  // share of the first one
   for (const Leader& leader : leaders) {
-    if (best && leader.share < kRivalShare * first_share) break;
+    if (best && leader.share < kRivalShare * most) break;
     Eigen::Vector3d g = leader.g;
     if (leader.wide && tiers.wide.level.rig.size != level.rig.size) {
       const Consensus closer = trackPlane(level, g, parameters_, limits_, memory);
@@ -160,13 +160,11 @@ std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& le
       g = closer.g;
     }
     RivalPlane rival(level, tiers.coarse.corners, g, parameters_);
-    if (!best) first_share = leader.share;
-    if (best && !rival.matchesBetterThan(*best, limits_.min_points)) continue;
-    best = std::move(rival);
-    share = leader.share;
+    if (!best) most = leader.share;
+    if (!best || rival.matchesBetterThan(*best, limits_.min_points)) best = std::move(rival);
   }
   if (!best) return std::nullopt;
-  return Best{best->g, share};
+  return Best{best->g, most};
 }
 
 PlaneSearch::State PlaneSearch::decideAhead() {

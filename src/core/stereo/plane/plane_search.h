@@ -68,6 +68,7 @@ class PlaneSearch {
     double share;
     bool wide;
   };
+  // share: of the plane with the most votes, of which this may be a rival.
   struct Best {
     Eigen::Vector3d g;
     double share;

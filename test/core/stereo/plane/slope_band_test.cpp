@@ -34,7 +34,8 @@ struct Shifted {
     cv::Mat columns(kHeight, kWidth, CV_32F), rows(kHeight, kWidth, CV_32F);
     for (int v = 0; v < kHeight; ++v)
       for (int u = 0; u < kWidth; ++u) {
-        columns.at<float>(v, u) = static_cast<float>(u + kWidth / 2 + disparity(at_centre, slope, v));
+        columns.at<float>(v, u) =
+            static_cast<float>(u + kWidth / 2 + disparity(at_centre, slope, v) + rig.principalOffset());
         rows.at<float>(v, u) = static_cast<float>(v);
       }
     cv::remap(texture, level.right, columns, rows, cv::INTER_LINEAR);

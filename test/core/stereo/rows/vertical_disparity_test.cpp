@@ -38,6 +38,7 @@ struct BentScene {
     pose.position = {0, 0, 10};
     pose.pitch = -5 * kDegree;
     pose.roll = 2 * kDegree;
+    parameters.search_at_once = true;
   }
   StereoDepthResult see(StereoDepthStage& stage, double stamp, const test::Exposure& right = {}) const {
     return stage.process(stamp, ground.left(rig, pose), ground.right(rig, pose, right));
