@@ -13,6 +13,7 @@ class StereoDepthNodeletTest : public NodeletTest {
  protected:
   void start() {
     setParameter("stereo_depth", "complaint_period", 0.2);
+    setParameter("stereo_depth", "search_at_once", true);
     load("stereo_depth");
     output_ = std::make_unique<Listener<StereoDepth>>("/uav_landing/stereo_depth");
     ASSERT_TRUE(

@@ -34,6 +34,7 @@ TEST_P(BentGround, HeightIsTheClearanceStraightBelow) {
       makeRigModel(simulator.rig().left.calibration, simulator.rig().right.calibration).value();
   StereoDepthParameters parameters;
   parameters.direct_refinement = direct;
+  parameters.search_at_once = true;
   StereoDepthStage stage(model, parameters);
   double ahead = 0, below = 0;
   for (int i = 0; i < simulator.frames(); ++i) {

@@ -27,7 +27,9 @@ double meanSurfaceVariance(double height) {
     const ApproachSimulator simulator = ApproachSimulator::create(p).value();
     const RigModel model =
         makeRigModel(simulator.rig().left.calibration, simulator.rig().right.calibration).value();
-    StereoDepthStage stage(model, {});
+    StereoDepthParameters parameters;
+    parameters.search_at_once = true;
+    StereoDepthStage stage(model, parameters);
     for (int pair = 0; pair < kPairs; ++pair) {
       const ApproachSimulator::Frame frame = simulator.expose(simulator.light(pair), kNoise);
       const StereoDepthResult result = stage.process(0.05 * pair, frame.left, frame.right);

@@ -28,7 +28,9 @@ TEST_P(NoisyPairs, AreNoMoreWrongThanTheyClaim) {
   const ApproachSimulator simulator = ApproachSimulator::create(lowOverCoarseTexture()).value();
   const RigModel model =
       makeRigModel(simulator.rig().left.calibration, simulator.rig().right.calibration).value();
-  StereoDepthStage stage(model, {});
+  StereoDepthParameters parameters;
+  parameters.search_at_once = true;
+  StereoDepthStage stage(model, parameters);
   ApproachSimulator::Light light = simulator.light(0);
   const double height = simulator.expose(light, kNoise).truth.height;
   StereoDepthResult result;

@@ -34,8 +34,10 @@ T orThrow(Expected<T>&& value, uint64_t seed) {
 /// Runs one flight at several noise levels: what the cameras see is rendered once. visit(sample, frame's
 /// truth, output) is called for every frame and noise level.
 template <class Visitor>
-void fly(const SimulatorParameters& drawn, const Parameters& parameters, const std::vector<double>& noise,
+void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vector<double>& noise,
          CampaignCsv::Sample sample, Visitor&& visit) {
+  // A flight of a few frames shows what comes after the search.
+  parameters.stereo_depth.search_at_once = true;
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
   ImuBuffer imu(parameters.approach_angle);
   for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
