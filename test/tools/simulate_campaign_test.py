@@ -16,9 +16,9 @@ class SimulateCampaignTest(unittest.TestCase):
         self.folder = Path(tempfile.mkdtemp(prefix="uav_landing_simulate_campaign_"))
         self.addCleanup(shutil.rmtree, str(self.folder))
 
-    def fly(self, *options):
+    def fly(self, *options, frames=5):
         rows = self.folder / "rows.csv"
-        result = run([PROGRAM, "snippets", "--csv", rows, "--frames", 5, *options])
+        result = run([PROGRAM, "snippets", "--csv", rows, "--frames", frames, *options])
         self.assertEqual(result.returncode, 0, result.stderr)
         with rows.open() as file:
             return [{name: value for name, value in row.items() if name != "compute_ms"} for row in csv.DictReader(file)]
@@ -76,7 +76,7 @@ class SimulateCampaignTest(unittest.TestCase):
 
     def yaw_error(self, seed, height):
         """Error over scenery and its claim, deg; None where the yaw is not known."""
-        row = self.fly("--first", seed, "--count", 1, "--heights", height, "--noise", 2, "--frames", 7, "--scenery")[0]
+        row = self.fly("--first", seed, "--count", 1, "--heights", height, "--noise", 2, "--scenery", frames=7)[0]
         if not row["yaw_deg"]:
             return None
         return abs(float(row["yaw_deg"]) - float(row["yaw_true_deg"])), float(row["yaw_stddev_deg"])

@@ -184,7 +184,7 @@ CameraMotion StepSearch::searchFirst(const StepImages& step, const Eigen::Matrix
 // Lines along the runway look alike wherever along them they are looked for, so that they agree with any
 // speed, the more of them the slower it is; how much all corners look alike tells which one is right.
 CameraMotion StepSearch::mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const {
-  constexpr size_t kCorners = 60;
+  constexpr size_t kCorners = 250;  // half as many took a wrong speed over hardly anything but lines
   constexpr int kFollowed = 3;  // times from where the last one led: it falls short of what is right by half
   const std::vector<TrackedCorner> some = thinned(step.corners, kCorners);
   CameraMotion best = guesses.front();

@@ -58,8 +58,7 @@ struct ApproachAngleStage::Implementation {
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
     result.failure = checkPair(model, left, right);
     if (result.failure) {
-      result.step.failure = result.window.failure = result.failure;
-      result.runway.failure = result.runway.threshold_failure = result.failure;
+      nothingKnown(result);
       if (result.failure.reason == Reason::kInputInvalid) return result;
       skip(stamp, left, stereo);
       return result;
@@ -73,8 +72,7 @@ struct ApproachAngleStage::Implementation {
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
-      result.step.failure = result.window.failure = result.failure;
-      result.runway.failure = result.runway.threshold_failure = result.failure;
+      nothingKnown(result);
       skip(stamp, left, stereo);
       return result;
     }
@@ -82,8 +80,7 @@ struct ApproachAngleStage::Implementation {
     if (waitsForPlane(stereo)) {
       result.failure = {Reason::kNotYet,
                         "the motion is searched for from the pair after the ground's plane on"};
-      result.step.failure = result.window.failure = result.failure;
-      result.runway.failure = result.runway.threshold_failure = result.failure;
+      nothingKnown(result);
       skip(stamp, left, stereo);
       return result;
     }
@@ -101,6 +98,12 @@ struct ApproachAngleStage::Implementation {
           runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
     }
     return result;
+  }
+
+  // Motion and runway are not known, for the reason of the pair.
+  static void nothingKnown(ApproachAngleResult& result) {
+    result.step.failure = result.window.failure = result.failure;
+    result.runway.failure = result.runway.threshold_failure = result.failure;
   }
 
   void identify(double stamp, const RunwayDirection& direction, ApproachAngleResult& result) {

@@ -199,7 +199,9 @@ cv::Mat exposed(const cv::Mat& light, double noise, uint64_t seed) {
 
 void measure(const Scenery& scenery, const Bounds& bounds, double noise, uint64_t seed, int pairs,
              Sums& sums) {
-  StereoDepthParameters with, without;
+  StereoDepthParameters with;
+  with.search_at_once = true;
+  StereoDepthParameters without = with;
   without.direct_refinement = false;
   with.disparity_bias_stddev = with.row_bias_stddev = 0;
   StereoDepthStage direct(scenery.model, with), corners(scenery.model, without);
