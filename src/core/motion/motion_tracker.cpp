@@ -19,6 +19,10 @@ namespace {
 // Images kept however close their stamps are: 0.5 s of 100 Hz.
 constexpr size_t kMostFrames = 50;
 
+// Images whose memory is taken when the chain is made: 0.5 s of 20 Hz. To get it from the system takes longer
+// than to fill it.
+constexpr size_t kUsualFrames = 12;
+
 // Of the height, that a step is predicted to sink.
 constexpr double kMostSunk = 0.5;
 
@@ -59,6 +63,8 @@ MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameter
       search_(rig_, mask_, parameters),
       filter_(parameters.angle_window) {
   reset();
+  spare_.resize(kUsualFrames);
+  for (MatchImage& image : spare_) image.fine = cv::Mat::zeros(rig_.size, CV_32FC1);
 }
 
 MotionTracker::Result MotionTracker::repeat(double stamp) const {

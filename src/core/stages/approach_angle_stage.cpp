@@ -63,6 +63,13 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
+    if (waitsForPlane(stereo)) {
+      result.failure = {Reason::kNotYet,
+                        "lines and motion are looked for from the pair after the ground's plane on"};
+      nothingKnown(result);
+      skip(stamp, left, stereo);
+      return result;
+    }
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
@@ -77,13 +84,6 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     straightenPlan(result);
-    if (waitsForPlane(stereo)) {
-      result.failure = {Reason::kNotYet,
-                        "the motion is searched for from the pair after the ground's plane on"};
-      nothingKnown(result);
-      skip(stamp, left, stereo);
-      return result;
-    }
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
@@ -117,8 +117,8 @@ struct ApproachAngleStage::Implementation {
     if (result.vanishing_direction.allFinite()) last.runway = result.vanishing_direction;
   }
 
-  // The first step of the motion is searched for over the ground. It waits until the plane is known, and one
-  // pair more: both searches in one pair would take too long.
+  // Lines and the first step of the motion are looked for on the ground. They wait for the first search for
+  // its plane, which takes all the time that there is, also in the pair in which it ends.
   bool waitsForPlane(const StereoDepthResult& stereo) {
     const bool found_before = std::exchange(plane_found, false);
     if (!parameters.use_stereo || !stereo.from_search || tracker.hasLast()) return false;

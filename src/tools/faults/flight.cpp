@@ -13,15 +13,11 @@
 namespace uav_landing {
 namespace {
 
-/// Time from which on the ground below was in view before, by a whole matching window, since the plane was
-/// found: what it is like before that changes no pixel that a run looks at.
+/// Time from which on the ground below was in view before, by a whole matching window: what it is like before
+/// that changes no pixel that a run begins with.
 double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
-  constexpr int kMargin = 8;          // px
-  constexpr double kSearching = 0.3;  // s, until plane and motion are found at the beginning
-  const double begin = flight.frames.front().time;
-  const auto found = std::find_if(flight.frames.begin(), flight.frames.end(),
-                                  [&](const Flight::Frame& f) { return f.time - begin >= kSearching; });
-  const Flight::Frame& first = found == flight.frames.end() ? flight.frames.back() : *found;
+  constexpr int kMargin = 8;  // px
+  const Flight::Frame& first = flight.frames.front();
   const SimulatedCamera& camera = flight.rig->left;
   const int row = first.left.rows - 1 - kMargin;
   const PixelRay& ray = camera.rays[static_cast<size_t>(row) * first.left.cols + first.left.cols / 2];
@@ -32,7 +28,7 @@ double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
   const double nearest = centre.x() + way * direction.x();
   const auto above = std::find_if(flight.frames.begin(), flight.frames.end(),
                                   [&](const Flight::Frame& f) { return f.pose.position.x() >= nearest; });
-  return (above == flight.frames.end() ? flight.frames.back() : *above).time - begin;
+  return (above == flight.frames.end() ? flight.frames.back() : *above).time - first.time;
 }
 
 double interpolate(const Flight& flight, double time, double Truth::*value) {

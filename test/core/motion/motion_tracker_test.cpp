@@ -321,12 +321,14 @@ TEST(MotionTracker, HoldsNoMoreImagesTheLongerItRuns) {
   const test::CountingAllocator allocator;
   {
     Scene counted;
-    int after_warm_up = 0;
+    int after_second = 0, after_warm_up = 0;
     for (int i = 0; i < 24; ++i) {
       counted.process(5 + 0.1 * i, makePose(0, 1.8), images[i % 2]);
+      if (i == 1) after_second = allocator.held;
       if (i == 11) after_warm_up = allocator.held;
     }
     EXPECT_GT(after_warm_up, 0);
+    EXPECT_GE(after_second, after_warm_up) << "a window's images have their memory";
     EXPECT_LE(allocator.held, after_warm_up);
     for (int i = 24; i < 36; ++i) counted.tracker.skip(5 + 0.1 * i, images[i % 2]);
     EXPECT_LE(allocator.held, after_warm_up + 1);

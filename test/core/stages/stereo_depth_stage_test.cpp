@@ -472,10 +472,9 @@ TEST(StereoDepthStage, GoesOnWithTheSearchOverPairsAfterOneGap) {
   Scene scene(14);
   scene.parameters.search_at_once = false;
   StereoDepthStage stage(scene.model, scene.parameters);
-  const Pair pair = scene.render(makePose(2, -8, 0));
-  stage.process(1, pair.left, pair.right);
-  stage.process(1.05, pair.left, pair.right);
-  EXPECT_EQ(stage.process(1.4, pair.left, pair.right).failure.reason, Reason::kNotYet);
+  const Pair pair = scene.render(makePose(2, -8, 0)), elsewhere = scene.render(makePose(0.7, -8, 0));
+  for (int i = 0; i < 6; ++i) stage.process(1 + 0.05 * i, pair.left, pair.right);
+  EXPECT_EQ(stage.process(1.6, elsewhere.left, elsewhere.right).failure.reason, Reason::kNotYet);
 }
 
 TEST(StereoDepthStage, ForgetsWhatASearchHasSaidWhenStampsJumpBack) {

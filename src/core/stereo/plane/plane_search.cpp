@@ -37,7 +37,8 @@ PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthPar
 }
 
 double PlaneSearch::budgetOf(const cv::Size& size) {
-  // Measured: a pair then takes two to three times as long as one whose plane is followed.
+  // Measured: with lines and motion searched besides, a pair then takes two to three times as long as one
+  // whose plane is followed.
   constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kBelow = 0.86, kAbove = 0.4;
   const double ratio = size.area() / kVga;
   return kAtVga * std::pow(ratio, ratio < 1 ? kBelow : kAbove);

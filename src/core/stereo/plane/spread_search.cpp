@@ -16,6 +16,10 @@ constexpr double kRare = 0.3;
 // older ones grows with their age.
 constexpr double kUsualAge = 0.1;
 
+// By how much more is done in a pair as long as lines and motion wait for the plane. They do not wait again
+// once a search has found nothing.
+constexpr double kAlone = 3.5;
+
 Failure stillSearching() {
   return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
 }
@@ -78,7 +82,7 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
 double SpreadSearch::budget() const {
   const bool rare = std::min(duration_, duration_before_) > kRare && std::isfinite(duration_);
   if (at_once_ || rare) return std::numeric_limits<double>::infinity();
-  return PlaneSearch::budgetOf(size_);
+  return PlaneSearch::budgetOf(size_) * (not_found_ ? 1 : kAlone);
 }
 
 }  // namespace uav_landing
