@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -237,12 +238,6 @@ struct Options {
   int pairs = 60;
 };
 
-bool isConfig(const std::string& input) {
-  const std::string ending = ".yaml";
-  return input.size() > ending.size() &&
-         input.compare(input.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 Failure run(const Options& options) {
   Parameters parameters;
   if (!options.parameters.empty()) {
@@ -267,8 +262,9 @@ Failure run(const Options& options) {
     if (const Failure failure = take(recordedSequence(folder, options.pairs))) return failure;
   std::vector<SearchingTimes> searching;
   for (const std::string& input : options.searching) {
-    const Expected<Sequence> sequence =
-        isConfig(input) ? wholeApproach(input) : recordedSequence(input, std::numeric_limits<int>::max());
+    const Expected<Sequence> sequence = std::filesystem::path(input).extension() == ".yaml"
+                                            ? wholeApproach(input)
+                                            : recordedSequence(input, std::numeric_limits<int>::max());
     if (!sequence) return sequence.error();
     const Expected<SearchingTimes> times = measureSearching(*sequence, options.steady, parameters);
     if (!times) return times.error();

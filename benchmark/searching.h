@@ -15,9 +15,8 @@ namespace benchmark {
 struct SearchingTimes {
   std::string sequence;
   cv::Size size;
-  Times pairs;  ///< CPU ms, one for each pair, in their order
-  double steady =
-      0;  ///< CPU ms, median of a flight in which the plane is followed, with pictures of this size
+  Times pairs;        ///< CPU ms, one for each pair, in their order
+  double steady = 0;  ///< CPU ms, median of a flight whose plane is followed, with pictures of this size
 
   double worstOverSteady() const { return pairs.quantile(1) / steady; }
 };
