@@ -141,6 +141,8 @@ uav_landing_add_gtest(focus_of_expansion_test test/core/motion/focus_of_expansio
 uav_landing_add_gtest(imu_buffer_test test/core/motion/imu_buffer_test.cpp SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(motion_rows_test test/core/motion/motion_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(first_step_search_test test/core/motion/first_step_search_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(motion_tracker_test test/core/motion/motion_tracker_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(own_normal_test test/core/motion/own_normal_test.cpp

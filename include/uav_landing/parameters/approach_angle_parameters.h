@@ -38,6 +38,7 @@ struct ApproachAngleParameters {
   int pixels_per_corner = kUsualPixelsPerCorner;
   int window_radius = kUsualWindowRadius;
   double search_radius = 10.0;
+  bool search_at_once = false;
   double min_zncc = 0.75;
   int min_matches = 15;
   double angle_window = 0.5;
@@ -104,6 +105,11 @@ struct ApproachAngleParameters {
              "matching window is (2 r + 1) squared");
     v.number("search_radius", search_radius, 1.0, 64.0, "px",
              "searched around the place the previous motion predicts");
+    v.flag(
+        "search_at_once", search_at_once,
+        "search for an unknown motion within one pair, however long it takes; otherwise the search is "
+        "spread over several pairs, and no pair takes much longer than others. Use it for recordings of few "
+        "pairs");
     v.number("min_zncc", min_zncc, 0.0, 1.0, "", "weakest correlation of a match; a weaker one is rejected");
     v.number("min_matches", min_matches, 6, 1000, "matches", "fewest matches that make a motion");
     v.number("angle_window", angle_window, 0.0, 0.5, "s",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace uav_landing {
 
@@ -15,6 +16,12 @@ struct CameraMotion {
   /// Where the point on the ray r (third component 1) at inverse depth w was seen then, up to scale.
   Eigen::Vector3d seenThen(const Eigen::Vector3d& r, double w) const { return R.transpose() * (r + w * t); }
 };
+
+/// The same motion for so many times as long.
+inline CameraMotion carriedOn(const CameraMotion& motion, double times) {
+  const Eigen::AngleAxisd turn(motion.R);
+  return {Eigen::AngleAxisd(turn.angle() * times, turn.axis()).toRotationMatrix(), motion.t * times};
+}
 
 /// Rotation from then to now that is known beforehand, of an inertial sensor.
 struct RotationPrior {

@@ -109,13 +109,14 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
   Result nothing;
   nothing.window.failure = {Reason::kNotYet, "no motion to the frame before"};
+  search_.interrupt();
   advance(takeFrame(stamp, left), nothing);
 }
 
 MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                                              const Eigen::Matrix3d& normal_covariance,
                                              const Corners& all_corners, Timings& timings,
-                                             const AttitudePrior& imu, GroundProof proof) {
+                                             const AttitudePrior& imu, const StepConditions& conditions) {
   Result result;
   step_matches_.clear();
   textures_.clear();
@@ -132,7 +133,8 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
   } else {
     ScopedTimer timer(timings, "feature_matching_motion");
     const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
-    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, proof, result);
+    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, conditions,
+                 result);
   }
   ScopedTimer timer(timings, "window_motion");
   estimateWindow(now, normal, normal_covariance, corners, result);
@@ -143,16 +145,17 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
 
 void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
                                  const Eigen::Matrix3d& covariance, const Corners& corners,
-                                 const RotationPrior* rotation, GroundProof proof, Result& result) {
+                                 const RotationPrior* rotation, const StepConditions& conditions,
+                                 Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{now.image, past_.back().image, corners,  textures_, memory_,
-                        normal,    covariance,         rotation, regular};
+  const StepImages step{now.image, past_.back().image, duration, corners, textures_,      memory_,
+                        normal,    covariance,         rotation, regular, conditions.time};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
     last_sink_ = estimate->normal.dot(estimate->motion.t);
-    const Failure failure = proof == GroundProof::kMotion
+    const Failure failure = conditions.proof == GroundProof::kMotion
                                 ? doubtOfPlane(now.image.fine, corners, step_matches_, *estimate)
                                 : Failure();
     if (failure) {
@@ -168,14 +171,12 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
 std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
   std::vector<CameraMotion> predictions;
   if (!last_step_) return predictions;
-  CameraMotion predicted = *last_step_;
   // The same way is more heights from a lower height. What a prediction leaves out again and again would be a
   // bias where little but lines is seen, which are found near where they are looked for.
   const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
-  predicted.t *= duration / last_duration_ / (1 - sunk);
-  predicted.R = Eigen::AngleAxisd(Eigen::AngleAxisd(predicted.R).angle() * duration / last_duration_,
-                                  Eigen::AngleAxisd(predicted.R).axis())
-                    .toRotationMatrix();
+  const double times = duration / last_duration_;
+  CameraMotion predicted = carriedOn(*last_step_, times);
+  predicted.t = last_step_->t * (times / (1 - sunk));
   if (rotation != nullptr) predictions.push_back({rotation->R, predicted.t});
   predictions.push_back(predicted);
   return predictions;

@@ -22,6 +22,11 @@ enum class GroundProof {
   kMotion  ///< not beforehand: most of them have to move as the points of one plane do
 };
 
+struct StepConditions {
+  GroundProof proof = GroundProof::kGiven;
+  SearchTime time = SearchTime::kAmple;
+};
+
 /// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
 /// Keeps the images of that time, the motion since each of them, and the last step as the next prediction.
 class MotionTracker {
@@ -42,9 +47,9 @@ class MotionTracker {
   /// ground make a step fail (plane_unproven) when too few do.
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
-                 Timings& timings, const AttitudePrior& imu = {}, GroundProof proof = GroundProof::kGiven);
-  /// Whether the last step is known, so that the next one needs no search.
-  bool hasLast() const { return last_step_.has_value(); }
+                 Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
+  /// Whether there is an earlier image, but no motion up to it that would lead on.
+  bool needsSearch() const { return !past_.empty() && !last_step_; }
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when
@@ -65,7 +70,8 @@ class MotionTracker {
   using Corners = std::vector<TrackedCorner>;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                    const Corners& corners, const RotationPrior* rotation, GroundProof proof, Result& result);
+                    const Corners& corners, const RotationPrior* rotation, const StepConditions& conditions,
+                    Result& result);
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                       const Corners& corners, Result& result);

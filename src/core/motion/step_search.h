@@ -4,30 +4,11 @@
 #include <vector>
 
 #include "base/steadiness.h"
-#include "image/match_image.h"
-#include "motion/ego_motion.h"
-#include "motion/temporal_matching.h"
+#include "motion/first_step_search.h"
+#include "motion/step_matching.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {
-
-/// Memory that a search works in, kept from image to image.
-struct MotionSearchMemory {
-  MatchingMemory matching;
-  MotionMemory motion;
-};
-
-/// Two images of the left camera, and what is known of the later one.
-struct StepImages {
-  const MatchImage &now, &then;
-  const std::vector<TrackedCorner>& corners;  ///< of the image now
-  CornerTextures& textures;
-  MotionSearchMemory& memory;
-  Eigen::Vector3d normal;                   ///< of the ground, unit, now
-  Eigen::Matrix3d normal_covariance;        ///< rank 2
-  const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
-  bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
-};
 
 /// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
 class StepSearch {
@@ -39,18 +20,15 @@ class StepSearch {
   /// included; its memory is used again.
   Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
                                 std::vector<TemporalMatch>& matches);
+  /// The next step does not begin where this one ended.
+  void interrupt() { first_.restart(); }
   /// Other images come next: what earlier searches found does not matter.
   void reset() {
-    unsure_ = 0;
+    first_.reset();
     steadiness_.lose();
   }
 
  private:
-  TemporalMatchOptions options(int coarse_steps) const;
-  int wideSteps() const;  // of the coarse level, to both sides
-  std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
-                                   const CameraMotion& predicted, int coarse_steps,
-                                   std::vector<TemporalMatch> list = {}) const;
   /// By a narrow search for all corners at once; fails unless what it finds is as predicted.
   Expected<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
                                           std::vector<TemporalMatch>& matches);
@@ -58,16 +36,13 @@ class StepSearch {
                      const std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
                                       std::vector<TemporalMatch>& matches) const;
-  // fewest: matches that make a motion.
-  Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
-                                    const std::vector<TemporalMatch>& matches, int fewest) const;
-  CameraMotion searchFirst(const StepImages& step, const Eigen::Matrix3d& R);
-  CameraMotion mostAlike(const StepImages& step, const std::vector<CameraMotion>& guesses) const;
+  /// With nothing known of it; fails as long as the search for it goes on in other pairs.
+  Expected<MotionEstimate> findFirst(const StepImages& step, std::vector<TemporalMatch>& matches);
+  bool isGood(const Expected<MotionEstimate>& estimate, const std::vector<TemporalMatch>& matches) const;
 
-  StereoRig rig_;
-  cv::Mat mask_;
-  ApproachAngleParameters parameters_;
-  int unsure_ = 0;  // searches in a row that few corners agreed with
+  StepMatching matching_;
+  int min_matches_;
+  FirstStepSearch first_;
   Steadiness steadiness_;
 };
 

@@ -39,7 +39,9 @@ struct ApproachAngleStage::Implementation {
   RunwayTracker runway;
   RunwayIdentity identity;
   SeenDirections last;
-  bool plane_found = false;  // in the pair before, by a search
+  double stamp_before = kUnknown;
+  bool first_search = true;  // for the plane has not ended
+  bool lines_left_out = false;
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   Timings timings;
@@ -63,7 +65,7 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
-    if (waitsForPlane(stereo)) {
+    if (waitsForPlane(stamp, stereo)) {
       result.failure = {Reason::kNotYet,
                         "lines and motion are looked for from the pair after the ground's plane on"};
       nothingKnown(result);
@@ -75,7 +77,10 @@ struct ApproachAngleStage::Implementation {
     const SeenGround ground{
         stereo.plane, stereo.vertical_rotation,   runway.isSettled(stamp), last.path, last.runway,
         known_runway, identity.otherProbability()};
-    const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
+    lines_left_out = leavesOutLines(stamp, has_plane);
+    const RunwayDirection direction = lines_left_out
+                                          ? noDirection(result)
+                                          : findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
@@ -119,12 +124,24 @@ struct ApproachAngleStage::Implementation {
 
   // Lines and the first step of the motion are looked for on the ground. They wait for the first search for
   // its plane, which takes all the time that there is, also in the pair in which it ends.
-  bool waitsForPlane(const StereoDepthResult& stereo) {
-    const bool found_before = std::exchange(plane_found, false);
-    if (!parameters.use_stereo || !stereo.from_search || tracker.hasLast()) return false;
-    if (stereo.failure) return stereo.failure.reason == Reason::kNotYet;
-    plane_found = true;
-    return !found_before;
+  bool waitsForPlane(double stamp, const StereoDepthResult& stereo) {
+    if (!(stamp > std::exchange(stamp_before, stamp))) first_search = true;
+    if (!parameters.use_stereo || !first_search) return false;
+    if (stereo.from_search || !stereo.failure) first_search = stereo.failure.reason == Reason::kNotYet;
+    return stereo.from_search;
+  }
+
+  // The first step of the motion over the ground takes the time of the lines. What it is for, to know the
+  // ground that the aircraft comes to be above, bears no delay.
+  bool leavesOutLines(double stamp, bool has_plane) const {
+    return has_plane && !lines_left_out && tracker.needsSearch() && !runway.isSettled(stamp) &&
+           !parameters.search_at_once;
+  }
+
+  static RunwayDirection noDirection(ApproachAngleResult& result) {
+    result.left.failure = result.right.failure = {
+        Reason::kNotYet, "lines are looked for in the next pair, as the motion is searched for in this one"};
+    return {};
   }
 
   void skip(double stamp, const cv::Mat& left, const StereoDepthResult& stereo) {
@@ -193,11 +210,15 @@ struct ApproachAngleStage::Implementation {
                     ApproachAngleResult& result) {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(model.rig, *stereo) : cornersWithoutStereo(left, result.n);
-    const GroundProof proof = stereo || hasPaperForm(parameters) ? GroundProof::kGiven : GroundProof::kMotion;
+    const StepConditions conditions{
+        stereo || hasPaperForm(parameters) ? GroundProof::kGiven : GroundProof::kMotion,
+        !stereo                                     ? SearchTime::kLeast
+        : lines_left_out || runway.isSettled(stamp) ? SearchTime::kAmple
+                                                    : SearchTime::kShort};
     const MotionTracker::Result motion = repeated
                                              ? tracker.repeat(stamp)
                                              : tracker.process(stamp, left, result.n, result.n_covariance,
-                                                               corners, timings, result.imu, proof);
+                                                               corners, timings, result.imu, conditions);
     ScopedTimer timer(timings, "foe_and_angle");
     const StepFoe found =
         findStepFoe(model.rig, tracker, motion, {result.n, result.n_covariance}, parameters);
@@ -231,7 +252,8 @@ void ApproachAngleStage::reset() {
   implementation_->runway.reset();
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
-  implementation_->plane_found = false;
+  implementation_->first_search = true;
+  implementation_->lines_left_out = false;
 }
 
 const Timings& ApproachAngleStage::timings() const { return implementation_->timings; }

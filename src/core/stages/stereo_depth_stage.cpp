@@ -173,13 +173,14 @@ struct StereoDepthStage::Implementation {
   // By a plane that is followed from the previous pair, or searched.
   MatchedCorners searchAndMatch(const cv::Mat& left_image, const cv::Mat& right_image,
                                 StereoDepthResult& result) {
+    const bool known = tracker.hasLast();
     const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
     if (followed) {
       search.stop();
     } else {
       extend(left_image, right_image, FirstRows());
     }
-    const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(result);
+    const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(known, result);
     if (!start) {
       result.failure = start.error();
       return {};
@@ -188,10 +189,10 @@ struct StereoDepthStage::Implementation {
     return matchedCorners(*start, result);
   }
 
-  Expected<Eigen::Vector3d> searchedPlane(StereoDepthResult& result) {
+  Expected<Eigen::Vector3d> searchedPlane(bool followed, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
-    return search.find(coarse, tracker);
+    return search.find(coarse, tracker, followed);
   }
 
   // With their plane, unless the result says why there is none.

@@ -37,7 +37,7 @@ template <class Visitor>
 void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vector<double>& noise,
          CampaignCsv::Sample sample, Visitor&& visit) {
   // A flight of a few frames shows what comes after the search.
-  parameters.stereo_depth.search_at_once = true;
+  parameters.stereo_depth.search_at_once = parameters.approach_angle.search_at_once = true;
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
   ImuBuffer imu(parameters.approach_angle);
   for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));

@@ -28,13 +28,19 @@ Pose makePose(double x, double z, double pitch_deg = -8, double yaw_deg = 0) {
   return pose;
 }
 
+ApproachAngleParameters searchingAtOnce() {
+  ApproachAngleParameters parameters;
+  parameters.search_at_once = true;
+  return parameters;
+}
+
 struct Scene {
   StereoRig rig = test::makeRig(320, 240, 0.65);
   GroundRenderer ground{51};
-  ApproachAngleParameters parameters;
+  ApproachAngleParameters parameters = searchingAtOnce();
   Timings timings;
   MotionTracker tracker{test::makeModel(rig), parameters};
-  GroundProof proof = GroundProof::kGiven;
+  StepConditions conditions;
 
   cv::Mat image(const Pose& pose) const { return ground.left(rig, pose); }
 
@@ -51,7 +57,7 @@ struct Scene {
     }
     const Eigen::Vector3d n = pose.down();
     return tracker.process(stamp, left, n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose()), corners,
-                           timings, {}, proof);
+                           timings, {}, conditions);
   }
 };
 
@@ -288,9 +294,24 @@ TEST(MotionTracker, FailsOnAnotherSceneAndRecovers) {
   expectStep(scene.process(0.3, makePose(0.15, 1.8), other(0.15)), makePose(0, 1.8), makePose(0.15, 1.8));
 }
 
+TEST(MotionTracker, FindsTheMotionOverAnotherSceneWithinNinePairsThatAllTakeLittleTime) {
+  Scene scene;
+  scene.tracker = MotionTracker(test::makeModel(scene.rig), ApproachAngleParameters());
+  scene.process(0, makePose(0, 1.8));
+  EXPECT_FALSE(scene.process(0.05, makePose(0.15, 1.78)).step.failure);
+  const GroundRenderer elsewhere(99);
+  const auto at = [](int i) { return makePose(0.1 * i, 1.8); };
+  MotionTracker::Result last;
+  for (int i = 0; i < 10; ++i) {
+    last = scene.process(0.1 + 0.05 * i, at(i), elsewhere.left(scene.rig, at(i)));
+    if (i == 0) EXPECT_TRUE(last.step.failure);
+  }
+  expectStep(last, at(8), at(9));
+}
+
 TEST(MotionTracker, OverBareGroundTheCornersThemselvesShowThatTheyLieOnIt) {
   Scene scene;
-  scene.proof = GroundProof::kMotion;
+  scene.conditions.proof = GroundProof::kMotion;
   for (int i = 0; i < 5; ++i) {
     const Pose then = makePose(0.1 * (i - 1), 1.62 - 0.01 * i), now = makePose(0.1 * i, 1.61 - 0.01 * i);
     const MotionTracker::Result result = scene.process(i, now);
@@ -300,7 +321,7 @@ TEST(MotionTracker, OverBareGroundTheCornersThemselvesShowThatTheyLieOnIt) {
 
 TEST(MotionTracker, BetweenHousesNoStepIsBelievedUnlessStereoTellsTheirDepths) {
   Scene scene;
-  scene.proof = GroundProof::kMotion;
+  scene.conditions.proof = GroundProof::kMotion;
   for (const double side : {-1.0, 1.0}) {
     const double near = 0.4 * side, far = 8 * side;
     scene.ground.boxes.push_back({{-5, std::min(near, far), -0.1}, {60, std::max(near, far), 4}});

@@ -66,12 +66,21 @@ enum class Plane { kSearching, kFound, kFollowed, kNone };
 struct Searching {
   ApproachScene scene{7};
   std::function<Pose(double)> path = straight(attitude(-8, 0, 0), 1.8, 1.4, 10);
-  ApproachAngleStage stage{scene.model, scene.parameters};
+  ApproachAngleStage stage;
+  bool corners = true;  // that the stereo stage has matched
+
+  explicit Searching(bool at_once = true) : stage(scene.model, searching(at_once)) {}
+  static ApproachAngleParameters searching(bool at_once) {
+    ApproachAngleParameters parameters;
+    parameters.search_at_once = at_once;
+    return parameters;
+  }
 
   ApproachAngleResult next(int i, Plane plane, bool repeated = false) {
     const double stamp = i * kPeriod;
     const Pose pose = path(repeated ? stamp - kPeriod : stamp);
     StereoDepthResult stereo = scene.stereo(pose, stamp);
+    if (!corners) stereo.points.clear();
     stereo.from_search = plane != Plane::kFollowed;
     stereo.left_repeated = repeated;
     if (plane == Plane::kSearching || plane == Plane::kNone) {
@@ -105,6 +114,32 @@ TEST(ApproachAngleStage, APictureOnceMoreDuringTheSearchIsNoStepInTime) {
   const Pose now = flight.path(2 * kPeriod);
   EXPECT_NEAR(result.step.duration, 2 * kPeriod, 1e-9);
   expectMotion(result.step, Movement(flight.path(0), now), now.height(), "over the time of both");
+}
+
+TEST(ApproachAngleStage, LeavesOutTheLinesWhileItSearchesForTheFirstStep) {
+  Searching flight(false);
+  flight.next(0, Plane::kFound);
+  const ApproachAngleResult first = flight.next(1, Plane::kFollowed);
+  const Pose now = flight.path(kPeriod);
+  expectMotion(first.step, Movement(flight.path(0), now), now.height(), "first step");
+  EXPECT_EQ(first.left.failure.reason, Reason::kNotYet);
+  EXPECT_EQ(first.right.failure.reason, Reason::kNotYet);
+  EXPECT_TRUE(first.left.lines.empty());
+  const ApproachAngleResult second = flight.next(2, Plane::kFollowed);
+  EXPECT_FALSE(second.step.failure);
+  EXPECT_FALSE(second.left.failure) << second.left.failure.message();
+  EXPECT_FALSE(second.right.failure) << second.right.failure.message();
+}
+
+TEST(ApproachAngleStage, LooksForLinesInEverySecondPairWhereNoMotionIsFound) {
+  Searching flight(false);
+  flight.corners = false;
+  flight.next(0, Plane::kFound);
+  for (int i = 1; i < 7; ++i) {
+    const ApproachAngleResult result = flight.next(i, Plane::kFollowed);
+    EXPECT_TRUE(result.step.failure) << i;
+    EXPECT_EQ(result.left.lines.empty(), i % 2 == 1) << i;
+  }
 }
 
 TEST(ApproachAngleStage, DoesNotWaitForeverWhereEachPairIsSearched) {

@@ -19,9 +19,9 @@ constexpr size_t kCoarseCorners = 500, kWideCorners = 256;
 constexpr size_t kSample = 4;
 // In how many searches that find nothing one is also tried with left and right swapped.
 constexpr int kSwapCheckInterval = 10;
-// What takes as long as scoring so many places: a choice between planes, and a consensus, alone and by its
-// samples.
-constexpr double kChoiceCost = 40e3, kConsensusCost = 2e3, kSampleCost = 15;
+// What takes as long as scoring so many places: to take the images and find corners, a choice between planes,
+// and a consensus, alone and by its samples.
+constexpr double kBeginCost = 50e3, kChoiceCost = 40e3, kConsensusCost = 2e3, kSampleCost = 15;
 // Below so many columns of the coarse level half of it shows too little.
 constexpr int kEnoughColumns = 240;
 
@@ -38,19 +38,22 @@ PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthPar
 
 double PlaneSearch::budgetOf(const cv::Size& size) {
   // Measured: with lines and motion searched besides, a pair then takes two to three times as long as one
-  // whose plane is followed.
-  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kBelow = 0.86, kAbove = 0.4;
+  // whose plane is followed. The coarse level of small pictures is hardly smaller than that of large ones.
+  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kAbove = 0.4, kLeast = 60e3;
   const double ratio = size.area() / kVga;
-  return kAtVga * std::pow(ratio, ratio < 1 ? kBelow : kAbove);
+  return std::max(kLeast, kAtVga * std::pow(ratio, ratio < 1 ? 1 : kAbove));
 }
 
 PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget) {
   began_here_ = phase_ == Phase::kNone;
-  if (began_here_) begin(coarse);
+  if (began_here_) {
+    begin(coarse);
+    budget -= kBeginCost;
+  }
   State state = State::kGoesOn;
   while (state == State::kGoesOn && budget > 0) {
     if (band_ < SlopeBands::kAll) {
-      budget -= searchBand();
+      budget -= searchOn();
     } else {
       if (phase_ != Phase::kSample) budget -= kChoiceCost;
       state = decide();
@@ -86,7 +89,7 @@ void PlaneSearch::begin(const StereoLevel& coarse) {
   found_.reset();
   leaders_.clear();
   phase_ = Phase::kAhead;
-  band_ = 0;
+  beginBand(0);
 }
 
 void PlaneSearch::beginBehind(Phase phase) {
@@ -97,7 +100,7 @@ void PlaneSearch::beginBehind(Phase phase) {
   prepare(behind_.wide, kWideCorners / share);
   leaders_.clear();
   phase_ = phase;
-  band_ = 0;
+  beginBand(0);
 }
 
 void PlaneSearch::prepare(Tier& tier, size_t corners) {
@@ -108,24 +111,44 @@ void PlaneSearch::prepare(Tier& tier, size_t corners) {
                   parameters_.min_corner_distance, parameters_.harris_k, memory_);
 }
 
-double PlaneSearch::searchBand() {
-  constexpr int kFarIterations = 250, kNearIterations = 200, kDraws = 10;
+double PlaneSearch::searchOn() {
   const Tiers& tiers = phase_ == Phase::kAhead ? ahead_ : behind_;
-  const bool wide = band_ >= SlopeBands::kFar;
-  const Tier& tier = wide ? tiers.wide : tiers.coarse;
-  const SlopeBand band = SlopeBands::at(band_++);
-  const BandCandidates candidates =
-      candidatesOf(band, tier.level, tier.right, tier.corners, parameters_, limits_);
+  const Tier& tier = isWide() ? tiers.wide : tiers.coarse;
+  const SlopeBand band = SlopeBands::at(band_);
+  return corner_ < tier.corners.size() ? lookAtCorners(band, tier) : endBand(band, tier);
+}
+
+double PlaneSearch::lookAtCorners(const SlopeBand& band, const Tier& tier) {
+  constexpr size_t kAtOnce = 125;
+  const auto first = tier.corners.begin() + static_cast<std::ptrdiff_t>(corner_);
+  corner_ = std::min(corner_ + kAtOnce, tier.corners.size());
+  const auto last = tier.corners.begin() + static_cast<std::ptrdiff_t>(corner_);
+  const BandCandidates found =
+      candidatesOf(band, tier.level, tier.right, {first, last}, parameters_, limits_);
+  candidates_.insert(candidates_.end(), found.samples.begin(), found.samples.end());
+  return found.scored;
+}
+
+double PlaneSearch::endBand(const SlopeBand& band, const Tier& tier) {
+  constexpr int kFarIterations = 250, kNearIterations = 200, kDraws = 10;
   ConsensusOptions options;
-  options.iterations = wide ? kNearIterations : kFarIterations;
+  options.iterations = isWide() ? kNearIterations : kFarIterations;
   options.draws_each = kDraws;
   options.until_sure = true;
   options.slope_range = band.range;
-  const Consensus plane = findPlane(tier.level.rig, candidates.samples, limits_, options);
+  const Consensus plane = findPlane(tier.level.rig, candidates_, limits_, options);
   const int least = phase_ == Phase::kSample ? limits_.min_points / 2 : limits_.min_points;
   if (plane.found && plane.support >= least)
-    leaders_.push_back({plane.g, plane.score / static_cast<double>(tier.corners.size()), wide});
-  return candidates.scored + kConsensusCost + kSampleCost * static_cast<double>(candidates.samples.size());
+    leaders_.push_back({plane.g, plane.score / static_cast<double>(tier.corners.size()), isWide()});
+  const double samples = static_cast<double>(candidates_.size());
+  beginBand(band_ + 1);
+  return kConsensusCost + kSampleCost * samples;
+}
+
+void PlaneSearch::beginBand(size_t band) {
+  band_ = band;
+  corner_ = 0;
+  candidates_.clear();
 }
 
 PlaneSearch::State PlaneSearch::decide() {

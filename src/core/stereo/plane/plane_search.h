@@ -8,6 +8,7 @@
 #include "geometry/plane_limits.h"
 #include "image/corners.h"
 #include "stereo/matching/stereo_level.h"
+#include "stereo/plane/slope_band.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
@@ -77,8 +78,12 @@ class PlaneSearch {
   void begin(const StereoLevel& coarse);
   void beginBehind(Phase phase);
   void prepare(Tier& tier, size_t corners);
-  // Returns its cost.
-  double searchBand();
+  void beginBand(size_t band);
+  bool isWide() const { return band_ >= SlopeBands::kFar; }
+  // Takes a few corners of the band, or decides on its plane when all were taken. Returns its cost.
+  double searchOn();
+  double lookAtCorners(const SlopeBand& band, const Tier& tier);
+  double endBand(const SlopeBand& band, const Tier& tier);
   State decide();
   std::optional<Best> chooseFrom(std::vector<Leader>& leaders, const Tiers& tiers);
   State decideAhead();
@@ -92,7 +97,9 @@ class PlaneSearch {
   std::vector<Leader> leaders_;
   std::optional<Best> found_;
   Phase phase_ = Phase::kNone;
-  size_t band_ = 0;  // the next one
+  size_t band_ = 0;                          // under way
+  size_t corner_ = 0;                        // of it, the next one
+  std::vector<DisparitySample> candidates_;  // of the corners before
   bool began_here_ = false;
   int failed_ = 0;  // searches in a row
   bool looks_swapped_ = false;

@@ -16,9 +16,10 @@ constexpr double kRare = 0.3;
 // older ones grows with their age.
 constexpr double kUsualAge = 0.1;
 
-// By how much more is done in a pair as long as lines and motion wait for the plane. They do not wait again
-// once a search has found nothing.
-constexpr double kAlone = 3.5;
+// By how much more is done in a pair of the first search: lines and motion wait for that one alone.
+constexpr double kAlone = 3.75;
+// To follow a plane in vain takes as long as scoring so many places, at any size of the pictures.
+constexpr double kFollowingCost = 40e3;
 
 Failure stillSearching() {
   return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
@@ -44,16 +45,20 @@ void SpreadSearch::begin(double duration) {
 
 void SpreadSearch::stop() {
   search_.stop();
+  first_ = false;
   not_found_ = {};
 }
 
 void SpreadSearch::reset() {
   search_.reset();
+  first_ = true;
   not_found_ = {};
 }
 
-Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker) {
-  const PlaneSearch::State state = search_.advance(coarse, budget());
+Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker,
+                                             bool followed) {
+  const PlaneSearch::State state = search_.advance(coarse, budget(followed));
+  if (state != PlaneSearch::State::kGoesOn) first_ = false;
   if (search_.beganHere()) age_ = 0;
   switch (state) {
     case PlaneSearch::State::kFound: {
@@ -79,10 +84,10 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
 }
 
 // A single gap is none of the camera's, and nobody knows when the pair after the first one comes.
-double SpreadSearch::budget() const {
+double SpreadSearch::budget(bool followed) const {
   const bool rare = std::min(duration_, duration_before_) > kRare && std::isfinite(duration_);
   if (at_once_ || rare) return std::numeric_limits<double>::infinity();
-  return PlaneSearch::budgetOf(size_) * (not_found_ ? 1 : kAlone);
+  return PlaneSearch::budgetOf(size_) * (first_ ? kAlone : 1) - (followed ? kFollowingCost : 0);
 }
 
 }  // namespace uav_landing
