@@ -149,7 +149,7 @@ TEST(RollingShutter, PointLiesWhereItsRowSeesItInForwardFlight) {
 }
 
 TEST(RollingShutter, StampBelongsToTheRowAsked) {
-  for (const double row : {0.0, 0.5, 1.0}) {
+  for (const double row : {-0.2, 0.0, 0.5, 1.0}) {
     SCOPED_TRACE(row);
     SimulatorParameters p = pitching();
     p.image.stamp_row = row;
@@ -276,8 +276,8 @@ std::string refusalOf(const std::string& yaml) {
 TEST(RollingShutter, BadNumbersAndWordsAreNamed) {
   EXPECT_EQ(refusalOf("image: {readout_time: .nan}"),
             "my.yaml: image/readout_time: nan is out of range, expected -0.5 to 0.5 s");
-  EXPECT_EQ(refusalOf("image: {stamp_row: 2}"),
-            "my.yaml: image/stamp_row: 2 is out of range, expected 0 to 1 of the rows");
+  EXPECT_EQ(refusalOf("image: {stamp_row: 3}"),
+            "my.yaml: image/stamp_row: 3 is out of range, expected -2 to 2 picture heights");
   EXPECT_EQ(refusalOf("image: {row_direction: diagonal}"),
             "my.yaml: image/row_direction: 'diagonal' is not a choice, expected rows or columns");
   EXPECT_EQ(refusalOf("vibration: {pitch_deg: -1}"),

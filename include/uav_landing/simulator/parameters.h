@@ -40,8 +40,8 @@ struct SimulatedImageParameters {
     v.number("readout_time", readout_time, -0.5, 0.5, "s",
              "of a rolling shutter, from the top row to the bottom row; negative: from bottom to top; 0: all "
              "rows at once");
-    v.number("stamp_row", stamp_row, 0.0, 1.0, "of the rows",
-             "row that the stamp belongs to; 0: top, 1: bottom");
+    v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
+             "row that is in the middle of its exposure at the stamp; 0: top, 1: bottom");
     v.choice("row_direction", row_direction, {"rows", "columns"},
              "what is exposed one after the other; columns: from left to right");
   }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "simulator/own_frame.h"
-#include "simulator/readout.h"
 #include "simulator/renderer.h"
+#include "simulator/rolling_shutter.h"
 #include "simulator/sensor.h"
 
 namespace uav_landing {
@@ -40,7 +40,7 @@ struct ApproachSimulator::World {
   SimulatorParameters parameters;
   CameraRig rig;
   Trajectory trajectory;
-  Readout readout;
+  RollingShutter shutter;
   GroundProfile profile;
   Renderer renderer;
   OwnFrame left_frame, right_frame;
@@ -50,7 +50,7 @@ struct ApproachSimulator::World {
       : parameters(p),
         rig(std::move(cameras)),
         trajectory(p.path, p.wobble, p.gust, p.random.seed, p.vibration),
-        readout(p.image),
+        shutter(p.image),
         profile(p.profile),
         renderer(
             Scene(p.runway, p.surface, p.random.seed, Scenery(p.scenery, p.runway, p.surface, p.random.seed)),
@@ -71,8 +71,8 @@ struct ApproachSimulator::World {
   Failure checkHeights() const {
     constexpr double kLowest = 0.01;
     for (int i = 0; i < frames; ++i) {
-      const double before = lowerCamera(timeOf(i) + readout.first());
-      if (std::min(before, lowerCamera(timeOf(i) + readout.last())) >= kLowest) continue;
+      const double before = lowerCamera(timeOf(i) + shutter.first());
+      if (std::min(before, lowerCamera(timeOf(i) + shutter.last())) >= kLowest) continue;
       std::ostringstream detail;
       detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
       return {Reason::kInputInvalid, detail.str()};
@@ -82,11 +82,11 @@ struct ApproachSimulator::World {
 
   /// All at once, or line by line, each as it is seen at its own time.
   void render(const SimulatedCamera& camera, double time, cv::Mat& grey) const {
-    if (readout.atOnce()) return renderer.render(camera, trajectory.pose(time), grey);
+    if (shutter.atOnce()) return renderer.render(camera, trajectory.pose(time), grey);
     grey.create(camera.calibration.height, camera.calibration.width, CV_32F);
-    cv::parallel_for_(cv::Range(0, readout.lines()), [&](const cv::Range& lines) {
+    cv::parallel_for_(cv::Range(0, shutter.lines()), [&](const cv::Range& lines) {
       for (int line = lines.start; line < lines.end; ++line)
-        renderer.render(camera, trajectory.pose(time + readout.timeOf(line)), readout.part(line), grey);
+        renderer.render(camera, trajectory.pose(time + shutter.timeOf(line)), shutter.part(line), grey);
     });
   }
 

@@ -8,9 +8,9 @@ namespace uav_landing {
 
 /// When a camera exposes which part of its raw picture. A rolling shutter takes line by line: rows from the
 /// top, or columns from the left. Times are relative to the stamp, s.
-class Readout {
+class RollingShutter {
  public:
-  explicit Readout(const SimulatedImageParameters& image) : image_(image) {}
+  explicit RollingShutter(const SimulatedImageParameters& image) : image_(image) {}
 
   bool atOnce() const { return image_.readout_time == 0; }
   int lines() const { return alongColumns() ? image_.width : image_.height; }
