@@ -42,6 +42,11 @@ struct DefaultsCheck {
     ASSERT_TRUE(section[key]) << name << "/" << key << " is not explained";
     EXPECT_DOUBLE_EQ(section[key].as<double>(), static_cast<double>(value)) << name << "/" << key;
   }
+  template <class Enum>
+  void choice(const char* key, Enum& value, std::initializer_list<const char*> choices, const char*) {
+    ASSERT_TRUE(section[key]) << name << "/" << key << " is not explained";
+    EXPECT_EQ(section[key].as<std::string>(), choices.begin()[static_cast<int>(value)]) << name << "/" << key;
+  }
 };
 
 TEST(SimulatorParameters, FullScaleExplainsEveryParameterWithItsDefault) {
