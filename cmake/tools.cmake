@@ -28,7 +28,7 @@ target_link_libraries(measure_runways PRIVATE uav_landing_tools)
 add_executable(process_bag
   src/tools/offline/process_bag.cpp src/tools/offline/estimate_bag.cpp src/tools/offline/estimate_csv.cpp
   src/tools/offline/offline_chain.cpp src/tools/offline/pair_count.cpp src/tools/offline/report_data.cpp
-  src/tools/offline/timing_table.cpp)
+  src/tools/offline/timing_table.cpp src/tools/offline/verdict.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
 
 add_executable(simulate_campaign src/tools/simulation/campaign_csv.cpp src/tools/simulation/simulate_campaign.cpp)

@@ -24,5 +24,6 @@ uav_landing_add_gtest(faults_test test/tools/faults_test.cpp
   SOURCES src/tools/faults/fault_effects.cpp src/tools/faults/faults.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(offline_sinks_test test/tools/offline_sinks_test.cpp
   SOURCES src/tools/offline/estimate_csv.cpp src/tools/offline/pair_count.cpp src/tools/offline/timing_table.cpp
+  src/tools/offline/verdict.cpp
   LIBS uav_landing_tools)
 uav_landing_add_python_test(test/tools/interrupted_test.py DEPENDENCIES process_bag simulate_approach)

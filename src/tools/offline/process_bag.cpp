@@ -99,6 +99,9 @@ Failure processBag(const Options& options, const Parameters& parameters, Complai
   if (chain.unusable() == chain.pairs())
     return {Reason::kInputInvalid, input + ": no usable image pair: " + chain.firstProblem().detail};
   for (const std::string& note : plan.notes()) complain(note);
+  if (chain.repetitions() > 0)
+    complain(std::to_string(chain.repetitions()) + " of " + std::to_string(plan.pairs.size()) +
+             " pairs repeat the pictures of the one before, and were left out");
   if (chain.unusable() > 0)
     complain(std::to_string(chain.unusable()) + " of " + std::to_string(chain.pairs()) +
              " pairs could not be used");
