@@ -132,8 +132,11 @@ class KalmanHeightNodelet : public StageNodelet {
     const std::lock_guard<std::mutex> lock(rig_mutex_);
     if (!frame_complaint_.empty())
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, frame_complaint_);
-    status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
-                protection_source_.c_str());
+    if (std::isfinite(protection_level_))
+      status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
+                  protection_source_.c_str());
+    else
+      status.add("height protection level (m)", "unknown: there is no height");
     status.add("filter resets", resets_);
     for (const TestResult& test : test_results_) {
       if (test.possible())

@@ -14,6 +14,7 @@
 #include "image_pool.h"
 #include "pairing.h"
 #include "pairs_in_flight.h"
+#include "picture_watch.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
 #include "uav_landing/base/timings.h"
@@ -23,12 +24,13 @@ namespace uav_landing {
 
 /// Pairs and rectifies the images of two cameras.
 ///
-/// Parameters: RectifyParameters; camera, image_transport, drop_frames, backlog and the common ones of
-/// NodeParameters. Subscribes CAMERA/{left,right}/{image_raw, camera_info}, while somebody wants the
-/// output. Publishes {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the
-/// stamp of the left image and in the frames of the cameras; the time reference holds the stamp of the right
-/// image (the skew). A pair whose image or calibration cannot be used is left out, and the log says what is
-/// wrong with it.
+/// Parameters: RectifyParameters; camera, left_image, left_info, right_image, right_info, image_transport,
+/// drop_frames, backlog and the common ones of NodeParameters. Subscribes
+/// CAMERA/{left,right}/{image_raw, camera_info}, or the topics that are named, while somebody wants the
+/// output. Pairs that repeat the pictures of the one before are left out where all of them come so. Publishes
+/// {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the stamp of the left
+/// image and in the frames of the cameras; the time reference holds the stamp of the right image (the skew).
+/// A pair whose image or calibration cannot be used is left out, and the log says what is wrong with it.
 class RectifyNodelet : public StageNodelet {
  public:
   RectifyNodelet() : StageNodelet("rectify") {}
@@ -43,6 +45,7 @@ class RectifyNodelet : public StageNodelet {
   /// The stages work on one pair each, and one waits.
   static constexpr size_t kPairsInFlight = 3;
   static constexpr uint32_t kOutputQueue = 20;
+  static constexpr size_t kRowsLookedAt = 20;  // of so many pairs, one
 
   struct Job {
     sensor_msgs::ImageConstPtr left, right;
@@ -90,12 +93,15 @@ class RectifyNodelet : public StageNodelet {
   }
 
   std::string infoTopic(const std::string& side) const {
-    return getNodeHandle().resolveName(node_.camera + "/" + side + "/camera_info");
+    const std::string& named = side == "left" ? node_.left_info : node_.right_info;
+    return getNodeHandle().resolveName(named.empty() ? node_.camera + "/" + side + "/camera_info" : named);
   }
 
   void advertise(const std::string& side, View& view) {
     view.side = side;
-    view.topic = getNodeHandle().resolveName(node_.camera + "/" + side + "/image_raw");
+    const std::string& named = side == "left" ? node_.left_image : node_.right_image;
+    view.topic =
+        getNodeHandle().resolveName(named.empty() ? node_.camera + "/" + side + "/image_raw" : named);
     const image_transport::SubscriberStatusCallback changed =
         [this](const image_transport::SingleSubscriberPublisher&) { updateSubscription(); };
     view.image_publisher = transport_->advertise(side + "/image_rect", kOutputQueue, changed, changed);
@@ -178,6 +184,9 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void process(const Job& job) {
+    const bool repetition = pictures_.isRepetition(job.left, job.right);
+    for (const std::string& news : pictures_.news()) NODELET_WARN("%s: %s", getName().c_str(), news.c_str());
+    if (repetition) return;
     if (cameras_.changed(*job.left_info, *job.right_info))
       warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
     Timings timings;
@@ -238,6 +247,7 @@ class RectifyNodelet : public StageNodelet {
     message->is_bigendian = 0;
     message->step = message->width;
     message->data.resize(static_cast<size_t>(message->step) * message->height);
+    if (&view == &left_ && looked_++ % kRowsLookedAt == 0) pictures_.look((*mono)->image, view.topic);
     cv::Mat rectified(size, CV_8UC1, message->data.data());
     const Failure failure = view.rectifier->rectify((*mono)->image, rectified);
     if (failure) {
@@ -275,6 +285,8 @@ class RectifyNodelet : public StageNodelet {
   std::unique_ptr<image_transport::ImageTransport> transport_;
   View left_, right_;
   RigWatch cameras_;
+  PictureWatch pictures_;
+  size_t looked_ = 0;
   ros::Publisher skew_publisher_;
   std::unique_ptr<StereoPairing> pairing_;
   std::shared_ptr<PairsInFlight> in_flight_;

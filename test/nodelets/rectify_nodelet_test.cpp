@@ -252,6 +252,75 @@ TEST_F(RectifyNodeletTest, AnotherCameraNamespaceIsAParameter) {
   EXPECT_TRUE(eventually([&] { return raw.getNumSubscribers() > 0; }));
 }
 
+/// Publishers of a rig whose topics have names of their own, and whether somebody subscribed all.
+struct OtherTopics {
+  explicit OtherTopics(ros::NodeHandle& handle)
+      : left(handle.advertise<sensor_msgs::Image>("/cam0/image", 1)),
+        right(handle.advertise<sensor_msgs::Image>("/cam1/image", 1)),
+        left_info(handle.advertise<sensor_msgs::CameraInfo>("/cam0/info", 1)),
+        right_info(handle.advertise<sensor_msgs::CameraInfo>("/cam1/info", 1)) {}
+  bool connected() const {
+    return left.getNumSubscribers() > 0 && right.getNumSubscribers() > 0 &&
+           left_info.getNumSubscribers() > 0 && right_info.getNumSubscribers() > 0;
+  }
+  ros::Publisher left, right, left_info, right_info;
+};
+
+TEST_F(RectifyNodeletTest, EachTopicMayHaveANameOfItsOwn) {
+  setParameter("rectify", "left_image", std::string("/cam0/image"));
+  setParameter("rectify", "left_info", std::string("/cam0/info"));
+  setParameter("rectify", "right_image", std::string("/cam1/image"));
+  setParameter("rectify", "right_info", std::string("/cam1/info"));
+  load("rectify");
+  const OtherTopics topics(handle_);
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  EXPECT_TRUE(eventually([&] { return topics.connected(); }));
+}
+
+TEST_F(RectifyNodeletTest, ARemapGivesATopicAnotherName) {
+  ASSERT_TRUE(loader_.load("/uav_landing/rectify", "uav_landing/rectify",
+                           {{"/stereo/left/image_raw", "/cam0/image"},
+                            {"/stereo/left/camera_info", "/cam0/info"},
+                            {"/stereo/right/image_raw", "/cam1/image"},
+                            {"/stereo/right/camera_info", "/cam1/info"}},
+                           {}));
+  const OtherTopics topics(handle_);
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  EXPECT_TRUE(eventually([&] { return topics.connected(); }));
+}
+
+TEST_F(RectifyNodeletTest, APairThatComesTwiceIsServedOnce) {
+  setParameter("rectify", "drop_frames", false);
+  start();
+  for (int i = 0; i < 10; ++i) {
+    cameras_.publishLeft(PairPublisher::stampOf(0.1 * i), scene_.image(0.2 * (i / 2), false),
+                         scene_.info(false));
+    cameras_.publishRight(PairPublisher::stampOf(0.1 * i), scene_.image(0.2 * (i / 2), true),
+                          scene_.info(true));
+  }
+  ASSERT_TRUE(left_->waitFor(5));
+  ASSERT_TRUE(logged("each pair of images comes 2 times, bit by bit the same under new stamps"))
+      << wholeLog();
+  std::vector<ros::Time> stamps, expected;
+  for (const auto& image : left_->messages()) stamps.push_back(image->header.stamp);
+  for (int i = 0; i < 5; ++i) expected.push_back(PairPublisher::stampOf(0.2 * i));
+  EXPECT_EQ(stamps, expected);
+}
+
+TEST_F(RectifyNodeletTest, ATopicThatComesMoreSeldomIsNamed) {
+  start();
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    // No more than the queue takes, as the topics come on connections of their own.
+    t += 0.1;
+    cameras_.publishRight(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(true));
+    cameras_.publishLeft(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(false));
+    cameras_.publishLeft(PairPublisher::stampOf(t + 0.05), scene_.blank(0), scene_.info(false));
+    return wholeLog().find("stamps have no message on /stereo/right/image_raw, /stereo/right/camera_info") !=
+           std::string::npos;
+  })) << wholeLog();
+}
+
 TEST_F(RectifyNodeletTest, CanBeUnloadedAtAnyTime) {
   start();
   for (int i = 0; i < 20; ++i) cameras_.publishUniform(scene_, 0.1 * i, 100);

@@ -5,10 +5,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import rosbag
+import rospy
 from sensor_msgs.msg import CompressedImage
 
 from project import rosrun
-from stereo_bag import HEIGHT, WIDTH, noise, noise_frames, write_bag
+from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
 
 SENSOR = """%YAML:1.0
 T_BS:
@@ -45,6 +46,7 @@ class ConvertRecordingTest(unittest.TestCase):
         """Messages by topic."""
         result = self.convert(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.said = result.stderr
         messages = {}
         with rosbag.Bag(str(self.output)) as bag:
             for topic, message, _ in bag.read_messages():
@@ -166,17 +168,22 @@ class ConvertRecordingTest(unittest.TestCase):
         good, large = self.video("l.avi", 2), self.video("large.avi", 2, (320, 240))
         self.refused("none.avi: no such video", "videos", good, self.folder / "none.avi", *self.calibrations())
         self.refused("320x240 pixels, its calibration is for 160x120", "videos", good, large, *self.calibrations())
+        self.refused("l.avi: given twice; if it has both pictures in one, give it once, with --side-by-side", "videos", good, good,
+                     *self.calibrations())
+        self.refused("l.avi: each half, side-by-side, 80x120 pixels, its calibration is for 160x120", "videos", good,
+                     "--side-by-side", *self.calibrations())
+        self.assertEqual(self.convert("videos", good, *self.calibrations()).returncode, 2)
 
     def test_numbers_that_are_none_in_a_calibration_are_named(self):
-        good, files = self.video("l.avi", 2), self.calibrations()
+        good, files, other = self.video("l.avi", 2), self.calibrations(), self.video("r.avi", 2)
         text = files[1].read_text()
         for old, new, complaint in (("cols: 5, data: [0, 0, 0, 0, 0]", "data: 5", "data: expected a list of numbers"),
                                     ("data: [0, 0, 0, 0, 0]", "data: [0, x]", "data: expected 2 finite numbers"),
                                     ("image_width: 160", "image_width: wide", "image_width: expected 1 finite numbers")):
             with self.subTest(new):
                 files[1].write_text(text.replace(old, new))
-                self.refused(f"{files[1]}: ", "videos", good, good, *files)
-                self.refused(complaint, "videos", good, good, *files)
+                self.refused(f"{files[1]}: ", "videos", good, other, *files)
+                self.refused(complaint, "videos", good, other, *files)
 
     def renamed_bag(self, compressed):
         """A bag of /cam0/image... and /cam1/image..."""
@@ -214,6 +221,130 @@ class ConvertRecordingTest(unittest.TestCase):
         self.assertEqual([info.header.stamp for info in infos],
                          [m.header.stamp for m in messages["/stereo/right/image_raw"]])
         self.assertEqual((len(infos), infos[0].K[2]), (3, 80))
+
+    def compressed_bag(self, broken, count=12):
+        """JPEGs of two cameras; broken: {number: data of the left one}."""
+        path = self.folder / "jpeg.bag"
+        with rosbag.Bag(str(path), "w") as result:
+            for number, frame in enumerate(noise_frames(count)):
+                for side in ("left", "right"):
+                    message = CompressedImage(format="mono8; jpeg compressed ")
+                    message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                    pixels = np.frombuffer(frame.messages[f"{side}/image_raw"].data, np.uint8).reshape(HEIGHT, WIDTH)
+                    message.data = cv2.imencode(".jpg", pixels)[1].tobytes()
+                    if side == "left" and number in broken:
+                        message.data = broken[number](message.data)
+                    result.write(f"/cam/{side}/image_raw/compressed", message, message.header.stamp)
+        return path
+
+    def test_broken_pictures_of_many_are_left_out_named_and_counted(self):
+        bag = self.compressed_bag({3: lambda data: b"", 5: lambda data: data[:len(data) // 2], 8: lambda data: b"no picture"})
+        messages = self.converted("bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                                  *self.calibrations())
+        numbers = [round(10 * m.header.stamp.to_sec()) - 100 for m in messages["/stereo/left/image_raw"]]
+        self.assertEqual(numbers, [0, 1, 2, 4, 6, 7, 9, 10, 11])
+        self.assertEqual(len(messages["/stereo/right/image_raw"]), 12)
+        self.assertEqual(self.said, "".join(
+            f"convert_recording: left out: /cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at {stamp} "
+            "s cannot be decoded to 8 bits\n" for stamp in ("10.300000", "10.500000", "10.800000"))
+            + "convert_recording: 3 broken pictures were left out\n")
+        result = rosrun("process_bag", "--input", self.output)
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("9 pairs, ", result.stdout)
+
+    def test_where_all_are_broken_the_bag_is_refused(self):
+        bag = self.compressed_bag(dict.fromkeys(range(12), lambda data: b""))
+        self.refused("/cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at 10.000000 s cannot be decoded",
+                     "bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                     *self.calibrations())
+
+    def test_a_broken_picture_of_a_folder_is_left_out(self):
+        self.euroc()
+        broken = sorted((self.folder / "mav0/cam1/data").iterdir())[1]
+        broken.write_bytes(broken.read_bytes()[:200])
+        messages = self.converted("euroc", self.folder)
+        self.assertEqual([len(found) for found in messages.values()], 4 * [2])
+        self.assertEqual(self.said, f"convert_recording: left out: {broken}: no such image, or damaged\n"
+                                    "convert_recording: 1 broken picture was left out\n")
+
+    def joined_bag(self, axis, encoding, compressed=False):
+        """Both pictures in one, and the expected halves."""
+        path, expected = self.folder / "joined.bag", {"left": [], "right": []}
+        with rosbag.Bag(str(path), "w") as result:
+            for number, frame in enumerate(noise_frames(4)):
+                pictures = [noise(2 * number), noise(2 * number + 1)]
+                if encoding == "bgr8":
+                    pictures = [np.dstack([picture, picture // 2, 255 - picture]) for picture in pictures]
+                for side, picture in zip(expected, pictures):
+                    expected[side].append(picture.tobytes())
+                joined = np.concatenate(pictures, axis)
+                if compressed:
+                    message = CompressedImage(format="png", data=cv2.imencode(".png", joined)[1].tobytes())
+                else:
+                    message = image(joined, encoding)
+                message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                result.write("/usb_cam/image_raw", message, message.header.stamp)
+        return path, expected
+
+    def test_pictures_side_by_side_or_one_above_the_other_are_cut(self):
+        for option, axis, encoding, compressed in (("--side-by-side", 1, "mono8", False), ("--side-by-side", 1, "bgr8", False),
+                                                   ("--side-by-side", 1, "bgr8", True), ("--top-and-bottom", 0, "mono8", False),
+                                                   ("--top-and-bottom", 0, "bgr8", True)):
+            with self.subTest(option=option, encoding=encoding, compressed=compressed):
+                bag, expected = self.joined_bag(axis, encoding, compressed)
+                messages = self.converted("bag", bag, option, "/usb_cam/image_raw", *self.calibrations())
+                for side, pictures in expected.items():
+                    found = messages[f"/stereo/{side}/image_raw"]
+                    self.assertEqual([m.data for m in found], pictures)
+                    self.assertEqual({(m.width, m.height, m.encoding) for m in found}, {(WIDTH, HEIGHT, encoding)})
+                    infos = messages[f"/stereo/{side}/camera_info"]
+                    self.assertEqual([m.header.stamp for m in infos], [m.header.stamp for m in found])
+                    self.assertEqual({info.width for info in infos}, {WIDTH})
+                self.assertEqual(rosrun("process_bag", "--input", self.output).returncode, 0)
+
+    def test_what_is_wrong_with_halves_is_named(self):
+        bag, _ = self.joined_bag(1, "mono8")
+        both = ("bag", bag, "--left", "/usb_cam/image_raw", "--right", "/usb_cam/image_raw")
+        self.refused("left and right must be different topics; if /usb_cam/image_raw has both pictures in one: --side-by-side "
+                     "/usb_cam/image_raw", *both, *self.calibrations())
+        self.refused("/usb_cam/image_raw has both pictures: give the calibration of each half, --left-calibration or --left-info",
+                     "bag", bag, "--side-by-side", "/usb_cam/image_raw")
+        self.refused("/usb_cam/image_raw: each half (top-and-bottom) has 320x60 pixels, the left calibration is for 160x120: "
+                     "calibrate with the halves", "bag", bag, "--top-and-bottom", "/usb_cam/image_raw", *self.calibrations())
+        self.assertEqual(self.convert("bag", bag, "--left", "/usb_cam/image_raw").returncode, 2)
+
+    def test_one_video_with_both_pictures(self):
+        path = self.folder / "both.avi"
+        for option, axis in (("--side-by-side", 1), ("--top-and-bottom", 0)):
+            size = (2 * WIDTH, HEIGHT) if axis else (WIDTH, 2 * HEIGHT)
+            writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 20, size)
+            for number in range(4):
+                writer.write(np.concatenate([np.full((HEIGHT, WIDTH, 3), grey, np.uint8) for grey in (50 + number, 200 - number)], axis))
+            writer.release()
+            messages = self.converted("videos", path, option, *self.calibrations())
+            for side, grey, step in (("left", 50, 1), ("right", 200, -1)):
+                found = [np.frombuffer(m.data, np.uint8).reshape(HEIGHT, WIDTH)[10:-10, 10:-10] for m in
+                         messages[f"/stereo/{side}/image_raw"]]
+                np.testing.assert_allclose([[np.min(m), np.max(m)] for m in found], [2 * [grey + step * i] for i in range(4)], atol=2)
+
+    def test_one_field_of_interlaced_pictures(self):
+        rows = np.arange(HEIGHT)
+        steady = np.repeat((2 * rows).astype(np.uint8)[:, None], WIDTH, 1)  # a ramp: rows between are half way
+        path = self.folder / "interlaced.bag"
+        with rosbag.Bag(str(path), "w") as result:
+            for frame in noise_frames(3):
+                for side in ("left", "right"):
+                    pixels = steady.copy()
+                    pixels[1::2] = 255  # the other field, of another time
+                    message = image(pixels)
+                    message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                    result.write(f"/cam/{side}/image_raw", message, message.header.stamp)
+        messages = self.converted("bag", path, "--left", "/cam/left/image_raw", "--right", "/cam/right/image_raw", "--deinterlace",
+                                  *self.calibrations())
+        for message in messages["/stereo/left/image_raw"]:
+            pixels = np.frombuffer(message.data, np.uint8).reshape(HEIGHT, WIDTH)
+            np.testing.assert_array_equal(pixels[:-1], steady[:-1])
+            np.testing.assert_array_equal(pixels[-1], steady[-2])
 
     def test_bag_mistakes_are_named(self):
         bag = self.renamed_bag(True)

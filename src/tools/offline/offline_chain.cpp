@@ -8,6 +8,11 @@
 #include "time_difference.h"
 
 namespace uav_landing {
+namespace {
+
+constexpr std::size_t kRowsLookedAt = 5;  // of so many pairs, one
+
+}  // namespace
 
 OfflineChain::OfflineChain(const Parameters& parameters, const std::string& camera, bool with_imu,
                            std::vector<std::unique_ptr<PairSink>>& sinks,
@@ -37,6 +42,9 @@ void OfflineChain::process(const sensor_msgs::ImageConstPtr& left,
                            const sensor_msgs::CameraInfoConstPtr& left_info,
                            const sensor_msgs::ImageConstPtr& right,
                            const sensor_msgs::CameraInfoConstPtr& right_info) {
+  const bool repetition = pictures_.isRepetition(left, right);
+  for (const std::string& news : pictures_.news()) complain_(news);
+  if (repetition) return;
   waiting_.push_back({left, right, left_info, right_info});
   release(false);
 }
@@ -108,6 +116,10 @@ Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_m
   if (!left_image) return left_image.error();
   const auto right_image = toMono8(right, right_calibration_, "/" + camera_ + "/right/image_raw");
   if (!right_image) return right_image.error();
+  if (pairs_ % kRowsLookedAt == 0) {
+    pictures_.look((*left_image)->image, "/" + camera_ + "/left/image_raw");
+    for (const std::string& news : pictures_.news()) complain_(news);
+  }
   output_ =
       &pipeline_->process(left->header.stamp.toSec(), (*left_image)->image, (*right_image)->image, skew, imu);
   return {};

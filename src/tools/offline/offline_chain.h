@@ -13,6 +13,7 @@
 
 #include "imu_input.h"
 #include "offline/processed_pair.h"
+#include "picture_watch.h"
 #include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
@@ -38,6 +39,8 @@ class OfflineChain {
 
   std::size_t pairs() const { return pairs_; }
   std::size_t unusable() const { return unusable_; }
+  /// Pairs that were left out because they repeat the pictures of the one before.
+  uint64_t repetitions() const { return pictures_.repetitions(); }
   const Failure& firstProblem() const { return first_problem_; }
 
  private:
@@ -62,6 +65,7 @@ class OfflineChain {
   std::optional<Pipeline> pipeline_;
   std::optional<ImuInput> imu_;  // none: not to be used
   std::deque<Waiting> waiting_;
+  PictureWatch pictures_;
   std::string last_imu_complaint_;
   Failure calibration_failure_;
   const Pipeline::Output* output_ = nullptr;
