@@ -1,5 +1,7 @@
 """Bags with other topic names or compressed images."""
 
+import re
+
 import cv2
 import numpy as np
 import rosbag
@@ -11,17 +13,29 @@ SIDES = ("left", "right")
 IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
 
 
+def encoding_of(pixels, compressed_format):
+    """Of decoded pixels; None where they are no picture. The transport says in front that grey ones are a Bayer mosaic."""
+    bits = {np.dtype(np.uint8): "8", np.dtype(np.uint16): "16"}.get(pixels.dtype)
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    name = {1: "mono", 3: "bgr", 4: "bgra"}.get(channels)
+    if not bits or not name:
+        return None
+    mosaic = re.match(rf"(bayer_[rgb]{{4}}){bits}\s*;", compressed_format)
+    return (mosaic.group(1) if mosaic and channels == 1 else name) + bits
+
+
 def to_image(message, topic):
-    """A raw image; a compressed one is decoded by OpenCV, grey, or colour as bgr8."""
+    """A raw image; a compressed one is decoded by OpenCV, with the bits and channels that it has."""
     if message._type == "sensor_msgs/Image":
         return message
     # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
     pixels = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED) if message.data else None
-    if pixels is None or pixels.dtype != np.uint8 or pixels.ndim == 3 and pixels.shape[2] != 3:
+    encoding = None if pixels is None else encoding_of(pixels, message.format)
+    if encoding is None:
         raise InputError(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
-                         "cannot be decoded to 8 bits")
-    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1],
-                  encoding="mono8" if pixels.ndim == 2 else "bgr8", step=pixels.strides[0])
+                         "cannot be decoded to grey or colour of 8 or 16 bits")
+    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1], encoding=encoding,
+                  step=pixels.strides[0])
     image.data = pixels.tobytes()
     return image
 
