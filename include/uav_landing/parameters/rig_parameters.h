@@ -7,10 +7,12 @@ namespace uav_landing {
 // visit(): see parameters.h.
 
 /// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
-/// that, and which pixels see the ground.
+/// that, how the cameras are mounted, and which pixels see the ground.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
   double max_baseline = 50.0;
+  bool upside_down = false;
+  int bits = 0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
 
   template <class Visitor>
@@ -23,6 +25,12 @@ struct RigParameters {
     v.number("max_baseline", max_baseline, 0.1, 1000.0, "m",
              "longest baseline that is believed. A longer one is refused: the right P[3] is then in "
              "centimetres or millimetres, and heights would be wrong by that factor");
+    v.flag("upside_down", upside_down,
+           "the rig is mounted upside down, and its calibration is of the pictures as they come. The "
+           "pictures are turned by 180 deg, and left and right are exchanged");
+    v.number("bits", bits, 0, 16, "bits",
+             "used bits of images with 16 bits a pixel, from the lowest one on; 0: the range of values is "
+             "found over the first pairs, one for both cameras");
     v.text("left_mask", left_mask,
            "image file with the pixels of the left camera that may be used: nonzero = use, 0 = leave out, as "
            "OpenCV's masks. For what does not move with the ground: the aircraft's nose, a strut, a "
