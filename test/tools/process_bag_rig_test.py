@@ -123,6 +123,18 @@ class ProcessBagRigTest(unittest.TestCase):
         self.assertLess(np.abs(error).max(), 0.03)
         self.assertTrue((np.abs(error) < 3 * claimed).all(), error / claimed)
 
+    def test_a_baseline_that_is_uncertain_is_so_in_the_claims_and_in_no_height(self):
+        bag, truth = self.simulated("stretched", stretch=0.01)
+        sure, unsure = self.estimates(bag), self.estimates(bag, "baseline_stddev: 0.01")
+        self.assertEqual([row["height_m"] for row in unsure], [row["height_m"] for row in sure])
+        error, claimed = self.errors(sure, truth)
+        self.assertEqual(np.mean(np.abs(error) < 1.96 * claimed), 0)
+        error, claimed = self.errors(unsure, truth)
+        self.assertEqual(np.mean(np.abs(error) < 1.96 * claimed), 1)
+        for row in unsure:
+            if row["height_valid"] == "1":
+                self.assertGreater(float(row["height_protection_level_m"]), 0.04 * float(row["height_m"]))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -7,10 +7,11 @@ namespace uav_landing {
 // visit(): see parameters.h.
 
 /// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
-/// that, how the cameras are mounted, and which pixels see the ground.
+/// that, how well it is known, how the cameras are mounted, and which pixels see the ground.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
   double max_baseline = 50.0;
+  double baseline_stddev = 0.0005;
   bool upside_down = false;
   int bits = 0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
@@ -25,6 +26,10 @@ struct RigParameters {
     v.number("max_baseline", max_baseline, 0.1, 1000.0, "m",
              "longest baseline that is believed. A longer one is refused: the right P[3] is then in "
              "centimetres or millimetres, and heights would be wrong by that factor");
+    v.number("baseline_stddev", baseline_stddev, 0.0, 0.1, "of the baseline",
+             "1 sigma of the baseline's length, as a share: all heights are wrong by the same share, and no "
+             "image shows it. It is in the height's variance and protection level. The default is 0.4 mm on "
+             "the 0.8 m of a calibration board; for a baseline that was measured by hand choose more");
     v.flag("upside_down", upside_down,
            "the rig is mounted upside down, and its calibration is of the pictures as they come. The "
            "pictures are turned by 180 deg, and left and right are exchanged");
