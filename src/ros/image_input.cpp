@@ -85,6 +85,10 @@ std::string checkImage(const sensor_msgs::Image& image, const cv::Size& expected
             << image.encoding << " needs (" << image.width * pixel_bytes << ")";
     return problem.str();
   }
+  if (encoding->has16Bits() && image.step % 2 != 0) {
+    problem << "step: " << image.step << " bytes are no whole number of values of 16 bits";
+    return problem.str();
+  }
   const size_t size = static_cast<size_t>(image.step) * image.height;
   if (image.data.size() != size) {
     problem << "data: " << image.data.size() << " bytes, but step x height is " << size;

@@ -211,6 +211,16 @@ TEST(ImageInput, AStepShorterThanARowIsRefused) {
   EXPECT_NE(failureOf(image, announcing(4, 2)).find("step: 4 bytes are fewer than a row"), std::string::npos);
 }
 
+TEST(ImageInput, AStepOfHalfAValueIsRefused) {
+  const auto image = makeImage("mono16", 2);
+  image->step = 9;
+  image->data.resize(18);
+  EXPECT_EQ(failureOf(image, announcing(4, 2)),
+            "input_invalid: /stereo/left/image_raw: step: 9 bytes are no whole number of values of 16 bits");
+  GreyRangeFinder finder(0);
+  EXPECT_EQ(followRange(finder, image, announcing(4, 2), image, announcing(4, 2)), GreyRange());
+}
+
 TEST(ImageInput, NoCalibrationSizeIsRefusedWithoutACrash) {
   EXPECT_NE(failureOf(makeImage("mono8", 1), announcing(0, 0)).find("camera_info announces 0x0"),
             std::string::npos);

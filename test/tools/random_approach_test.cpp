@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
@@ -188,6 +189,10 @@ struct RangeCheck {
     EXPECT_GE(value, low) << section << "/" << name;
     EXPECT_LE(value, high) << section << "/" << name;
     text += section + "/" + name + " " + std::to_string(value) + "\n";
+  }
+  template <class Enum>
+  void choice(const char* name, Enum& value, std::initializer_list<const char*>, const char*) {
+    text += section + "/" + name + " " + std::to_string(static_cast<int>(value)) + "\n";
   }
 };
 std::string textOf(SimulatorParameters p) {

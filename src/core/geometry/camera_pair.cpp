@@ -33,7 +33,7 @@ void levelRows(CameraPair& pair) {
   if (checkCalibration(pair.left) || checkCalibration(pair.right)) return;
   const Eigen::Vector3d baseline = baselineOf(pair.left, pair.right);
   const double aslant = std::max(std::abs(baseline.y()), std::abs(baseline.z()));
-  if (aslant <= kLevel * baseline.x() || aslant > kAslant * baseline.x()) return;
+  if (!(aslant > kLevel * baseline.x() && aslant <= kAslant * baseline.x())) return;
   Eigen::Matrix3d turn;
   turn.row(0) = baseline.normalized();
   turn.row(1) = Eigen::Vector3d::UnitZ().cross(baseline).normalized();
