@@ -26,7 +26,7 @@ Pipeline::Pipeline(RigModel rig, Rectifier left, Rectifier right, const Paramete
       right_rectifier_(std::move(right)),
       stereo_(rig_, parameters.stereo_depth),
       approach_(rig_, parameters.approach_angle, parameters.runway),
-      kalman_(rig_.rig, parameters.kalman_height, parameters.runway) {}
+      kalman_(rig_.rig, parameters.kalman_height, parameters.runway, parameters.rig) {}
 
 const Pipeline::Output& Pipeline::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                           double skew, const AttitudePrior& imu) {

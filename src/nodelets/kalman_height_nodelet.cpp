@@ -184,7 +184,7 @@ class KalmanHeightNodelet : public StageNodelet {
       const auto rig = makeStereoRig(cameras_.left(), cameras_.right(), shared_.rig);
       warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
       rig_failure_ = rig ? Failure() : ofCameraInfo(rig.error());
-      if (rig) stage_.emplace(*rig, parameters_, shared_.runway);
+      if (rig) stage_.emplace(*rig, parameters_, shared_.runway, shared_.rig);
     }
     return rig_failure_;
   }

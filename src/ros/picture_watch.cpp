@@ -17,10 +17,13 @@ bool same(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::ImageConst
   return before && image->data == before->data && image->width == before->width;
 }
 
-/// A black or saturated picture is like the one before it whatever the driver does.
+/// A black or saturated picture is like the one before it whatever the driver does. Its pixels are alike, but
+/// not their bytes: those of 16 bits and of colours differ.
 bool uniform(const sensor_msgs::ImageConstPtr& image) {
-  return std::adjacent_find(image->data.begin(), image->data.end(), std::not_equal_to<>()) ==
-         image->data.end();
+  const size_t pixel = std::max<size_t>(1, image->width > 0 ? image->step / image->width : 1);
+  if (pixel >= image->data.size()) return true;
+  return std::equal(image->data.begin() + static_cast<std::ptrdiff_t>(pixel), image->data.end(),
+                    image->data.begin());
 }
 
 }  // namespace

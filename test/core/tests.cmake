@@ -45,6 +45,7 @@ uav_landing_add_gtest(parameter_file_test test/core/parameters/parameter_file_te
 # geometry
 uav_landing_add_gtest(bad_calibrations_test test/core/geometry/bad_calibrations_test.cpp LIBS yaml-cpp)
 uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
+uav_landing_add_gtest(camera_pair_test test/core/geometry/camera_pair_test.cpp)
 uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
 uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 uav_landing_add_gtest(rig_check_test test/core/geometry/rig_check_test.cpp)
@@ -57,6 +58,7 @@ uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 # image
 uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
+uav_landing_add_gtest(grey_range_test test/core/image/grey_range_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp

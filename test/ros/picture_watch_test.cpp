@@ -48,6 +48,16 @@ TEST(PictureWatch, LeavesPicturesOfOneGreyLevelAlone) {
   for (int i = 0; i < 4; ++i) EXPECT_FALSE(watch.isRepetition(black, black));
 }
 
+TEST(PictureWatch, LeavesPicturesOfOneValueOf16BitsAlone) {
+  PictureWatch watch;
+  const auto saturated = boost::make_shared<sensor_msgs::Image>();
+  saturated->width = 3;
+  saturated->height = 2;
+  saturated->step = 6;
+  for (int i = 0; i < 6; ++i) saturated->data.insert(saturated->data.end(), {255, 15});  // of 12 bits
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(watch.isRepetition(saturated, saturated));
+}
+
 TEST(PictureWatch, TakesOneOfThree) {
   PictureWatch watch;
   EXPECT_EQ(leftOut(watch, {1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4}), ".x..x.....xx");

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <initializer_list>
 #include <sstream>
 #include <string>
 

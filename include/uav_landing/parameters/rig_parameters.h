@@ -12,10 +12,14 @@ namespace uav_landing {
 enum class RowDirection { kRows, kColumns };
 
 /// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
-/// that, which pixels see the ground, and when their rows are exposed.
+/// that, how well it is known, how the cameras are mounted, which pixels see the ground, and when their rows
+/// are exposed.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
   double max_baseline = 50.0;
+  double baseline_stddev = 0.0005;
+  bool upside_down = false;
+  int bits = 0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
   /// See row_times.h. NaN: not given, for the right camera then as for both.
   double readout_time = std::numeric_limits<double>::quiet_NaN();
@@ -34,6 +38,17 @@ struct RigParameters {
     v.number("max_baseline", max_baseline, 0.1, 1000.0, "m",
              "longest baseline that is believed. A longer one is refused: the right P[3] is then in "
              "centimetres or millimetres, and heights would be wrong by that factor");
+    v.number("baseline_stddev", baseline_stddev, 0.0, 0.1, "of the baseline",
+             "1 sigma of the baseline's length, as a share: all heights are wrong by the same share, and no "
+             "image shows it. It is in the height's variance and protection level. The default is 0.4 mm on "
+             "the 0.8 m of a calibration board; for a baseline that was measured by hand choose more");
+    v.flag("upside_down", upside_down,
+           "the rig is mounted upside down, and its calibration is of the pictures as they come. The "
+           "pictures are turned by 180 deg, and left and right are exchanged. Masks, readout times and stamp "
+           "rows stay those of the cameras as they are named, and of their pictures as they come");
+    v.number("bits", bits, 0, 16, "bits",
+             "used bits of images with 16 bits a pixel, from the lowest one on; 0: the range of values is "
+             "found over the first pairs, one for both cameras");
     v.text("left_mask", left_mask,
            "image file with the pixels of the left camera that may be used: nonzero = use, 0 = leave out, as "
            "OpenCV's masks. For what does not move with the ground: the aircraft's nose, a strut, a "

@@ -47,11 +47,14 @@ struct SimulatedImageParameters {
   }
 };
 
-/// One camera's lens (plumb_bob) and sensor (sections left_camera, right_camera).
+enum class SimulatedLens { kPlumbBob, kEquidistant };
+
+/// One camera's lens and sensor (sections left_camera, right_camera).
 struct SimulatedCameraParameters {
   double fx = 554.26, fy = 554.26;
   double cx = 319.5, cy = 239.5;
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  SimulatedLens lens = SimulatedLens::kPlumbBob;
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0, k4 = 0;
   double gain = 1.0;
   double offset = 0.0;
 
@@ -61,11 +64,14 @@ struct SimulatedCameraParameters {
     v.number("fy", fy, 10.0, 1e5, "px", "focal length along the columns");
     v.number("cx", cx, 0.0, 4096.0, "px", "column of the principal point; the first pixel's centre is 0");
     v.number("cy", cy, 0.0, 4096.0, "px", "row of the principal point");
+    v.choice("lens", lens, {"plumb_bob", "equidistant"},
+             "distortion model: that of usual lenses, or that of fisheye lenses, which has k1 to k4 alone");
     v.number("k1", k1, -1.0, 1.0, "", "radial distortion");
     v.number("k2", k2, -2.0, 2.0, "", "radial distortion");
     v.number("p1", p1, -0.1, 0.1, "", "tangential distortion");
     v.number("p2", p2, -0.1, 0.1, "", "tangential distortion");
     v.number("k3", k3, -2.0, 2.0, "", "radial distortion");
+    v.number("k4", k4, -2.0, 2.0, "", "radial distortion of the lens equidistant");
     v.number("gain", gain, 0.1, 10.0, "", "grey level = gain x scene + offset");
     v.number("offset", offset, -200.0, 200.0, "grey levels", "see gain");
   }

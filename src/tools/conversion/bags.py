@@ -5,7 +5,7 @@ import copy
 import rosbag
 
 from .errors import BrokenPicture, InputError
-from .pictures import deinterlaced, halves, image_of, rows_of, to_image
+from .pictures import deinterlaced, raw_halves, to_image
 
 SIDES = ("left", "right")
 IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
@@ -79,9 +79,8 @@ class BagConversion:
             image = deinterlaced(image, topic)
         if not self.layout:
             return {side: image for side in SIDES if self.images[side] == topic}
-        parts = dict(zip(SIDES, halves(rows_of(image, topic), self.layout, topic)))
+        parts = dict(zip(SIDES, raw_halves(image, self.layout, topic)))
         for side in SIDES:
-            parts[side] = image_of(parts[side], image)
             check_half(parts[side], side, self.calibrations.get(side), topic, self.layout)
         return parts
 

@@ -10,6 +10,7 @@ from .errors import BrokenPicture, InputError
 
 SIDE_BY_SIDE, TOP_AND_BOTTOM = "side-by-side", "top-and-bottom"
 LAYOUTS = (SIDE_BY_SIDE, TOP_AND_BOTTOM)
+YUV = ("yuv422", "uyvy", "yuv422_yuy2", "yuyv")
 
 
 def is_whole(data):
@@ -19,27 +20,39 @@ def is_whole(data):
     return not data.startswith(b"\x89PNG") or b"IEND" in data[-64:]
 
 
+def encoding_of(pixels, compressed_format):
+    """Of decoded pixels; None where they are no picture. The transport says in front that grey ones are a Bayer mosaic."""
+    bits = {np.dtype(np.uint8): "8", np.dtype(np.uint16): "16"}.get(pixels.dtype)
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    name = {1: "mono", 3: "bgr", 4: "bgra"}.get(channels)
+    if not bits or not name:
+        return None
+    mosaic = re.match(rf"(bayer_[rgb]{{4}}){bits}\s*;", compressed_format)
+    return (mosaic.group(1) if mosaic and channels == 1 else name) + bits
+
+
 def to_image(message, topic):
-    """A raw image; a compressed one is decoded by OpenCV, grey, or colour as bgr8."""
+    """A raw image; a compressed one is decoded by OpenCV, with the bits and channels that it has."""
     if message._type == "sensor_msgs/Image":
         return message
     data = bytes(message.data)
     # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
     pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data and is_whole(data) else None
-    if pixels is None or pixels.dtype != np.uint8 or pixels.ndim == 3 and pixels.shape[2] != 3:
+    encoding = None if pixels is None else encoding_of(pixels, message.format)
+    if encoding is None:
         raise BrokenPicture(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
-                            "cannot be decoded to 8 bits")
-    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1],
-                  encoding="mono8" if pixels.ndim == 2 else "bgr8", step=pixels.strides[0])
+                            "cannot be decoded to grey or colour of 8 or 16 bits")
+    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1], encoding=encoding,
+                  step=pixels.strides[0])
     image.data = pixels.tobytes()
     return image
 
 
 def rows_of(image, topic):
     """The pixels of a raw image, (rows, columns, bytes of a pixel)."""
-    known = re.fullmatch(r"(mono|rgb|bgr|rgba|bgra|bayer_[a-z]{4}|yuv422[a-z0-9_]*|)(8|16)?(?:[US]C([1-4]))?", image.encoding)
+    known = re.fullmatch(r"(mono|rgb|bgr|rgba|bgra|bayer_[a-z]{4}|)(8|16)(?:[US]C([1-4]))?", image.encoding)
     channels = {"rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}.get(known[1], int(known[3] or 1)) if known else 0
-    size = 2 if known and known[1].startswith("yuv422") else channels * (2 if known and known[2] == "16" else 1)
+    size = 2 if image.encoding in YUV else channels * (2 if known and known[2] == "16" else 1)
     if not size:
         raise InputError(f"{topic}: encoding {image.encoding}: cannot be cut in two or deinterlaced")
     if image.step < image.width * size or len(image.data) < image.step * image.height:
@@ -64,6 +77,17 @@ def halves(pixels, layout, where):
     if pixels.shape[axis] % 2:
         raise InputError(f"{where}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels cannot be cut in two, {layout}")
     return np.split(pixels, 2, axis)
+
+
+def raw_halves(image, layout, topic):
+    """halves() of a raw image, as raw images. The second one has to begin where the colours of its encoding begin."""
+    pixels = rows_of(image, topic)
+    along = pixels.shape[1] if layout == SIDE_BY_SIDE else pixels.shape[0]
+    pairs_of_pixels = image.encoding.startswith("bayer") or image.encoding in YUV and layout == SIDE_BY_SIDE
+    if pairs_of_pixels and along % 4:
+        raise InputError(f"{topic}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels {image.encoding} cannot be cut in two, "
+                         f"{layout}: {along} is no multiple of 4, and the right colours would be lost")
+    return [image_of(part, image) for part in halves(pixels, layout, topic)]
 
 
 def one_field(pixels):

@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 
 from . import cameras
+from .calibration_files import from_ros_file
 from .errors import BrokenPicture, InputError, unreadable
 from .pictures import halves, is_whole, one_field
 
@@ -71,8 +72,9 @@ class Euroc:
         """Size, (K, D) and the transform body <- camera."""
         content = cameras.load_yaml(path)
         model = cameras.field(content, path, "distortion_model")
-        if model not in ("radial-tangential", "radtan", "plumb_bob"):
-            raise InputError(f"{path}: distortion_model {model}: only radial-tangential is known")
+        if model not in ("radial-tangential", "radtan", "plumb_bob", "equidistant"):
+            raise InputError(f"{path}: distortion_model {model}: expected radial-tangential or equidistant")
+        fisheye = model == "equidistant"
         fx, fy, cx, cy = cameras.numbers(content, path, ("intrinsics",), 4)
         width, height = cameras.numbers(content, path, ("resolution",), 2)
         pose = cameras.numbers(content, path, ("T_BS", "data"), 16).reshape(4, 4)
@@ -80,7 +82,8 @@ class Euroc:
             raise InputError(f"{path}: T_BS.data: expected a rotation in its first three rows and columns")
         distortion = cameras.numbers(content, path, ("distortion_coefficients",), 4)
         return (int(width), int(height)), (np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]),
-                                           np.append(distortion, 0)), pose
+                                           distortion if fisheye else np.append(distortion, 0),
+                                           "equidistant" if fisheye else "plumb_bob"), pose
 
     def __iter__(self):
         lists = []
@@ -138,7 +141,7 @@ class Videos:
     def __init__(self, paths, calibrations, left_out, skips=(0, 0), rate=None, layout=None, deinterlace=False):
         self.paths, self.skips, self.rate, self.left_out = paths, skips, rate, left_out
         self.layout, self.deinterlace = layout, deinterlace
-        self.cameras = tuple(cameras.from_ros_yaml(calibration) for calibration in calibrations)
+        self.cameras = tuple(map(from_ros_file, calibrations, ("left", "right")))
 
     def frames(self, path, skip):
         """Time and grey picture of each frame of a video from the one after the first `skip` on; None for one that is broken."""

@@ -21,4 +21,8 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin);
 /// The same pair with left and right exchanged (to tell a swapped rig from a featureless one).
 StereoLevel swapped(const StereoLevel& level);
 
+/// The same pair as cameras would see it that are turned by 180 deg about their axes: turned pictures, left
+/// and right exchanged (to tell a rig that is mounted upside down).
+StereoLevel turnedOver(const StereoLevel& level);
+
 }  // namespace uav_landing
