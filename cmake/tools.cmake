@@ -1,10 +1,11 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
   src/tools/bags/bag_bytes.cpp src/tools/bags/bag_chunk.cpp src/tools/bags/bag_records.cpp
-  src/tools/bags/bag_structure.cpp src/tools/bags/old_bag_structure.cpp src/tools/bags/stereo_bag_reader.cpp
-  src/tools/bags/stereo_bag_writer.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
+  src/tools/bags/bag_structure.cpp src/tools/bags/old_bag_structure.cpp src/tools/bags/pair_plan.cpp
+  src/tools/bags/stamp_epochs.cpp src/tools/bags/stereo_bag_reader.cpp src/tools/bags/stereo_bag_writer.cpp
+  src/tools/bags/topic_advice.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
   src/tools/datasets/dataset_writer.cpp src/tools/datasets/decimal_time.cpp src/tools/simulation/random_approach.cpp
-  src/tools/simulation/random_scenery.cpp)
+  src/tools/simulation/random_rows.cpp src/tools/simulation/random_scenery.cpp)
 # Some programs look inside the core: what surfaces and pictures are made of.
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools ${PROJECT_SOURCE_DIR}/src/core)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")
@@ -27,7 +28,7 @@ target_link_libraries(measure_runways PRIVATE uav_landing_tools)
 add_executable(process_bag
   src/tools/offline/process_bag.cpp src/tools/offline/estimate_bag.cpp src/tools/offline/estimate_csv.cpp
   src/tools/offline/offline_chain.cpp src/tools/offline/pair_count.cpp src/tools/offline/report_data.cpp
-  src/tools/offline/timing_table.cpp)
+  src/tools/offline/timing_table.cpp src/tools/offline/verdict.cpp)
 target_link_libraries(process_bag PRIVATE uav_landing_tools)
 
 add_executable(simulate_campaign src/tools/simulation/campaign_csv.cpp src/tools/simulation/simulate_campaign.cpp)

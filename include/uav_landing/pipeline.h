@@ -14,7 +14,8 @@ namespace uav_landing {
 /// The whole chain for one pair after another, as the nodelets run it.
 class Pipeline {
  public:
-  /// Refuses what parameters.rig does not let through, and masks that it names and that cannot be used.
+  /// left, right: see workingPair(). Refuses what parameters.rig does not let through, and masks that it
+  /// names and that cannot be used.
   static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
                                    const Parameters& parameters);
 

@@ -9,7 +9,7 @@ Expected<Pipeline> Pipeline::create(const CameraCalibration& left, const CameraC
   if (!checked) return tl::unexpected<Failure>(checked.error());
   const Expected<RigMasks> masks = loadRigMasks(parameters.rig);
   if (!masks) return tl::unexpected<Failure>(masks.error());
-  Expected<RigModel> rig = makeRigModel(left, right, *masks);
+  Expected<RigModel> rig = makeRigModel(left, right, *masks, parameters.rig);
   if (!rig) return tl::unexpected<Failure>(rig.error());
   Expected<Rectifier> left_rectifier = Rectifier::create(left);
   if (!left_rectifier) return tl::unexpected<Failure>(left_rectifier.error());
@@ -26,7 +26,7 @@ Pipeline::Pipeline(RigModel rig, Rectifier left, Rectifier right, const Paramete
       right_rectifier_(std::move(right)),
       stereo_(rig_, parameters.stereo_depth),
       approach_(rig_, parameters.approach_angle, parameters.runway),
-      kalman_(rig_.rig, parameters.kalman_height, parameters.runway) {}
+      kalman_(rig_.rig, parameters.kalman_height, parameters.runway, parameters.rig) {}
 
 const Pipeline::Output& Pipeline::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                           double skew, const AttitudePrior& imu) {

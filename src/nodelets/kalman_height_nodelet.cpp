@@ -132,8 +132,11 @@ class KalmanHeightNodelet : public StageNodelet {
     const std::lock_guard<std::mutex> lock(rig_mutex_);
     if (!frame_complaint_.empty())
       status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, frame_complaint_);
-    status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
-                protection_source_.c_str());
+    if (std::isfinite(protection_level_))
+      status.addf("height protection level (m)", "%.3f of %.3f, by %s", protection_level_, alert_limit_,
+                  protection_source_.c_str());
+    else
+      status.add("height protection level (m)", "unknown: there is no height");
     status.add("filter resets", resets_);
     for (const TestResult& test : test_results_) {
       if (test.possible())
@@ -181,7 +184,7 @@ class KalmanHeightNodelet : public StageNodelet {
       const auto rig = makeStereoRig(cameras_.left(), cameras_.right(), shared_.rig);
       warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
       rig_failure_ = rig ? Failure() : ofCameraInfo(rig.error());
-      if (rig) stage_.emplace(*rig, parameters_, shared_.runway);
+      if (rig) stage_.emplace(*rig, parameters_, shared_.runway, shared_.rig);
     }
     return rig_failure_;
   }

@@ -14,21 +14,27 @@
 #include "image_pool.h"
 #include "pairing.h"
 #include "pairs_in_flight.h"
+#include "picture_watch.h"
 #include "rig_watch.h"
 #include "stage_nodelet.h"
 #include "uav_landing/base/timings.h"
+#include "uav_landing/geometry/camera_pair.h"
 #include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 
 /// Pairs and rectifies the images of two cameras.
 ///
-/// Parameters: RectifyParameters; camera, image_transport, drop_frames, backlog and the common ones of
-/// NodeParameters. Subscribes CAMERA/{left,right}/{image_raw, camera_info}, while somebody wants the
-/// output. Publishes {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the
-/// stamp of the left image and in the frames of the cameras; the time reference holds the stamp of the right
-/// image (the skew). A pair whose image or calibration cannot be used is left out, and the log says what is
-/// wrong with it.
+/// Parameters: RectifyParameters; camera, left_image, left_info, right_image, right_info, image_transport,
+/// drop_frames, backlog and the common ones of NodeParameters. Subscribes
+/// CAMERA/{left,right}/{image_raw, camera_info}, or the topics that are named, while somebody wants the
+/// output. Pairs that repeat the pictures of the one before are left out where all of them come so. Publishes
+/// {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the stamp of the left
+/// image and in the frames of the cameras; the time reference holds the stamp of the right image (the skew).
+/// A pair whose image or calibration cannot be used is left out, and the log says what is wrong with it.
+/// Where the rig is mounted upside down, left and right are exchanged on the way, and camera_info is that of
+/// the rectified pair as it would stand upright; so it is where the baseline is aslant (see workingPair()).
+/// Else it is what came.
 class RectifyNodelet : public StageNodelet {
  public:
   RectifyNodelet() : StageNodelet("rectify") {}
@@ -43,14 +49,15 @@ class RectifyNodelet : public StageNodelet {
   /// The stages work on one pair each, and one waits.
   static constexpr size_t kPairsInFlight = 3;
   static constexpr uint32_t kOutputQueue = 20;
+  static constexpr size_t kRowsLookedAt = 20;  // of so many pairs, one
 
   struct Job {
     sensor_msgs::ImageConstPtr left, right;
     sensor_msgs::CameraInfoConstPtr left_info, right_info;
   };
   struct View {
-    std::string side;   // left or right
-    std::string topic;  // of the raw image
+    std::string camera;  // left or right, as its topics have it
+    std::string topic;   // of the raw image
     image_transport::Subscriber image_subscriber;
     ros::Subscriber info_subscriber;
     image_transport::Publisher image_publisher;
@@ -61,6 +68,7 @@ class RectifyNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<RectifyParameters>();
+    range_ = GreyRangeFinder(shared_.rig.bits);
     RectifyParameters pairing = parameters_;
     // In order and complete: the four inputs are read from four connections, and one may be far ahead.
     if (!node_.drop_frames) pairing.queue_size = std::max(pairing.queue_size, node_.backlog);
@@ -74,7 +82,7 @@ class RectifyNodelet : public StageNodelet {
         "right/time_reference", kOutputQueue, onConnection(), onConnection());
     in_flight_ = PairsInFlight::of(getNodeHandle().resolveName("left/image_rect"));
     pairing_ = std::make_unique<StereoPairing>(
-        pairing, std::vector<std::string>{left_.topic, infoTopic("left"), right_.topic, infoTopic("right")},
+        pairing, std::vector<std::string>{left_.topic, infoTopic(left_), right_.topic, infoTopic(right_)},
         [this](const auto& left, const auto& left_info, const auto& right, const auto& right_info) {
           enqueue({left, right, left_info, right_info});
         });
@@ -89,13 +97,17 @@ class RectifyNodelet : public StageNodelet {
                    "' is installed, see rosrun image_transport list_transports");
   }
 
-  std::string infoTopic(const std::string& side) const {
-    return getNodeHandle().resolveName(node_.camera + "/" + side + "/camera_info");
+  std::string infoTopic(const View& view) const {
+    const std::string& named = view.camera == "left" ? node_.left_info : node_.right_info;
+    return getNodeHandle().resolveName(named.empty() ? node_.camera + "/" + view.camera + "/camera_info"
+                                                     : named);
   }
 
   void advertise(const std::string& side, View& view) {
-    view.side = side;
-    view.topic = getNodeHandle().resolveName(node_.camera + "/" + side + "/image_raw");
+    view.camera = !shared_.rig.upside_down ? side : side == "left" ? "right" : "left";
+    const std::string& named = view.camera == "left" ? node_.left_image : node_.right_image;
+    view.topic =
+        getNodeHandle().resolveName(named.empty() ? node_.camera + "/" + view.camera + "/image_raw" : named);
     const image_transport::SubscriberStatusCallback changed =
         [this](const image_transport::SingleSubscriberPublisher&) { updateSubscription(); };
     view.image_publisher = transport_->advertise(side + "/image_rect", kOutputQueue, changed, changed);
@@ -111,12 +123,12 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void subscribe() override {
-    subscribeView<0>("left", left_);
-    subscribeView<2>("right", right_);
+    subscribeView<0>(left_);
+    subscribeView<2>(right_);
   }
 
   template <size_t kInput>
-  void subscribeView(const std::string& side, View& view) {
+  void subscribeView(View& view) {
     const auto no_delay = ros::TransportHints().tcpNoDelay();
     view.image_subscriber = transport_->subscribe(
         view.topic, input_queue_,
@@ -127,7 +139,7 @@ class RectifyNodelet : public StageNodelet {
         ros::VoidPtr(),
         image_transport::TransportHints(node_.image_transport, no_delay, getPrivateNodeHandle()));
     view.info_subscriber = getNodeHandle().subscribe<sensor_msgs::CameraInfo>(
-        infoTopic(side), input_queue_,
+        infoTopic(view), input_queue_,
         [this](const sensor_msgs::CameraInfoConstPtr& info) {
           guard([&] { pairing_->add<kInput + 1>(info); });
         },
@@ -178,15 +190,18 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void process(const Job& job) {
-    if (cameras_.changed(*job.left_info, *job.right_info))
-      warnOfRig(ofCameraInfo(rigWarnings(cameras_.left(), cameras_.right(), shared_.rig)));
+    const bool repetition = pictures_.isRepetition(job.left, job.right);
+    for (const std::string& news : pictures_.news()) NODELET_WARN("%s: %s", getName().c_str(), news.c_str());
+    if (repetition) return;
+    followCameras(*job.left_info, *job.right_info);
+    followGreyRange(job);
     Timings timings;
     sensor_msgs::ImagePtr left, right;
     {
       const ScopedTimer timer(timings, "rectify");
       // Both, so that the log names both when both are wrong.
-      left = rectify(left_, job.left, *job.left_info);
-      right = rectify(right_, job.right, *job.right_info);
+      left = rectify(left_, job.left, working_.left);
+      right = rectify(right_, job.right, working_.right);
     }
     if (!left || !right) return;
     const ros::Time stamp = job.left->header.stamp;
@@ -198,20 +213,36 @@ class RectifyNodelet : public StageNodelet {
   using StageNodelet::refuse;
   /// Says what is wrong with a camera's calibration.
   void refuse(const View& view, const Failure& failure) {
-    refuse(ofCameraInfo({failure.reason, view.side + " " + failure.detail}).detail + " (" +
-           infoTopic(view.side) + ")");
+    refuse(ofCameraInfo({failure.reason, view.camera + " " + failure.detail}).detail + " (" +
+           infoTopic(view) + ")");
+  }
+
+  /// What cannot be used as a pair stays as it is: the stages behind say what is wrong with it.
+  void followCameras(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right) {
+    if (!cameras_.changed(left, right)) return;
+    const bool exchanged = shared_.rig.upside_down;
+    const CameraCalibration& given_left = exchanged ? cameras_.right() : cameras_.left();
+    const CameraCalibration& given_right = exchanged ? cameras_.left() : cameras_.right();
+    warnOfRig(ofCameraInfo(rigWarnings(given_left, given_right, shared_.rig)));
+    const Expected<CameraPair> working = workingPair(given_left, given_right, shared_.rig);
+    working_ = working ? *working : CameraPair{cameras_.left(), cameras_.right()};
+  }
+
+  void followGreyRange(const Job& job) {
+    const GreyRange before = range_.range();
+    const GreyRange now = followRange(range_, job.left, working_.left, job.right, working_.right);
+    if (now != before) NODELET_INFO("%s: %s", getName().c_str(), toText(now).c_str());
   }
 
   /// The rectified image, or null when the input cannot be used.
   sensor_msgs::ImagePtr rectify(View& view, const sensor_msgs::ImageConstPtr& raw,
-                                const sensor_msgs::CameraInfo& info) {
-    CameraCalibration calibration = toCalibration(info);
+                                const CameraCalibration& calibration) {
     if (const Failure failure = checkCalibration(calibration)) {
       refuse(view, failure);
       return nullptr;
     }
     // The image comes before the rectifier: maps of a size that no image has would fill the memory.
-    const auto mono = toMono8(raw, calibration, view.topic);
+    const auto mono = toMono8(raw, calibration, view.topic, range_.range());
     if (!mono) {
       refuse(mono.error().detail);
       return nullptr;
@@ -223,7 +254,7 @@ class RectifyNodelet : public StageNodelet {
     if (calibration != view.calibration) {
       if (view.calibration) NODELET_WARN("%s: the camera_info changed: starting anew", view.topic.c_str());
       view.rectifier = Rectifier::create(calibration);
-      view.calibration = std::move(calibration);
+      view.calibration = calibration;
     }
     if (!view.rectifier) {
       refuse(view, view.rectifier.error());
@@ -238,6 +269,7 @@ class RectifyNodelet : public StageNodelet {
     message->is_bigendian = 0;
     message->step = message->width;
     message->data.resize(static_cast<size_t>(message->step) * message->height);
+    if (&view == &left_ && looked_++ % kRowsLookedAt == 0) pictures_.look((*mono)->image, view.topic);
     cv::Mat rectified(size, CV_8UC1, message->data.data());
     const Failure failure = view.rectifier->rectify((*mono)->image, rectified);
     if (failure) {
@@ -256,16 +288,20 @@ class RectifyNodelet : public StageNodelet {
     skew->source = job.right->header.frame_id;
     skew_publisher_.publish(skew);
 
-    left_.info_publisher.publish(stampedInfo(job.left_info, stamp));
-    right_.info_publisher.publish(stampedInfo(job.right_info, stamp));
+    left_.info_publisher.publish(stampedInfo(job.left_info, cameras_.left(), working_.left, stamp));
+    right_.info_publisher.publish(stampedInfo(job.right_info, cameras_.right(), working_.right, stamp));
     left_.image_publisher.publish(sensor_msgs::ImageConstPtr(left));
     right_.image_publisher.publish(sensor_msgs::ImageConstPtr(right));
   }
 
   static sensor_msgs::CameraInfoConstPtr stampedInfo(const sensor_msgs::CameraInfoConstPtr& info,
+                                                     const CameraCalibration& given,
+                                                     const CameraCalibration& working,
                                                      const ros::Time& stamp) {
-    if (info->header.stamp == stamp) return info;
-    const auto stamped = boost::make_shared<sensor_msgs::CameraInfo>(*info);
+    const bool same = working == given;
+    if (same && info->header.stamp == stamp) return info;
+    const auto stamped =
+        boost::make_shared<sensor_msgs::CameraInfo>(same ? *info : toCameraInfo(working, info->header));
     stamped->header.stamp = stamp;
     return stamped;
   }
@@ -275,6 +311,10 @@ class RectifyNodelet : public StageNodelet {
   std::unique_ptr<image_transport::ImageTransport> transport_;
   View left_, right_;
   RigWatch cameras_;
+  PictureWatch pictures_;
+  size_t looked_ = 0;
+  CameraPair working_;
+  GreyRangeFinder range_{0};
   ros::Publisher skew_publisher_;
   std::unique_ptr<StereoPairing> pairing_;
   std::shared_ptr<PairsInFlight> in_flight_;

@@ -1,5 +1,6 @@
 #include "stage_nodelet.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace uav_landing {
@@ -135,6 +136,12 @@ void StageNodelet::complain() {
   if (complaint_reminder_.due(missing))
     NODELET_WARN("%s: nothing to work on for %.3g s: %s", getName().c_str(), node_.complaint_period,
                  missing.c_str());
+  const std::vector<InputWatch::Input> counts = inputs();
+  const std::string shortage = missing.empty() ? InputWatch::shortage(counts, inputs_before_) : "";
+  inputs_before_ = counts;
+  // Its numbers change all the time: once for the same topics.
+  if (shortage_reminder_.due(shortage.substr(std::min(shortage.find("stamps"), shortage.size()))))
+    NODELET_WARN("%s: %s", getName().c_str(), shortage.c_str());
   complainMore();
 }
 

@@ -171,7 +171,8 @@ class StageNodelet : public nodelet::Nodelet {
   std::unique_ptr<diagnostic_updater::Updater> updater_;
   ros::WallTimer complaint_timer_, diagnostic_timer_, start_timer_;
   ros::ServiceServer reset_service_;
-  Reminder complaint_reminder_;
+  Reminder complaint_reminder_, shortage_reminder_;
+  std::vector<InputWatch::Input> inputs_before_;  // at the last complaint
   std::mutex refusal_mutex_;
   ros::WallTime last_refusal_;  // logged
 };

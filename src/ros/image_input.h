@@ -6,14 +6,21 @@
 #include <string>
 
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/image/grey_range.h"
 
 namespace uav_landing {
 
 /// The image as mono8 of calibration.imageSize(), or what is wrong with the message (size, step, length of
 /// the data, encoding), with the topic's name in front. Shares the message's memory when it is mono8 already;
-/// the returned object keeps the message alive. mono16 is taken as full range: 65535 becomes 255, so a camera
-/// that delivers fewer bits must shift them up. Colour and Bayer images become grey by the luma weights.
+/// the returned object keeps the message alive. Colour and Bayer images become grey by the luma weights.
+/// range: of the values of an image of 16 bit.
 Expected<cv_bridge::CvImageConstPtr> toMono8(const sensor_msgs::ImageConstPtr& image,
-                                             const CameraCalibration& calibration, const std::string& topic);
+                                             const CameraCalibration& calibration, const std::string& topic,
+                                             const GreyRange& range = {});
+
+/// The range for both images of a pair; a pair that has not 16 bit, or cannot be used, leaves it as it is.
+GreyRange followRange(GreyRangeFinder& finder, const sensor_msgs::ImageConstPtr& left,
+                      const CameraCalibration& left_camera, const sensor_msgs::ImageConstPtr& right,
+                      const CameraCalibration& right_camera);
 
 }  // namespace uav_landing

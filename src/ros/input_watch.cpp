@@ -1,12 +1,37 @@
 #include "input_watch.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
+
+#include "time_difference.h"
 
 namespace uav_landing {
 
-InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late)
-    : waiting_(topics.size(), Waiting(max_late)), queue_size_(queue_size) {
+namespace {
+
+constexpr size_t kGivenUp = 200;  // stamps that are remembered; more than the longest queue
+
+/// s between a stamp and the nearest of others.
+double distance(const ros::Time& stamp, const std::deque<ros::Time>& others) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ros::Time& other : others) least = std::min(least, std::abs(secondsBetween(stamp, other)));
+  return least;
+}
+
+std::string milliseconds(double seconds) {
+  std::ostringstream text;
+  text.precision(3);
+  text << 1e3 * seconds << " ms";
+  return text.str();
+}
+
+}  // namespace
+
+InputWatch::InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late,
+                       std::optional<double> max_skew)
+    : waiting_(topics.size(), Waiting(max_late)), queue_size_(queue_size), max_skew_(max_skew) {
   for (const std::string& topic : topics) inputs_.push_back(Input{topic});
 }
 
@@ -21,12 +46,74 @@ InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
     waiting.order.follow(static_cast<int64_t>(stamp.toNSec()));
   }
   waiting.latest = stamp;
+  lookForGivenUp(input, stamp);
   waiting.stamps.push_back(stamp);
   if (waiting.stamps.size() > queue_size_) {
+    waiting.given_up.push_back(waiting.stamps.front());
+    if (waiting.given_up.size() > kGivenUp) waiting.given_up.pop_front();
     waiting.stamps.pop_front();
     ++inputs_[input].dropped;
   }
   return arrival;
+}
+
+void InputWatch::lookForGivenUp(size_t input, const ros::Time& stamp) {
+  for (const Waiting& other : waiting_) {
+    const auto found =
+        std::find_if(other.given_up.begin(), other.given_up.end(), [&](const ros::Time& given_up) {
+          return std::abs(secondsBetween(given_up, stamp)) <= max_skew_.value_or(0);
+        });
+    if (found == other.given_up.end()) continue;
+    const size_t behind = queue_size_ + static_cast<size_t>(other.given_up.end() - found);
+    waiting_[input].queue_needed = std::max(waiting_[input].queue_needed, behind);
+  }
+}
+
+std::string InputWatch::shortQueue() {
+  std::string late;
+  size_t needed = 0;
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    if (waiting_[i].queue_needed > 0) late += (late.empty() ? "" : ", ") + inputs_[i].topic;
+    needed = std::max(needed, waiting_[i].queue_needed);
+    waiting_[i].queue_needed = 0;
+  }
+  if (late.empty()) return "";
+  return "the queue of " + std::to_string(queue_size_) + " pairs is too short: " + late +
+         " came after the others of their stamps had been given up; rectify/queue_size has to be at least " +
+         std::to_string(needed);
+}
+
+std::string InputWatch::difference() const {
+  double apart = 0;
+  for (const Waiting& waiting : waiting_) {
+    std::deque<ros::Time> first = waiting_.front().stamps;
+    first.insert(first.end(), waiting_.front().given_up.begin(), waiting_.front().given_up.end());
+    apart = std::max(apart, distance(waiting.latest, first));
+  }
+  if (!std::isfinite(apart)) return "";
+  if (max_skew_ && apart > *max_skew_)
+    return "the stamps are " + milliseconds(apart) + " apart, more than max_skew, " +
+           milliseconds(*max_skew_);
+  return max_skew_ ? "" : "nearest stamps are " + milliseconds(apart) + " apart";
+}
+
+std::string InputWatch::shortage(const std::vector<Input>& now, const std::vector<Input>& before) {
+  std::string missing, topics;
+  uint64_t most = 0, received = 0;
+  for (size_t i = 0; i < now.size(); ++i) {
+    const Input old = i < before.size() ? before[i] : Input{};
+    const auto refused = [](const Input& input) { return input.repeated + input.late + input.unstamped; };
+    const uint64_t lost = now[i].dropped - refused(now[i]) - (old.dropped - refused(old));
+    received = std::max(received, now[i].received - old.received);
+    if (lost > most) most = lost;
+    if (lost == 0) missing += (missing.empty() ? "" : ", ") + now[i].topic;
+    topics += (topics.empty() ? "" : ", ") + now[i].topic;
+  }
+  // Single ones are lost on the way now and then.
+  if (5 * most < received || most < 2) return "";
+  const std::string count = std::to_string(most) + " of " + std::to_string(received);
+  if (missing.empty()) return count + " messages have no counterpart: the stamps differ on " + topics;
+  return count + " stamps have no message on " + missing;
 }
 
 InputWatch::Arrival InputWatch::refused(size_t input, Arrival arrival) {
@@ -76,6 +163,7 @@ void InputWatch::forget() {
   for (size_t i = 0; i < inputs_.size(); ++i) {
     inputs_[i].dropped += waiting_[i].stamps.size();
     waiting_[i].stamps.clear();
+    waiting_[i].given_up.clear();
     waiting_[i].latest = ros::Time();
     waiting_[i].before_jump.reset();
     waiting_[i].order.reset();
@@ -105,12 +193,16 @@ std::string InputWatch::complaint() {
     waiting.repeated_before = input.repeated;
     waiting.unstamped_before = input.unstamped;
   }
+  const std::string too_short = shortQueue();
   if (any_paired) return "";
   if (!silent.empty()) return "no message on " + silent;
   if (!unstamped.empty()) return "the stamp (header.stamp) is 0 on " + unstamped;
   if (!repeating.empty()) return "the stamp never changes on " + repeating;
+  if (!too_short.empty()) return too_short;
+  const std::string apart = difference();
+  if (max_skew_) return (apart.empty() ? "the stamps do not match" : apart) + "; latest: " + latest;
   return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger); latest: " +
-         latest;
+         latest + (apart.empty() ? "" : "; " + apart);
 }
 
 }  // namespace uav_landing

@@ -27,8 +27,10 @@ class InputWatch {
   };
   using Arrival = StampOrder::Arrival;
 
-  /// queue_size: messages per input that wait for their counterparts. max_late: s, see StampOrder.
-  InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late);
+  /// queue_size: messages per input that wait for their counterparts. max_late: s, see StampOrder. max_skew:
+  /// of stamps that are paired though they differ, s; none: only equal ones are.
+  InputWatch(const std::vector<std::string>& topics, size_t queue_size, double max_late,
+             std::optional<double> max_skew = std::nullopt);
 
   /// To be called for each message. kRepeated, kLate, kUnstamped: must not be paired. kBackwards: the clock
   /// was set back; what waits has been forgotten, and is to be so by others, before this message is used.
@@ -42,14 +44,19 @@ class InputWatch {
   uint64_t jumps() const { return jumps_; }  ///< times the clock went back
 
   /// Why nothing was paired since the last call: "" when something was, else which topics are silent or have
-  /// no stamps, or how the stamps differ.
+  /// no stamps, how the stamps differ, or that the queue is too short.
   std::string complaint();
+  /// What is missing since the counts before, of pairs that were made all the same: "" or the topics without
+  /// a message at the stamps of the others.
+  static std::string shortage(const std::vector<Input>& now, const std::vector<Input>& before);
 
  private:
   struct Waiting {
     explicit Waiting(double max_late) : order(max_late) {}
     StampOrder order;
     std::deque<ros::Time> stamps;
+    std::deque<ros::Time> given_up;  // the last ones for which the queue was too short
+    size_t queue_needed = 0;  // to find those of the others, since the last complaint; 0: it is long enough
     ros::Time latest;
     // When another input has shown that the clock went back, until this one has: its latest before that.
     std::optional<ros::Time> before_jump;
@@ -63,10 +70,15 @@ class InputWatch {
   /// Sent before the clock went back, and still under way when another input showed that.
   bool isLeftOver(size_t input, const ros::Time& stamp);
   void goBack(size_t input);
+  /// Whether others of this stamp were given up before, for want of room.
+  void lookForGivenUp(size_t input, const ros::Time& stamp);
+  std::string shortQueue();
+  std::string difference() const;
 
   std::vector<Input> inputs_;
   std::vector<Waiting> waiting_;
   size_t queue_size_;
+  std::optional<double> max_skew_;
   uint64_t jumps_ = 0;
 };
 

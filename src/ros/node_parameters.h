@@ -13,6 +13,7 @@ namespace uav_landing {
 /// uav_landing/parameters/parameters.h, with text() for strings.
 struct NodeParameters {
   std::string camera = "/stereo";
+  std::string left_image, left_info, right_image, right_info;
   std::string image_transport = "raw";
   std::string imu = "/imu/data";
   bool drop_frames = true;
@@ -31,6 +32,13 @@ struct NodeParameters {
   void visit(Visitor&& v) {
     v.text("camera", camera,
            "namespace of the cameras: left/image_raw, left/camera_info, right/... (rectify)");
+    v.text("left_image", left_image,
+           "topic of the left raw image; empty: left/image_raw of camera (rectify)");
+    v.text("left_info", left_info, "topic of its camera_info; empty: left/camera_info of camera (rectify)");
+    v.text("right_image", right_image,
+           "topic of the right raw image; empty: right/image_raw of camera (rectify)");
+    v.text("right_info", right_info,
+           "topic of its camera_info; empty: right/camera_info of camera (rectify)");
     v.text("image_transport", image_transport, "transport of the raw images: raw, compressed ... (rectify)");
     v.text("imu", imu,
            "topic of an inertial sensor (sensor_msgs/Imu), used when somebody publishes it; empty: none "

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -38,7 +39,8 @@ class Pairing {
   Pairing(const RectifyParameters& parameters, const std::vector<std::string>& topics, Callback callback)
       : parameters_(parameters),
         callback_(std::move(callback)),
-        watch_(topics, static_cast<size_t>(parameters.queue_size), parameters.max_late) {
+        watch_(topics, static_cast<size_t>(parameters.queue_size), parameters.max_late,
+               parameters.approximate_sync ? std::optional<double>(parameters.max_skew) : std::nullopt) {
     rebuild();
   }
 

@@ -49,18 +49,19 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::WallTime now = ros::WallTime::now();
   const double seconds = std::max(1e-3, (now - since_).toSec());
-  received_before_.resize(inputs.size(), 0);
+  inputs_before_.resize(inputs.size());
 
   std::string silent;
   for (size_t i = 0; i < inputs.size(); ++i) {
-    const uint64_t received = inputs[i].received - std::min(inputs[i].received, received_before_[i]);
+    const uint64_t received = inputs[i].received - std::min(inputs[i].received, inputs_before_[i].received);
     if (received == 0) silent += (silent.empty() ? "" : ", ") + inputs[i].topic;
     status.addf(inputs[i].topic, "%.1f Hz; %lu received, %lu paired, %lu dropped, %lu of them late",
                 static_cast<double>(received) / seconds, static_cast<unsigned long>(inputs[i].received),
                 static_cast<unsigned long>(inputs[i].paired), static_cast<unsigned long>(inputs[i].dropped),
                 static_cast<unsigned long>(inputs[i].late));
-    received_before_[i] = inputs[i].received;
   }
+  const std::string shortage = InputWatch::shortage(inputs, inputs_before_);
+  inputs_before_ = inputs;
 
   if (!subscribed) {
     status.summary(DiagnosticStatus::OK, "idle: nobody subscribes");
@@ -72,6 +73,8 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
     status.summary(DiagnosticStatus::ERROR, silent.empty() ? "nothing pairs up" : "no message on " + silent);
   } else if (now_.failed > 0) {
     status.summary(DiagnosticStatus::WARN, now_.reason);
+  } else if (!shortage.empty()) {
+    status.summary(DiagnosticStatus::WARN, shortage);
   } else if (now_.dropped > 0) {
     status.summary(DiagnosticStatus::WARN, "too slow: pairs are dropped");
   } else {
@@ -84,7 +87,11 @@ void StageReport::write(diagnostic_updater::DiagnosticStatusWrapper& status,
   const auto count = static_cast<double>(std::max<uint64_t>(1, now_.served));
   status.addf("rate", "%.1f Hz", static_cast<double>(now_.served) / seconds);
   status.addf("compute time", "%.2f ms", now_.compute_ms / count);
-  status.addf("latency behind the image stamp", "%.1f ms", 1e3 * now_.latency / count);
+  if (const double latency = 1e3 * now_.latency / count; latency >= 0)
+    status.addf("latency behind the image stamp", "%.1f ms", latency);
+  else
+    status.addf("latency behind the image stamp", "unknown: the stamps are %.1f ms ahead of this clock",
+                -latency);
   status.add("pairs served", served_);
   status.add("pairs without a result, of late", now_.failed);
   status.add("pairs dropped", dropped_);

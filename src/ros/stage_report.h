@@ -42,7 +42,7 @@ class StageReport {
   Counts now_;
   std::vector<std::string> warnings_;
   uint64_t served_ = 0, dropped_ = 0, refused_ = 0;  // in all
-  std::vector<uint64_t> received_before_;
+  std::vector<InputWatch::Input> inputs_before_;
   ros::WallTime since_ = ros::WallTime::now();
 };
 

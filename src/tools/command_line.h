@@ -16,8 +16,8 @@
 
 namespace uav_landing {
 
-/// Exit status of all programs.
-enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2 };
+/// Exit status of all programs. kMostLeftOut: done, but of most images nothing could be made.
+enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2, kMostLeftOut = 3 };
 
 /// What is wrong with the command line, behind the program's name; a misspelt option with the nearest that
 /// there is, also where it leaves a required one missing.

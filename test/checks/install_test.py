@@ -47,7 +47,7 @@ class InstallTest(unittest.TestCase):
 
     def test_programs_start(self):
         for program in ("process_bag", "dataset_to_bag", "simulate_approach", "simulate_campaign", "evaluate",
-                        "convert_recording"):
+                        "convert_recording", "split_images"):
             with self.subTest(program=program):
                 result = self.run_installed("rosrun", "uav_landing", program, "--help")
                 self.assertEqual(result.returncode, 0, result.stdout + result.stderr)

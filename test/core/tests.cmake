@@ -45,9 +45,12 @@ uav_landing_add_gtest(parameter_file_test test/core/parameters/parameter_file_te
 # geometry
 uav_landing_add_gtest(bad_calibrations_test test/core/geometry/bad_calibrations_test.cpp LIBS yaml-cpp)
 uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
+uav_landing_add_gtest(camera_pair_test test/core/geometry/camera_pair_test.cpp)
 uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
 uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 uav_landing_add_gtest(rig_check_test test/core/geometry/rig_check_test.cpp)
+uav_landing_add_gtest(row_times_test test/core/geometry/row_times_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(stamp_map_test test/core/geometry/stamp_map_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # results
 uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
@@ -55,6 +58,7 @@ uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 # image
 uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
+uav_landing_add_gtest(grey_range_test test/core/image/grey_range_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
 uav_landing_add_gtest(image_check_test test/core/image/image_check_test.cpp
@@ -78,6 +82,7 @@ uav_landing_add_gtest(vanishing_point_test test/core/lines/vanishing_point_test.
 
 # rig
 uav_landing_add_gtest(pair_skew_test test/core/rig/pair_skew_test.cpp)
+uav_landing_add_gtest(plane_rate_test test/core/rig/plane_rate_test.cpp)
 uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
 
@@ -93,6 +98,8 @@ uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
 uav_landing_add_gtest(corner_matcher_test test/core/stereo/matching/corner_matcher_test.cpp LIBS opencv_video
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(plane_drift_test test/core/stereo/matching/plane_drift_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(aligned_rows_test test/core/stereo/photometric/aligned_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
@@ -224,3 +231,4 @@ uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stag
 
 # the whole chain
 uav_landing_add_gtest(pipeline_test test/core/pipeline_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(rolling_shutter_test test/core/rolling_shutter_test.cpp SOURCES test/support/ground_renderer.cpp)

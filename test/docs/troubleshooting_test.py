@@ -17,8 +17,8 @@ def phrases(message):
 class TroubleshootingTest(unittest.TestCase):
     def test_the_programs_still_say_what_the_table_quotes(self):
         sources = "".join(file.read_text() for folder in ("src", "include") for file in (SOURCE_DIR / folder).rglob("*")
-                          if file.suffix in (".cpp", ".h"))
-        sources = re.sub(r'"\s*\n\s*"', "", sources)
+                          if file.suffix in (".cpp", ".h", ".py", "") and file.is_file())
+        sources = re.sub(r'f?"\s*\n\s*f?"', "", sources)
         section = (SOURCE_DIR / "README.md").read_text().split("## Troubleshooting")[1].split("\n## ")[0]
         rows = [line.split(" | ")[0] for line in section.splitlines() if line.startswith("| ")][1:]
         quoted = [phrase for row in rows for message in re.findall(r"`([^`]+)`", row) if message not in FOREIGN

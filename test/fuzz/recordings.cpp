@@ -70,19 +70,21 @@ void fuzzBag(const uint8_t* data, size_t size) {
   const MemoryFile file(data, size, ".bag");
   if (!file.written()) return;
   try {
-    const StereoBagReader reader(file.path(), "stereo", "/imu/data");
+    StereoBagReader reader({file.path()}, "stereo", "/imu/data");
     if (const Failure failure = reader.checkTopics(false)) {
       require(!failure.detail.empty(), "a bag that lacks a topic says which");
       return;
     }
-    StereoPairing pairing({}, {reader.topics().begin(), reader.topics().end()},
-                          [](const auto& left, const auto& left_info, const auto&, const auto&) {
-                            toMono8(left, toCalibration(*left_info), "left");
-                          });
     ImuInput imu{ApproachAngleParameters()};
     reader.readStaticTransforms([&](const tf2_msgs::TFMessage& message) { imu.addTransforms(message); });
+    const PairPlan plan = reader.plan({}, [] {});
+    require(!plan.pairs.empty() || !plan.complaint().empty(), "a bag without a pair says why");
     reader.read(
-        pairing, [&](const sensor_msgs::Imu& message) { imu.add(message); }, [] {});
+        plan,
+        [](const auto& left, const auto& left_info, const auto&, const auto&) {
+          toMono8(left, toCalibration(*left_info), "left");
+        },
+        [&](const sensor_msgs::Imu& message) { imu.add(message); });
   } catch (const std::exception&) {
     // What the programs say on stderr, with exit status 1.
   }

@@ -56,6 +56,25 @@ class ArgumentsTest(unittest.TestCase):
                 for shared in ("rig", "runway"):
                     self.assertIn(f"/uav_landing/{shared}/", config.clear_params)
 
+    def test_topics_of_any_name(self):
+        names = ("left_image", "left_info", "right_image", "right_info")
+        rig = parameters("camera:=rig")
+        self.assertEqual([rig[f"/uav_landing/rectify/{name}"] for name in names],
+                         ["/rig/left/image_raw", "/rig/left/camera_info", "/rig/right/image_raw", "/rig/right/camera_info"])
+        given = parameters(*(f"{name}:=/cam/{name}" for name in names))
+        self.assertEqual([given[f"/uav_landing/rectify/{name}"] for name in names], [f"/cam/{name}" for name in names])
+
+    def test_images_with_both_pictures_start_what_splits_them(self):
+        def splitters(*arguments):
+            config = roslaunch.config.ROSLaunchConfig()
+            loader = roslaunch.xmlloader.XmlLoader()
+            loader.load(str(LAUNCH / "stereo.launch"), config, argv=list(arguments), verbose=False)
+            return [node.args for node in config.nodes if node.type == "split_images"]
+        self.assertEqual(splitters(), [])
+        for name, option in (("side_by_side", "--side-by-side"), ("top_and_bottom", "--top-and-bottom")):
+            self.assertEqual(splitters(f"{name}:=/usb_cam/image", "left_calibration:=/l.yaml", "right_calibration:=/r.yaml", "camera:=rig"),
+                             [f'{option} /usb_cam/image --camera rig --left-calibration "/l.yaml" --right-calibration "/r.yaml"'])
+
     def test_values_reach_the_nodelets(self):
         given = parameters("approximate_sync:=true", "max_skew:=0.02", "base_frame:=base_link", "bag:=/tmp/a.bag")
         self.assertEqual(given["/uav_landing/rectify/approximate_sync"], True)

@@ -26,6 +26,10 @@ class DiagnosticsTest(unittest.TestCase):
 
         self.assertTrue(eventually(complete), sorted(latest()))
         self.assertFalse([name for name in latest() if "Other" in name and "uav_landing" in name])
+        # What is not known is said in words.
+        values = {(name, value.key): value.value for name, status in latest().items() for value in status.values}
+        self.assertEqual([key for key, value in values.items() if "nan" in value], [])
+        self.assertIn("unknown: there is no height", values.values())
         # No camera publishes, which has to reach the top.
         self.assertTrue(eventually(lambda: latest()["/Landing"].level == DiagnosticStatus.ERROR), latest())
 

@@ -10,4 +10,5 @@ uav_landing_add_rostest(test/launch/simulate.test SOURCES test/launch/simulate_t
   DEPENDENCIES uav_landing_nodelets simulate_approach)
 uav_landing_add_rostest(test/launch/recovery.test SOURCES test/launch/recovery_test.py
   DEPENDENCIES uav_landing_nodelets simulate_approach)
+uav_landing_add_rostest(test/launch/split_images.test SOURCES test/launch/split_images_test.py)
 uav_landing_add_python_test(test/launch/arguments_test.py)

@@ -1,5 +1,7 @@
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "nodelets/nodelet_fixture.h"
 #include "nodelets/nodelet_test_main.h"
 #include "nodelets/stereo_scene.h"
@@ -50,6 +52,58 @@ TEST_F(RectifyNodeletTest, PublishesBothImagesInfosAndTheSkewWithTheLeftStamp) {
   EXPECT_EQ(info.messages()[0]->P, scene_.info(true)->P);
   EXPECT_EQ(time.messages()[0]->time_ref, stamp);
   EXPECT_EQ(left_->messages()[0]->data, scene_.image(0, false)->data) << "ideal cameras: nothing to rectify";
+}
+
+/// What cameras that hang show: the picture turned by 180 degrees.
+sensor_msgs::ImagePtr turned(sensor_msgs::ImagePtr image) {
+  std::reverse(image->data.begin(), image->data.end());
+  return image;
+}
+
+TEST_F(RectifyNodeletTest, OfARigUpsideDownComesThePairThatStandsUpright) {
+  ros::param::set("/uav_landing/rig/upside_down", true);
+  start();
+  Listener<sensor_msgs::CameraInfo> left_info("/uav_landing/left/camera_info"),
+      right_info("/uav_landing/right/camera_info");
+  ASSERT_TRUE(eventually([&] { return left_info.connected() && right_info.connected(); }));
+  const auto infoOf = [&](bool right) {
+    auto info = scene_.info(right);
+    info->K[2] = info->P[2] = scene_.width - 1 - 0.5 * scene_.width;
+    info->K[5] = info->P[6] = scene_.height - 1 - 0.5 * scene_.height;
+    return info;
+  };
+  cameras_.publishLeft(ros::Time(1000), turned(scene_.image(0, true)), infoOf(false));
+  cameras_.publishRight(ros::Time(1000), turned(scene_.image(0, false)), infoOf(true));
+  ASSERT_TRUE(left_->waitFor(1) && right_->waitFor(1) && left_info.waitFor(1) && right_info.waitFor(1));
+  EXPECT_EQ(left_->messages()[0]->data, scene_.image(0, false)->data);
+  EXPECT_EQ(right_->messages()[0]->data, scene_.image(0, true)->data);
+  EXPECT_EQ(left_->messages()[0]->header.frame_id, "right_optical") << "the camera that is on the left";
+  const sensor_msgs::CameraInfo &left = *left_info.messages()[0], &right = *right_info.messages()[0];
+  EXPECT_EQ(left.P, scene_.info(false)->P);
+  EXPECT_NEAR(right.P[3], scene_.info(true)->P[3], 1e-9);
+  EXPECT_EQ(left.R[0], -1) << "from the camera as it hangs to the picture";
+  EXPECT_EQ(left.R[8], 1);
+}
+
+TEST_F(RectifyNodeletTest, StretchesTheBitsThatAreUsedAndSaysSo) {
+  start();
+  const auto deep = [](sensor_msgs::ImagePtr image) {
+    std::vector<uint8_t> data;
+    for (const uint8_t grey : image->data) {  // 10 bits, the last byte first
+      data.push_back(static_cast<uint8_t>((4 * grey) & 255));
+      data.push_back(static_cast<uint8_t>((4 * grey) >> 8));
+    }
+    image->data = data;
+    image->step *= 2;
+    image->encoding = "mono16";
+    return image;
+  };
+  cameras_.publishLeft(ros::Time(1000), deep(scene_.image(0, false)), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), deep(scene_.image(0, true)), scene_.info(true));
+  ASSERT_TRUE(left_->waitFor(1));
+  const auto expected = scene_.image(0, false)->data, data = left_->messages()[0]->data;
+  for (size_t i = 0; i < expected.size(); i += 97) EXPECT_NEAR(data[i], expected[i], 1) << i;
+  EXPECT_TRUE(logged("values 0 to 1023 of 65535 become black to white")) << wholeLog();
 }
 
 TEST_F(RectifyNodeletTest, AnApproximatePairCarriesTheLeftStampAndReportsTheSkew) {
@@ -250,6 +304,98 @@ TEST_F(RectifyNodeletTest, AnotherCameraNamespaceIsAParameter) {
   Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
   const ros::Publisher raw = handle_.advertise<sensor_msgs::Image>("/rig/left/image_raw", 1);
   EXPECT_TRUE(eventually([&] { return raw.getNumSubscribers() > 0; }));
+}
+
+/// Publishers of a rig whose topics have names of their own, and whether somebody subscribed all.
+struct OtherTopics {
+  explicit OtherTopics(ros::NodeHandle& handle)
+      : left(handle.advertise<sensor_msgs::Image>("/cam0/image", 1)),
+        right(handle.advertise<sensor_msgs::Image>("/cam1/image", 1)),
+        left_info(handle.advertise<sensor_msgs::CameraInfo>("/cam0/info", 1)),
+        right_info(handle.advertise<sensor_msgs::CameraInfo>("/cam1/info", 1)) {}
+  bool connected() const {
+    return left.getNumSubscribers() > 0 && right.getNumSubscribers() > 0 &&
+           left_info.getNumSubscribers() > 0 && right_info.getNumSubscribers() > 0;
+  }
+  ros::Publisher left, right, left_info, right_info;
+};
+
+TEST_F(RectifyNodeletTest, NamedTopicsStayThoseOfTheirCameraWhereTheRigIsUpsideDown) {
+  ros::param::set("/uav_landing/rig/upside_down", true);
+  setParameter("rectify", "left_image", std::string("/cam0/image"));
+  setParameter("rectify", "left_info", std::string("/cam0/info"));
+  setParameter("rectify", "right_image", std::string("/cam1/image"));
+  setParameter("rectify", "right_info", std::string("/cam1/info"));
+  load("rectify");
+  const OtherTopics topics(handle_);
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  ASSERT_TRUE(eventually([&] { return topics.connected() && listener.connected(); }));
+  for (const bool right : {false, true}) {
+    const auto image = turned(scene_.image(0, !right));
+    const auto info = scene_.info(right);
+    info->K[2] = info->P[2] = scene_.width - 1 - 0.5 * scene_.width;
+    info->K[5] = info->P[6] = scene_.height - 1 - 0.5 * scene_.height;
+    info->header.stamp = image->header.stamp = ros::Time(1000);
+    (right ? topics.right_info : topics.left_info).publish(info);
+    (right ? topics.right : topics.left).publish(image);
+  }
+  ASSERT_TRUE(listener.waitFor(1)) << wholeLog();
+  EXPECT_EQ(listener.messages()[0]->data, scene_.image(0, false)->data);
+}
+
+TEST_F(RectifyNodeletTest, EachTopicMayHaveANameOfItsOwn) {
+  setParameter("rectify", "left_image", std::string("/cam0/image"));
+  setParameter("rectify", "left_info", std::string("/cam0/info"));
+  setParameter("rectify", "right_image", std::string("/cam1/image"));
+  setParameter("rectify", "right_info", std::string("/cam1/info"));
+  load("rectify");
+  const OtherTopics topics(handle_);
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  EXPECT_TRUE(eventually([&] { return topics.connected(); }));
+}
+
+TEST_F(RectifyNodeletTest, ARemapGivesATopicAnotherName) {
+  ASSERT_TRUE(loader_.load("/uav_landing/rectify", "uav_landing/rectify",
+                           {{"/stereo/left/image_raw", "/cam0/image"},
+                            {"/stereo/left/camera_info", "/cam0/info"},
+                            {"/stereo/right/image_raw", "/cam1/image"},
+                            {"/stereo/right/camera_info", "/cam1/info"}},
+                           {}));
+  const OtherTopics topics(handle_);
+  Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
+  EXPECT_TRUE(eventually([&] { return topics.connected(); }));
+}
+
+TEST_F(RectifyNodeletTest, APairThatComesTwiceIsServedOnce) {
+  setParameter("rectify", "drop_frames", false);
+  start();
+  for (int i = 0; i < 10; ++i) {
+    cameras_.publishLeft(PairPublisher::stampOf(0.1 * i), scene_.image(0.2 * (i / 2), false),
+                         scene_.info(false));
+    cameras_.publishRight(PairPublisher::stampOf(0.1 * i), scene_.image(0.2 * (i / 2), true),
+                          scene_.info(true));
+  }
+  ASSERT_TRUE(left_->waitFor(5));
+  ASSERT_TRUE(logged("each pair of images comes 2 times, bit by bit the same under new stamps"))
+      << wholeLog();
+  std::vector<ros::Time> stamps, expected;
+  for (const auto& image : left_->messages()) stamps.push_back(image->header.stamp);
+  for (int i = 0; i < 5; ++i) expected.push_back(PairPublisher::stampOf(0.2 * i));
+  EXPECT_EQ(stamps, expected);
+}
+
+TEST_F(RectifyNodeletTest, ATopicThatComesMoreSeldomIsNamed) {
+  start();
+  double t = 0;
+  EXPECT_TRUE(eventually([&] {
+    // No more than the queue takes, as the topics come on connections of their own.
+    t += 0.1;
+    cameras_.publishRight(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(true));
+    cameras_.publishLeft(PairPublisher::stampOf(t), scene_.blank(0), scene_.info(false));
+    cameras_.publishLeft(PairPublisher::stampOf(t + 0.05), scene_.blank(0), scene_.info(false));
+    return wholeLog().find("stamps have no message on /stereo/right/image_raw, /stereo/right/camera_info") !=
+           std::string::npos;
+  })) << wholeLog();
 }
 
 TEST_F(RectifyNodeletTest, CanBeUnloadedAtAnyTime) {

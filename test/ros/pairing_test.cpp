@@ -232,6 +232,56 @@ TEST_F(StereoPairingTest, TheComplaintShowsStampsThatDiffer) {
   EXPECT_NE(complaint.find("/right/image_raw 1.003"), std::string::npos) << complaint;
 }
 
+TEST_F(StereoPairingTest, TheComplaintTellsAQueueThatIsTooShort) {
+  for (int i = 0; i < 20; ++i) {
+    addLeft(1.0 + 0.05 * i);
+    if (i >= 7) addRight(1.0 + 0.05 * (i - 7));
+  }
+  EXPECT_TRUE(pairs_.empty());
+  // Of the left images 1.35 to 1.95 are newer when the right one of 1.3 comes: 7 behind it, and itself.
+  EXPECT_EQ(pairing_.complaint(),
+            "the queue of 5 pairs is too short: /right/image_raw, /right/camera_info came after the others "
+            "of their "
+            "stamps had been given up; rectify/queue_size has to be at least 8");
+  RectifyParameters longer;
+  longer.queue_size = 8;
+  size_t count = 0;
+  StereoPairing enough(longer, kTopics, [&](const auto&...) { ++count; });
+  for (int i = 0; i < 20; ++i) {
+    const double left = 1.0 + 0.05 * i, right = 1.0 + 0.05 * (i - 7);
+    enough.add<0>(stamped<sensor_msgs::Image>(left));
+    enough.add<1>(stamped<sensor_msgs::CameraInfo>(left));
+    if (i < 7) continue;
+    enough.add<2>(stamped<sensor_msgs::Image>(right));
+    enough.add<3>(stamped<sensor_msgs::CameraInfo>(right));
+  }
+  EXPECT_EQ(count, 13u);
+}
+
+TEST_F(ApproximatePairingTest, TheComplaintTellsByHowMuchTheSkewIsTooLarge) {
+  for (int i = 0; i < 5; ++i) {
+    addLeft(1.0 + 0.05 * i);
+    addRight(1.015 + 0.05 * i);
+  }
+  EXPECT_TRUE(pairs_.empty());
+  EXPECT_EQ(pairing_.complaint().rfind("the stamps are 15 ms apart, more than max_skew, 10 ms; latest: ", 0),
+            0u);
+}
+
+TEST_F(StereoPairingTest, AShortageNamesTheTopicThatHasFewerMessages) {
+  const std::vector<InputWatch::Input> before = pairing_.inputs();
+  for (int i = 0; i < 20; ++i) {
+    pairing_.add<0>(stamped<sensor_msgs::Image>(1.0 + 0.05 * i));
+    if (i % 2 == 0) pairing_.add<1>(stamped<sensor_msgs::CameraInfo>(1.0 + 0.05 * i));
+    addRight(1.0 + 0.05 * i);
+  }
+  EXPECT_EQ(pairs_.size(), 10u);
+  EXPECT_EQ(pairing_.complaint(), "");
+  EXPECT_EQ(InputWatch::shortage(pairing_.inputs(), before),
+            "9 of 20 stamps have no message on /left/camera_info");
+  EXPECT_EQ(InputWatch::shortage(pairing_.inputs(), pairing_.inputs()), "");
+}
+
 TEST_F(StereoPairingTest, TheComplaintNamesAStampThatNeverChanges) {
   addPair(1.0);
   pairing_.complaint();

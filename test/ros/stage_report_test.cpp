@@ -61,6 +61,29 @@ TEST_F(StageReportTest, TimesAreMeansOfThePairsSinceTheLastOne) {
   EXPECT_LT(std::stod(values_["latency behind the image stamp"]), 50);
 }
 
+TEST_F(StageReportTest, AStampAheadOfTheClockIsNoLatency) {
+  report_.served(ros::Time::now() + ros::Duration(10), 1, "");
+  told();
+  const std::string text = values_["latency behind the image stamp"], begin = "unknown: the stamps are ";
+  EXPECT_EQ(text.rfind(begin, 0), 0u) << text;
+  EXPECT_NEAR(std::stod(text.substr(begin.size())), 10000, 50);
+}
+
+TEST_F(StageReportTest, ATopicWithFewerMessagesIsNamedAndNotCalledSlow) {
+  InputWatch::Input image, info;
+  image.topic = "/left/image_raw";
+  info.topic = "/left/camera_info";
+  image.received = 20;
+  image.paired = image.dropped = info.received = info.paired = 10;
+  report_.served(ros::Time::now(), 1, "");
+  report_.dropped();
+  const DiagnosticStatus status = told({image, info});
+  EXPECT_EQ(status.message, "10 of 20 stamps have no message on /left/camera_info");
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  report_.served(ros::Time::now(), 1, "");
+  EXPECT_EQ(told({image, info}).message, "running");
+}
+
 TEST_F(StageReportTest, SaysTheWorstOfWhatHappenedAndForgetsItAfterwards) {
   report_.served(ros::Time::now(), 1, "");
   DiagnosticStatus status = told();

@@ -172,6 +172,39 @@ class ProcessBagsTest(unittest.TestCase):
         self.assertEqual((self.output / "a.csv").stat().st_mtime_ns, before)
         self.assertEqual({row["result"] for row in self.rows().values()}, {"done"})
 
+    def test_parts_of_a_split_recording_are_one(self):
+        frames = noise_frames(9)
+        for number, part in enumerate((frames[:4], frames[4:6], frames[6:])):
+            write_bag(self.bags / f"flight_{number}.bag", part, begin=1000 + number)
+        write_bag(self.bags / "flight_7.bag", noise_frames(2), begin=1003)
+        write_bag(self.bags / "other_0.bag", noise_frames(2))
+        write_bag(self.bags / "other_1.bag", noise_frames(2), begin=5000)
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual({name: row["pairs"] for name, row in self.rows().items()},
+                         {"flight_0": "9", "flight_7": "2", "other_0": "2", "other_1": "2"})
+        self.assertIn("4 of 4 bags are done already", self.process(self.bags).stdout)
+
+    def test_a_recording_that_was_not_closed_is_named(self):
+        self.bag("good.bag")
+        self.bag("late.bag.active")
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"failed: late.bag: process_bag: {self.bags}/late.bag.active: this recording was never closed", result.stderr)
+
+    def test_a_bag_of_which_most_is_left_out_is_named(self):
+        frames = noise_frames(5)
+        for frame in frames[2:]:
+            frame.messages["right/image_raw"] = None
+        write_bag(self.bags / "one_eyed.bag", frames)
+        result = self.process(self.bags)
+        self.assertEqual(result.returncode, 3)
+        reason = "process_bag: most of the recording was left out: 2 pairs of 5 left and 2 right images (exit status 3)"
+        self.assertIn(f"left_out: one_eyed: {reason}", result.stderr)
+        row = self.rows()["one_eyed"]
+        self.assertEqual((row["result"], row["pairs"]), ("left_out", "2"))
+        self.assertIn(reason, row["reason"])
+
     def test_bad_inputs_are_named(self):
         for inputs, complaint in (([self.bags / "none.bag"], "none.bag: no such file or folder"),
                                   ([self.bags], "no *.bag in this folder")):

@@ -4,6 +4,7 @@ uav_landing_add_python_test(test/scripts/built_space_test.py DEPENDENCIES proces
 uav_landing_add_python_test(test/scripts/change_indicator_test.py
   DEPENDENCIES process_bag simulate_approach simulate_campaign dataset_to_bag)
 uav_landing_add_python_test(test/scripts/calibrate_test.py DEPENDENCIES dataset_to_bag process_bag)
+uav_landing_add_python_test(test/scripts/calibrate_readout_test.py)
 uav_landing_add_python_test(test/scripts/plot_estimates_test.py)
 uav_landing_add_python_test(test/scripts/process_bags_test.py DEPENDENCIES process_bag)
 uav_landing_add_rostest(test/scripts/record_estimates.test SOURCES test/scripts/record_estimates_test.py)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -18,9 +19,29 @@ SimulatorParameters realisticRig() {
   return parameters;
 }
 
-TEST(CameraRig, EveryPixelsRayPassesThroughItsPixel) {
-  const SimulatorParameters parameters = realisticRig();
+/// 53 degrees to each side.
+SimulatorParameters fisheyeRig() {
+  SimulatorParameters parameters = realisticRig();
+  for (SimulatedCameraParameters* camera : {&parameters.left_camera, &parameters.right_camera}) {
+    camera->lens = SimulatedLens::kEquidistant;
+    camera->fx = 172, camera->fy = 171;
+    camera->k1 = -0.02, camera->k2 = 0.008, camera->k3 = -0.003, camera->k4 = 0.0005;
+    camera->p1 = camera->p2 = 0;
+  }
+  return parameters;
+}
+
+class CameraRigOfLens : public testing::TestWithParam<SimulatorParameters> {};
+INSTANTIATE_TEST_SUITE_P(Lenses, CameraRigOfLens, testing::Values(realisticRig(), fisheyeRig()),
+                         [](const auto& info) {
+                           return std::string(info.index == 0 ? "plumb_bob" : "fisheye");
+                         });
+
+TEST_P(CameraRigOfLens, EveryPixelsRayPassesThroughItsPixel) {
+  const SimulatorParameters& parameters = GetParam();
   const CameraRig rig = makeCameraRig(parameters).value();
+  // Rays are those of parallelograms, which the corners of a wide lens's picture are less.
+  const double tolerance = parameters.left_camera.lens == SimulatedLens::kEquidistant ? 0.005 : 0.002;
   for (int v = 0; v < 240; v += 7) {
     for (int u = 0; u < 320; u += 7) {
       const PixelRay& ray = rig.left.rays[v * 320 + u];
@@ -30,15 +51,15 @@ TEST(CameraRig, EveryPixelsRayPassesThroughItsPixel) {
                                         1);
         const Eigen::Vector2d pixel =
             throughLens(parameters.left_camera, rig.left.calibration.R.transpose() * rectified);
-        ASSERT_NEAR(pixel.x(), u + du, 0.002) << u << ", " << v;
-        ASSERT_NEAR(pixel.y(), v + dv, 0.002) << u << ", " << v;
+        ASSERT_NEAR(pixel.x(), u + du, tolerance) << u << ", " << v;
+        ASSERT_NEAR(pixel.y(), v + dv, tolerance) << u << ", " << v;
       }
     }
   }
 }
 
-TEST(CameraRig, RectifiedCamerasShareAxesAndStandABaselineApart) {
-  const SimulatorParameters parameters = realisticRig();
+TEST_P(CameraRigOfLens, RectifiedCamerasShareAxesAndStandABaselineApart) {
+  const SimulatorParameters& parameters = GetParam();
   const CameraRig rig = makeCameraRig(parameters).value();
   EXPECT_NEAR(rig.right.offset_x, std::sqrt(0.65 * 0.65 + 0.004 * 0.004 + 0.006 * 0.006), 1e-9);
   const Eigen::Vector3d point(0.7, -0.4, 5);  // rectified left axes
@@ -49,8 +70,8 @@ TEST(CameraRig, RectifiedCamerasShareAxesAndStandABaselineApart) {
       << rectified_right;
 }
 
-TEST(CameraRig, CalibrationMakesARigForTheChain) {
-  const CameraRig rig = makeCameraRig(realisticRig()).value();
+TEST_P(CameraRigOfLens, CalibrationMakesARigForTheChain) {
+  const CameraRig rig = makeCameraRig(GetParam()).value();
   const Expected<StereoRig> stereo = makeStereoRig(rig.left.calibration, rig.right.calibration);
   ASSERT_TRUE(stereo) << stereo.error().message();
   EXPECT_NEAR(stereo->baseline, rig.right.offset_x, 1e-9);
@@ -95,6 +116,15 @@ TEST(CameraRig, BaselineStretchesWithoutTheCalibrationKnowing) {
   const CameraRig after = makeCameraRig(parameters).value();
   EXPECT_TRUE(after.right.calibration == before.right.calibration);
   EXPECT_NEAR(after.right.offset_x, 1.02 * before.right.offset_x, 1e-12);
+}
+
+TEST(CameraRig, LensesOfTwoKindsAreRefused) {
+  SimulatorParameters parameters = fisheyeRig();
+  parameters.right_camera.lens = SimulatedLens::kPlumbBob;
+  const Expected<CameraRig> rig = makeCameraRig(parameters);
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().detail,
+            "right_camera/lens: expected the lens of left_camera, as both are rectified together");
 }
 
 TEST(CameraRig, LensThatFoldsBackIsRefused) {

@@ -83,5 +83,34 @@ TEST(SimulatedImu, NoiseIsOfTheSizeAskedForAndTheSameForTheSameSeed) {
   EXPECT_NEAR(std::sqrt(rate), 0.5 * kDegree, 0.05 * 0.5 * kDegree);
 }
 
+TEST(SimulatedImu, SeesVibrationAtItsOwnRate) {
+  SimulatedWobbleParameters still;
+  still.roll_deg = still.pitch_deg = still.yaw_deg = 0;
+  SimulatedVibrationParameters vibration;
+  vibration.frequency = 45;
+  vibration.pitch_deg = 0.2;
+  const Trajectory path({}, still, {}, 1, vibration);
+  SimulatedImuParameters fast = exact();
+  fast.rate = 400;
+  const SimulatedImu imu(fast, path, 1);
+  // The angular velocity of a sine of 0.2 degrees at 45 Hz; pitching up is negative about the left axis.
+  const double expected = 2 * M_PI * 45 * 0.2 * kDegree;
+  double largest = 0;
+  for (int i = 0; i < imu.count(1); ++i) {
+    const Eigen::Vector3d rate = *imu.sample(i).angular_velocity;
+    largest = std::max(largest, std::abs(rate.y()));
+    EXPECT_LT(std::hypot(rate.x(), rate.z()), 0.02 * expected);
+  }
+  EXPECT_NEAR(largest, expected, 0.01 * expected);
+  // Its messages give the turn between two moments that lie less than a period apart.
+  double turned = 0;
+  constexpr int kFrom = 160, kTo = 164;
+  for (int i = kFrom; i < kTo; ++i)
+    turned -= 0.5 * (imu.sample(i).angular_velocity->y() + imu.sample(i + 1).angular_velocity->y()) / 400;
+  const double true_turn = path.pose(kTo / 400.0).attitude.pitch - path.pose(kFrom / 400.0).attitude.pitch;
+  EXPECT_GT(std::abs(true_turn), 0.05 * kDegree);
+  EXPECT_NEAR(turned, true_turn, 0.06 * std::abs(true_turn));
+}
+
 }  // namespace
 }  // namespace uav_landing

@@ -13,8 +13,18 @@ namespace uav_landing {
 
 constexpr double kDegree = M_PI / 180;
 
+/// Kannala and Brandt's model of fisheye lenses.
+inline Eigen::Vector2d throughFisheye(const SimulatedCameraParameters& camera, const Eigen::Vector3d& point) {
+  const double across = std::hypot(point.x(), point.y()), angle = std::atan2(across, point.z());
+  const double distance = angle + camera.k1 * std::pow(angle, 3) + camera.k2 * std::pow(angle, 5) +
+                          camera.k3 * std::pow(angle, 7) + camera.k4 * std::pow(angle, 9);
+  return {camera.fx * distance * point.x() / across + camera.cx,
+          camera.fy * distance * point.y() / across + camera.cy};
+}
+
 /// The plumb_bob model: pixel of a point in the camera's own axes.
 inline Eigen::Vector2d throughLens(const SimulatedCameraParameters& camera, const Eigen::Vector3d& point) {
+  if (camera.lens == SimulatedLens::kEquidistant) return throughFisheye(camera, point);
   const double x = point.x() / point.z(), y = point.y() / point.z(), r2 = x * x + y * y;
   const double radial = 1 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
   const double xd = x * radial + 2 * camera.p1 * x * y + camera.p2 * (r2 + 2 * x * x);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <initializer_list>
 #include <sstream>
 #include <string>
 
@@ -41,6 +42,11 @@ struct DefaultsCheck {
   void number(const char* key, Number& value, double, double, const char*, const char*) {
     ASSERT_TRUE(section[key]) << name << "/" << key << " is not explained";
     EXPECT_DOUBLE_EQ(section[key].as<double>(), static_cast<double>(value)) << name << "/" << key;
+  }
+  template <class Enum>
+  void choice(const char* key, Enum& value, std::initializer_list<const char*> choices, const char*) {
+    ASSERT_TRUE(section[key]) << name << "/" << key << " is not explained";
+    EXPECT_EQ(section[key].as<std::string>(), choices.begin()[static_cast<int>(value)]) << name << "/" << key;
   }
 };
 

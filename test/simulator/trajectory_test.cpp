@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "simulator/lens.h"
 #include "uav_landing/geometry/ground_plane.h"
@@ -161,6 +162,63 @@ TEST_F(TruthTest, FlyingBackwardsHasNoFocusOfExpansion) {
   const Truth truth = truthOf(before_, &now_, 0.05, K_);
   EXPECT_TRUE(std::isnan(truth.foe.x()));
   EXPECT_NEAR(truth.approach_angle, -std::atan2(0.1, std::hypot(1.0, 0.1)), 1e-12);
+}
+
+/// Attitude at 2000 moments of a second.
+template <class Value>
+std::vector<double> overOneSecond(const Trajectory& trajectory, double from, Value&& value) {
+  std::vector<double> values;
+  for (int i = 0; i < 2000; ++i) values.push_back(value(trajectory.pose(from + i / 2000.0).attitude));
+  return values;
+}
+
+TEST(Trajectory, VibratesByTheAmplitudesAndTheFrequencyAsked) {
+  SimulatedVibrationParameters vibration;
+  vibration.frequency = 43;
+  vibration.roll_deg = 0.1, vibration.pitch_deg = 0.4, vibration.yaw_deg = 0.2;
+  SimulatedPathParameters path;
+  path.flare_height = 0, path.roll_deg = 3, path.pitch_deg = -5, path.yaw_deg = 2;
+  const Trajectory trajectory(path, still(), {}, 1, vibration);
+  const auto check = [&](double middle, double amplitude, auto&& value) {
+    const std::vector<double> values = overOneSecond(trajectory, 1, value);
+    EXPECT_NEAR(*std::max_element(values.begin(), values.end()), (middle + amplitude) * kDegree,
+                1e-3 * kDegree);
+    EXPECT_NEAR(*std::min_element(values.begin(), values.end()), (middle - amplitude) * kDegree,
+                1e-3 * kDegree);
+    int rises = 0;
+    for (size_t i = 1; i < values.size(); ++i)
+      if (values[i - 1] <= middle * kDegree && values[i] > middle * kDegree) ++rises;
+    EXPECT_NEAR(rises, 43, 1);
+  };
+  check(3, 0.1, [](const Attitude& a) { return a.roll; });
+  check(-5, 0.4, [](const Attitude& a) { return a.pitch; });
+  check(2, 0.2, [](const Attitude& a) { return a.yaw; });
+  const Eigen::Vector3d at = Trajectory(path, still(), {}, 1).pose(1.01).position;
+  EXPECT_EQ(trajectory.pose(1.01).position, at) << "it turns about the camera";
+}
+
+TEST(Trajectory, VibrationMayBeginInFlightAndGrowsOverAPeriod) {
+  SimulatedVibrationParameters vibration;
+  vibration.frequency = 20;
+  vibration.pitch_deg = 1;
+  vibration.start = 2;
+  const Trajectory quiet({}, {}, {}, 1), shaken({}, {}, {}, 1, vibration);
+  const auto added = [&](double t) { return shaken.pose(t).attitude.pitch - quiet.pose(t).attitude.pitch; };
+  double largest = 0, later = 0;
+  for (double t = 0; t < 2; t += 1e-3) EXPECT_EQ(added(t), 0);
+  for (double t = 2; t < 2.01; t += 1e-3) largest = std::max(largest, std::abs(added(t)));
+  for (double t = 2.05; t < 2.1; t += 1e-3) later = std::max(later, std::abs(added(t)));
+  EXPECT_LT(largest, 0.21 * kDegree) << "a fifth of a period";
+  EXPECT_NEAR(later, kDegree, 0.01 * kDegree);
+}
+
+TEST(Trajectory, VibrationLeavesTheOtherDisturbancesAsTheyAre) {
+  SimulatedVibrationParameters vibration;
+  vibration.pitch_deg = 1;
+  const CameraPose with = Trajectory({}, {}, {}, 5, vibration).pose(3),
+                   without = Trajectory({}, {}, {}, 5).pose(3);
+  EXPECT_EQ(with.attitude.roll, without.attitude.roll);
+  EXPECT_EQ(with.position, without.position);
 }
 
 }  // namespace

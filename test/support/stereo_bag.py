@@ -57,11 +57,11 @@ class Frame:
         return self.messages["right/camera_info"]
 
 
-def write_bag(path, frames, camera="/stereo"):
-    """Frames are recorded in this order, whatever their stamps are."""
+def write_bag(path, frames, camera="/stereo", begin=1000):
+    """Frames are recorded in this order, from this second on, whatever their stamps are."""
     with rosbag.Bag(str(path), "w") as bag:
         for number, frame in enumerate(frames):
-            recorded = rospy.Time.from_sec(1000 + 0.01 * number)
+            recorded = rospy.Time.from_sec(begin + 0.01 * number)
             for topic, message in frame.messages.items():
                 if message is None:
                     continue

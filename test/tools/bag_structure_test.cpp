@@ -301,7 +301,7 @@ TEST_F(BagStructure, IsCheckedByTheReaderOfTheProgramsWhichNamesTheFile) {
   put(message(), kHuge);
   std::ofstream(path_, std::ios::binary) << bytes_;
   try {
-    StereoBagReader(path_, "stereo", "");
+    StereoBagReader({path_}, "stereo", "");
     FAIL() << "was read";
   } catch (const std::exception& error) {
     EXPECT_EQ(std::string(error.what()).rfind(path_ + ": cannot be read as a bag (damaged at byte ", 0), 0u)

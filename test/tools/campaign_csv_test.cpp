@@ -60,6 +60,11 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   drawn.profile.slope_before_deg = 0.25;
   drawn.profile.slope_after_deg = 1;
   drawn.runway.width = 33;
+  drawn.image.readout_time = -0.02;
+  drawn.vibration.frequency = 45;
+  drawn.vibration.roll_deg = 0.1;
+  drawn.vibration.pitch_deg = 0.2;
+  drawn.vibration.yaw_deg = 0.2;
   CampaignCsv::Sample sample;
   sample.seed = 17;
   sample.cell_height = 11;
@@ -132,7 +137,10 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                                {"speed_true_m_s", 20},
                                                {"speed_m_s", 13},
                                                {"speed_stddev_m_s", 1.1},
-                                               {"runway_width_m", 33}};
+                                               {"runway_width_m", 33},
+                                               {"readout_time_s", -0.02},
+                                               {"vibration_hz", 45},
+                                               {"vibration_deg", 0.3}};
   EXPECT_EQ(named.size(), expected.size());
   for (const auto& [name, value] : expected) {
     ASSERT_EQ(named.count(name), 1u) << name;

@@ -1,3 +1,4 @@
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -5,10 +6,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 import rosbag
+import rospy
 from sensor_msgs.msg import CompressedImage
 
 from project import rosrun
-from stereo_bag import HEIGHT, WIDTH, noise, noise_frames, write_bag
+from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
 
 SENSOR = """%YAML:1.0
 T_BS:
@@ -45,6 +47,7 @@ class ConvertRecordingTest(unittest.TestCase):
         """Messages by topic."""
         result = self.convert(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.said = result.stderr
         messages = {}
         with rosbag.Bag(str(self.output)) as bag:
             for topic, message, _ in bag.read_messages():
@@ -98,8 +101,13 @@ class ConvertRecordingTest(unittest.TestCase):
 
     def test_euroc_mistakes_are_named(self):
         self.refused("sensor.yaml: no such file", "euroc", self.folder)
+        self.euroc(model="omni")
+        self.refused("distortion_model omni: expected radial-tangential or equidistant", "euroc", self.folder)
+
+    def test_euroc_folder_of_fisheye_lenses(self):
         self.euroc(model="equidistant")
-        self.refused("distortion_model equidistant", "euroc", self.folder)
+        info = self.converted("euroc", self.folder)["/stereo/left/camera_info"][0]
+        self.assertEqual((info.distortion_model, info.D), ("equidistant", (-0.2, 0.05, 0.001, -0.0005)))
 
     def test_euroc_tables_and_poses_that_are_none_are_named(self):
         self.euroc()
@@ -166,17 +174,154 @@ class ConvertRecordingTest(unittest.TestCase):
         good, large = self.video("l.avi", 2), self.video("large.avi", 2, (320, 240))
         self.refused("none.avi: no such video", "videos", good, self.folder / "none.avi", *self.calibrations())
         self.refused("320x240 pixels, its calibration is for 160x120", "videos", good, large, *self.calibrations())
+        self.refused("l.avi: given twice; if it has both pictures in one, give it once, with --side-by-side", "videos", good, good,
+                     *self.calibrations())
+        self.refused("l.avi: each half, side-by-side, 80x120 pixels, its calibration is for 160x120", "videos", good,
+                     "--side-by-side", *self.calibrations())
+        self.assertEqual(self.convert("videos", good, *self.calibrations()).returncode, 2)
 
     def test_numbers_that_are_none_in_a_calibration_are_named(self):
-        good, files = self.video("l.avi", 2), self.calibrations()
+        good, files, other = self.video("l.avi", 2), self.calibrations(), self.video("r.avi", 2)
         text = files[1].read_text()
         for old, new, complaint in (("cols: 5, data: [0, 0, 0, 0, 0]", "data: 5", "data: expected a list of numbers"),
                                     ("data: [0, 0, 0, 0, 0]", "data: [0, x]", "data: expected 2 finite numbers"),
                                     ("image_width: 160", "image_width: wide", "image_width: expected 1 finite numbers")):
             with self.subTest(new):
                 files[1].write_text(text.replace(old, new))
-                self.refused(f"{files[1]}: ", "videos", good, good, *files)
-                self.refused(complaint, "videos", good, good, *files)
+                self.refused(f"{files[1]}: ", "videos", good, other, *files)
+                self.refused(complaint, "videos", good, other, *files)
+
+    def test_calibration_files_are_read_as_ros_reads_them(self):
+        good, files = self.video("l.avi", 2), self.calibrations()
+        plain = [file.read_text() for file in files[1::2]]
+        tagged = [re.sub(r": \{rows: (\d+), cols: (\d+), data: (.*)\}", r": !!opencv-matrix\n  rows: \1\n  cols: \2\n"
+                         r"  dt: d\n  data: \3", "%YAML:1.0\n---\n" + text) for text in plain]
+        nameless = [text.replace("distortion_model: plumb_bob\n", "") for text in plain]
+        section = "# oST version 5.0 parameters\n\n[image]\n\nwidth\n160\n\nheight\n120\n\n[{}]\n\ncamera matrix\n150 0 80\n" \
+                  "0 150 60\n0 0 1\n\ndistortion\n0 0 0 0 0\n\nrectification\n1 0 0\n0 1 0\n0 0 1\n\nprojection\n150 0 80 {}\n" \
+                  "0 150 60 0\n0 0 1 0\n\n"
+        ini = [section.format("camera", shift) for shift in (0, -75)]
+        both = [section.format("narrow_stereo/left", 0) + section.format("narrow_stereo/right", -75)] * 2
+        expected = self.converted("videos", good, good, *files)["/stereo/right/camera_info"][0]
+        for name, texts in (("tags", tagged), ("no distortion_model", nameless), ("ini", ini), ("ost.txt", both)):
+            with self.subTest(name):
+                for file, text in zip(files[1::2], texts):
+                    file.write_text(text)
+                info = self.converted("videos", good, good, *files)["/stereo/right/camera_info"][0]
+                self.assertEqual(info, expected)
+
+    def test_a_file_of_a_stereo_pair_is_named_as_such(self):
+        good, files = self.video("l.avi", 2), self.calibrations()
+        files[1].write_text("cam0: {resolution: [160, 120]}\ncam1: {}\n")
+        self.refused("is of a stereo pair, not of one camera: make left.yaml and right.yaml of it by convert_recording "
+                     "calibration", "videos", good, good, *files)
+
+    # The right camera's axes are turned, and it stands 0.3 m to the right of, below and before the left one, by hand:
+    # x_right = R (x_left - c).
+    PLACE = np.array([0.3, 0.006, -0.01])
+
+    def pose(self):
+        R = cv2.Rodrigues(np.array([0.01, -0.02, 0.015]))[0]
+        return R, -R @ self.PLACE
+
+    def camchain(self, distortion="radtan", swapped=False):
+        R, t = self.pose()
+        pose = np.vstack([np.column_stack([R, t]), [0, 0, 0, 1]])
+        pose = np.linalg.inv(pose) if swapped else pose
+        lens = (f"camera_model: pinhole, distortion_model: {distortion}, distortion_coeffs: [-0.1, 0.02, 0.001, -0.002], "
+                "intrinsics: [150.0, 151.0, 79.0, 60.5], resolution: [160, 120]")
+        path = self.folder / "camchain.yaml"
+        path.write_text(f"cam0: {{{lens}, rostopic: /a}}\ncam1: {{{lens}, T_cn_cnm1: {pose.tolist()}}}\n")
+        return path
+
+    def opencv_files(self, scale):
+        R, t = self.pose()
+        K = np.array([[150.0, 0, 79], [0, 151, 60.5], [0, 0, 1]])
+        D = np.array([[-0.1, 0.02, 0.001, -0.002, 0]])
+        paths = self.folder / "intrinsics.yml", self.folder / "extrinsics.yml"
+        for path, entries in zip(paths, ({"M1": K, "D1": D, "M2": K, "D2": D}, {"R": R, "T": scale * t.reshape(3, 1)})):
+            storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+            for name, value in entries.items():
+                storage.write(name, value)
+            storage.release()
+        return paths
+
+    def made_from(self, *arguments):
+        """What was printed, and the two cameras that came of it."""
+        folder = self.folder / "made"
+        result = rosrun("convert_recording", "calibration", *arguments, "--output", folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        good = self.video("v.avi", 2)
+        messages = self.converted("videos", good, good, "--left-calibration", folder / "left.yaml", "--right-calibration",
+                                  folder / "right.yaml")
+        return result.stdout, [messages[f"/stereo/{side}/camera_info"][0] for side in ("left", "right")]
+
+    def assert_right_pair(self, left, right):
+        """A point 5 m ahead lies in one row, and as far apart as the distance of the cameras makes it."""
+        R, t = self.pose()
+        point = np.array([0.4, -0.3, 5.0])
+        pixels = []
+        for info, x in ((left, point), (right, R @ point + t)):
+            projected = np.reshape(info.P, (3, 4))[:, :3] @ np.reshape(info.R, (3, 3)) @ x
+            pixels.append(projected[:2] / projected[2])
+            depth = projected[2]
+        distance = np.linalg.norm(self.PLACE)
+        self.assertAlmostEqual(-right.P[3] / right.P[0], distance, places=9)
+        self.assertAlmostEqual(pixels[0][1], pixels[1][1], places=6)
+        self.assertAlmostEqual(pixels[0][0] - pixels[1][0], left.P[0] * distance / depth, places=6)
+
+    def test_stereo_calibrations_of_others_become_those_of_ros(self):
+        for arguments in ([self.camchain()], [*self.opencv_files(1000), "--unit", "mm", "--size", "160x120"]):
+            with self.subTest(arguments[0].name):
+                said, cameras = self.made_from(*arguments)
+                self.assertIn("baseline 0.3002 m", said)
+                self.assertEqual(cameras[0].distortion_model, "plumb_bob")
+                self.assert_right_pair(*cameras)
+
+    def test_a_camchain_of_fisheye_lenses_and_one_that_begins_with_the_right_camera(self):
+        said, cameras = self.made_from(self.camchain("equidistant", swapped=True))
+        self.assertIn("the second camera is the left one", said)
+        self.assertEqual([info.distortion_model for info in cameras], ["equidistant"] * 2)
+        self.assert_right_pair(*cameras)
+
+    def test_what_a_stereo_calibration_does_not_say_is_asked_for(self):
+        def refusal(*arguments):
+            result = rosrun("convert_recording", "calibration", *arguments, "--output", self.folder / "made")
+            self.assertEqual((result.returncode, "Traceback" in result.stderr), (1, False), result.stderr)
+            return result.stderr
+        files = self.opencv_files(1000)
+        self.assertIn("do not say how large the pictures are: give --size WIDTHxHEIGHT", refusal(*files))
+        self.assertIn("T is 300.2 long, in the unit of the board's squares: say which gives the baseline: --unit m "
+                      "(300.2 m), --unit cm (3.002 m), --unit mm (0.3002 m)", refusal(*files, "--size", "160x120"))
+        self.assertIn("no R, the pose between the cameras: expected one of R, rotation",
+                      refusal(files[0], "--size", "160x120"))
+        self.assertIn("expected pinhole with radtan, equidistant, none", refusal(self.camchain("fov")))
+        self.assertIn("is a calibration file of ROS already", refusal(self.calibrations()[1]))
+        (self.folder / "notes.txt").write_text("no calibration")
+        self.assertIn("notes.txt: cannot be read as a FileStorage of OpenCV", refusal(self.folder / "notes.txt"))
+
+    def test_compressed_images_keep_their_bits_and_channels(self):
+        pixels = noise(5)
+        deep = pixels.astype(np.uint16) * 4
+        colour = np.dstack([pixels, pixels[::-1], 255 - pixels])
+        cases = ((".png", deep, "mono16; png compressed ", "mono16"), (".png", pixels, "bayer_grbg8; png compressed ", "bayer_grbg8"),
+                 (".png", deep, "bayer_rggb16; png compressed ", "bayer_rggb16"), (".png", colour, "bgr8; png compressed bgr8", "bgr8"),
+                 (".png", np.dstack([colour, pixels]), "bgra8; png compressed ", "bgra8"),
+                 (".jpg", colour, "bayer_rggb8; jpeg compressed bgr8", "bgr8"), (".jpg", pixels, "jpeg", "mono8"))
+        for suffix, picture, compressed_format, encoding in cases:
+            with self.subTest(compressed_format):
+                path = self.folder / "deep.bag"
+                with rosbag.Bag(str(path), "w") as bag:
+                    for side in ("left", "right"):
+                        message = CompressedImage(format=compressed_format, data=cv2.imencode(suffix, picture)[1].tobytes())
+                        message.header.stamp.secs = 10
+                        bag.write(f"/{side}/compressed", message)
+                messages = self.converted("bag", path, "--left", "/left/compressed", "--right", "/right/compressed",
+                                          *self.calibrations())
+                image = messages["/stereo/left/image_raw"][0]
+                self.assertEqual(image.encoding, encoding)
+                if suffix == ".png":
+                    self.assertEqual(image.data, picture.tobytes())
 
     def renamed_bag(self, compressed):
         """A bag of /cam0/image... and /cam1/image..."""
@@ -214,6 +359,156 @@ class ConvertRecordingTest(unittest.TestCase):
         self.assertEqual([info.header.stamp for info in infos],
                          [m.header.stamp for m in messages["/stereo/right/image_raw"]])
         self.assertEqual((len(infos), infos[0].K[2]), (3, 80))
+
+    def compressed_bag(self, broken, count=12, suffix=".jpg", times=1):
+        """Pictures of two cameras; broken: {number: data of the left one}; times: of 16 bits when more than 1."""
+        path = self.folder / "jpeg.bag"
+        with rosbag.Bag(str(path), "w") as result:
+            for number, frame in enumerate(noise_frames(count)):
+                for side in ("left", "right"):
+                    message = CompressedImage(format="mono8; jpeg compressed ")
+                    message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                    pixels = np.frombuffer(frame.messages[f"{side}/image_raw"].data, np.uint8).reshape(HEIGHT, WIDTH)
+                    deep = pixels if times == 1 else pixels.astype(np.uint16) * times
+                    message.data = cv2.imencode(suffix, deep)[1].tobytes()
+                    if side == "left" and number in broken:
+                        message.data = broken[number](message.data)
+                    result.write(f"/cam/{side}/image_raw/compressed", message, message.header.stamp)
+        return path
+
+    def test_broken_pictures_of_many_are_left_out_named_and_counted(self):
+        bag = self.compressed_bag({3: lambda data: b"", 5: lambda data: data[:len(data) // 2], 8: lambda data: b"no picture"})
+        messages = self.converted("bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                                  *self.calibrations())
+        numbers = [round(10 * m.header.stamp.to_sec()) - 100 for m in messages["/stereo/left/image_raw"]]
+        self.assertEqual(numbers, [0, 1, 2, 4, 6, 7, 9, 10, 11])
+        self.assertEqual(len(messages["/stereo/right/image_raw"]), 12)
+        self.assertEqual(self.said, "".join(
+            f"convert_recording: left out: /cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at {stamp} "
+            "s cannot be decoded to grey or colour of 8 or 16 bits\n" for stamp in ("10.300000", "10.500000", "10.800000"))
+            + "convert_recording: 3 broken pictures were left out\n")
+        result = rosrun("process_bag", "--input", self.output)
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("9 pairs, ", result.stdout)
+
+    def test_broken_pictures_of_16_bits_are_left_out(self):
+        bag = self.compressed_bag({3: lambda data: data[:len(data) // 2], 5: lambda data: data[:100]}, 12, ".png", 16)
+        messages = self.converted("bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                                  *self.calibrations())
+        found = messages["/stereo/left/image_raw"]
+        self.assertEqual((len(found), {m.encoding for m in found}), (10, {"mono16"}))
+        self.assertIn("convert_recording: 2 broken pictures were left out\n", self.said)
+
+    def test_where_all_are_broken_the_bag_is_refused(self):
+        bag = self.compressed_bag(dict.fromkeys(range(12), lambda data: b""))
+        self.refused("/cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at 10.000000 s cannot be decoded",
+                     "bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                     *self.calibrations())
+
+    def test_a_broken_picture_of_a_folder_is_left_out(self):
+        self.euroc()
+        broken = sorted((self.folder / "mav0/cam1/data").iterdir())[1]
+        broken.write_bytes(broken.read_bytes()[:200])
+        messages = self.converted("euroc", self.folder)
+        self.assertEqual([len(found) for found in messages.values()], 4 * [2])
+        self.assertEqual(self.said, f"convert_recording: left out: {broken}: no such image, or damaged\n"
+                                    "convert_recording: 1 broken picture was left out\n")
+
+    def joined_bag(self, axis, encoding, compressed=False):
+        """Both pictures in one, and the expected halves."""
+        path, expected = self.folder / "joined.bag", {"left": [], "right": []}
+        with rosbag.Bag(str(path), "w") as result:
+            for number, frame in enumerate(noise_frames(4)):
+                pictures = [noise(2 * number), noise(2 * number + 1)]
+                if encoding in ("bgr8", "yuyv"):
+                    pictures = [np.dstack([picture, picture // 2, 255 - picture][:2 if encoding == "yuyv" else 3])
+                                for picture in pictures]
+                elif encoding.endswith("16"):
+                    pictures = [picture.astype(np.uint16) * 16 for picture in pictures]
+                for side, picture in zip(expected, pictures):
+                    expected[side].append(picture.tobytes())
+                joined = np.concatenate(pictures, axis)
+                if compressed:
+                    message = CompressedImage(format=f"{encoding}; png compressed ", data=cv2.imencode(".png", joined)[1].tobytes())
+                else:
+                    message = image(joined, encoding)
+                message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                result.write("/usb_cam/image_raw", message, message.header.stamp)
+        return path, expected
+
+    def test_pictures_side_by_side_or_one_above_the_other_are_cut(self):
+        for option, axis, encoding, compressed in (("--side-by-side", 1, "mono8", False), ("--side-by-side", 1, "bgr8", False),
+                                                   ("--side-by-side", 1, "mono16", False), ("--side-by-side", 1, "mono16", True),
+                                                   ("--side-by-side", 1, "bayer_grbg8", False), ("--side-by-side", 1, "yuyv", False),
+                                                   ("--side-by-side", 1, "bayer_rggb16", True), ("--top-and-bottom", 0, "bayer_rggb16", False),
+                                                   ("--side-by-side", 1, "bgr8", True), ("--top-and-bottom", 0, "mono8", False),
+                                                   ("--top-and-bottom", 0, "bgr8", True)):
+            with self.subTest(option=option, encoding=encoding, compressed=compressed):
+                bag, expected = self.joined_bag(axis, encoding, compressed)
+                messages = self.converted("bag", bag, option, "/usb_cam/image_raw", *self.calibrations())
+                for side, pictures in expected.items():
+                    found = messages[f"/stereo/{side}/image_raw"]
+                    self.assertEqual([m.data for m in found], pictures)
+                    self.assertEqual({(m.width, m.height, m.encoding) for m in found}, {(WIDTH, HEIGHT, encoding)})
+                    infos = messages[f"/stereo/{side}/camera_info"]
+                    self.assertEqual([m.header.stamp for m in infos], [m.header.stamp for m in found])
+                    self.assertEqual({info.width for info in infos}, {WIDTH})
+                self.assertEqual(rosrun("process_bag", "--input", self.output).returncode, 0)
+
+    def test_what_is_wrong_with_halves_is_named(self):
+        bag, _ = self.joined_bag(1, "mono8")
+        both = ("bag", bag, "--left", "/usb_cam/image_raw", "--right", "/usb_cam/image_raw")
+        self.refused("left and right must be different topics; if /usb_cam/image_raw has both pictures in one: --side-by-side "
+                     "/usb_cam/image_raw", *both, *self.calibrations())
+        self.refused("/usb_cam/image_raw has both pictures: give the calibration of each half, --left-calibration or --left-info",
+                     "bag", bag, "--side-by-side", "/usb_cam/image_raw")
+        self.refused("/usb_cam/image_raw: each half (top-and-bottom) has 320x60 pixels, the left calibration is for 160x120: "
+                     "calibrate with the halves", "bag", bag, "--top-and-bottom", "/usb_cam/image_raw", *self.calibrations())
+        self.assertEqual(self.convert("bag", bag, "--left", "/usb_cam/image_raw").returncode, 2)
+
+    def test_halves_that_begin_with_other_colours_are_refused(self):
+        for option, encoding, pixels, size in (("--side-by-side", "bayer_rggb8", np.zeros((8, 10), np.uint8), "10x8"),
+                                               ("--top-and-bottom", "bayer_rggb8", np.zeros((6, 8), np.uint8), "8x6"),
+                                               ("--side-by-side", "uyvy", np.zeros((8, 10, 2), np.uint8), "10x8")):
+            with self.subTest(option=option, encoding=encoding):
+                path = self.folder / "odd.bag"
+                with rosbag.Bag(str(path), "w") as result:
+                    result.write("/usb_cam/image_raw", image(pixels, encoding))
+                self.refused(f"a picture of {size} pixels {encoding} cannot be cut in two", "bag", path, option, "/usb_cam/image_raw",
+                             *self.calibrations())
+
+    def test_one_video_with_both_pictures(self):
+        path = self.folder / "both.avi"
+        for option, axis in (("--side-by-side", 1), ("--top-and-bottom", 0)):
+            size = (2 * WIDTH, HEIGHT) if axis else (WIDTH, 2 * HEIGHT)
+            writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 20, size)
+            for number in range(4):
+                writer.write(np.concatenate([np.full((HEIGHT, WIDTH, 3), grey, np.uint8) for grey in (50 + number, 200 - number)], axis))
+            writer.release()
+            messages = self.converted("videos", path, option, *self.calibrations())
+            for side, grey, step in (("left", 50, 1), ("right", 200, -1)):
+                found = [np.frombuffer(m.data, np.uint8).reshape(HEIGHT, WIDTH)[10:-10, 10:-10] for m in
+                         messages[f"/stereo/{side}/image_raw"]]
+                np.testing.assert_allclose([[np.min(m), np.max(m)] for m in found], [2 * [grey + step * i] for i in range(4)], atol=2)
+
+    def test_one_field_of_interlaced_pictures(self):
+        rows = np.arange(HEIGHT)
+        steady = np.repeat((2 * rows).astype(np.uint8)[:, None], WIDTH, 1)  # a ramp: rows between are half way
+        path = self.folder / "interlaced.bag"
+        with rosbag.Bag(str(path), "w") as result:
+            for frame in noise_frames(3):
+                for side in ("left", "right"):
+                    pixels = steady.copy()
+                    pixels[1::2] = 255  # the other field, of another time
+                    message = image(pixels)
+                    message.header.stamp = rospy.Time.from_sec(frame.stamp)
+                    result.write(f"/cam/{side}/image_raw", message, message.header.stamp)
+        messages = self.converted("bag", path, "--left", "/cam/left/image_raw", "--right", "/cam/right/image_raw", "--deinterlace",
+                                  *self.calibrations())
+        for message in messages["/stereo/left/image_raw"]:
+            pixels = np.frombuffer(message.data, np.uint8).reshape(HEIGHT, WIDTH)
+            np.testing.assert_array_equal(pixels[:-1], steady[:-1])
+            np.testing.assert_array_equal(pixels[-1], steady[-2])
 
     def test_bag_mistakes_are_named(self):
         bag = self.renamed_bag(True)

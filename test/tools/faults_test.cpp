@@ -58,14 +58,14 @@ TEST_F(FaultsTest, EachHasANameOfItsOwnAndDoesSomething) {
   for (const Fault& fault : allFaults()) {
     EXPECT_TRUE(names.insert(fault.name).second) << fault.name;
     EXPECT_FALSE(fault.meaning.empty()) << fault.name;
-    EXPECT_TRUE(fault.spoil || fault.calibrate || fault.build) << fault.name;
+    EXPECT_TRUE(fault.spoil || fault.calibrate || fault.build || fault.disturb) << fault.name;
   }
   EXPECT_EQ(allFaults()[0].name, "none");
 }
 
 TEST_F(FaultsTest, WhatBuildsOrPaintsASceneIsForTheSimulatorAlone) {
   for (const Fault& fault : allFaults()) {
-    if (fault.build) {
+    if (fault.build || fault.disturb) {
       EXPECT_TRUE(fault.needs_scene) << fault.name;
     }
   }
@@ -96,6 +96,22 @@ TEST_F(FaultsTest, WhatIsPaintedHasNoiseOfOneGreyLevelInEachPictureOfItsOwn) {
     EXPECT_LT(std::abs(left.dot(right)) / (cv::norm(left) * cv::norm(right)), 0.02) << "noise in common";
   }
   EXPECT_EQ(painted, 7);
+}
+
+TEST_F(FaultsTest, VibrationBeginsInFlightAndRowsAreThereAllTheTime) {
+  for (const char* name : {"vibration", "vibration_rows"}) {
+    SCOPED_TRACE(name);
+    EXPECT_FALSE(fault(name).wholeRun());
+    SimulatorParameters changed;
+    fault(name).disturb(changed, 1.5);
+    EXPECT_EQ(changed.vibration.start, 1.5);
+    EXPECT_GT(changed.vibration.pitch_deg, 0);
+    EXPECT_EQ(changed.image.readout_time > 0, std::string(name) == "vibration_rows");
+  }
+  SimulatorParameters untold;
+  fault("readout_untold").build(untold);
+  EXPECT_EQ(untold.image.readout_time, 0.01);
+  EXPECT_TRUE(fault("readout_untold").wholeRun());
 }
 
 TEST_F(FaultsTest, WaterMirrorsTheSkyFromItsShoreOnAndLeavesTheRestAsItWas) {

@@ -234,5 +234,75 @@ TEST(PairCount, CountsEachReasonTheMostFrequentFirst) {
   EXPECT_EQ(out.str(), "5 pairs, 1 valid: uniform_image 2, no reason given 1, not_yet 1\n");
 }
 
+/// Lines that a recording of these pairs ends with; failed: a test that fails on the pair, or "".
+std::string toldOf(const std::vector<std::pair<Reason, std::string>>& pairs) {
+  std::ostringstream out;
+  PairCount count(out);
+  const StereoRig rig;
+  for (const auto& [reason, failed] : pairs) {
+    Pipeline::Output output;
+    output.landing.status = Status::kTracking;
+    output.landing.height_valid = output.landing.angle_valid = reason == Reason::kNone;
+    output.landing.failure = {reason, ""};
+    TestResult test;
+    test.name = failed;
+    test.ratio = failed.empty() ? 0 : 10;
+    test.limit = 9;
+    output.landing.tests = {test};
+    count.take({ros::Time(1), "left", 0, {}, rig, output});
+  }
+  count.finish();
+  return out.str();
+}
+
+std::vector<std::pair<Reason, std::string>> times(int count, Reason reason, const std::string& failed = "") {
+  return std::vector<std::pair<Reason, std::string>>(count, {reason, failed});
+}
+
+TEST(PairCount, TellsTheTestsThatFailedAndTheLikelyCause) {
+  std::vector<std::pair<Reason, std::string>> pairs = times(15, Reason::kRejected, "tilt");
+  const auto more = times(6, Reason::kInconsistent, "baseline_direction");
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  const std::string told = toldOf(pairs);
+  EXPECT_EQ(
+      told.rfind(
+          "pairs on which a test failed: tilt 15, baseline_direction 6\nlikely cause: the images of a pair "
+          "were not taken at the same time (test baseline_direction)",
+          0),
+      0u)
+      << told;
+  EXPECT_NE(told.find("\n21 pairs, 0 valid: rejected 15, inconsistent 6\n"), std::string::npos) << told;
+}
+
+TEST(PairCount, TellsEachCauseByWhatShowsIt) {
+  const auto hasCause = [](const std::vector<std::pair<Reason, std::string>>& pairs,
+                           const std::string& cause) {
+    const std::string told = toldOf(pairs);
+    EXPECT_NE(told.find("likely cause: " + cause), std::string::npos) << told;
+  };
+  hasCause(times(10, Reason::kNegativeDisparity), "left and right images are swapped");
+  hasCause(times(10, Reason::kInconsistent, "repeated_image"), "pictures of one camera come twice");
+  hasCause(times(10, Reason::kUniformImage), "the pictures are black, saturated or uniform");
+  hasCause(times(10, Reason::kInconsistent, "row_agreement"),
+           "the rows of left and right images do not belong together");
+  hasCause(times(10, Reason::kInconsistent, "sink_rate"), "heights change otherwise than the motion says");
+  hasCause(times(10, Reason::kNoPlane), "the pictures show hardly any texture");
+  hasCause(times(10, Reason::kNoMotion), "the cameras stand still");
+  hasCause(times(10, Reason::kTransformMissing),
+           "most pairs are transform_missing: see Troubleshooting in README.md");
+  std::vector<std::pair<Reason, std::string>> blinking;
+  for (int i = 0; i < 10; ++i)
+    blinking.push_back({i % 2 == 0 ? Reason::kUniformImage : Reason::kTooFewMatches, ""});
+  hasCause(blinking, "every second picture is black or uniform");
+}
+
+TEST(PairCount, TellsNoCauseWhereMostIsValidOrLittleIsKnown) {
+  std::vector<std::pair<Reason, std::string>> pairs = times(10, Reason::kNone);
+  const auto more = times(10, Reason::kInconsistent, "row_agreement");
+  pairs.insert(pairs.end(), more.begin(), more.end());
+  EXPECT_EQ(toldOf(pairs).find("likely cause"), std::string::npos);
+  EXPECT_EQ(toldOf(times(9, Reason::kNoPlane)).find("likely cause"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace uav_landing

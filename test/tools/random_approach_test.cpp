@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
@@ -189,6 +190,10 @@ struct RangeCheck {
     EXPECT_LE(value, high) << section << "/" << name;
     text += section + "/" + name + " " + std::to_string(value) + "\n";
   }
+  template <class Enum>
+  void choice(const char* name, Enum& value, std::initializer_list<const char*>, const char*) {
+    text += section + "/" + name + " " + std::to_string(static_cast<int>(value)) + "\n";
+  }
 };
 std::string textOf(SimulatorParameters p) {
   RangeCheck check;
@@ -240,6 +245,47 @@ TEST(RandomApproach, SceneryIsDrawnByItsSeedWithinItsRangesAndChangesNothingElse
   EXPECT_NEAR(noses, 0.14 * kSeeds, 30);
   EXPECT_NEAR(posts, 0.1 * kSeeds, 30);
   EXPECT_NEAR(displaced, 0.3 * kSeeds, 40);
+}
+
+TEST(RandomApproach, RollingShutterAndVibrationAreDrawnWithinTheirRangesAndChangeNothingElse) {
+  int from_below = 0, stamp_at_edge = 0;
+  constexpr int kSeeds = 400;
+  double shortest = 1, longest = 0, weakest = 1, strongest = 0;
+  for (uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const SimulatorParameters plain = drawSnippet(seed, 10, 13, {}, true);
+    SimulatorParameters with = plain, again = plain;
+    for (SimulatorParameters* p : {&with, &again}) {
+      drawRollingShutter(seed, *p);
+      drawVibration(seed, *p);
+    }
+    ASSERT_EQ(textOf(with), textOf(again));
+    from_below += with.image.readout_time < 0 ? 1 : 0;
+    stamp_at_edge += with.image.stamp_row != 0.5 ? 1 : 0;
+    shortest = std::min(shortest, std::abs(with.image.readout_time));
+    longest = std::max(longest, std::abs(with.image.readout_time));
+    const SimulatedVibrationParameters& v = with.vibration;
+    for (const double amplitude : {v.roll_deg, v.pitch_deg, v.yaw_deg}) {
+      EXPECT_LE(amplitude, 0.2 * 15 / v.frequency);
+      weakest = std::min(weakest, amplitude);
+      strongest = std::max(strongest, amplitude);
+    }
+    EXPECT_GE(with.imu.rate, 8 * v.frequency) << "of an inertial sensor that follows";
+    with.image.readout_time = plain.image.readout_time;
+    with.image.stamp_row = plain.image.stamp_row;
+    with.vibration = plain.vibration;
+    with.imu.rate = plain.imu.rate;
+    ASSERT_EQ(textOf(with), textOf(plain));
+  }
+  EXPECT_NEAR(from_below, 0.2 * kSeeds, 40);
+  EXPECT_NEAR(stamp_at_edge, 0.5 * kSeeds, 40);
+  EXPECT_LT(shortest, 0.0055);
+  EXPECT_GT(longest, 0.036);
+  EXPECT_LE(longest, 0.05) << "the time from one pair to the next";
+  EXPECT_LT(weakest, 0.001);
+  EXPECT_GT(strongest, 0.1);
+  SimulatorParameters without_imu = drawSnippet(1, 10, 13, {});
+  drawVibration(1, without_imu);
+  EXPECT_EQ(without_imu.imu.rate, 0);
 }
 
 TEST(RandomApproach, ALandscapeHasWhatItsNameSaysAtEveryPlaceOfTheRandomOne) {

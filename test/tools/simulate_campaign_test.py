@@ -74,6 +74,20 @@ class SimulateCampaignTest(unittest.TestCase):
                              [value for name, value in b.items() if "_true_" in name])
             self.assertNotEqual(a["height_m"], b["height_m"])
 
+    def test_rolling_shutter_and_vibration_show_in_the_estimates_and_in_their_columns(self):
+        options = ("--first", 1, "--count", 2, "--heights", 10, "--noise", 2)
+        plain, rolling = self.fly(*options), self.fly(*options, "--rolling-shutter")
+        shaken = self.fly(*options, "--rolling-shutter", "--vibration")
+        for at_once, rows, both in zip(plain, rolling, shaken):
+            self.assertEqual((float(at_once["readout_time_s"]), float(at_once["vibration_deg"])), (0, 0))
+            self.assertGreaterEqual(abs(float(rows["readout_time_s"])), 0.005)
+            self.assertGreater(float(both["vibration_deg"]), 0)
+            self.assertEqual(both["readout_time_s"], rows["readout_time_s"])
+            self.assertEqual([value for name, value in at_once.items() if "_true_" in name],
+                             [value for name, value in rows.items() if "_true_" in name], "the truth is that of the stamp")
+            self.assertNotEqual(at_once["pitch_true_deg"], both["pitch_true_deg"])
+            self.assertNotEqual(at_once["height_m"], rows["height_m"])
+
     def yaw_error(self, seed, height):
         """Error over scenery and its claim, deg; None where the yaw is not known."""
         row = self.fly("--first", seed, "--count", 1, "--heights", height, "--noise", 2, "--scenery", frames=7)[0]

@@ -21,7 +21,8 @@ struct RigMasks {
 };
 
 /// Reads the files that the parameters name. Refuses one that is not there, is no image, has not one channel
-/// of 8 bit, or leaves less than a tenth of the picture. The failure names the parameter and the file.
+/// of 8 bit, or leaves less than a tenth of the picture. The failure names the parameter and the file. The
+/// masks are those of the working pair: see workingPair() for a rig that is mounted upside down.
 Expected<RigMasks> loadRigMasks(const RigParameters& parameters);
 
 /// Refuses a mask that is not as large as the pictures that the camera delivers, with ROI and binning.

@@ -66,7 +66,8 @@ struct KalmanHeightParameters {
     v.number("initial_speed_stddev", initial_speed_stddev, 0.1, 100.0, "m/s",
              "1 sigma of the initial vertical speed, which starts at 0");
     v.number("height_model_error", height_model_error, 0.0, 0.1, "of height",
-             "1 sigma by which the surface below differs from the plane seen ahead; does not average out");
+             "1 sigma by which the surface below differs from the plane seen ahead; does not average out. "
+             "For a baseline that is not known well there is rig/baseline_stddev");
     v.number("gate", gate, 1.0, 20.0, "sigma",
              "innovation gate of the height filter: a height with a larger normalised innovation is "
              "rejected as an outlier");
@@ -118,7 +119,7 @@ struct KalmanHeightParameters {
              "the alert limit as a share of the height, see alert_limit");
     v.number("unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
              "largest error of a scale common to all heights, such as a wrong baseline. No test can "
-             "see it, so the protection level assumes it");
+             "see it, so the protection level assumes it. The variance has rig/baseline_stddev instead");
   }
 };
 

@@ -11,8 +11,11 @@ namespace uav_landing {
 // defaults are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before
 // gain and offset.
 
-/// What both cameras have in common (section image).
+/// What both cameras have in common (section image). A rolling shutter exposes its rows one after the other:
+/// the middle of row v of the raw picture at stamp + ((v + 0.5) / height - stamp_row) readout_time.
 struct SimulatedImageParameters {
+  enum class RowDirection { kRows, kColumns };
+
   int width = 640;
   int height = 480;
   int supersampling = 2;
@@ -20,6 +23,9 @@ struct SimulatedImageParameters {
   double noise = 2.0;
   double exposure_time = 0.0;
   int exposure_samples = 4;
+  double readout_time = 0.0;
+  double stamp_row = 0.5;
+  RowDirection row_direction = RowDirection::kRows;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -31,14 +37,24 @@ struct SimulatedImageParameters {
     v.number("exposure_time", exposure_time, 0.0, 0.1, "s",
              "motion blur over this time around the stamp; 0: none");
     v.number("exposure_samples", exposure_samples, 1, 64, "", "pictures averaged over the exposure time");
+    v.number("readout_time", readout_time, -0.5, 0.5, "s",
+             "of a rolling shutter, from the top row to the bottom row; negative: from bottom to top; 0: all "
+             "rows at once");
+    v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
+             "row that is in the middle of its exposure at the stamp; 0: top, 1: bottom");
+    v.choice("row_direction", row_direction, {"rows", "columns"},
+             "what is exposed one after the other; columns: from left to right");
   }
 };
 
-/// One camera's lens (plumb_bob) and sensor (sections left_camera, right_camera).
+enum class SimulatedLens { kPlumbBob, kEquidistant };
+
+/// One camera's lens and sensor (sections left_camera, right_camera).
 struct SimulatedCameraParameters {
   double fx = 554.26, fy = 554.26;
   double cx = 319.5, cy = 239.5;
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  SimulatedLens lens = SimulatedLens::kPlumbBob;
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0, k4 = 0;
   double gain = 1.0;
   double offset = 0.0;
 
@@ -48,11 +64,14 @@ struct SimulatedCameraParameters {
     v.number("fy", fy, 10.0, 1e5, "px", "focal length along the columns");
     v.number("cx", cx, 0.0, 4096.0, "px", "column of the principal point; the first pixel's centre is 0");
     v.number("cy", cy, 0.0, 4096.0, "px", "row of the principal point");
+    v.choice("lens", lens, {"plumb_bob", "equidistant"},
+             "distortion model: that of usual lenses, or that of fisheye lenses, which has k1 to k4 alone");
     v.number("k1", k1, -1.0, 1.0, "", "radial distortion");
     v.number("k2", k2, -2.0, 2.0, "", "radial distortion");
     v.number("p1", p1, -0.1, 0.1, "", "tangential distortion");
     v.number("p2", p2, -0.1, 0.1, "", "tangential distortion");
     v.number("k3", k3, -2.0, 2.0, "", "radial distortion");
+    v.number("k4", k4, -2.0, 2.0, "", "radial distortion of the lens equidistant");
     v.number("gain", gain, 0.1, 10.0, "", "grey level = gain x scene + offset");
     v.number("offset", offset, -200.0, 200.0, "grey levels", "see gain");
   }
@@ -282,6 +301,24 @@ struct SimulatedGustParameters {
   }
 };
 
+/// Vibration of the whole rig about the left camera: one sine about each axis, with random phases (section
+/// vibration). The truth's attitude and the inertial sensor have it.
+struct SimulatedVibrationParameters {
+  double frequency = 50;
+  double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
+  double start = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("frequency", frequency, 0.1, 1000.0, "Hz", "of the vibration");
+    v.number("roll_deg", roll_deg, 0.0, 10.0, "deg", "amplitude of the roll");
+    v.number("pitch_deg", pitch_deg, 0.0, 10.0, "deg", "amplitude of the pitch");
+    v.number("yaw_deg", yaw_deg, 0.0, 10.0, "deg", "amplitude of the yaw");
+    v.number("start", start, 0.0, 3600.0, "s",
+             "since the start of the sequence; it grows over one period; 0: there all the time");
+  }
+};
+
 /// An inertial sensor on the rig and its errors (section imu).
 struct SimulatedImuParameters {
   double rate = 0;
@@ -333,6 +370,7 @@ struct SimulatorParameters {
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
   SimulatedGustParameters gust;
+  SimulatedVibrationParameters vibration;
   SimulatedImuParameters imu;
   SimulatedRandomParameters random;
 
@@ -363,6 +401,7 @@ struct SimulatorParameters {
     v("path", path);
     v("wobble", wobble);
     v("gust", gust);
+    v("vibration", vibration);
     v("imu", imu);
     v("random", random);
   }

@@ -14,11 +14,13 @@ struct CameraPose {
   Attitude attitude;
 };
 
-/// Straight glide, flare at a steady rate of the path's angle, straight again; on it the wobble and a gust.
+/// Straight glide, flare at a steady rate of the path's angle, straight again; on it the wobble, a gust and
+/// vibration. It is defined between the frames and before the start, too.
 class Trajectory {
  public:
   Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble,
-             const SimulatedGustParameters& gust, uint64_t seed);
+             const SimulatedGustParameters& gust, uint64_t seed,
+             const SimulatedVibrationParameters& vibration = {});
 
   /// t: seconds since the start.
   CameraPose pose(double t) const;
@@ -35,11 +37,15 @@ class Trajectory {
   Eigen::Vector2d advance(double t) const;
   /// Height lost to the gust after t seconds, m.
   double lostToGust(double t) const;
+  /// What the vibration adds to the attitude.
+  Attitude vibrationAt(double t) const;
 
   SimulatedPathParameters path_;
   SimulatedGustParameters gust_;
+  SimulatedVibrationParameters vibration_;
   double flare_start_;
   Wobble roll_, pitch_, yaw_, sway_, heave_;
+  Attitude vibration_phase_;
 };
 
 /// Truth of a frame from its pose and that of the previous one (null for the first), dt seconds before. K: of

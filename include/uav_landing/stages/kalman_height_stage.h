@@ -5,6 +5,7 @@
 #include "uav_landing/base/timings.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
+#include "uav_landing/parameters/rig_parameters.h"
 #include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -15,7 +16,7 @@ namespace uav_landing {
 class KalmanHeightStage {
  public:
   KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
-                    const RunwayParameters& runway = {});
+                    const RunwayParameters& runway = {}, const RigParameters& known_rig = {});
   KalmanHeightStage(const KalmanHeightStage& other);
   KalmanHeightStage& operator=(const KalmanHeightStage& other);
   ~KalmanHeightStage();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "geometry/lens.h"
+
 namespace uav_landing {
 
 namespace {
@@ -14,6 +16,9 @@ constexpr double kRotationTolerance = 1e-3;
 constexpr double kFocalTolerance = 1e-5;  // relative; 0.01 px at the edge of a 1000 px image
 constexpr double kRowTolerance = 0.01;    // px
 constexpr double kRowShift = 1e-3;        // of the baseline
+constexpr double kSamePlace = 1e-9;       // of the larger P[3]
+constexpr const char* kBeside = ", and the pair has to stand side by side";
+constexpr const char* kNegative = "-P[0] times the baseline in metres, a negative number";
 
 std::string text(double value) {
   std::ostringstream out;
@@ -59,18 +64,23 @@ Failure checkPinhole(const char* name, const Matrix& m) {
 Failure checkDistortion(const CameraCalibration& c) {
   for (size_t i = 0; i < c.D.size(); ++i)
     if (!std::isfinite(c.D[i])) return invalid(element("D", static_cast<int>(i)), c.D[i], "a number");
-  if (c.D.empty() && c.distortion_model.empty()) return {};
-  const size_t n = c.D.size();
-  if (c.distortion_model == "plumb_bob") {
-    if (n != 0 && n != 4 && n != 5)
-      return invalid("D", std::to_string(n) + " coefficients", "0, 4 or 5 for plumb_bob");
-  } else if (c.distortion_model == "rational_polynomial") {
-    if (n != 0 && n != 8)
-      return invalid("D", std::to_string(n) + " coefficients", "0 or 8 for rational_polynomial");
-  } else {
-    return invalid("distortion_model", "\"" + c.distortion_model + "\"", "plumb_bob or rational_polynomial");
+  if (!isDistorted(c.D)) return {};
+  struct Model {
+    const char* name;
+    std::vector<size_t> counts;
+    const char* expected;
+  };
+  static const Model kModels[] = {{"plumb_bob", {4, 5}, "4 or 5 for plumb_bob"},
+                                  {"rational_polynomial", {8, 12, 14}, "8, 12 or 14 for rational_polynomial"},
+                                  {"equidistant", {4}, "4 for equidistant"},
+                                  {"fisheye", {4}, "4 for fisheye"}};
+  for (const Model& model : kModels) {
+    if (c.distortion_model != model.name) continue;
+    const bool fits = std::count(model.counts.begin(), model.counts.end(), c.D.size()) > 0;
+    return fits ? Failure() : invalid("D", std::to_string(c.D.size()) + " coefficients", model.expected);
   }
-  return {};
+  return invalid("distortion_model", "\"" + c.distortion_model + "\"",
+                 "plumb_bob, rational_polynomial or equidistant (fisheye lenses)");
 }
 
 Failure checkRotation(const Eigen::Matrix3d& R) {
@@ -110,6 +120,47 @@ Failure mismatch(const std::string& field, double value, double left) {
   return invalid("right " + field, value, text(left) + " as on the left");
 }
 
+/// Place of the origin of P in the axes of the camera: P = K [I | t], m.
+Eigen::Vector3d translation(const Eigen::Matrix<double, 3, 4>& P) {
+  return {(P(0, 3) - P(0, 2) * P(2, 3)) / P(0, 0), (P(1, 3) - P(1, 2) * P(2, 3)) / P(1, 1), P(2, 3)};
+}
+
+/// Why the right camera is not beside the left one on its right. to_right: from the left one to it, m.
+Failure checkPlaces(const CameraCalibration& left, const CameraCalibration& right,
+                    const Eigen::Vector3d& to_right) {
+  const auto &Pl = left.P, &Pr = right.P;
+  const double x = to_right.x(), y = to_right.y(), z = to_right.z();
+  const double larger = std::max(std::abs(Pl(0, 3)), std::abs(Pr(0, 3)));
+  if (std::abs(y) > std::abs(x) && std::abs(y) >= std::abs(z))
+    return invalid("right P[7]", Pr(1, 3),
+                   (y > 0 ? "0: the right camera stands below the left one"
+                          : "0: the right camera stands above the left one") +
+                       std::string(kBeside));
+  if (std::abs(z) > std::abs(x))
+    return invalid("right P[11]", Pr(2, 3),
+                   (z > 0 ? "0: the right camera stands before the left one"
+                          : "0: the right camera stands behind the left one") +
+                       std::string(kBeside));
+  if (std::abs(Pr(0, 3) - Pl(0, 3)) <= kSamePlace * larger && larger > 0)
+    return invalid("left P[3]", Pl(0, 3),
+                   "0: it is that of the right camera, too, as if both stood in one place");
+  if (x < 0 && Pl(0, 3) != 0)
+    return invalid("left P[3]", Pl(0, 3),
+                   Pr(0, 3) == 0 ? "0, and a negative right P[3], which is 0: left and right are exchanged"
+                                 : "more than right P[3], " + text(Pr(0, 3)) +
+                                       ": left and right are exchanged, or the signs are wrong");
+  if (x < 0)
+    return invalid("right P[3]", Pr(0, 3),
+                   std::string(kNegative) + ": left and right are exchanged, or the driver's sign is wrong");
+  if (std::abs(y) > kRowShift * x)
+    return invalid("right P[7]", Pr(1, 3), text(Pl(1, 3)) + " as on the left: the same row in both images");
+  if (std::abs(z) > kRowShift * x)
+    return invalid("right P[11]", Pr(2, 3), text(Pl(2, 3)) + " as on the left");
+  return {};
+}
+
+bool isAtOrigin(const CameraCalibration& c) { return c.P.col(3).isZero(0); }
+
 /// What makes the rows of the two rectified images differ.
 Failure checkPair(const CameraCalibration& left, const CameraCalibration& right) {
   const auto same = [](const char* field, int l, int r) {
@@ -123,17 +174,14 @@ Failure checkPair(const CameraCalibration& left, const CameraCalibration& right)
         same("roi.height", left.roi.height, right.roi.height)})
     if (failure) return failure;
   const auto &Pl = left.P, &Pr = right.P;
+  if (isAtOrigin(left) && isAtOrigin(right))
+    return invalid("right P[3]", Pr(0, 3),
+                   std::string(kNegative) + ": these are two single calibrations, not one of the pair");
   for (int i = 0; i < 2; ++i)
     if (std::abs(Pr(i, i) - Pl(i, i)) > kFocalTolerance * Pl(i, i))
       return mismatch(element("P", 5 * i), Pr(i, i), Pl(i, i));
   if (std::abs(Pr(1, 2) - Pl(1, 2)) > kRowTolerance) return mismatch("P[6]", Pr(1, 2), Pl(1, 2));
-  if (Pl(0, 3) != 0) return invalid("left P[3]", Pl(0, 3), "0: the left camera is the origin");
-  if (Pl(1, 3) != 0) return invalid("left P[7]", Pl(1, 3), "0: the left camera is the origin");
-  if (Pr(0, 3) >= 0)
-    return invalid("right P[3]", Pr(0, 3), "-P[0] times the baseline in metres, a negative number");
-  if (std::abs(Pr(1, 3)) > -kRowShift * Pr(0, 3))
-    return invalid("right P[7]", Pr(1, 3), "0: the same row in both images");
-  return {};
+  return checkPlaces(left, right, translation(Pl) - translation(Pr));
 }
 
 }  // namespace
@@ -156,6 +204,7 @@ CameraCalibration CameraCalibration::ofDeliveredImage() const {
   for (int i = 0; i < 2; ++i) {
     reduced.K(i, 2) -= offset[i];
     reduced.P(i, 2) -= offset[i];
+    reduced.P(i, 3) -= offset[i] * P(2, 3);
     reduced.K.row(i) /= binning[i];
     reduced.P.row(i) /= binning[i];
   }
@@ -203,7 +252,7 @@ Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCal
   rig.cx = l.P(0, 2);
   rig.cy = l.P(1, 2);
   rig.cx_right = r.P(0, 2);
-  rig.baseline = -r.P(0, 3) / r.P(0, 0);
+  rig.baseline = translation(l.P).x() - translation(r.P).x();
   return rig;
 }
 

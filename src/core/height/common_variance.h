@@ -9,7 +9,13 @@ struct CommonVariance {
   double bend = 0;     ///< what a pair leaves open of the surface's bend: some much, some hardly anything
   double width = 0;    ///< the runway's width, of heights by it
 
+  /// The baseline's length. Unlike the others it is no part of a measurement's variance: what all heights
+  /// are wrong by together makes no difference between them.
+  double baseline = 0;
+
+  /// Of a measurement, the baseline aside.
   double total() const { return lasting + bend + width; }
+  double withBaseline() const { return total() + baseline; }
 };
 
 }  // namespace uav_landing

@@ -6,8 +6,10 @@
 namespace uav_landing {
 namespace {
 
-Eigen::RowVector3d stddevs(const CommonVariance& common) {
-  return Eigen::RowVector3d(common.lasting, common.bend, common.width).cwiseMax(0).cwiseSqrt();
+Eigen::RowVector4d stddevs(const CommonVariance& common) {
+  return Eigen::RowVector4d(common.lasting, common.bend, common.width, common.baseline)
+      .cwiseMax(0)
+      .cwiseSqrt();
 }
 
 }  // namespace
@@ -20,7 +22,7 @@ void HeightFilter::initialise(double height, double variance, const CommonVarian
   covariance_ << variance, 0, 0, initial_speed_stddev_ * initial_speed_stddev_;
   own_ = covariance_;
   own_(0, 0) = std::max(0.0, variance - common.total());
-  common_ << stddevs(common), Eigen::RowVector3d::Zero();
+  common_ << stddevs(common), Eigen::RowVector4d::Zero();
   initialised_ = true;
 }
 
@@ -45,8 +47,8 @@ HeightFilter::Update HeightFilter::updateSpeed(double speed, double variance) {
 }
 
 CommonVariance HeightFilter::commonVariance() const {
-  const Eigen::RowVector3d squares = common_.row(0).cwiseAbs2();
-  return {squares[0], squares[1], squares[2]};
+  const Eigen::RowVector4d squares = common_.row(0).cwiseAbs2();
+  return {squares[0], squares[1], squares[2], squares[3]};
 }
 
 HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, double measured,

@@ -54,7 +54,7 @@ class HeightFilter {
   Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero(), own_ = Eigen::Matrix2d::Zero();
   // 1 sigma of the state by each cause of what is common, with signs.
-  Eigen::Matrix<double, 2, 3> common_ = Eigen::Matrix<double, 2, 3>::Zero();
+  Eigen::Matrix<double, 2, 4> common_ = Eigen::Matrix<double, 2, 4>::Zero();
 };
 
 }  // namespace uav_landing

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "geometry/lens.h"
 #include "image/resampler.h"
 
 namespace uav_landing {
@@ -18,18 +19,32 @@ constexpr float kOutside = -2;  // a source coordinate of which no pixel is in t
 constexpr double kMaxRadius =
     20.0;  // on the plane z = 1: 87 degrees off the axis, no lens of these models sees it
 
-/// Radius at which the radial distortion (OpenCV's model of plumb_bob and rational_polynomial, on the plane
-/// z = 1) stops growing: beyond it the polynomial folds back into the picture and means nothing.
-/// Searched up to max_radius; infinity when it grows all the way.
-double foldRadius(const std::vector<double>& D, double max_radius) {
+/// Where the lens shows what is r off the axis, both on the plane z = 1; negative where that is nowhere.
+/// OpenCV's radial model of plumb_bob and rational_polynomial.
+double radialDistance(const std::vector<double>& D, double r) {
   const auto k = [&D](size_t i) { return i < D.size() ? D[i] : 0.0; };
+  const double r2 = r * r, denominator = 1 + r2 * (k(5) + r2 * (k(6) + r2 * k(7)));
+  return denominator > 0 ? r * (1 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)))) / denominator : -1;
+}
+
+/// The same of a fisheye lens: an odd polynomial of the angle off the axis.
+double fisheyeDistance(const std::vector<double>& D, double r) {
+  const double angle = std::atan(r), a2 = angle * angle;
+  return angle * (1 + a2 * (D[0] + a2 * (D[1] + a2 * (D[2] + a2 * D[3]))));
+}
+
+/// Radius, on the plane z = 1, at which the distance in the picture stops growing: beyond it the polynomial
+/// folds back into the picture and means nothing. Searched up to max_radius; infinity when it grows all the
+/// way.
+double foldRadius(const CameraCalibration& c, double max_radius) {
   constexpr int kSteps = 10000;
+  if (!isDistorted(c.D)) return std::numeric_limits<double>::infinity();
   double previous = 0;
   for (int i = 1; i <= kSteps; ++i) {
-    const double r = max_radius * i / kSteps, r2 = r * r;
-    const double denominator = 1 + r2 * (k(5) + r2 * (k(6) + r2 * k(7)));
-    const double distorted = r * (1 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)))) / denominator;
-    if (denominator <= 0 || distorted <= previous) return r;
+    const double r = max_radius * i / kSteps;
+    const double distorted =
+        isFisheye(c.distortion_model, c.D) ? fisheyeDistance(c.D, r) : radialDistance(c.D, r);
+    if (distorted <= previous) return r;
     previous = distorted;
   }
   return std::numeric_limits<double>::infinity();
@@ -50,7 +65,7 @@ void excludeUnreal(const CameraCalibration& c, cv::Mat& x, cv::Mat& y) {
   for (const int u : {0, c.width - 1})
     for (const int v : {0, c.height - 1})
       max_radius = std::max(max_radius, seenRadius(from_pixel, u, v, radius) ? radius : kMaxRadius);
-  const double fold = foldRadius(c.D, max_radius);
+  const double fold = foldRadius(c, max_radius);
   for (int v = 0; v < y.rows; ++v)
     for (int u = 0; u < y.cols; ++u) {
       float &xs = x.at<float>(v, u), &ys = y.at<float>(v, u);
@@ -72,8 +87,12 @@ SourceMaps sourceMaps(const CameraCalibration& c) {
   cv::eigen2cv(c.K, K);
   cv::eigen2cv(c.R, R);
   cv::eigen2cv(projection, P);
-  // An empty D is no distortion; R and P still count.
-  cv::initUndistortRectifyMap(K, cv::Mat(c.D, true), R, P, c.imageSize(), CV_32FC1, x, y);
+  // A lens without distortion is one by any name; R and P still count.
+  const cv::Mat D = isDistorted(c.D) ? cv::Mat(c.D, true) : cv::Mat();
+  if (isFisheye(c.distortion_model, c.D))
+    cv::fisheye::initUndistortRectifyMap(K, D, R, P, c.imageSize(), CV_32FC1, x, y);
+  else
+    cv::initUndistortRectifyMap(K, D, R, P, c.imageSize(), CV_32FC1, x, y);
   excludeUnreal(c, x, y);
   SourceMaps maps;
   cv::convertMaps(x, y, maps.places, maps.fractions, CV_16SC2);
@@ -146,13 +165,14 @@ Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
 }
 
 Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,
-                                const RigMasks& masks) {
+                                const RigMasks& masks, const RigParameters& parameters) {
   const Expected<StereoRig> rig = makeStereoRig(left, right);
   if (!rig) return tl::unexpected(rig.error());
   if (Failure failure = checkMaskSize(masks.left, left)) return tl::unexpected(failure);
   if (Failure failure = checkMaskSize(masks.right, right)) return tl::unexpected(failure);
   return RigModel{*rig, validityMask(sourceMaps(left.ofDeliveredImage()), masks.left.usable),
-                  validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable)};
+                  validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable),
+                  RowTimes(left, leftReadout(parameters)), RowTimes(right, rightReadout(parameters))};
 }
 
 }  // namespace uav_landing

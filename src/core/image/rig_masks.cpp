@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <system_error>
+#include <utility>
 
 #include "base/text.h"
 
@@ -60,6 +61,7 @@ Expected<RigMasks> loadRigMasks(const RigParameters& parameters) {
   RigMasks masks{{{}, "rig/left_mask", parameters.left_mask}, {{}, "rig/right_mask", parameters.right_mask}};
   for (RawMask* mask : {&masks.left, &masks.right})
     if (const Failure failure = read(*mask)) return tl::make_unexpected(failure);
+  if (parameters.upside_down) std::swap(masks.left, masks.right);
   return masks;
 }
 

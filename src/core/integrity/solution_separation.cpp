@@ -81,7 +81,7 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
     if (!solutions_[i]) continue;
     const HeightFilter& filter = *solutions_[i];
     level = larger(level, height, filter.state()[0],
-                   factor * filter.ownCovariance()(0, 0) + filter.commonVariance().total(),
+                   factor * filter.ownCovariance()(0, 0) + filter.commonVariance().withBaseline(),
                    toString(static_cast<FaultySource>(i)));
   }
   return level;

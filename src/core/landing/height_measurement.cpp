@@ -14,24 +14,33 @@ constexpr double kWidthTolerance = 0.02;
 void fuseWidth(const WidthHeight::Estimate& seen, MeasuredHeight& measured) {
   constexpr double kAgreement = 3;  // sigma
   const double difference = measured.width_height - measured.height;
-  const double sum = seen.variance + measured.variance;
+  // The width knows nothing of the baseline, and is off stereo by what that is wrong by.
+  const double by_baseline = measured.errors.baselineVariance(measured.height);
+  const double sum = seen.variance + measured.variance + by_baseline;
   if (difference * difference > kAgreement * kAgreement * sum) return;
-  const double model = measured.errors.modelVariance(measured.height), own = measured.variance - model;
-  const double gain = own / (own + seen.variance);
+  const double model = measured.errors.modelVariance(measured.height);
+  const double own = measured.variance - model + by_baseline;
+  const double gain = own / (own + seen.variance), left = 1 - gain;
   measured.height += gain * difference;
   measured.errors.width = gain * gain * seen.common;
-  measured.variance = own * seen.variance / (own + seen.variance) + model;
+  measured.errors.baseline *= left;
+  measured.variance = own * seen.variance / (own + seen.variance) + model - left * left * by_baseline;
 }
 
 }  // namespace
 
 HeightMeasurement::HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
-                                     const RunwayParameters& runway)
-    : rig_(rig), parameters_(parameters), width_(runway.width), stamps_(parameters.max_deceleration) {}
+                                     const RunwayParameters& runway, double baseline_stddev)
+    : rig_(rig),
+      parameters_(parameters),
+      baseline_stddev_(baseline_stddev),
+      width_(runway.width),
+      stamps_(parameters.max_deceleration) {}
 
 MeasuredHeight HeightMeasurement::propose(const PairInput& in, const Ground& ground,
                                           const MeasuredHeight& by_ground, const HeightPrior& prior) {
   MeasuredHeight measured = by_ground;
+  measured.errors.baseline = baseline_stddev_;
   if (!in.repeated()) followStamps(in, prior, measured);
   measured.stereo_height = measured.height;
   measured.stereo_variance = measured.variance;
@@ -69,8 +78,10 @@ void HeightMeasurement::useWidth(const ApproachAngleResult::Runway& runway, cons
   if (seen && prior.known() && prior.confirmed()) {
     // What the width itself is wrong by does not tell whether it is that of the same edges.
     const CommonVariance common = prior.filter.commonVariance();
+    // A learned width is wrong by what the baseline is, as the heights are.
+    const double by_baseline = width_.independent() ? common.baseline : 0;
     same = width_.isSame(runway.width, runway.width_variance, prior.filter.state()[0] - bend,
-                         prior.filter.ownCovariance()(0, 0) + common.lasting + common.bend);
+                         prior.filter.ownCovariance()(0, 0) + common.lasting + common.bend + by_baseline);
   }
   // A known one is reported nevertheless: the fault may as well be the heights'.
   if (!same && !width_.independent()) seen.reset();
@@ -86,6 +97,7 @@ void HeightMeasurement::useWidth(const ApproachAngleResult::Runway& runway, cons
     measured.height = measured.width_height;
     measured.variance = measured.width_height_variance;
     measured.errors.width = seen->common;
+    if (width_.independent()) measured.errors.baseline = 0;
     measured.by_width = true;
   } else if (by_stereo && width_.independent()) {
     fuseWidth(*seen, measured);
@@ -107,6 +119,7 @@ void HeightMeasurement::leaveOutSources(const PairInput& in, const Ground& groun
   stereo_alone.variance = ground.alone.heightVariance() + measured.errors.modelVariance(measured.height);
   stereo_alone.common = measured.common();
   stereo_alone.common.width = 0;
+  stereo_alone.common.baseline = std::pow(baseline_stddev_ * stereo_alone.height, 2);
   stereo_alone.common.lasting +=
       GroundPlane{ground.alone.g, ground.alone_common}.heightVariance() - ground.rig_variance;
   // The plane that is left has not been turned by the motion's normal either.

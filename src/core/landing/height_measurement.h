@@ -18,8 +18,9 @@ MeasuredHeight heightByGround(const StereoRig& rig, const KalmanHeightParameters
 /// open.
 class HeightMeasurement {
  public:
+  /// baseline_stddev: as a share of the baseline.
   HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
-                    const RunwayParameters& runway = {});
+                    const RunwayParameters& runway = {}, double baseline_stddev = 0);
 
   /// by_ground: of the same pair. The result is without a failure where the width alone gives a height.
   MeasuredHeight propose(const PairInput& in, const Ground& ground, const MeasuredHeight& by_ground,
@@ -39,6 +40,7 @@ class HeightMeasurement {
 
   StereoRig rig_;
   KalmanHeightParameters parameters_;
+  double baseline_stddev_;
   WidthHeight width_;
   StampScatter stamps_;
 };

@@ -116,7 +116,7 @@ void HeightTrack::judge(double stamp, TrackVerdict& verdict) const {
   const double h = filter_.state()[0];
   verdict.height = h;
   verdict.height_variance =
-      varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance().total();
+      varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance().withBaseline();
   verdict.vertical_speed = filter_.state()[1];
   // Motions are given as much as they scatter themselves; where heights alone tell the speed it scatters as
   // they do.
@@ -137,7 +137,8 @@ SolutionSeparation::Level HeightTrack::protectionLevel(
   const SolutionSeparation::Level level =
       separation_.protectionLevel(height, height_variance, varianceFactor());
   if (!below) return level;
-  return separation_.larger(level, height, below->height, below->variance, "surface_below");
+  return separation_.larger(level, height, below->height, below->variance + filter_.commonVariance().baseline,
+                            "surface_below");
 }
 
 // By which the filter's own variance is larger than what the pairs claim makes of it.

@@ -17,13 +17,19 @@ struct HeightErrors {
   double averaging = 0;  ///< by what makes an average over points another height than the plane's, m^2
   double rig = 0;        ///< by the rig's rotation, m^2; part of the plane's variance
   double width = 0;      ///< by the runway's width, the same on all pairs, m^2; part of the measurement's
+  /// 1 sigma by the baseline's length, of the height. No part of the measurement's variance: all heights are
+  /// wrong by it alike.
+  double baseline = 0;
 
   /// By how much the surface below may differ from the plane seen ahead, m^2.
   double modelVariance(double height) const {
     return std::pow(relative * height, 2) + surface + bend + averaging;
   }
   /// Of a height's variance what the next pairs have as well.
-  CommonVariance common(double height) const { return {modelVariance(height) - bend + rig, bend, width}; }
+  CommonVariance common(double height) const {
+    return {modelVariance(height) - bend + rig, bend, width, baselineVariance(height)};
+  }
+  double baselineVariance(double height) const { return std::pow(baseline * height, 2); }
 };
 
 /// A height by one pair alone.

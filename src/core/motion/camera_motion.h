@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "geometry/rotation.h"
+#include "geometry/stamp_map.h"
+
 namespace uav_landing {
 
 // Motion is scale-free here: lengths are in units of the height now, so that the ground plane is the unit
@@ -21,6 +24,11 @@ struct CameraMotion {
 inline CameraMotion carriedOn(const CameraMotion& motion, double times) {
   const Eigen::AngleAxisd turn(motion.R);
   return {Eigen::AngleAxisd(turn.angle() * times, turn.axis()).toRotationMatrix(), motion.t * times};
+}
+
+/// How the camera moves now if it has moved evenly over the duration (s) of that motion.
+inline RowMotion evenMotion(const CameraMotion& motion, double duration) {
+  return {rotationVector(motion.R) / duration, motion.t / duration};
 }
 
 /// Rotation from then to now that is known beforehand, of an inertial sensor.

@@ -50,6 +50,8 @@ class MotionTracker {
                  Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
   /// Whether there is an earlier image, but no motion up to it that would lead on.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
+  /// How the camera moved at the last stamp, as far as it is known.
+  std::optional<RowMotion> lastMotion() const { return past_.empty() ? std::nullopt : past_.back().motion; }
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when
@@ -65,6 +67,7 @@ class MotionTracker {
     double stamp = 0;
     MatchImage image;
     std::optional<CameraMotion> since;  ///< motion from then to now, when known
+    std::optional<RowMotion> motion;    ///< while its rows were exposed
   };
 
   using Corners = std::vector<TrackedCorner>;
@@ -82,6 +85,7 @@ class MotionTracker {
                                        std::optional<PathAngleFilter::Measurement>& angle) const;
 
   StereoRig rig_;
+  RowTimes times_;
   cv::Mat mask_;  // left, eroded by the window
   ApproachAngleParameters parameters_;
   StepSearch search_;

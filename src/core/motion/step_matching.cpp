@@ -29,9 +29,18 @@ std::vector<TemporalMatch> StepMatching::match(const StepImages& step,
                                                const std::vector<TrackedCorner>& corners,
                                                const CameraMotion& predicted, int coarse_steps,
                                                std::vector<TemporalMatch> list) const {
-  const TemporalMatchOptions options{parameters_.window_radius, parameters_.min_zncc, coarse_steps};
+  TemporalMatchOptions options{parameters_.window_radius, parameters_.min_zncc, coarse_steps};
+  options.rows = rowsBy(step, predicted);
   return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted, options,
                        step.textures, step.memory.matching, std::move(list));
+}
+
+RowsOverTime StepMatching::rowsBy(const StepImages& step, const CameraMotion& predicted) const {
+  if (step.times == nullptr || step.times->atOnce() || !(step.duration > 0)) return {};
+  const RowMotion now = evenMotion(predicted, step.duration);
+  const double height_then = 1 + step.normal.dot(predicted.t);
+  return {step.times, now,
+          step.rows_then.value_or(RowMotion{now.w, predicted.R.transpose() * now.v / height_then})};
 }
 
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,

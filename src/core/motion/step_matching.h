@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "image/match_image.h"
@@ -35,6 +36,8 @@ struct StepImages {
   const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
   bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
   SearchTime time = SearchTime::kAmple;
+  const RowTimes* times = nullptr;          ///< of the left image's rows
+  std::optional<RowMotion> rows_then = {};  ///< how the camera moved then, if that is known
 };
 
 /// Follows corners over a step from where a motion puts them, and estimates the motion from them.
@@ -64,6 +67,9 @@ class StepMatching {
   const StereoRig& rig() const { return rig_; }
 
  private:
+  /// While rows are exposed the camera moves as the predicted motion says.
+  RowsOverTime rowsBy(const StepImages& step, const CameraMotion& predicted) const;
+
   StereoRig rig_;
   cv::Mat mask_;
   ApproachAngleParameters parameters_;

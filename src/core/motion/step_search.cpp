@@ -41,6 +41,16 @@ bool StepSearch::isGood(const Expected<MotionEstimate>& estimate,
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           const std::vector<CameraMotion>& predictions,
                                           std::vector<TemporalMatch>& matches) {
+  const Expected<MotionEstimate> found = findMotion(step, predictions, matches);
+  if (!found || step.times == nullptr || step.times->atOnce()) return found;
+  // Rows were carried to the stamps by the motion of before, which this one is not quite.
+  matches = matching_.match(step, step.corners, found->motion, 0, std::move(matches));
+  return matching_.estimate(step, found->motion, matches, min_matches_);
+}
+
+Expected<MotionEstimate> StepSearch::findMotion(const StepImages& step,
+                                                const std::vector<CameraMotion>& predictions,
+                                                std::vector<TemporalMatch>& matches) {
   if (!predictions.empty() && step.regular && steadiness_.goesWithout()) {
     const Expected<MotionEstimate> steady = followSteadily(step, predictions.front(), matches);
     if (steady) return steady;

@@ -36,6 +36,8 @@ class StepSearch {
                      const std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> followFrom(const StepImages& step, const CameraMotion& predicted,
                                       std::vector<TemporalMatch>& matches) const;
+  Expected<MotionEstimate> findMotion(const StepImages& step, const std::vector<CameraMotion>& predictions,
+                                      std::vector<TemporalMatch>& matches);
   /// With nothing known of it; fails as long as the search for it goes on in other pairs.
   Expected<MotionEstimate> findFirst(const StepImages& step, std::vector<TemporalMatch>& matches);
   bool isGood(const Expected<MotionEstimate>& estimate, const std::vector<TemporalMatch>& matches) const;

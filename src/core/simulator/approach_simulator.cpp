@@ -7,6 +7,7 @@
 
 #include "simulator/own_frame.h"
 #include "simulator/renderer.h"
+#include "simulator/rolling_shutter.h"
 #include "simulator/sensor.h"
 
 namespace uav_landing {
@@ -23,6 +24,15 @@ std::vector<StandingObject> standOn(const GroundProfile& ground, std::vector<Sta
   return objects;
 }
 
+Failure checkReadout(const SimulatorParameters& p) {
+  const double longest = 1 / p.path.rate, given = std::abs(p.image.readout_time);
+  if (given <= longest * (1 + 1e-9)) return {};
+  std::ostringstream detail;
+  detail << "image/readout_time: " << p.image.readout_time << " s is longer than the " << longest
+         << " s from one pair to the next (path/rate)";
+  return {Reason::kInputInvalid, detail.str()};
+}
+
 }  // namespace
 
 /// What the pictures are of, and what takes them. The same parameters make the same one.
@@ -30,6 +40,7 @@ struct ApproachSimulator::World {
   SimulatorParameters parameters;
   CameraRig rig;
   Trajectory trajectory;
+  RollingShutter shutter;
   GroundProfile profile;
   Renderer renderer;
   OwnFrame left_frame, right_frame;
@@ -38,7 +49,8 @@ struct ApproachSimulator::World {
   World(const SimulatorParameters& p, CameraRig cameras)
       : parameters(p),
         rig(std::move(cameras)),
-        trajectory(p.path, p.wobble, p.gust, p.random.seed),
+        trajectory(p.path, p.wobble, p.gust, p.random.seed, p.vibration),
+        shutter(p.image),
         profile(p.profile),
         renderer(
             Scene(p.runway, p.surface, p.random.seed, Scenery(p.scenery, p.runway, p.surface, p.random.seed)),
@@ -49,18 +61,33 @@ struct ApproachSimulator::World {
 
   double timeOf(int index) const { return index / parameters.path.rate; }
 
+  /// Height of the lower camera above the ground, m.
+  double lowerCamera(double time) const {
+    const CameraPose pose = trajectory.pose(time);
+    const double left = pose.position.z() - profile.height(pose.position.x());
+    return left + std::min(0.0, rig.right.offset_x * runwayFromOptical(pose.attitude)(2, 0));
+  }
+
   Failure checkHeights() const {
     constexpr double kLowest = 0.01;
     for (int i = 0; i < frames; ++i) {
-      const CameraPose pose = trajectory.pose(timeOf(i));
-      const double left = pose.position.z() - profile.height(pose.position.x());
-      const double right = left + rig.right.offset_x * runwayFromOptical(pose.attitude)(2, 0);
-      if (std::min(left, right) >= kLowest) continue;
+      const double before = lowerCamera(timeOf(i) + shutter.first());
+      if (std::min(before, lowerCamera(timeOf(i) + shutter.last())) >= kLowest) continue;
       std::ostringstream detail;
       detail << "path/duration: a camera touches the ground after " << timeOf(i) << " s";
       return {Reason::kInputInvalid, detail.str()};
     }
     return {};
+  }
+
+  /// All at once, or line by line, each as it is seen at its own time.
+  void render(const SimulatedCamera& camera, double time, cv::Mat& grey) const {
+    if (shutter.atOnce()) return renderer.render(camera, trajectory.pose(time), grey);
+    grey.create(camera.calibration.height, camera.calibration.width, CV_32F);
+    cv::parallel_for_(cv::Range(0, shutter.lines()), [&](const cv::Range& lines) {
+      for (int line = lines.start; line < lines.end; ++line)
+        renderer.render(camera, trajectory.pose(time + shutter.timeOf(line)), shutter.part(line), grey);
+    });
   }
 
   cv::Mat lightIn(const SimulatedCamera& camera, const OwnFrame& own, int index) const {
@@ -69,7 +96,7 @@ struct ApproachSimulator::World {
     cv::Mat grey, sum;
     for (int i = 0; i < samples; ++i) {
       const double shift = image.exposure_time * ((i + 0.5) / samples - 0.5);
-      renderer.render(camera, trajectory.pose(timeOf(index) + shift), grey);
+      render(camera, timeOf(index) + shift, grey);
       if (i == 0)
         grey.copyTo(sum);
       else
@@ -94,6 +121,7 @@ struct ApproachSimulator::World {
 };
 
 Expected<ApproachSimulator> ApproachSimulator::create(const SimulatorParameters& parameters) {
+  if (Failure failure = checkReadout(parameters)) return tl::make_unexpected(failure);
   Expected<CameraRig> rig = makeCameraRig(parameters);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto world = std::make_shared<const World>(parameters, std::move(*rig));

@@ -7,17 +7,26 @@
 #include <opencv2/core/eigen.hpp>
 #include <string>
 
+#include "geometry/lens.h"
+
 namespace uav_landing {
 namespace {
 
 constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
 
+bool hasFisheye(const CameraCalibration& camera) { return isFisheye(camera.distortion_model, camera.D); }
+
 CameraCalibration lensOf(const SimulatedCameraParameters& camera, const SimulatedImageParameters& image) {
   CameraCalibration calibration;
   calibration.width = image.width;
   calibration.height = image.height;
-  calibration.distortion_model = "plumb_bob";
-  calibration.D = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  if (camera.lens == SimulatedLens::kEquidistant) {
+    calibration.distortion_model = "equidistant";
+    calibration.D = {camera.k1, camera.k2, camera.k3, camera.k4};
+  } else {
+    calibration.distortion_model = "plumb_bob";
+    calibration.D = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  }
   calibration.K << camera.fx, 0, camera.cx,  //
       0, camera.fy, camera.cy,               //
       0, 0, 1;
@@ -34,8 +43,13 @@ double rectify(const SimulatedRigParameters& rig, CameraCalibration& left, Camer
   const cv::Mat rotation = axes.t();
   const cv::Mat translation = -rotation * cv::Mat(cv::Vec3d(rig.x, rig.y, rig.z));
   cv::Mat left_r, right_r, left_p, right_p, q;
-  cv::stereoRectify(left_k, left.D, right_k, right.D, cv::Size(left.width, left.height), rotation,
-                    translation, left_r, right_r, left_p, right_p, q, cv::CALIB_ZERO_DISPARITY, 0.0);
+  const cv::Size size(left.width, left.height);
+  if (hasFisheye(left) && hasFisheye(right))
+    cv::fisheye::stereoRectify(left_k, left.D, right_k, right.D, size, rotation, translation, left_r, right_r,
+                               left_p, right_p, q, cv::fisheye::CALIB_ZERO_DISPARITY);
+  else
+    cv::stereoRectify(left_k, left.D, right_k, right.D, size, rotation, translation, left_r, right_r, left_p,
+                      right_p, q, cv::CALIB_ZERO_DISPARITY, 0.0);
   cv::cv2eigen(left_r, left.R);
   cv::cv2eigen(right_r, right.R);
   cv::cv2eigen(left_p, left.P);
@@ -60,7 +74,10 @@ std::vector<cv::Point2d> directionsOf(const std::vector<cv::Point2d>& pixels,
   cv::eigen2cv(calibration.R, r);
   std::vector<cv::Point2d> directions;
   const cv::TermCriteria criteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 200, 1e-12);
-  cv::undistortPoints(pixels, directions, k, calibration.D, r, cv::noArray(), criteria);
+  if (hasFisheye(calibration))
+    cv::fisheye::undistortPoints(pixels, directions, k, calibration.D, r);
+  else
+    cv::undistortPoints(pixels, directions, k, calibration.D, r, cv::noArray(), criteria);
   return directions;
 }
 
@@ -75,7 +92,10 @@ double worstReprojection(const std::vector<cv::Point2d>& pixels, const std::vect
   points.reserve(directions.size());
   for (const cv::Point2d& direction : directions) points.emplace_back(direction.x, direction.y, 1.0);
   std::vector<cv::Point2d> images;
-  cv::projectPoints(points, rotation, cv::Vec3d(0, 0, 0), k, calibration.D, images);
+  if (hasFisheye(calibration))
+    cv::fisheye::projectPoints(points, images, rotation, cv::Vec3d(0, 0, 0), k, calibration.D);
+  else
+    cv::projectPoints(points, rotation, cv::Vec3d(0, 0, 0), k, calibration.D, images);
   double worst = 0;
   for (size_t i = 0; i < pixels.size(); ++i) {
     const double distance = cv::norm(images[i] - pixels[i]);
@@ -141,6 +161,10 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
   CameraRig rig;
   rig.left.calibration = lensOf(parameters.left_camera, parameters.image);
   rig.right.calibration = lensOf(parameters.right_camera, parameters.image);
+  if (hasFisheye(rig.left.calibration) != hasFisheye(rig.right.calibration))
+    return tl::make_unexpected(
+        Failure{Reason::kInputInvalid,
+                "right_camera/lens: expected the lens of left_camera, as both are rectified together"});
   rig.right.offset_x = rectify(parameters.rig, rig.left.calibration, rig.right.calibration);
   constexpr double kLeastForward = 0.7;  // of the optical axis after rectification: cosine of 45 degrees
   const bool usable = rig.right.offset_x > 0 && rig.left.calibration.P.allFinite() &&

@@ -126,7 +126,7 @@ std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& p, do
 
 void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
                  const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
-                 cv::Mat& image) {
+                 const cv::Rect& part, cv::Mat& image) {
   if (objects.empty()) return;
   std::vector<Visible> visible;
   for (const StandingObject& object : objects)
@@ -135,11 +135,11 @@ void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCame
                        outlineOf(object, rotation, centre)});
   const Eigen::Matrix3f axes = rotation.cast<float>();
   const PixelFilter finer = filter.finer();  // outlines are told by samples alone
-  cv::parallel_for_(cv::Range(0, image.rows), [&](const cv::Range& rows) {
+  cv::parallel_for_(cv::Range(part.y, part.br().y), [&](const cv::Range& rows) {
     std::vector<const Visible*> here;
     for (int row = rows.start; row < rows.end; ++row) {
       const PixelRay* rays = &camera.rays[static_cast<size_t>(row) * image.cols];
-      for (int column = 0; column < image.cols; ++column) {
+      for (int column = part.x; column < part.br().x; ++column) {
         here.clear();
         for (const Visible& object : visible)
           if (object.outline.contains(rays[column], rays[column].xu)) here.push_back(&object);

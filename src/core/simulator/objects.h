@@ -20,10 +20,10 @@ struct StandingObject {
 std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& objects, double runway_width,
                                          uint64_t seed);
 
-/// Draws the objects over an image of the ground (32-bit float). rotation: runway frame from rectified camera
-/// axes; centre: the camera's, in the runway frame; filter: what the ground was drawn with.
+/// Draws the objects over a part of an image of the ground (32-bit float). rotation: runway frame from
+/// rectified camera axes; centre: the camera's, in the runway frame; filter: what the ground was drawn with.
 void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
                  const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
-                 cv::Mat& image);
+                 const cv::Rect& part, cv::Mat& image);
 
 }  // namespace uav_landing

@@ -113,18 +113,23 @@ float Renderer::pixel(const View& view, const PixelRay& ray) const {
 }
 
 void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const {
+  image.create(camera.calibration.height, camera.calibration.width, CV_32F);
+  render(camera, pose, cv::Rect({}, image.size()), image);
+}
+
+void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, const cv::Rect& part,
+                      cv::Mat& image) const {
   const Eigen::Matrix3d rotation = runwayFromOptical(pose.attitude);
   const Eigen::Vector3d centre = pose.position + camera.offset_x * rotation.col(0);
   const View view{rotation.cast<float>(), centre.cast<float>()};
-  image.create(camera.calibration.height, camera.calibration.width, CV_32F);
-  cv::parallel_for_(cv::Range(0, image.rows), [&](const cv::Range& rows) {
+  cv::parallel_for_(cv::Range(part.y, part.br().y), [&](const cv::Range& rows) {
     for (int row = rows.start; row < rows.end; ++row) {
-      const PixelRay* rays = &camera.rays[static_cast<size_t>(row) * image.cols];
-      std::transform(rays, rays + image.cols, image.ptr<float>(row),
+      const PixelRay* rays = &camera.rays[static_cast<size_t>(row) * image.cols + part.x];
+      std::transform(rays, rays + part.width, image.ptr<float>(row) + part.x,
                      [&](const PixelRay& ray) { return pixel(view, ray); });
     }
   });
-  drawObjects(objects_, camera, rotation, centre, filter_, image);
+  drawObjects(objects_, camera, rotation, centre, filter_, part, image);
 }
 
 }  // namespace uav_landing

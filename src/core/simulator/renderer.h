@@ -24,6 +24,9 @@ class Renderer {
   /// Grey levels as 32-bit floats, of the camera's size. pose: of the rectified left camera, also for the
   /// right.
   void render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const;
+  /// The same for one part of a picture that is there already.
+  void render(const SimulatedCamera& camera, const CameraPose& pose, const cv::Rect& part,
+              cv::Mat& image) const;
   /// 1 sigma of the lens's blur that is still to be done, px.
   double blurLeft() const { return filter_.blurLeft(); }
 

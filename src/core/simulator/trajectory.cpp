@@ -23,8 +23,9 @@ Eigen::Vector2d arc(double a, double b, double duration) {
 }  // namespace
 
 Trajectory::Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble,
-                       const SimulatedGustParameters& gust, uint64_t seed)
-    : path_(path), gust_(gust), flare_start_(std::numeric_limits<double>::infinity()) {
+                       const SimulatedGustParameters& gust, uint64_t seed,
+                       const SimulatedVibrationParameters& vibration)
+    : path_(path), gust_(gust), vibration_(vibration), flare_start_(std::numeric_limits<double>::infinity()) {
   const double sink = path.speed * std::sin(path.glide_angle_deg * kRadiansPerDegree);
   if (path.flare_height > 0 && sink > 0)
     flare_start_ = std::max(0.0, (path.start_height - path.flare_height) / sink);
@@ -38,6 +39,8 @@ Trajectory::Trajectory(const SimulatedPathParameters& path, const SimulatedWobbl
   yaw_ = make(wobble.yaw_deg * kRadiansPerDegree, wobble.yaw_period);
   sway_ = make(wobble.sway, wobble.sway_period);
   heave_ = make(wobble.heave, wobble.heave_period);
+  for (double* phase : {&vibration_phase_.roll, &vibration_phase_.pitch, &vibration_phase_.yaw})
+    *phase = random.uniform(0.0, kTwoPi);
 }
 
 double Trajectory::Wobble::at(double t) const {
@@ -65,17 +68,32 @@ double Trajectory::lostToGust(double t) const {
   return 0.5 * gust_.speed * (in_gust - period * std::sin(in_gust / period));
 }
 
+Attitude Trajectory::vibrationAt(double t) const {
+  const double periods = (t - vibration_.start) * vibration_.frequency;
+  const double grown = vibration_.start > 0 ? std::clamp(periods, 0.0, 1.0) : 1;
+  const auto sine = [&](double degrees, double phase) {
+    return grown * degrees * kRadiansPerDegree * std::sin(kTwoPi * periods + phase);
+  };
+  Attitude added;
+  added.roll = sine(vibration_.roll_deg, vibration_phase_.roll);
+  added.pitch = sine(vibration_.pitch_deg, vibration_phase_.pitch);
+  added.yaw = sine(vibration_.yaw_deg, vibration_phase_.yaw);
+  return added;
+}
+
 CameraPose Trajectory::pose(double t) const {
   const Eigen::Vector2d way = advance(t);
   const double track = path_.track_deg * kRadiansPerDegree;
   const double flared = std::clamp((t - flare_start_) / path_.flare_duration, 0.0, 1.0);
+  const Attitude vibration = vibrationAt(t);
   CameraPose pose;
   pose.position = {path_.start_x + way.x() * std::cos(track),
                    path_.start_y + way.x() * std::sin(track) + sway_.at(t),
                    path_.start_height - way.y() + heave_.at(t) - lostToGust(t)};
-  pose.attitude.roll = path_.roll_deg * kRadiansPerDegree + roll_.at(t);
-  pose.attitude.pitch = (path_.pitch_deg + flared * path_.flare_pitch_deg) * kRadiansPerDegree + pitch_.at(t);
-  pose.attitude.yaw = path_.yaw_deg * kRadiansPerDegree + yaw_.at(t);
+  pose.attitude.roll = path_.roll_deg * kRadiansPerDegree + roll_.at(t) + vibration.roll;
+  pose.attitude.pitch =
+      (path_.pitch_deg + flared * path_.flare_pitch_deg) * kRadiansPerDegree + pitch_.at(t) + vibration.pitch;
+  pose.attitude.yaw = path_.yaw_deg * kRadiansPerDegree + yaw_.at(t) + vibration.yaw;
   return pose;
 }
 

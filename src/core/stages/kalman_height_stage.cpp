@@ -37,9 +37,9 @@ struct Parts {
   FailureCounts failures;
 
   Parts(const StereoRig& rig, const KalmanHeightParameters& parameters, const RunwayParameters& runway,
-        int resets)
+        double baseline_stddev, int resets)
       : ground(rig, parameters),
-        measurement(rig, parameters, runway),
+        measurement(rig, parameters, runway, baseline_stddev),
         monitor(rig, parameters),
         track(parameters, resets),
         sink_rate(parameters),
@@ -61,21 +61,24 @@ struct KalmanHeightStage::Implementation {
   StereoRig rig;
   KalmanHeightParameters parameters;
   RunwayParameters runway;
+  double baseline_stddev;
   LandingClock clock;
   std::optional<Parts> parts;
   Timings timings;
 
-  Implementation(const StereoRig& given, const KalmanHeightParameters& p, const RunwayParameters& known)
+  Implementation(const StereoRig& given, const KalmanHeightParameters& p, const RunwayParameters& known,
+                 const RigParameters& known_rig)
       : rig(given),
         parameters(p),
         runway(known),
+        baseline_stddev(known_rig.baseline_stddev),
         clock(p.reset_timeout, p.gate),
-        parts(std::in_place, rig, parameters, runway, 0) {}
+        parts(std::in_place, rig, parameters, runway, baseline_stddev, 0) {}
 
   void startAnew() {
     parts->track.lose();
     const int resets = parts->track.resets();
-    parts.emplace(rig, parameters, runway, resets);
+    parts.emplace(rig, parameters, runway, baseline_stddev, resets);
   }
 
   // What happens to a pair, in order.
@@ -214,8 +217,8 @@ struct KalmanHeightStage::Implementation {
 };
 
 KalmanHeightStage::KalmanHeightStage(const StereoRig& rig, const KalmanHeightParameters& parameters,
-                                     const RunwayParameters& runway)
-    : implementation_(std::make_unique<Implementation>(rig, parameters, runway)) {}
+                                     const RunwayParameters& runway, const RigParameters& known_rig)
+    : implementation_(std::make_unique<Implementation>(rig, parameters, runway, known_rig)) {}
 KalmanHeightStage::KalmanHeightStage(const KalmanHeightStage& other)
     : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
 KalmanHeightStage& KalmanHeightStage::operator=(const KalmanHeightStage& other) {

@@ -1,53 +1,73 @@
 #pragma once
 
 #include <rosbag/bag.h>
+#include <rosbag/message_instance.h>
+#include <sensor_msgs/CameraInfo.h>
+#include <sensor_msgs/Image.h>
 #include <sensor_msgs/Imu.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "pairing.h"
+#include "bags/pair_plan.h"
 #include "uav_landing/base/failure.h"
 
 namespace uav_landing {
 
-/// Streams the image pairs of a bag and an inertial sensor, message by message.
+/// Reads the image pairs of a recording and an inertial sensor. A recording is one bag, or the parts that a
+/// split one has. A first pass reads the stamps, the second one reads the images in the order of the pairs:
+/// the order in the bag does not matter, and no more than one pair is in memory.
 class StereoBagReader {
  public:
-  /// Throws std::runtime_error with a message for the user when the file cannot be opened as a bag.
+  /// Throws std::runtime_error with a message for the user when a file cannot be opened as a bag.
   /// camera: namespace of the cameras without a slash in front. imu: topic, may be missing in the bag; "":
-  /// none.
-  StereoBagReader(const std::string& path, const std::string& camera, const std::string& imu);
+  /// none. Topics that were recorded without a slash in front are found, too.
+  StereoBagReader(const std::vector<std::string>& paths, const std::string& camera, const std::string& imu);
 
-  /// Which topic is missing or of another type, and what the bag contains instead. imu_needed: that of the
-  /// inertial sensor must be there, too.
+  /// Which topic is missing or of another type, what the bag contains instead, and what takes that.
+  /// imu_needed: that of the inertial sensor must be there, too.
   Failure checkTopics(bool imu_needed) const;
   /// There are messages of the inertial sensor.
   bool hasImu() const;
-  /// Left images in the bag.
-  std::size_t leftImages() const;
+  /// Messages that plan() reads.
   std::size_t messages() const;
   /// Left image, left camera_info, right image, right camera_info.
   const std::array<std::string, 4>& topics() const { return topics_; }
 
   /// Calls visit for every message of /tf_static.
   void readStaticTransforms(const std::function<void(const tf2_msgs::TFMessage&)>& visit) const;
-  /// Hands every message to the pairing or to imu, in the order of the bag; after each of them calls
-  /// progress(). Throws ros::Exception where the file is damaged.
-  void read(StereoPairing& pairing, const std::function<void(const sensor_msgs::Imu&)>& imu,
-            const std::function<void()>& progress) const;
+  /// Reads the stamps and pairs them; after each message calls progress(). Throws ros::Exception where the
+  /// file is damaged.
+  PairPlan plan(const RectifyParameters& parameters, const std::function<void()>& progress);
+
+  using PairVisitor = std::function<void(
+      const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfoConstPtr& left_info,
+      const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfoConstPtr& right_info)>;
+  /// Hands on the pairs of plan(), and between them the messages of the inertial sensor as they were
+  /// recorded. Throws as plan() does.
+  void read(const PairPlan& plan, const PairVisitor& pair,
+            const std::function<void(const sensor_msgs::Imu&)>& imu) const;
 
  private:
+  struct Placed {
+    rosbag::MessageInstance message;
+    std::size_t place;  // among all messages
+  };
+  /// The names in the bags of a topic: with and without a slash in front.
+  std::vector<std::string> namesOf(const std::string& topic) const;
   std::vector<std::string> wanted() const;
 
-  std::optional<rosbag::Bag> bag_;
+  std::vector<std::string> paths_;
+  std::vector<std::unique_ptr<rosbag::Bag>> bags_;
   std::array<std::string, 4> topics_;
   std::string imu_;
+  std::array<std::vector<Placed>, 4> inputs_;  // since plan()
+  std::vector<Placed> imu_messages_;
 };
 
 }  // namespace uav_landing

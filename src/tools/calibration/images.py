@@ -77,29 +77,65 @@ def grey(message, source):
                          f"{len(message.data)} bytes cannot be read ({error})")
 
 
+def bag_topics(camera):
+    return {f"/{camera.strip('/')}/{side}/image_raw": side for side in ("left", "right")}
+
+
+def view_name(stamp):
+    return f"{stamp.to_sec():.3f}"
+
+
+def common_stamps(bag, path, topics):
+    """Stamps that both cameras have, in order."""
+    present = bag.get_type_and_topic_info().topics
+    missing = [topic for topic in topics if topic not in present]
+    if missing:
+        raise InputError(f"{path}: no topic {', '.join(missing)} (there are: {', '.join(sorted(present))}); "
+                         "--camera names another namespace")
+    stamps = {side: set() for side in topics.values()}
+    for topic, message, _ in bag.read_messages(list(topics)):
+        stamps[topics[topic]].add(message.header.stamp)
+    common = sorted(stamps["left"] & stamps["right"])
+    if not common:
+        raise InputError(f"{path}: no left and right image have the same stamp: calibrate with the cameras "
+                         "triggered together, or at rest from single images")
+    return common
+
+
+def bag_neighbours(path, camera, names, longest_gap, most):
+    """{view name: (seconds, left image, right image) of the pair before, the same of the pair after} of a bag.
+
+    Only for views that have both within the longest gap (s), and for so many of them at most, evenly spaced. The seconds are
+    relative to the view.
+    """
+    import rosbag  # only here: folders and archives need no ROS
+    topics = bag_topics(camera)
+    with rosbag.Bag(str(path)) as bag:
+        common = common_stamps(bag, path, topics)
+        near = {view_name(common[i]): [(common[j] - common[i]).to_sec() for j in (i - 1, i + 1)]
+                for i in range(1, len(common) - 1)}
+        wanted = {name: (common[i - 1], common[i + 1]) for i, name in enumerate(map(view_name, common))
+                  if name in names and name in near and max(map(abs, near[name])) <= longest_gap}
+        wanted = dict(list(wanted.items())[::max(1, -(-len(wanted) // most))])
+        stamps = {stamp for pair in wanted.values() for stamp in pair}
+        pixels = {(topics[topic], message.header.stamp): grey(message, f"{path}: {topic}")
+                  for topic, message, _ in bag.read_messages(list(topics)) if message.header.stamp in stamps}
+    return {name: [(seconds, pixels["left", stamp], pixels["right", stamp]) for seconds, stamp in zip(near[name], pair)]
+            for name, pair in wanted.items()}
+
+
 def bag_images(path, camera):
     """Evenly spaced pairs of equal stamp, at most BAG_PAIRS: neighbours at 20 Hz show the same board twice."""
     import rosbag  # only here: folders and archives need no ROS
-    topics = {f"/{camera.strip('/')}/{side}/image_raw": side for side in ("left", "right")}
+    topics = bag_topics(camera)
     try:
         with rosbag.Bag(str(path)) as bag:
-            present = bag.get_type_and_topic_info().topics
-            missing = [topic for topic in topics if topic not in present]
-            if missing:
-                raise InputError(f"{path}: no topic {', '.join(missing)} (there are: {', '.join(sorted(present))}); "
-                                 "--camera names another namespace")
-            stamps = {side: set() for side in topics.values()}
-            for topic, message, _ in bag.read_messages(list(topics)):
-                stamps[topics[topic]].add(message.header.stamp)
-            common = sorted(stamps["left"] & stamps["right"])
-            if not common:
-                raise InputError(f"{path}: no left and right image have the same stamp: calibrate with the cameras "
-                                 "triggered together, or at rest from single images")
+            common = common_stamps(bag, path, topics)
             chosen = {common[i] for i in np.linspace(0, len(common) - 1, min(BAG_PAIRS, len(common))).astype(int)}
             images = {"left": {}, "right": {}}
             for topic, message, _ in bag.read_messages(list(topics)):
                 if message.header.stamp in chosen:
-                    name = f"{message.header.stamp.to_sec():.3f}"
+                    name = view_name(message.header.stamp)
                     pixels = grey(message, f"{path}: {topic} at {name} s")
                     png = cv2.imencode(".png", pixels)[1].tobytes()
                     images[topics[topic]][name] = Image(f"{path}: {topic} at {name} s", lambda data=png: data)

@@ -80,6 +80,17 @@ def in_order_of(reference, corners, board):
     return np.ascontiguousarray(best)
 
 
+def corners_like(calibrator, view, left_image, right_image):
+    """Corners of another pair (left, right) in the view's order, or None when a camera does not see the whole board."""
+    found = []
+    for image, reference in ((left_image, view.left), (right_image, view.right)):
+        corners = calibrator.downsample_and_detect(image)[1]
+        if corners is None:
+            return None
+        found.append(in_order_of(reference, corners, view.board))
+    return tuple(found)
+
+
 def find_views(calibrator, pairs):
     """Views in which both cameras see the whole board, and the names of the others. Notes the image size."""
     views, others = [], []

@@ -1,65 +1,89 @@
-"""Bags with other topic names or compressed images."""
+"""Bags with other topic names, compressed images, or both pictures in one."""
 
-import cv2
-import numpy as np
+import copy
+
 import rosbag
-from sensor_msgs.msg import Image
 
-from .errors import InputError
+from .errors import BrokenPicture, InputError
+from .pictures import deinterlaced, raw_halves, to_image
 
 SIDES = ("left", "right")
 IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
 
 
-def to_image(message, topic):
-    """A raw image; a compressed one is decoded by OpenCV, grey, or colour as bgr8."""
-    if message._type == "sensor_msgs/Image":
-        return message
-    # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
-    pixels = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_UNCHANGED) if message.data else None
-    if pixels is None or pixels.dtype != np.uint8 or pixels.ndim == 3 and pixels.shape[2] != 3:
-        raise InputError(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
-                         "cannot be decoded to 8 bits")
-    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1],
-                  encoding="mono8" if pixels.ndim == 2 else "bgr8", step=pixels.strides[0])
-    image.data = pixels.tobytes()
-    return image
-
-
-def check_topics(bag, path, topics):
-    """The topics of the images are there and are images; None where there is no camera_info to be taken."""
+def check_topics(bag, path, images, infos):
+    """The topics of the images are there and are images; those of camera_info are there."""
     known = bag.get_type_and_topic_info().topics
-    images = [name for name, info in known.items() if info.msg_type in IMAGE_TYPES]
-    for side in SIDES:
-        topic = topics[f"{side}/image_raw"]
+    there = [name for name, info in known.items() if info.msg_type in IMAGE_TYPES]
+    for topic in images:
         if topic not in known:
-            raise InputError(f"{path}: no topic {topic}; images are on: {', '.join(sorted(images)) or 'no topic'}")
-        if topic not in images:
+            raise InputError(f"{path}: no topic {topic}; images are on: {', '.join(sorted(there)) or 'no topic'}")
+        if topic not in there:
             raise InputError(f"{path}: {topic} is {known[topic].msg_type}, expected an image")
-        info = topics.get(f"{side}/camera_info")
-        if info and info not in known:
-            raise InputError(f"{path}: no topic {info}; give a calibration file (--{side}-calibration) instead")
+    for side, topic in infos.items():
+        if topic not in known:
+            raise InputError(f"{path}: no topic {topic}; give a calibration file (--{side}-calibration) instead")
 
 
-def convert_bag(path, output, camera, topics, calibrations):
-    """Copies a bag's images and calibrations to the names the launch file expects; counts messages by name.
+def check_half(image, side, calibration, topic, layout):
+    """A picture that was cut out is as large as its calibration says."""
+    if calibration and (image.width, image.height) != (calibration.width, calibration.height):
+        raise InputError(f"{topic}: each half ({layout}) has {image.width}x{image.height} pixels, the {side} calibration is for "
+                         f"{calibration.width}x{calibration.height}: calibrate with the halves")
 
-    topics: {"left/image_raw": name in the bag, ...}; calibrations: {"left": CameraInfo, ...} instead of those in the bag.
+
+class BagConversion:
+    """Copies images and calibrations to the names that the launch file expects.
+
+    images: {"left": topic, "right": topic}, the same topic twice with a layout; infos: topics of camera_info by side;
+    calibrations: CameraInfo by side, instead of those in the bag. layout: both pictures are in one, see pictures.py.
+    deinterlace: of interlaced video one field is taken.
     """
-    names = {topic: name for name, topic in topics.items()}
-    counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
-    with rosbag.Bag(str(path)) as bag:
-        check_topics(bag, path, topics)
-        with rosbag.Bag(str(output), "w") as result:
-            for topic, message, time in bag.read_messages(list(names)):
-                name = names[topic]
-                side = name.split("/")[0]
-                if name.endswith("image_raw"):
-                    message = to_image(message, topic)
-                    if side in calibrations:
-                        calibrations[side].header = message.header
-                        result.write(f"/{camera}/{side}/camera_info", calibrations[side], time)
-                        counts[f"{side}/camera_info"] += 1
-                result.write(f"/{camera}/{name}", message, time)
-                counts[name] += 1
-    return counts
+
+    def __init__(self, camera, images, infos, calibrations, left_out, layout=None, deinterlace=False):
+        self.camera, self.images, self.infos, self.calibrations = camera, images, infos, calibrations
+        self.left_out, self.layout, self.deinterlace = left_out, layout, deinterlace
+        self.counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
+
+    def convert(self, path, output):
+        """Counts messages by name."""
+        with rosbag.Bag(str(path)) as bag:
+            check_topics(bag, path, self.images.values(), self.infos)
+            with rosbag.Bag(str(output), "w") as result:
+                for topic, message, time in bag.read_messages([*self.images.values(), *self.infos.values()]):
+                    for side in (side for side in SIDES if self.infos.get(side) == topic):
+                        self.write(result, f"{side}/camera_info", message, time)
+                    if topic in self.images.values():
+                        self.take(result, message, topic, time)
+        if self.left_out.count and not all(self.counts[f"{side}/image_raw"] for side in SIDES):
+            raise InputError(self.left_out.first)
+        return self.counts
+
+    def take(self, result, message, topic, time):
+        """Writes what a message has, and leaves out what is broken."""
+        try:
+            pictures = self.pictures(message, topic)
+        except BrokenPicture as broken:
+            return self.left_out.add(broken)
+        for side, picture in pictures.items():
+            if side in self.calibrations:
+                info = copy.copy(self.calibrations[side])
+                info.header = picture.header
+                self.write(result, f"{side}/camera_info", info, time)
+            self.write(result, f"{side}/image_raw", picture, time)
+
+    def pictures(self, message, topic):
+        """Raw images by side."""
+        image = to_image(message, topic)
+        if self.deinterlace:
+            image = deinterlaced(image, topic)
+        if not self.layout:
+            return {side: image for side in SIDES if self.images[side] == topic}
+        parts = dict(zip(SIDES, raw_halves(image, self.layout, topic)))
+        for side in SIDES:
+            check_half(parts[side], side, self.calibrations.get(side), topic, self.layout)
+        return parts
+
+    def write(self, result, name, message, time):
+        result.write(f"/{self.camera}/{name}", message, time)
+        self.counts[name] += 1

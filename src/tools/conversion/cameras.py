@@ -1,5 +1,7 @@
 """Calibrations of a stereo pair as sensor_msgs/CameraInfo."""
 
+import re
+
 import cv2
 import numpy as np
 import yaml
@@ -15,12 +17,43 @@ def camera_info(size, K, D, R, P, model="plumb_bob"):
     return info
 
 
+class TagLoader(yaml.SafeLoader):
+    """Takes what has a tag, as OpenCV's matrices, for what it is without."""
+
+
+def without_tag(loader, _, node):
+    if isinstance(node, yaml.MappingNode):
+        return loader.construct_mapping(node, deep=True)
+    return loader.construct_sequence(node, deep=True) if isinstance(node, yaml.SequenceNode) else loader.construct_scalar(node)
+
+
+TagLoader.add_multi_constructor("", without_tag)
+
+# What says that a file is of a whole stereo pair.
+STEREO_FILE = re.compile(r"^\s*(cam0|M1|K1|cameraMatrix1|CameraMatrix1|camera_matrix_1|LEFT\.K|mtx1|mtxL)\s*:", re.MULTILINE)
+
+
+def model_of(distortion):
+    """The model that a file means which names none: it is told by how many coefficients there are."""
+    return "rational_polynomial" if len(distortion) > 5 else "plumb_bob"
+
+
+def ros_yaml(info, name):
+    """Calibration file of ROS."""
+    def matrix(values, columns):
+        return f"{{rows: {len(values) // columns}, cols: {columns}, data: [{', '.join(repr(float(x)) for x in values)}]}}"
+    return (f"image_width: {info.width}\nimage_height: {info.height}\ncamera_name: {name}\n"
+            f"camera_matrix: {matrix(info.K, 3)}\ndistortion_model: {info.distortion_model}\n"
+            f"distortion_coefficients: {matrix(info.D, len(info.D))}\n"
+            f"rectification_matrix: {matrix(info.R, 3)}\nprojection_matrix: {matrix(info.P, 4)}\n")
+
+
 def load_yaml(path):
-    """Content of a YAML file; OpenCV's own tags are left out."""
+    """Content of a YAML file; the tags and the first line of OpenCV's are left out."""
     try:
         with open(str(path)) as file:
             text = "\n".join(line for line in file.read().splitlines() if not line.startswith("%"))
-        content = yaml.safe_load(text)
+        content = yaml.load(text, TagLoader)
     except OSError as error:
         raise unreadable(path, error)
     except (UnicodeDecodeError, yaml.YAMLError) as error:
@@ -54,6 +87,9 @@ def numbers(content, path, names, count):
 def from_ros_yaml(path):
     """Calibration file of ROS (camera_calibration_parsers)."""
     content = load_yaml(path)
+    if "camera_matrix" not in content and any(STEREO_FILE.match(f"{name}:") for name in content):
+        raise InputError(f"{path}: is of a stereo pair, not of one camera: make left.yaml and right.yaml of it by "
+                         "convert_recording calibration")
     size = numbers(content, path, ("image_width",), 1)[0], numbers(content, path, ("image_height",), 1)[0]
     distortion = field(content, path, "distortion_coefficients", "data")
     if not isinstance(distortion, list):
@@ -62,7 +98,7 @@ def from_ros_yaml(path):
                        numbers(content, path, ("distortion_coefficients", "data"), len(distortion)),
                        numbers(content, path, ("rectification_matrix", "data"), 9),
                        numbers(content, path, ("projection_matrix", "data"), 12),
-                       field(content, path, "distortion_model"))
+                       content.get("distortion_model") or model_of(distortion))
 
 
 def rectified(K, baseline, size):
@@ -75,11 +111,19 @@ def rectified(K, baseline, size):
 
 
 def stereo_rectified(size, left, right, right_from_left):
-    """Both cameras from their lenses, each (K, plumb_bob D), and the 4x4 transform from left to right camera axes."""
+    """Both cameras from their lenses, each (K, D, model), and the 4x4 transform from left to right camera axes."""
     R, t = right_from_left[:3, :3], right_from_left[:3, 3]
-    R_left, R_right, P_left, P_right = cv2.stereoRectify(left[0], left[1], right[0], right[1], size, R, t,
-                                                         flags=cv2.CALIB_ZERO_DISPARITY, alpha=0)[:4]
+    fisheye = [lens[2] == "equidistant" and np.any(lens[1]) for lens in (left, right)]
+    if fisheye[0] != fisheye[1]:
+        raise InputError("one lens is a fisheye, the other one is not: expected two of one kind")
+    if fisheye[0]:
+        R_left, R_right, P_left, P_right = cv2.fisheye.stereoRectify(left[0], left[1], right[0], right[1], size, R, t,
+                                                                     cv2.CALIB_ZERO_DISPARITY)[:4]
+    else:
+        R_left, R_right, P_left, P_right = cv2.stereoRectify(left[0], left[1], right[0], right[1], size, R, t,
+                                                             flags=cv2.CALIB_ZERO_DISPARITY, alpha=0)[:4]
     if not P_right[0, 3] < 0 or P_right[1, 3] != 0:
         raise InputError("the second camera is not to the right of the first: "
                          f"it is at {np.round(-R.T @ t, 4).tolist()} in its axes (x right, y down, z forward)")
-    return camera_info(size, left[0], left[1], R_left, P_left), camera_info(size, right[0], right[1], R_right, P_right)
+    return (camera_info(size, left[0], left[1], R_left, P_left, left[2]),
+            camera_info(size, right[0], right[1], R_right, P_right, right[2]))

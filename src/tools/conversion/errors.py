@@ -5,6 +5,40 @@ class InputError(Exception):
     """The input cannot be used; the message says which file, topic or field, and what was expected."""
 
 
+class BrokenPicture(InputError):
+    """One picture cannot be used; the others may be."""
+
+
 def unreadable(path, error):
     """InputError for an OSError of a file."""
     return InputError(f"{path}: " + ("no such file" if isinstance(error, FileNotFoundError) else error.strerror))
+
+
+class LeftOut:
+    """Pictures that cannot be used, of many that can: the first ones in words, all of them counted."""
+
+    SHOWN = 5
+
+    def __init__(self):
+        self.count, self.messages, self.notes = 0, [], []
+
+    def add(self, broken):
+        """One that cannot be used."""
+        self.count += 1
+        if self.count <= self.SHOWN:
+            self.messages.append(str(broken))
+
+    def note(self, text):
+        """What else a person should know of the pictures."""
+        self.notes.append(text)
+
+    @property
+    def first(self):
+        return self.messages[0]
+
+    def lines(self):
+        """For the user."""
+        lines = [f"left out: {message}" for message in self.messages]
+        if self.count:
+            lines.append("1 broken picture was left out" if self.count == 1 else f"{self.count} broken pictures were left out")
+        return lines + self.notes

@@ -10,14 +10,35 @@ import cv2
 import numpy as np
 
 from . import cameras
-from .errors import InputError, unreadable
+from .calibration_files import from_ros_file
+from .errors import BrokenPicture, InputError, unreadable
+from .pictures import halves, is_whole, one_field
 
 
 def read_image(path):
-    pixels = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    try:
+        data = Path(path).read_bytes()
+    except OSError:
+        data = b""
+    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data and is_whole(data) else None
     if pixels is None:
-        raise InputError(f"{path}: no such image, or damaged")
+        raise BrokenPicture(f"{path}: no such image, or damaged")
     return pixels
+
+
+class Pictures:
+    """Reads the pictures of a pair, or leaves the pair out where one is broken."""
+
+    def __init__(self, left_out):
+        self.left_out = left_out
+
+    def pair(self, left, right):
+        """Both pictures, or nothing."""
+        try:
+            return [(read_image(left), read_image(right))]
+        except BrokenPicture as broken:
+            self.left_out.add(broken)
+            return []
 
 
 def read_rows(path, separator):
@@ -35,7 +56,8 @@ def read_rows(path, separator):
 class Euroc:
     """A folder in the ASL format of the EuRoC data: mav0/cam0, mav0/cam1 (Burri et al., IJRR 2016)."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, left_out):
+        self.pictures = Pictures(left_out)
         folder = Path(folder)
         self.base = folder / "mav0" if (folder / "mav0").is_dir() else folder
         sensors = [self.base / camera / "sensor.yaml" for camera in ("cam0", "cam1")]
@@ -50,8 +72,9 @@ class Euroc:
         """Size, (K, D) and the transform body <- camera."""
         content = cameras.load_yaml(path)
         model = cameras.field(content, path, "distortion_model")
-        if model not in ("radial-tangential", "radtan", "plumb_bob"):
-            raise InputError(f"{path}: distortion_model {model}: only radial-tangential is known")
+        if model not in ("radial-tangential", "radtan", "plumb_bob", "equidistant"):
+            raise InputError(f"{path}: distortion_model {model}: expected radial-tangential or equidistant")
+        fisheye = model == "equidistant"
         fx, fy, cx, cy = cameras.numbers(content, path, ("intrinsics",), 4)
         width, height = cameras.numbers(content, path, ("resolution",), 2)
         pose = cameras.numbers(content, path, ("T_BS", "data"), 16).reshape(4, 4)
@@ -59,7 +82,8 @@ class Euroc:
             raise InputError(f"{path}: T_BS.data: expected a rotation in its first three rows and columns")
         distortion = cameras.numbers(content, path, ("distortion_coefficients",), 4)
         return (int(width), int(height)), (np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]),
-                                           np.append(distortion, 0)), pose
+                                           distortion if fisheye else np.append(distortion, 0),
+                                           "equidistant" if fisheye else "plumb_bob"), pose
 
     def __iter__(self):
         lists = []
@@ -70,14 +94,15 @@ class Euroc:
                 raise InputError(f"{path}: expected rows of timestamp [ns], filename")
             lists.append({int(row[0]): self.base / camera / "data" / row[1].strip() for row in rows})
         for stamp in sorted(set(lists[0]) & set(lists[1])):
-            yield stamp, read_image(lists[0][stamp]), read_image(lists[1][stamp])
+            for pair in self.pictures.pair(lists[0][stamp], lists[1][stamp]):
+                yield (stamp, *pair)
 
 
 class KittiOdometry:
     """A sequence of the KITTI odometry data: image_0, image_1, calib.txt, times.txt (Geiger et al., CVPR 2012)."""
 
-    def __init__(self, folder):
-        self.base = Path(folder)
+    def __init__(self, folder, left_out):
+        self.base, self.pictures = Path(folder), Pictures(left_out)
         path = self.base / "calib.txt"
         found = {row[0].rstrip(":"): row[1:] for row in read_rows(path, " ")}
         projections = []
@@ -106,18 +131,20 @@ class KittiOdometry:
         if len(times) < len(self.files):
             raise InputError(f"{path}: {len(times)} times for {len(self.files)} images")
         for time, file in zip(times, self.files):
-            yield round(time * 1e9), read_image(file), read_image(self.base / "image_1" / file.name)
+            for pair in self.pictures.pair(file, self.base / "image_1" / file.name):
+                yield (round(time * 1e9), *pair)
 
 
 class Videos:
-    """Two video files of synchronised cameras, and their calibration files."""
+    """Two video files of synchronised cameras, or one with both pictures in it, and the calibration files."""
 
-    def __init__(self, left, right, left_calibration, right_calibration, skip_left=0, skip_right=0, rate=None):
-        self.paths, self.skips, self.rate = (left, right), (skip_left, skip_right), rate
-        self.cameras = cameras.from_ros_yaml(left_calibration), cameras.from_ros_yaml(right_calibration)
+    def __init__(self, paths, calibrations, left_out, skips=(0, 0), rate=None, layout=None, deinterlace=False):
+        self.paths, self.skips, self.rate, self.left_out = paths, skips, rate, left_out
+        self.layout, self.deinterlace = layout, deinterlace
+        self.cameras = tuple(map(from_ros_file, calibrations, ("left", "right")))
 
-    def frames(self, path, skip, size):
-        """Grey pictures of a video from the one after the first `skip` on."""
+    def frames(self, path, skip):
+        """Time and grey picture of each frame of a video from the one after the first `skip` on; None for one that is broken."""
         video = cv2.VideoCapture(str(path))
         if not video.isOpened():
             raise InputError(f"{path}: no such video, or in a format that cannot be decoded")
@@ -125,19 +152,37 @@ class Videos:
         if not 0 < rate < 10000:
             raise InputError(f"{path}: has no frame rate: give --rate")
         number = 0
-        while True:
-            good, picture = video.read()
-            if not good:
-                return
-            if picture.shape[1::-1] != size:
-                raise InputError(f"{path}: {picture.shape[1]}x{picture.shape[0]} pixels, its calibration is for "
-                                 f"{size[0]}x{size[1]}")
+        while video.grab():
+            good, picture = video.retrieve()
             if number >= skip:
-                yield (number - skip) / rate, cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+                grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY) if good else None
+                yield (number - skip) / rate, one_field(grey) if good and self.deinterlace else grey
             number += 1
+        expected = round(video.get(cv2.CAP_PROP_FRAME_COUNT))
+        if 0 < number < expected:
+            self.left_out.note(f"{path}: ends after {number} of {expected} pictures: the rest is damaged or missing")
+
+    def checked(self, picture, path, info):
+        """The picture, when it has the size of its calibration."""
+        if picture.shape[1::-1] != (info.width, info.height):
+            half = f" each half, {self.layout}," if self.layout else ""
+            raise InputError(f"{path}:{half} {picture.shape[1]}x{picture.shape[0]} pixels, its calibration is for "
+                             f"{info.width}x{info.height}")
+        return picture
+
+    def pairs(self):
+        """Time and both pictures, None for those that are broken."""
+        if not self.layout:
+            for (seconds, left), (_, right) in zip(*(self.frames(*view) for view in zip(self.paths, self.skips))):
+                yield seconds, (left, right)
+            return
+        for seconds, picture in self.frames(self.paths[0], self.skips[0]):
+            yield seconds, (None, None) if picture is None else halves(picture, self.layout, self.paths[0])
 
     def __iter__(self):
-        sizes = [(info.width, info.height) for info in self.cameras]
-        views = [self.frames(*view) for view in zip(self.paths, self.skips, sizes)]
-        for (seconds, left), (_, right) in zip(*views):
-            yield round(seconds * 1e9), left, right
+        for number, (seconds, pictures) in enumerate(self.pairs()):
+            broken = [path for path, picture in zip(self.paths, pictures) if picture is None]
+            if broken:
+                self.left_out.add(f"{broken[0]}: picture {number} after those skipped cannot be decoded")
+                continue
+            yield (round(seconds * 1e9), *map(self.checked, pictures, self.paths, self.cameras))

@@ -121,6 +121,14 @@ Expected<std::vector<DatasetFrame>> readFrames(const fs::path& folder) {
   return frames;
 }
 
+/// NAME.yaml, .yml or .ini, as ROS's parsers tell files by their names.
+std::string calibrationIn(const fs::path& folder, const std::string& name) {
+  for (const char* extension : {".yml", ".ini"})
+    if (fs::is_regular_file(folder / (name + extension)) && !fs::exists(folder / (name + ".yaml")))
+      return (folder / (name + extension)).string();
+  return (folder / (name + ".yaml")).string();
+}
+
 bool hasPngSignature(const std::vector<unsigned char>& bytes) {
   static const unsigned char signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   return bytes.size() >= sizeof signature &&
@@ -144,8 +152,8 @@ Expected<sensor_msgs::CameraInfo> readCalibrationFile(const std::string& path) {
 Expected<Dataset> readDataset(const std::string& folder) {
   if (!fs::is_directory(folder)) return tl::make_unexpected(invalid(folder + ": no such folder"));
   Dataset dataset;
-  for (auto [name, info] : {std::pair("left.yaml", &dataset.left), std::pair("right.yaml", &dataset.right)}) {
-    Expected<sensor_msgs::CameraInfo> read = readCalibrationFile((fs::path(folder) / name).string());
+  for (auto [name, info] : {std::pair("left", &dataset.left), std::pair("right", &dataset.right)}) {
+    Expected<sensor_msgs::CameraInfo> read = readCalibrationFile(calibrationIn(folder, name));
     if (!read) return tl::make_unexpected(read.error());
     *info = *read;
   }

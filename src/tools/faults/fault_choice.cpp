@@ -9,13 +9,15 @@
 namespace uav_landing {
 namespace {
 
+/// Paint belongs to flat ground and to pictures of one moment.
 bool exclude(const Fault& a, const Fault& b) {
-  const auto bends = [](const Fault& fault) {
+  const auto unpaintable = [](const Fault& fault) {
     SimulatorParameters changed;
     if (fault.build) fault.build(changed);
-    return !GroundProfile(changed.profile).flat();
+    if (fault.disturb) fault.disturb(changed, 1);
+    return !GroundProfile(changed.profile).flat() || changed.image.readout_time != 0;
   };
-  return (bends(a) && paintsGround(&b)) || (bends(b) && paintsGround(&a));
+  return (unpaintable(a) && paintsGround(&b)) || (unpaintable(b) && paintsGround(&a));
 }
 
 }  // namespace

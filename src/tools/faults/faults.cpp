@@ -13,7 +13,7 @@ using Spoil = std::function<void(FaultRun&, int, Delivery&)>;
 constexpr double kDegree = M_PI / 180;
 
 Fault spoils(const char* name, Place place, const char* meaning, Spoil spoil) {
-  return {name, meaning, place, std::move(spoil), {}, {}, false, false};
+  return {name, meaning, place, std::move(spoil), {}, {}, {}, false, false};
 }
 
 /// A fault of both cameras' pictures, or of the left one only.
@@ -51,12 +51,18 @@ Fault bent(const char* axis, int index, double degrees) {
 
 Fault calibrated(const char* name, const char* meaning,
                  std::function<void(CameraCalibration&, CameraCalibration&)> calibrate) {
-  Fault fault{name, meaning, Place::kSensor, {}, std::move(calibrate), {}, false, false};
+  Fault fault{name, meaning, Place::kSensor, {}, std::move(calibrate), {}, {}, false, false};
   return fault;
 }
 
 Fault built(const char* name, const char* meaning, std::function<void(SimulatorParameters&)> build) {
-  Fault fault{name, meaning, Place::kScene, {}, {}, std::move(build), true, false};
+  Fault fault{name, meaning, Place::kScene, {}, {}, std::move(build), {}, true, false};
+  return fault;
+}
+
+Fault disturbed(const char* name, const char* meaning,
+                std::function<void(SimulatorParameters&, double)> disturb) {
+  Fault fault{name, meaning, Place::kScene, {}, {}, {}, std::move(disturb), true, false};
   return fault;
 }
 
@@ -222,6 +228,26 @@ void addGround(std::vector<Fault>& all) {
       }));
 }
 
+/// A motor that begins to shake the rig.
+void shake(SimulatorParameters& p, double onset) {
+  p.vibration.frequency = 47;
+  p.vibration.pitch_deg = 0.1;
+  p.vibration.roll_deg = 0.05;
+  p.vibration.yaw_deg = 0.03;
+  p.vibration.start = onset;
+}
+
+void addRows(std::vector<Fault>& all) {
+  all.push_back(built("readout_untold", "a rolling shutter of 10 ms that nobody told the chain of",
+                      [](SimulatorParameters& p) { p.image.readout_time = 0.01; }));
+  all.push_back(disturbed("vibration", "pitch shakes by 0.1 deg at 47 Hz, roll and yaw by less", shake));
+  all.push_back(disturbed("vibration_rows", "the same with a rolling shutter of 10 ms that nobody told of",
+                          [](SimulatorParameters& p, double onset) {
+                            shake(p, onset);
+                            p.image.readout_time = 0.01;
+                          }));
+}
+
 void addRig(std::vector<Fault>& all) {
   const char* const axes[] = {"pitch", "yaw", "roll"};
   for (int axis = 0; axis < 3; ++axis)
@@ -270,6 +296,7 @@ const std::vector<Fault>& allFaults() {
     addTiming(all);
     addLight(all);
     addGround(all);
+    addRows(all);
     addRig(all);
     addFromFirst(all);
     return all;

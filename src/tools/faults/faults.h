@@ -35,6 +35,9 @@ struct Fault {
   std::function<void(CameraCalibration&, CameraCalibration&)> calibrate;
   /// Another scene, for the whole run; empty otherwise. Only when simulated.
   std::function<void(SimulatorParameters&)> build;
+  /// A scene that becomes another one at the onset, s since the first pair; empty otherwise. Only when
+  /// simulated.
+  std::function<void(SimulatorParameters&, double onset)> disturb;
   bool needs_scene = false;  ///< only when simulated
   bool from_first = false;   ///< from the first pair on: nothing was healthy before
 

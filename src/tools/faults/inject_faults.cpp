@@ -76,6 +76,30 @@ class Campaign {
   }
 
  private:
+  /// Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
+  struct Chance {
+    Chance(const FaultCombination& faults, uint64_t seed, int frames) : hash(seed) {
+      for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);
+      cv::RNG random(hash);
+      in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
+    }
+    uint64_t hash;
+    int in_flight;  ///< first frame with the faults that come in flight
+  };
+
+  /// Returns a name for the changed scene; empty when nothing changes it.
+  std::string changeScene(const FaultCombination& faults, uint64_t seed, SimulatorParameters& scene) const {
+    const int in_flight = Chance(faults, seed, options_.frames).in_flight;
+    std::string name;
+    for (const Fault* fault : faults) {
+      if (fault->build) fault->build(scene);
+      if (fault->disturb) fault->disturb(scene, in_flight / scene.path.rate);
+      if (fault->build || fault->disturb) name += fault->name + " ";
+      if (fault->disturb) name += std::to_string(in_flight) + " ";
+    }
+    return name;
+  }
+
   SimulatorParameters draw(uint64_t seed) const {
     if (options_.scenery.empty()) return drawFlight(seed, options_.frames, parameters_);
     return drawFlight(seed, options_.frames, parameters_, &sceneryKinds().at(options_.scenery));
@@ -90,15 +114,9 @@ class Campaign {
     for (const FaultCombination& faults : choice_.combinations(seed)) {
       if (!flat && std::any_of(faults.begin(), faults.end(), paintsGround)) continue;
       SimulatorParameters changed = drawn;
-      FaultCombination builders;
-      for (const Fault* fault : faults) {
-        if (!fault->build) continue;
-        fault->build(changed);
-        builders.push_back(fault);
-      }
-      const std::string name = nameOf(builders);
-      if (!builders.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
-      const SimulatedFlight* flight = builders.empty() ? plain.get() : others[name].get();
+      const std::string name = changeScene(faults, seed, changed);
+      if (!name.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
+      const SimulatedFlight* flight = name.empty() ? plain.get() : others[name].get();
       if (flight != nullptr)
         flyOne(flight->flight, options_.scenery.empty() ? "simulator" : options_.scenery, faults, seed);
     }
@@ -121,19 +139,15 @@ class Campaign {
   void flyOne(const Flight& flight, const std::string& source, const FaultCombination& faults,
               uint64_t seed) {
     const int frames = static_cast<int>(flight.frames.size());
-    uint64_t hash = seed;
-    for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);
-    cv::RNG random(hash);
+    const Chance chance(faults, seed, frames);
     const bool whole =
         std::any_of(faults.begin(), faults.end(), [](const Fault* f) { return f->wholeRun(); });
     const bool healthy = faults.size() == 1 && faults[0]->name == "none";
-    // Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
-    const int in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
-    const int onset = healthy ? frames : whole ? 0 : in_flight;
+    const int onset = healthy ? frames : whole ? 0 : chance.in_flight;
     const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
     const FaultObserver observe = [&](double time, const LandingResult& said, double pair_time,
                                       bool faulted) { trace(from, time, said, flight, pair_time, faulted); };
-    const FaultScore score = flyWithFaults(flight, faults, in_flight, onset, hash, parameters_,
+    const FaultScore score = flyWithFaults(flight, faults, chance.in_flight, onset, chance.hash, parameters_,
                                            trace_.is_open() ? observe : FaultObserver());
     CsvRow row(file_);
     row.text(source).text(std::to_string(seed)).text(nameOf(faults));

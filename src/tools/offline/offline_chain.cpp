@@ -6,13 +6,23 @@
 #include "datasets/decimal_time.h"
 #include "image_input.h"
 #include "time_difference.h"
+#include "uav_landing/geometry/rig_check.h"
 
 namespace uav_landing {
+namespace {
+
+constexpr std::size_t kRowsLookedAt = 5;  // of so many pairs, one
+
+}  // namespace
 
 OfflineChain::OfflineChain(const Parameters& parameters, const std::string& camera, bool with_imu,
                            std::vector<std::unique_ptr<PairSink>>& sinks,
                            std::function<void(const std::string&)> complain)
-    : parameters_(parameters), camera_(camera), sinks_(sinks), complain_(std::move(complain)) {
+    : parameters_(parameters),
+      camera_(camera),
+      sinks_(sinks),
+      complain_(std::move(complain)),
+      range_(parameters.rig.bits) {
   if (with_imu && parameters.approach_angle.use_imu) imu_.emplace(parameters.approach_angle);
 }
 
@@ -37,7 +47,13 @@ void OfflineChain::process(const sensor_msgs::ImageConstPtr& left,
                            const sensor_msgs::CameraInfoConstPtr& left_info,
                            const sensor_msgs::ImageConstPtr& right,
                            const sensor_msgs::CameraInfoConstPtr& right_info) {
-  waiting_.push_back({left, right, left_info, right_info});
+  const bool repetition = pictures_.isRepetition(left, right);
+  for (const std::string& news : pictures_.news()) complain_(news);
+  if (repetition) return;
+  if (parameters_.rig.upside_down)
+    waiting_.push_back({right, left, right_info, left_info});
+  else
+    waiting_.push_back({left, right, left_info, right_info});
   release(false);
 }
 
@@ -61,13 +77,19 @@ void OfflineChain::release(bool all) {
 void OfflineChain::process(const Waiting& pair) {
   const ros::Time& stamp = pair.left->header.stamp;
   const double skew = secondsBetween(stamp, pair.right->header.stamp);
-  followCalibration(toCalibration(*pair.left_info), toCalibration(*pair.right_info), stamp);
+  const bool exchanged = parameters_.rig.upside_down;
+  followCalibration(toCalibration(*(exchanged ? pair.right_info : pair.left_info)),
+                    toCalibration(*(exchanged ? pair.left_info : pair.right_info)), stamp);
   ++pairs_;
   AttitudePrior imu;
-  if (imu_) imu = imu_->at(stamp, pair.left_info->header.frame_id, left_calibration_.R);
+  if (imu_) imu = imu_->at(stamp, pair.left_info->header.frame_id, working_.left.R);
   if (imu_ && imu.failure && !imu.hasRotation()) complainOfImu("imu: " + imu.failure.message());
   const Failure problem = run(pair.left, pair.right, skew, imu);
   if (!problem) {
+    // As the nodelets' log: a rig that is mounted wrongly gives nothing on any pair.
+    const Failure& mounting = output_->stereo.failure;
+    if (mounting.reason == Reason::kInputInvalid || mounting.reason == Reason::kNegativeDisparity)
+      sayOnce(mounting, stamp);
     const ProcessedPair processed{stamp, pair.left->header.frame_id, skew,
                                   {},    pipeline_->rig().rig,       *output_};
     for (const auto& sink : sinks_) sink->take(processed);
@@ -94,20 +116,38 @@ void OfflineChain::followCalibration(const CameraCalibration& left, const Camera
   left_calibration_ = left;
   right_calibration_ = right;
   pipeline_.reset();
-  Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters_);
-  calibration_failure_ = pipeline ? Failure() : ofCameraInfo(pipeline.error());
-  if (!pipeline) return;
+  const Failure failure = startWith(left, right);
+  calibration_failure_ = failure ? ofCameraInfo(failure) : Failure();
+}
+
+Failure OfflineChain::startWith(const CameraCalibration& left, const CameraCalibration& right) {
+  const Expected<CameraPair> working = workingPair(left, right, parameters_.rig);
+  if (!working) return working.error();
+  working_ = *working;
+  Expected<Pipeline> pipeline = Pipeline::create(working_.left, working_.right, parameters_);
+  if (!pipeline) return pipeline.error();
   pipeline_.emplace(std::move(*pipeline));
-  for (const std::string& warning : ofCameraInfo(pipeline_->warnings())) complain_(warning);
+  for (const std::string& warning : ofCameraInfo(rigWarnings(left, right, parameters_.rig)))
+    complain_(warning);
+  return {};
 }
 
 Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right,
                           double skew, const AttitudePrior& imu) {
   if (calibration_failure_) return calibration_failure_;
-  const auto left_image = toMono8(left, left_calibration_, "/" + camera_ + "/left/image_raw");
+  const bool exchanged = parameters_.rig.upside_down;
+  const auto topic = [&](bool of_left) {
+    return "/" + camera_ + (of_left != exchanged ? "/left/image_raw" : "/right/image_raw");
+  };
+  const GreyRange range = followRange(range_, left, working_.left, right, working_.right);
+  const auto left_image = toMono8(left, working_.left, topic(true), range);
   if (!left_image) return left_image.error();
-  const auto right_image = toMono8(right, right_calibration_, "/" + camera_ + "/right/image_raw");
+  const auto right_image = toMono8(right, working_.right, topic(false), range);
   if (!right_image) return right_image.error();
+  if (pairs_ % kRowsLookedAt == 0) {
+    pictures_.look((*left_image)->image, topic(true));
+    for (const std::string& news : pictures_.news()) complain_(news);
+  }
   output_ =
       &pipeline_->process(left->header.stamp.toSec(), (*left_image)->image, (*right_image)->image, skew, imu);
   return {};
@@ -115,6 +155,10 @@ Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_m
 
 void OfflineChain::report(const Failure& problem, const ros::Time& stamp) {
   if (!first_problem_) first_problem_ = problem;
+  sayOnce(problem, stamp);
+}
+
+void OfflineChain::sayOnce(const Failure& problem, const ros::Time& stamp) {
   if (problem.detail == last_complaint_) return;
   last_complaint_ = problem.detail;
   complain_("from stamp " + toDecimal(stamp) + " on: " + problem.detail);

@@ -13,6 +13,9 @@
 
 #include "imu_input.h"
 #include "offline/processed_pair.h"
+#include "picture_watch.h"
+#include "uav_landing/geometry/camera_pair.h"
+#include "uav_landing/image/grey_range.h"
 #include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
@@ -27,7 +30,8 @@ class OfflineChain {
                std::vector<std::unique_ptr<PairSink>>& sinks,
                std::function<void(const std::string&)> complain);
 
-  /// A pair waits for the imu message after it, as in the nodelets.
+  /// A pair waits for the imu message after it, as in the nodelets. Left and right are exchanged here where
+  /// the rig is mounted upside down.
   void process(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfoConstPtr& left_info,
                const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfoConstPtr& right_info);
   void addTransforms(const tf2_msgs::TFMessage& static_transforms);
@@ -38,6 +42,8 @@ class OfflineChain {
 
   std::size_t pairs() const { return pairs_; }
   std::size_t unusable() const { return unusable_; }
+  /// Pairs that were left out because they repeat the pictures of the one before.
+  uint64_t repetitions() const { return pictures_.repetitions(); }
   const Failure& firstProblem() const { return first_problem_; }
 
  private:
@@ -50,18 +56,23 @@ class OfflineChain {
   void process(const Waiting& pair);
   void followCalibration(const CameraCalibration& left, const CameraCalibration& right,
                          const ros::Time& stamp);
+  Failure startWith(const CameraCalibration& left, const CameraCalibration& right);
   Failure run(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right, double skew,
               const AttitudePrior& imu);
   void report(const Failure& problem, const ros::Time& stamp);
+  void sayOnce(const Failure& problem, const ros::Time& stamp);
 
   Parameters parameters_;
   std::string camera_;
   std::vector<std::unique_ptr<PairSink>>& sinks_;
   std::function<void(const std::string&)> complain_;
-  CameraCalibration left_calibration_, right_calibration_;
+  CameraCalibration left_calibration_, right_calibration_;  // as given
+  CameraPair working_;
+  GreyRangeFinder range_;
   std::optional<Pipeline> pipeline_;
   std::optional<ImuInput> imu_;  // none: not to be used
   std::deque<Waiting> waiting_;
+  PictureWatch pictures_;
   std::string last_imu_complaint_;
   Failure calibration_failure_;
   const Pipeline::Output* output_ = nullptr;

@@ -1,31 +1,33 @@
 #include "offline/pair_count.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
 namespace uav_landing {
+namespace {
 
-void PairCount::take(const ProcessedPair& pair) {
-  const LandingResult& landing = pair.output.landing;
-  ++pairs_;
-  if (landing.valid())
-    ++valid_;
-  else
-    ++reasons_[landing.failure ? toString(landing.failure.reason) : "no reason given"];
+/// ": not_yet 3, rejected 1", the most frequent first.
+std::string listed(const std::map<std::string, std::size_t>& counts) {
+  std::vector<std::pair<std::string, std::size_t>> sorted(counts.begin(), counts.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (const auto& [name, count] : sorted)
+    text += (text.empty() ? ": " : ", ") + name + ' ' + std::to_string(count);
+  return text;
 }
 
+}  // namespace
+
 void PairCount::finish() {
-  std::vector<std::pair<std::string, std::size_t>> reasons(reasons_.begin(), reasons_.end());
-  std::stable_sort(reasons.begin(), reasons.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
-  out_ << pairs_ << (pairs_ == 1 ? " pair, " : " pairs, ") << valid_ << " valid";
-  const char* before = ": ";
-  for (const auto& [reason, count] : reasons) {
-    out_ << before << reason << ' ' << count;
-    before = ", ";
-  }
-  out_ << '\n';
+  if (!tally_.failed_tests.empty())
+    out_ << "pairs on which a test failed" << listed(tally_.failed_tests) << '\n';
+  if (const std::string verdict = verdictOf(tally_); !verdict.empty())
+    out_ << "likely cause: " << verdict << '\n';
+  out_ << tally_.pairs << (tally_.pairs == 1 ? " pair, " : " pairs, ") << tally_.valid << " valid"
+       << listed(tally_.reasons) << '\n';
 }
 
 }  // namespace uav_landing

@@ -1,7 +1,9 @@
 // The whole chain offline: reads the image pairs of a bag, writes estimates, messages, timing and pictures.
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <regex>
 
 #include "bags/stereo_bag_reader.h"
 #include "command_line.h"
@@ -19,7 +21,8 @@ namespace {
 using namespace uav_landing;
 
 struct Options {
-  std::string input, camera = "stereo", imu = "/imu/data", config, csv, output, report_data;
+  std::vector<std::string> inputs;
+  std::string camera = "stereo", imu = "/imu/data", config, csv, output, report_data;
   bool imu_needed = false;
 };
 
@@ -40,57 +43,74 @@ class Complaints {
 };
 
 std::vector<std::unique_ptr<PairSink>> makeSinks(const Options& options, const Parameters& parameters,
-                                                 const StereoBagReader& reader) {
+                                                 std::size_t pairs) {
   std::vector<std::unique_ptr<PairSink>> sinks;
   if (!options.csv.empty()) sinks.push_back(std::make_unique<EstimateCsv>(options.csv));
   if (!options.output.empty()) sinks.push_back(std::make_unique<EstimateBag>(options.output));
   if (!options.report_data.empty())
-    sinks.push_back(
-        std::make_unique<ReportData>(options.report_data, reader.leftImages(), parameters.overlay));
+    sinks.push_back(std::make_unique<ReportData>(options.report_data, pairs, parameters.overlay));
   sinks.push_back(std::make_unique<TimingTable>(std::cout));
   sinks.push_back(std::make_unique<PairCount>(std::cout));
   return sinks;
 }
 
-/// Images that found no partner, and clocks that were set back.
-void reportPairing(const StereoPairing& pairing, Complaints& complain) {
-  for (const InputWatch::Input& input : pairing.inputs()) {
-    const auto unpaired = input.received - input.paired;
-    if (unpaired == 0) continue;
-    std::string why;
-    if (input.unstamped > 0) why += ", of them " + std::to_string(input.unstamped) + " with the stamp 0";
-    if (input.repeated > 0) why += ", of them " + std::to_string(input.repeated) + " with a repeated stamp";
-    if (input.late > 0) why += ", of them " + std::to_string(input.late) + " came after newer ones";
-    complain(std::to_string(unpaired) + " of " + std::to_string(input.received) + " messages on " +
-             input.topic + " belong to no pair" + why);
-  }
-  if (pairing.jumps() > 0) complain("stamps went back " + std::to_string(pairing.jumps()) + " times");
+/// The part of a split recording that follows, where it lies beside this one and was not given.
+std::string nextPart(const std::vector<std::string>& inputs) {
+  static const std::regex part("(.*_)([0-9]{1,6})\\.bag");
+  std::smatch match;
+  if (!std::regex_match(inputs.back(), match, part)) return "";
+  const std::string next = match[1].str() + std::to_string(std::stoi(match[2].str()) + 1) + ".bag";
+  if (!std::filesystem::exists(next) || std::find(inputs.begin(), inputs.end(), next) != inputs.end())
+    return "";
+  return next;
 }
 
-Failure processBag(const Options& options, const Parameters& parameters, Complaints& complain) {
-  const StereoBagReader reader(options.input, options.camera, options.imu);
-  if (const Failure failure = reader.checkTopics(options.imu_needed))
-    return {failure.reason, options.input + ": " + failure.detail};
+std::string listed(const std::vector<std::string>& inputs) {
+  return inputs.size() == 1 ? inputs.front()
+                            : inputs.front() + " and " + std::to_string(inputs.size() - 1) + " more";
+}
 
-  std::vector<std::unique_ptr<PairSink>> sinks = makeSinks(options, parameters, reader);
+Failure processBag(const Options& options, const Parameters& parameters, Complaints& complain,
+                   bool& left_out) {
+  StereoBagReader reader(options.inputs, options.camera, options.imu);
+  const std::string input = listed(options.inputs);
+  if (const Failure failure = reader.checkTopics(options.imu_needed))
+    return {failure.reason, input + ": " + failure.detail};
+  if (const std::string next = nextPart(options.inputs); !next.empty())
+    complain(next +
+             " lies beside the input: if it is the next part of the same recording, give it to --input, too");
+
+  ProgressBar reading(reader.messages());
+  const PairPlan plan = reader.plan(parameters.rectify, [&] { reading.step(); });
+  if (plan.pairs.empty()) return {Reason::kInputInvalid, input + ": no image pair: " + plan.complaint()};
+  std::vector<std::unique_ptr<PairSink>> sinks = makeSinks(options, parameters, plan.pairs.size());
   OfflineChain chain(parameters, options.camera, reader.hasImu(), sinks, std::ref(complain));
-  StereoPairing pairing(parameters.rectify, {reader.topics().begin(), reader.topics().end()},
-                        [&](const auto&... messages) { chain.process(messages...); });
-  ProgressBar progress(reader.messages());
+  ProgressBar progress(plan.pairs.size());
   reader.readStaticTransforms([&](const auto& message) { chain.addTransforms(message); });
   reader.read(
-      pairing, [&](const auto& message) { chain.addImu(message, options.imu); }, [&] { progress.step(); });
+      plan,
+      [&](const auto&... messages) {
+        chain.process(messages...);
+        progress.step();
+      },
+      [&](const auto& message) { chain.addImu(message, options.imu); });
   chain.finish();
 
-  if (chain.pairs() == 0)
-    return {Reason::kInputInvalid, options.input + ": no image pair: " + pairing.complaint()};
   if (chain.unusable() == chain.pairs())
-    return {Reason::kInputInvalid, options.input + ": no usable image pair: " + chain.firstProblem().detail};
-  reportPairing(pairing, complain);
+    return {Reason::kInputInvalid, input + ": no usable image pair: " + chain.firstProblem().detail};
+  for (const std::string& note : plan.notes()) complain(note);
+  if (chain.repetitions() > 0)
+    complain(std::to_string(chain.repetitions()) + " of " + std::to_string(plan.pairs.size()) +
+             " pairs repeat the pictures of the one before, and were left out");
   if (chain.unusable() > 0)
     complain(std::to_string(chain.unusable()) + " of " + std::to_string(chain.pairs()) +
              " pairs could not be used");
   for (const auto& sink : sinks) sink->finish();
+  left_out = plan.mostLeftOut();
+  if (left_out)
+    complain("most of the recording was left out: " + std::to_string(plan.pairs.size()) + " pairs of " +
+             std::to_string(plan.inputs[0].received) + " left and " +
+             std::to_string(plan.inputs[2].received) + " right images (exit status 3)");
   return {};
 }
 
@@ -99,15 +119,18 @@ int run(const CLI::App& app, const Options& options) {
   if (!parameters) return inputUnusable(app, parameters.error().detail);
   for (const std::string& written : {options.output, options.csv}) {
     std::error_code none;
-    if (!written.empty() && std::filesystem::equivalent(options.input, written, none))
-      return inputUnusable(app, written + ": is the input");
+    for (const std::string& input : options.inputs)
+      if (!written.empty() && std::filesystem::equivalent(input, written, none))
+        return inputUnusable(app, written + ": is the input");
   }
   if (!options.csv.empty() &&
       std::filesystem::weakly_canonical(options.csv) == std::filesystem::weakly_canonical(options.output))
     return inputUnusable(app, options.csv + ": is the bag to write");
   Complaints complain(app);
-  const Failure failure = processBag(options, *parameters, complain);
-  return failure ? inputUnusable(app, failure.detail) : kDone;
+  bool left_out = false;
+  const Failure failure = processBag(options, *parameters, complain, left_out);
+  if (failure) return inputUnusable(app, failure.detail);
+  return left_out ? kMostLeftOut : kDone;
 }
 
 }  // namespace
@@ -115,7 +138,8 @@ int run(const CLI::App& app, const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("Runs the whole chain on the image pairs of a bag, as fast as it goes.", "process_bag");
   Options options;
-  app.add_option("--input", options.input, "bag with /<camera>/{left,right}/{image_raw,camera_info}")
+  app.add_option("--input", options.inputs,
+                 "bag with /<camera>/{left,right}/{image_raw,camera_info}, or all parts of a split one")
       ->required();
   app.add_option("--camera", options.camera, "namespace of the camera topics")
       ->capture_default_str()
@@ -157,7 +181,7 @@ int main(int argc, char** argv) {
   try {
     return run(app, options);
   } catch (const ros::Exception& error) {
-    return inputUnusable(app, options.input + ": " + error.what());
+    return inputUnusable(app, listed(options.inputs) + ": " + error.what());
   } catch (const std::exception& error) {
     return inputUnusable(app, error.what());
   }

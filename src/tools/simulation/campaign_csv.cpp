@@ -18,7 +18,8 @@ const char* const kHeader =
     "pitch_true_deg,pitch_deg,pitch_stddev_deg,roll_true_deg,roll_deg,roll_stddev_deg,"
     "yaw_true_deg,yaw_deg,yaw_stddev_deg,x_true_m,x_m,x_stddev_m,y_true_m,y_m,y_stddev_m,"
     "stretch,bend_rx_deg,bend_ry_deg,bend_rz_deg,lens_rows_px,lens_tilt_deg,slope_change_deg,"
-    "speed_true_m_s,speed_m_s,speed_stddev_m_s,runway_width_m";
+    "speed_true_m_s,speed_m_s,speed_stddev_m_s,runway_width_m,"
+    "readout_time_s,vibration_hz,vibration_deg";
 
 /// Truth, estimate and the estimate's standard deviation in one unit.
 void quantity(CsvRow& row, double truth, double estimate, double variance, double unit) {
@@ -56,6 +57,9 @@ void CampaignCsv::write(const Sample& sample, const SimulatorParameters& drawn, 
   row.number(drawn.profile.slope_after_deg - drawn.profile.slope_before_deg);
   quantity(row, truth.speed, landing.speed(), landing.speedVariance(), 1);
   row.number(drawn.runway.width);
+  const SimulatedVibrationParameters& vibration = drawn.vibration;
+  const Eigen::Vector3d amplitude(vibration.roll_deg, vibration.pitch_deg, vibration.yaw_deg);
+  row.number(drawn.image.readout_time).number(vibration.frequency).number(amplitude.norm());
   file_ << '\n';
 }
 

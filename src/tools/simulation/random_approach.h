@@ -43,6 +43,12 @@ const std::map<std::string, SceneryKind>& sceneryKinds();
 /// Puts the elements of such a landscape around the runway of a flight, at places and of sizes that are
 /// drawn. A hill of kHills is never in the aircraft's way.
 void drawScenery(SceneryKind kind, uint64_t seed, SimulatorParameters& flight);
+/// Gives both cameras a rolling shutter of 5 to 40 ms, a fifth of them from bottom to top, whose stamp is
+/// that of the middle row or of one at an edge. Everything else stays as it was.
+void drawRollingShutter(uint64_t seed, SimulatorParameters& flight);
+/// Shakes the rig at 15 to 120 Hz, by 0.2 degrees at the most and by less when it is faster. An inertial
+/// sensor that flies along becomes fast enough to follow. Everything else stays as it was.
+void drawVibration(uint64_t seed, SimulatorParameters& flight);
 /// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
 

@@ -21,7 +21,7 @@ struct Options {
   std::string config, csv, kind = "snippets";
   uint64_t first = 1;
   int count = 20, frames = 13;
-  bool imu = false, bend = false, scenery = false;
+  bool imu = false, bend = false, scenery = false, rolling_shutter = false, vibration = false;
   std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
 };
 
@@ -64,6 +64,13 @@ void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vec
   }
 }
 
+/// Draws what is asked for besides the flight.
+void drawMore(const Options& options, uint64_t seed, SimulatorParameters& drawn) {
+  if (options.scenery) drawScenery(seed, drawn);
+  if (options.rolling_shutter) drawRollingShutter(seed, drawn);
+  if (options.vibration) drawVibration(seed, drawn);
+}
+
 /// Last frames of snippets that end at each of the heights.
 void flySnippets(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
   ProgressBar progress(options.count * options.heights.size());
@@ -73,7 +80,7 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
       const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
       SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
       if (options.bend) bendGround(flight, parameters, drawn);
-      if (options.scenery) drawScenery(flight, drawn);
+      drawMore(options, flight, drawn);
       CampaignCsv::Sample sample;
       sample.seed = seed;
       sample.cell_height = height;
@@ -90,7 +97,7 @@ void flyApproaches(const Options& options, const Parameters& parameters, Campaig
   ProgressBar progress(options.count);
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
     SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
-    if (options.scenery) drawScenery(seed, drawn);
+    drawMore(options, seed, drawn);
     CampaignCsv::Sample sample;
     sample.seed = seed;
     fly(drawn, parameters, options.noise, sample,
@@ -145,6 +152,11 @@ int main(int argc, char** argv) {
   app.add_flag(
       "--scenery", options.scenery,
       "fields, towns, water, roads, other runways and the own nose are drawn around each runway, too");
+  app.add_flag("--rolling-shutter", options.rolling_shutter,
+               "the rows of both cameras have times of their own; how long they take and which of them the "
+               "stamp belongs to is drawn, too");
+  app.add_flag("--vibration", options.vibration,
+               "the rig is shaken; frequency and amplitudes are drawn, too");
   app.callback([&options] {
     if (options.bend && options.kind != "snippets") throw CLI::ValidationError("--bend", "for snippets only");
   });

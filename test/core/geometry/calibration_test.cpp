@@ -80,9 +80,46 @@ TEST(Calibration, AcceptsTheDistortionModelsWithTheirLengths) {
     EXPECT_FALSE(checkCalibration(c)) << n << ": " << checkCalibration(c).message();
   }
   c.distortion_model = "rational_polynomial";
-  for (const size_t n : {0, 8}) {
+  for (const size_t n : {0, 8, 12, 14}) {
     c.D.assign(n, 0.01);
     EXPECT_FALSE(checkCalibration(c)) << n << ": " << checkCalibration(c).message();
+  }
+  for (const char* fisheye : {"equidistant", "fisheye"}) {
+    c.distortion_model = fisheye;
+    c.D.assign(4, 0.01);
+    EXPECT_FALSE(checkCalibration(c)) << checkCalibration(c).message();
+  }
+}
+
+TEST(Calibration, AcceptsALensWithoutDistortionByAnyName) {
+  CameraCalibration c = camera(0);
+  for (const char* model : {"", "none", "Inverse Brown Conrady", "equidistant", "plumb_bob"})
+    for (const size_t n : {0, 3, 5, 14}) {
+      c.distortion_model = model;
+      c.D.assign(n, 0.0);
+      EXPECT_FALSE(checkCalibration(c)) << model << " " << n << ": " << checkCalibration(c).message();
+    }
+}
+
+TEST(StereoRig, TakesTheBaselineFromTheDifferenceWhereAThirdCameraIsTheOrigin) {
+  Pair pair;
+  pair.left.P(0, 3) = 45;
+  pair.right.P(0, 3) = -205;
+  const Expected<StereoRig> rig = makeStereoRig(pair.left, pair.right);
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_DOUBLE_EQ(rig->baseline, 0.5);
+}
+
+TEST(StereoRig, TakesTheDistanceFromTheOriginsPlaneOutOfTheBaseline) {
+  // Both cameras 0.02 m before the origin: P = K [I | t] with t = (0.06, 0, 0.02) and (-0.44, 0, 0.02).
+  Pair pair;
+  pair.left.P.col(3) << 500 * 0.06 + 320 * 0.02, 240 * 0.02, 0.02;
+  pair.right.P.col(3) << 500 * -0.44 + 320 * 0.02, 240 * 0.02, 0.02;
+  for (const bool cut : {false, true}) {
+    if (cut) pair.left.roi = pair.right.roi = {100, 80, 400, 320};
+    const Expected<StereoRig> rig = makeStereoRig(pair.left, pair.right);
+    ASSERT_TRUE(rig) << rig.error().message();
+    EXPECT_NEAR(rig->baseline, 0.5, 1e-12);
   }
 }
 
@@ -144,13 +181,14 @@ INSTANTIATE_TEST_SUITE_P(
                  "right R: a reflection, expected a rotation matrix"},
         BadField{"D_nan", [](Pair& p) { p.left.D[2] = kNan; }, "left D[2]: nan, expected a number"},
         BadField{"D_length", [](Pair& p) { p.left.D.resize(3); },
-                 "left D: 3 coefficients, expected 0, 4 or 5 for plumb_bob"},
+                 "left D: 3 coefficients, expected 4 or 5 for plumb_bob"},
         BadField{"D_rational_length", [](Pair& p) { p.left.distortion_model = "rational_polynomial"; },
-                 "left D: 5 coefficients, expected 0 or 8 for rational_polynomial"},
+                 "left D: 5 coefficients, expected 8, 12 or 14 for rational_polynomial"},
         BadField{"model", [](Pair& p) { p.right.distortion_model = "equidistant"; },
-                 "right distortion_model: \"equidistant\", expected plumb_bob or rational_polynomial"},
+                 "right D: 5 coefficients, expected 4 for equidistant"},
         BadField{"model_missing", [](Pair& p) { p.right.distortion_model = ""; },
-                 "right distortion_model: \"\", expected plumb_bob or rational_polynomial"},
+                 "right distortion_model: \"\", expected plumb_bob, rational_polynomial or equidistant "
+                 "(fisheye lenses)"},
         BadField{"binning", [](Pair& p) { p.left.binning_x = -2; }, "left binning_x: -2, expected 0 or more"},
         BadField{"binning_large", [](Pair& p) { p.left.binning_y = 500; },
                  "left binning_y: 500, expected at most the height of the image"},
@@ -190,14 +228,34 @@ INSTANTIATE_TEST_SUITE_P(
                  "right P[5]: 499, expected 500 as on the left"},
         BadField{"rows_differ", [](Pair& p) { p.right.P(1, 2) = 241.5; },
                  "right P[6]: 241.5, expected 240 as on the left"},
-        BadField{"left_is_not_the_origin", [](Pair& p) { p.left.P(0, 3) = -20; },
-                 "left P[3]: -20, expected 0: the left camera is the origin"},
-        BadField{"baseline_zero", [](Pair& p) { p.right.P(0, 3) = 0; },
-                 "right P[3]: 0, expected -P[0] times the baseline in metres, a negative number"},
+        BadField{
+            "baseline_zero", [](Pair& p) { p.right.P(0, 3) = 0; },
+            "right P[3]: 0, expected -P[0] times the baseline in metres, a negative number: these are two "
+            "single calibrations, not one of the pair"},
+        BadField{"one_place", [](Pair& p) { p.left.P(0, 3) = -250; },
+                 "left P[3]: -250, expected 0: it is that of the right camera, too, as if both stood in one "
+                 "place"},
+        BadField{"exchanged",
+                 [](Pair& p) {
+                   p.left.P(0, 3) = -250;
+                   p.right.P(0, 3) = 0;
+                 },
+                 "left P[3]: -250, expected 0, and a negative right P[3], which is 0: left and right are "
+                 "exchanged"},
         BadField{"baseline_negative", [](Pair& p) { p.right.P(0, 3) = 250; },
-                 "right P[3]: 250, expected -P[0] times the baseline in metres, a negative number"},
+                 "right P[3]: 250, expected -P[0] times the baseline in metres, a negative number: left and "
+                 "right are exchanged, or the driver's sign is wrong"},
+        BadField{"one_above_the_other",
+                 [](Pair& p) {
+                   p.right.P(0, 3) = 0;
+                   p.right.P(1, 3) = -250;
+                 },
+                 "right P[7]: -250, expected 0: the right camera stands below the left one, and the pair has "
+                 "to stand side by side"},
+        BadField{"one_before_the_other", [](Pair& p) { p.right.P.col(3) << -250 - 32, -24, -0.1; },
+                 "right P[11]: -0.1, expected 0 as on the left"},
         BadField{"baseline_tilted", [](Pair& p) { p.right.P(1, 3) = 5; },
-                 "right P[7]: 5, expected 0: the same row in both images"}),
+                 "right P[7]: 5, expected 0 as on the left: the same row in both images"}),
     [](const testing::TestParamInfo<BadField>& info) { return info.param.name; });
 
 }  // namespace

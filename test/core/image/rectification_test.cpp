@@ -43,15 +43,53 @@ CameraCalibration rationalPolynomial() {
   return c;
 }
 
-/// Brown's lens with tangential part, times the rational denominator; written from the published equations.
-/// D: k1 k2 p1 p2 k3 k4 k5 k6.
+CameraCalibration fisheye() {
+  CameraCalibration c = turned(ideal());
+  c.distortion_model = "equidistant";
+  // 75 degrees to each side in the raw picture, 62 in the rectified one.
+  c.K << 120, 0, 158, 0, 122, 122, 0, 0, 1;
+  c.P << 85, 0, 163, 0, 0, 85, 118, 0, 0, 0, 1, 0;
+  c.D = {-0.03, 0.02, -0.008, 0.001};
+  return c;
+}
+
+CameraCalibration prismsAndTilt() {
+  CameraCalibration c = rationalPolynomial();
+  c.D.insert(c.D.end(), {0.01, -0.004, -0.008, 0.003, 0.03, -0.02});
+  return c;
+}
+
+/// Kannala and Brandt's lens: the distance from the middle is an odd polynomial of the angle off the axis.
+Eigen::Vector2d throughFisheye(const Eigen::Vector3d& ray, const std::vector<double>& D) {
+  const double angle = std::atan2(std::hypot(ray.x(), ray.y()), ray.z());
+  const double distance = angle + D[0] * std::pow(angle, 3) + D[1] * std::pow(angle, 5) +
+                          D[2] * std::pow(angle, 7) + D[3] * std::pow(angle, 9);
+  return distance * Eigen::Vector2d(ray.x(), ray.y()).normalized();
+}
+
+/// A sensor that is turned by these angles about x and y, seen from the lens (Louhichi et al. 2007).
+Eigen::Vector2d onTiltedSensor(const Eigen::Vector2d& m, double about_x, double about_y) {
+  // Columns are the sensor's axes; the rotation that OpenCV describes is the inverse of that of the axes.
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(-about_y, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(-about_x, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Eigen::Vector3d p = turn * m.homogeneous();
+  // The ray cut by the sensor's plane, at the distance at which the axis meets it.
+  return {(turn(2, 2) * p.x() - turn(0, 2) * p.z()) / p.z(),
+          (turn(2, 2) * p.y() - turn(1, 2) * p.z()) / p.z()};
+}
+
+/// Brown's lens with tangential part, times the rational denominator, with thin prisms and a tilted sensor;
+/// written from the published equations. D: k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4 tx ty.
 Eigen::Vector2d throughLens(const Eigen::Vector3d& ray, std::vector<double> D) {
-  D.resize(8, 0.0);
+  D.resize(14, 0.0);
   const double x = ray.x() / ray.z(), y = ray.y() / ray.z(), r2 = x * x + y * y;
   const double radial = (1 + D[0] * r2 + D[1] * std::pow(r2, 2) + D[4] * std::pow(r2, 3)) /
                         (1 + D[5] * r2 + D[6] * std::pow(r2, 2) + D[7] * std::pow(r2, 3));
-  return {x * radial + 2 * D[2] * x * y + D[3] * (r2 + 2 * x * x),
-          y * radial + D[2] * (r2 + 2 * y * y) + 2 * D[3] * x * y};
+  const Eigen::Vector2d seen(
+      x * radial + 2 * D[2] * x * y + D[3] * (r2 + 2 * x * x) + D[8] * r2 + D[9] * r2 * r2,
+      y * radial + D[2] * (r2 + 2 * y * y) + 2 * D[3] * x * y + D[10] * r2 + D[11] * r2 * r2);
+  return onTiltedSensor(seen, D[12], D[13]);
 }
 
 /// Pixel of the delivered raw image at which the lens shows what the delivered rectified pixel looks at.
@@ -59,7 +97,9 @@ Eigen::Vector2d rawPixel(const CameraCalibration& c, double u, double v) {
   const double bx = std::max(c.binning_x, 1), by = std::max(c.binning_y, 1);
   const double full_u = u * bx + c.roi.x, full_v = v * by + c.roi.y;
   const Eigen::Vector3d rectified((full_u - c.P(0, 2)) / c.P(0, 0), (full_v - c.P(1, 2)) / c.P(1, 1), 1);
-  const Eigen::Vector2d m = throughLens(c.R.transpose() * rectified, c.D);
+  const Eigen::Vector3d ray = c.R.transpose() * rectified;
+  const Eigen::Vector2d m =
+      c.distortion_model == "equidistant" ? throughFisheye(ray, c.D) : throughLens(ray, c.D);
   return {(c.K(0, 0) * m.x() + c.K(0, 2) - c.roi.x) / bx, (c.K(1, 1) * m.y() + c.K(1, 2) - c.roi.y) / by};
 }
 
@@ -118,6 +158,45 @@ void expectTrueMask(const CameraCalibration& c) {
 
 TEST(Rectifier, UndoesPlumbBobDistortionAndRotation) { expectRectified(plumbBob()); }
 TEST(Rectifier, UndoesRationalPolynomialDistortionAndRotation) { expectRectified(rationalPolynomial()); }
+TEST(Rectifier, UndoesThinPrismsAndATiltedSensor) {
+  CameraCalibration c = prismsAndTilt();
+  expectRectified(c);
+  c.D.resize(12);
+  expectRectified(c);
+}
+TEST(Rectifier, UndoesAFisheyeLens) {
+  CameraCalibration c = fisheye();
+  expectRectified(c);
+  expectTrueMask(c);
+  c.binning_x = c.binning_y = 2;
+  c.roi = {40, 20, 240, 200};
+  expectRectified(c);
+}
+TEST(Rectifier, LeavesOutWhereAFisheyeLensFoldsBack) {
+  // The distance from the middle is greatest at 0.8 rad: 1 + 3 k1 0.64 = 0.
+  CameraCalibration c = fisheye();
+  c.R.setIdentity();
+  c.D = {-1 / (3 * 0.64), 0, 0, 0};
+  const Expected<Rectifier> rectifier = Rectifier::create(c);
+  ASSERT_TRUE(rectifier) << rectifier.error().message();
+  for (int u = 0; u < c.width; ++u) {
+    const double angle = std::atan(std::abs(u - c.P(0, 2)) / c.P(0, 0));
+    const int mask = rectifier->mask().at<uchar>(118, u);
+    if (angle < 0.79) EXPECT_EQ(mask, 255) << u;
+    if (angle > 0.81) EXPECT_EQ(mask, 0) << u;
+  }
+}
+TEST(Rectifier, TakesALensWithoutDistortionForAPinholeByAnyName) {
+  CameraCalibration c = turned(ideal());
+  c.distortion_model = "equidistant";
+  c.D.assign(4, 0.0);
+  cv::Mat raw(c.imageSize(), CV_8UC1), by_name, plain;
+  cv::randu(raw, 0, 256);
+  ASSERT_FALSE(Rectifier::create(c)->rectify(raw, by_name));
+  c.distortion_model = "plumb_bob";
+  ASSERT_FALSE(Rectifier::create(c)->rectify(raw, plain));
+  EXPECT_EQ(cv::norm(by_name, plain, cv::NORM_INF), 0);
+}
 TEST(Rectifier, HonoursRotationAndProjectionWithoutDistortion) {
   CameraCalibration c = turned(ideal());
   expectRectified(c);

@@ -40,7 +40,8 @@ int indexOf(FaultySource source) { return static_cast<int>(source); }
 class Pairs {
  public:
   explicit Pairs(const KalmanHeightParameters& parameters = {}) : measurement(usualRig(), parameters) {}
-  explicit Pairs(const RunwayParameters& runway) : measurement(usualRig(), {}, runway) {}
+  explicit Pairs(const RunwayParameters& runway, double baseline_stddev = 0)
+      : measurement(usualRig(), {}, runway, baseline_stddev) {}
 
   HeightMeasurement measurement;
   HeightPrior prior = priorAt(kHeight);
@@ -75,6 +76,31 @@ TEST(HeightMeasurement, IsTheHeightByTheGroundWhereNothingElseIsKnown) {
   EXPECT_EQ(measured.stereo_height, kHeight);
   EXPECT_TRUE(std::isnan(measured.width_height));
   EXPECT_FALSE(measured.by_width);
+}
+
+TEST(HeightMeasurement, HasTheDoubtOfTheBaselineBesideItsVariance) {
+  Pairs pairs(RunwayParameters(), 0.01);
+  const MeasuredHeight measured = pairs.see(test::angleAt(0));
+  EXPECT_EQ(measured.errors.baseline, 0.01);
+  EXPECT_NEAR(measured.variance, 0.2 * 0.2, 1e-12);
+  EXPECT_NEAR(measured.common().baseline, std::pow(0.01 * kHeight, 2), 1e-12);
+}
+
+TEST(HeightMeasurement, AKnownWidthKnowsMoreThanABaselineThatIsUncertain) {
+  // Stereo to 0.02 m, but for a baseline that is 3 % too long with 1 sigma of 2 %; the width to 0.1 % or so.
+  Pairs pairs(withKnownWidth(), 0.02);
+  pairs.stereo_stddev = 0.02;
+  HeightFilter filter = test::emptyFilter();
+  filter.initialise(kHeight, 1e-4, {0, 0, 0, std::pow(0.02 * kHeight, 2)});
+  pairs.prior = {filter, HeightTrack::kConfirmations};
+  const MeasuredHeight measured = pairs.see(runwayFrom(kHeight / 1.03));
+  EXPECT_NEAR(measured.height, kHeight / 1.03, 0.03);
+  EXPECT_LT(measured.errors.baseline, 0.1 * 0.02) << "what is left of it";
+  EXPECT_LT(std::sqrt(measured.variance + measured.common().baseline), 0.06);
+  // Without that doubt the two contradict each other, and stereo stays.
+  Pairs sure(withKnownWidth());
+  sure.stereo_stddev = 0.02;
+  EXPECT_EQ(sure.see(runwayFrom(kHeight / 1.03)).height, kHeight);
 }
 
 TEST(HeightMeasurement, CarriesOnByAWidthThatItHasLearned) {

@@ -61,6 +61,31 @@ TEST(HeightTrack, AHeightIsBelievedOnceThreeInARowAgree) {
   EXPECT_NEAR(third.height, 10, 1e-9);
 }
 
+TEST(HeightTrack, WhatTheBaselineIsWrongByDoesNotAverageOutAndChangesNoHeight) {
+  Pairs exact, uncertain;
+  MeasuredHeight measured = measuredHeight(10);
+  const TrackVerdict without = exact.settle();
+  measured.errors.baseline = 0.01;
+  TrackVerdict with = uncertain.see(measured);
+  for (int i = 1; i < 20; ++i) with = uncertain.see(measured);
+  EXPECT_EQ(with.height, without.height);
+  EXPECT_NEAR(std::sqrt(with.height_variance - without.height_variance), 0.1, 1e-3) << "1 % of 10 m";
+  const double level = uncertain.track.protectionLevel(10, with.height_variance, std::nullopt).bound;
+  EXPECT_GT(level, 4.4 * 0.1) << "1e-5 to both sides: 4.42 sigma";
+}
+
+TEST(HeightTrack, WhatTheBaselineIsWrongByFollowsTheHeight) {
+  Pairs pairs;
+  TrackVerdict last = pairs.see(20);
+  for (int i = 1; i <= 200; ++i) {
+    MeasuredHeight measured = measuredHeight(20 - 0.05 * i);
+    measured.errors.baseline = 0.01;
+    last = pairs.see(measured);
+  }
+  EXPECT_NEAR(last.height, 10, 0.02);
+  EXPECT_NEAR(std::sqrt(last.height_variance), 0.1, 0.01);
+}
+
 TEST(HeightTrack, OfTwoFirstHeightsThatContradictEachOtherTheNewOneIsTaken) {
   Pairs pairs;
   pairs.see(17);

@@ -111,11 +111,13 @@ TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
   KalmanHeightParameters parameters;
   parameters.height_model_error = 0;
   parameters.acceleration_stddev = 0.05;
+  RigParameters exact;
+  exact.baseline_stddev = 0;
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   double ratio = 0, share_of_width = 0;
   for (int run = 0; run < kRuns; ++run) {
-    KalmanHeightStage stage(usualRig(), parameters, {kWidth});
+    KalmanHeightStage stage(usualRig(), parameters, {kWidth}, exact);
     const double width = kWidth * (1 + 0.002 * normal(random));
     LandingResult result;
     for (int i = 0; i < kPairs; ++i) {

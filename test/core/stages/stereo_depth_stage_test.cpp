@@ -289,6 +289,35 @@ TEST(StereoDepthStage, SaysThatTheImagesAreSwapped) {
   EXPECT_FALSE(stage.process(1.1, pair.left, pair.right).failure) << "once they are put right";
 }
 
+/// As cameras upside down see it: turned pictures, left and right exchanged.
+Pair upsideDown(const Pair& pair) {
+  Pair turned;
+  cv::flip(pair.right, turned.left, -1);
+  cv::flip(pair.left, turned.right, -1);
+  return turned;
+}
+
+TEST(StereoDepthStage, SaysThatTheRigIsUpsideDown) {
+  const Scene scene(10);
+  const Pair pair = scene.render(makePose(1.6, -8, 0)), turned = upsideDown(pair);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(
+        stage.process(0.1 * i, turned.left, turned.right).failure.message(),
+        "input_invalid: the ground is above the horizon: the cameras are mounted upside down; if they are "
+        "meant to be, set rig/upside_down: true")
+        << i;
+  EXPECT_FALSE(stage.process(0.3, pair.left, pair.right).failure) << "once they are put right";
+}
+
+TEST(StereoDepthStage, DoesNotTakeAFlightThatLostTheGroundForOneUpsideDown) {
+  const Scene scene(10);
+  const Pair pair = scene.render(makePose(1.6, -8, 0)), turned = upsideDown(pair);
+  StereoDepthStage stage(scene.model, scene.parameters);
+  ASSERT_FALSE(stage.process(0, pair.left, pair.right).failure);
+  EXPECT_EQ(stage.process(0.1, turned.left, turned.right).failure.reason, Reason::kNoPlane);
+}
+
 TEST(StereoDepthStage, KeepsSayingThatTheImagesAreSwapped) {
   const Scene scene(10);
   const Pair pair = scene.render(makePose(1.6, -8, 0));

@@ -38,4 +38,19 @@ StereoLevel swapped(const StereoLevel& level) {
   return other;
 }
 
+StereoLevel turnedOver(const StereoLevel& level) {
+  constexpr int kBothAxes = -1;
+  StereoLevel other = swapped(level);
+  // cv::flip() does not work in place, and the images are those of the other level, too.
+  for (cv::Mat* image : {&other.left, &other.right, &other.left_mask, &other.right_mask}) {
+    cv::Mat turned;
+    cv::flip(*image, turned, kBothAxes);
+    *image = turned;
+  }
+  other.rig.cx = level.rig.size.width - 1 - other.rig.cx;
+  other.rig.cx_right = level.rig.size.width - 1 - other.rig.cx_right;
+  other.rig.cy = level.rig.size.height - 1 - other.rig.cy;
+  return other;
+}
+
 }  // namespace uav_landing

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kCoarseCorners = 500, kWideCorners = 256;
 // A part of them tells whether images are swapped, where the plane ahead is clear.
 constexpr size_t kSample = 4;
-// In how many searches that find nothing one is also tried with left and right swapped.
+// In how many searches that find nothing one is also tried with left and right swapped, and turned over.
 constexpr int kSwapCheckInterval = 10;
 // What takes as long as scoring so many places: to take the images and find corners, a choice between planes,
 // and a consensus, alone and by its samples.
@@ -65,11 +65,13 @@ PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget
 void PlaneSearch::stop() {
   restart();
   failed_ = 0;
+  was_upright_ = true;
 }
 
 void PlaneSearch::reset() {
   stop();
-  looks_swapped_ = false;
+  looks_like_ = State::kNotFound;
+  was_upright_ = false;
 }
 
 void PlaneSearch::begin(const StereoLevel& coarse) {
@@ -92,12 +94,13 @@ void PlaneSearch::begin(const StereoLevel& coarse) {
   beginBand(0);
 }
 
-void PlaneSearch::beginBehind(Phase phase) {
+void PlaneSearch::beginOther(Phase phase) {
   const size_t share = phase == Phase::kSample ? kSample : 1;
-  behind_.coarse.level = swapped(ahead_.coarse.level);
-  behind_.wide.level = swapped(ahead_.wide.level);
-  prepare(behind_.coarse, kCoarseCorners / share);
-  prepare(behind_.wide, kWideCorners / share);
+  const auto seen = phase == Phase::kOverhead ? turnedOver : swapped;
+  other_.coarse.level = seen(ahead_.coarse.level);
+  other_.wide.level = seen(ahead_.wide.level);
+  prepare(other_.coarse, kCoarseCorners / share);
+  prepare(other_.wide, kWideCorners / share);
   leaders_.clear();
   phase_ = phase;
   beginBand(0);
@@ -112,7 +115,7 @@ void PlaneSearch::prepare(Tier& tier, size_t corners) {
 }
 
 double PlaneSearch::searchOn() {
-  const Tiers& tiers = phase_ == Phase::kAhead ? ahead_ : behind_;
+  const Tiers& tiers = phase_ == Phase::kAhead ? ahead_ : other_;
   const Tier& tier = isWide() ? tiers.wide : tiers.coarse;
   const SlopeBand band = SlopeBands::at(band_);
   return corner_ < tier.corners.size() ? lookAtCorners(band, tier) : endBand(band, tier);
@@ -159,6 +162,8 @@ PlaneSearch::State PlaneSearch::decide() {
       return decideBySample();
     case Phase::kBehind:
       return decideBehind();
+    case Phase::kOverhead:
+      return decideOverhead();
     case Phase::kNone:
       break;
   }
@@ -193,9 +198,8 @@ std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& le
 
 PlaneSearch::State PlaneSearch::decideAhead() {
   found_ = chooseFrom(leaders_, ahead_);
-  if (!found_ && failed_ % kSwapCheckInterval != 0)
-    return end(looks_swapped_ ? State::kSwapped : State::kNotFound);
-  beginBehind(found_ ? Phase::kSample : Phase::kBehind);
+  if (!found_ && failed_ % kSwapCheckInterval != 0) return end(looks_like_);
+  beginOther(found_ ? Phase::kSample : Phase::kBehind);
   return State::kGoesOn;
 }
 
@@ -204,19 +208,30 @@ PlaneSearch::State PlaneSearch::decideBySample() {
   constexpr double kClearly = 0.5;
   const auto clear = [&](const Leader& leader) { return leader.share < kClearly * found_->share; };
   if (std::all_of(leaders_.begin(), leaders_.end(), clear)) return end(State::kFound);
-  beginBehind(Phase::kBehind);
+  beginOther(Phase::kBehind);
   return State::kGoesOn;
 }
 
 PlaneSearch::State PlaneSearch::decideBehind() {
-  const std::optional<Best> behind = chooseFrom(leaders_, behind_);
-  looks_swapped_ = behind && (!found_ || behind->share > found_->share);
-  if (looks_swapped_) return end(State::kSwapped);
-  return end(found_ ? State::kFound : State::kNotFound);
+  const std::optional<Best> behind = chooseFrom(leaders_, other_);
+  looks_like_ = State::kNotFound;
+  if (behind && (!found_ || behind->share > found_->share)) return end(looks_like_ = State::kSwapped);
+  if (found_) return end(State::kFound);
+  if (was_upright_) return end(State::kNotFound);
+  beginOther(Phase::kOverhead);
+  return State::kGoesOn;
+}
+
+PlaneSearch::State PlaneSearch::decideOverhead() {
+  if (chooseFrom(leaders_, other_)) looks_like_ = State::kOverhead;
+  return end(looks_like_);
 }
 
 PlaneSearch::State PlaneSearch::end(State state) {
-  if (state == State::kFound) looks_swapped_ = false;
+  if (state == State::kFound) {
+    looks_like_ = State::kNotFound;
+    was_upright_ = true;
+  }
   failed_ = state == State::kFound ? 0 : failed_ + 1;
   phase_ = Phase::kNone;
   return state;

@@ -31,6 +31,7 @@ class PlaneSearch {
     kFound,     ///< plane() is that of the pair that it began with
     kNotFound,  ///< no plane
     kSwapped,   ///< none, as left and right are exchanged, in this search or the last one that looked
+    kOverhead,  ///< none, but one above the horizon, in this search or the last one that looked
   };
 
   /// Begins with this pair, when none is under way. The level's images must be whole. budget: places to
@@ -51,8 +52,9 @@ class PlaneSearch {
   void reset();
 
  private:
-  // What is looked for, band by band: the plane; with left and right exchanged by some corners, or by all.
-  enum class Phase { kNone, kAhead, kSample, kBehind };
+  // What is looked for, band by band: the plane; with left and right exchanged by some corners, or by all;
+  // with the cameras turned over.
+  enum class Phase { kNone, kAhead, kSample, kBehind, kOverhead };
   // Both images at one size, with the corners that are looked for.
   struct Tier {
     StereoLevel level;
@@ -76,7 +78,7 @@ class PlaneSearch {
   };
 
   void begin(const StereoLevel& coarse);
-  void beginBehind(Phase phase);
+  void beginOther(Phase phase);
   void prepare(Tier& tier, size_t corners);
   void beginBand(size_t band);
   bool isWide() const { return band_ >= SlopeBands::kFar; }
@@ -89,11 +91,12 @@ class PlaneSearch {
   State decideAhead();
   State decideBySample();
   State decideBehind();
+  State decideOverhead();
   State end(State state);
 
   StereoDepthParameters parameters_;
   PlaneLimits limits_;
-  Tiers ahead_, behind_;  // behind: left and right exchanged
+  Tiers ahead_, other_;  // other: left and right exchanged, or turned over
   std::vector<Leader> leaders_;
   std::optional<Best> found_;
   Phase phase_ = Phase::kNone;
@@ -101,8 +104,9 @@ class PlaneSearch {
   size_t corner_ = 0;                        // of it, the next one
   std::vector<DisparitySample> candidates_;  // of the corners before
   bool began_here_ = false;
-  int failed_ = 0;  // searches in a row
-  bool looks_swapped_ = false;
+  int failed_ = 0;                       // searches in a row
+  State looks_like_ = State::kNotFound;  // by the last search that looked: swapped, overhead
+  bool was_upright_ = false;             // there was a plane: a rig does not turn over in flight
   CornerMemory memory_;
 };
 

@@ -76,6 +76,12 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
           Reason::kNegativeDisparity,
           "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
       break;
+    case PlaneSearch::State::kOverhead:
+      not_found_ = {
+          Reason::kInputInvalid,
+          "the ground is above the horizon: the cameras are mounted upside down; if they are meant to "
+          "be, set rig/upside_down: true"};
+      break;
     case PlaneSearch::State::kNotFound:
       not_found_ = {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
       break;

@@ -1,0 +1,109 @@
+"""Pictures of messages: decoded, cut in two, and freed of the second field of interlaced video."""
+
+import re
+
+import cv2
+import numpy as np
+from sensor_msgs.msg import Image
+
+from .errors import BrokenPicture, InputError
+
+SIDE_BY_SIDE, TOP_AND_BOTTOM = "side-by-side", "top-and-bottom"
+LAYOUTS = (SIDE_BY_SIDE, TOP_AND_BOTTOM)
+YUV = ("yuv422", "uyvy", "yuv422_yuy2", "yuyv")
+
+
+def is_whole(data):
+    """Whether a JPEG or PNG file has its end: decoders fill what is missing with grey and say nothing."""
+    if data.startswith(b"\xff\xd8"):
+        return data.rfind(b"\xff\xd9") > data.rfind(b"\xff\xda")
+    return not data.startswith(b"\x89PNG") or b"IEND" in data[-64:]
+
+
+def encoding_of(pixels, compressed_format):
+    """Of decoded pixels; None where they are no picture. The transport says in front that grey ones are a Bayer mosaic."""
+    bits = {np.dtype(np.uint8): "8", np.dtype(np.uint16): "16"}.get(pixels.dtype)
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    name = {1: "mono", 3: "bgr", 4: "bgra"}.get(channels)
+    if not bits or not name:
+        return None
+    mosaic = re.match(rf"(bayer_[rgb]{{4}}){bits}\s*;", compressed_format)
+    return (mosaic.group(1) if mosaic and channels == 1 else name) + bits
+
+
+def to_image(message, topic):
+    """A raw image; a compressed one is decoded by OpenCV, with the bits and channels that it has."""
+    if message._type == "sensor_msgs/Image":
+        return message
+    data = bytes(message.data)
+    # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
+    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data and is_whole(data) else None
+    encoding = None if pixels is None else encoding_of(pixels, message.format)
+    if encoding is None:
+        raise BrokenPicture(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "
+                            "cannot be decoded to grey or colour of 8 or 16 bits")
+    image = Image(header=message.header, height=pixels.shape[0], width=pixels.shape[1], encoding=encoding,
+                  step=pixels.strides[0])
+    image.data = pixels.tobytes()
+    return image
+
+
+def rows_of(image, topic):
+    """The pixels of a raw image, (rows, columns, bytes of a pixel)."""
+    known = re.fullmatch(r"(mono|rgb|bgr|rgba|bgra|bayer_[a-z]{4}|)(8|16)(?:[US]C([1-4]))?", image.encoding)
+    channels = {"rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}.get(known[1], int(known[3] or 1)) if known else 0
+    size = 2 if image.encoding in YUV else channels * (2 if known and known[2] == "16" else 1)
+    if not size:
+        raise InputError(f"{topic}: encoding {image.encoding}: cannot be cut in two or deinterlaced")
+    if image.step < image.width * size or len(image.data) < image.step * image.height:
+        raise BrokenPicture(f"{topic}: an image at {image.header.stamp.to_sec():.6f} s has {len(image.data)} bytes, expected "
+                            f"{max(image.step, image.width * size) * image.height}")
+    rows = np.frombuffer(image.data, np.uint8)[:image.step * image.height].reshape(image.height, image.step)
+    return rows[:, :image.width * size].reshape(image.height, image.width, size)
+
+
+def image_of(pixels, like):
+    """A raw image of pixels as rows_of() gives them."""
+    pixels = np.ascontiguousarray(pixels)
+    image = Image(header=like.header, height=pixels.shape[0], width=pixels.shape[1], encoding=like.encoding,
+                  is_bigendian=like.is_bigendian, step=pixels.shape[1] * pixels.shape[2])
+    image.data = pixels.tobytes()
+    return image
+
+
+def halves(pixels, layout, where):
+    """The two pictures in one, the left or upper one first."""
+    axis = 1 if layout == SIDE_BY_SIDE else 0
+    if pixels.shape[axis] % 2:
+        raise InputError(f"{where}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels cannot be cut in two, {layout}")
+    return np.split(pixels, 2, axis)
+
+
+def raw_halves(image, layout, topic):
+    """halves() of a raw image, as raw images. The second one has to begin where the colours of its encoding begin."""
+    pixels = rows_of(image, topic)
+    along = pixels.shape[1] if layout == SIDE_BY_SIDE else pixels.shape[0]
+    pairs_of_pixels = image.encoding.startswith("bayer") or image.encoding in YUV and layout == SIDE_BY_SIDE
+    if pairs_of_pixels and along % 4:
+        raise InputError(f"{topic}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels {image.encoding} cannot be cut in two, "
+                         f"{layout}: {along} is no multiple of 4, and the right colours would be lost")
+    return [image_of(part, image) for part in halves(pixels, layout, topic)]
+
+
+def one_field(pixels):
+    """Interlaced video's upper field, with the rows between made of those above and below: the picture keeps its size."""
+    field = pixels[::2]
+    between = ((field[:-1].astype(np.uint16) + field[1:]) // 2).astype(pixels.dtype)
+    result = pixels.copy()
+    result[::2] = field
+    result[1:2 * len(between):2] = between
+    if len(pixels) % 2 == 0:
+        result[-1] = field[-1]
+    return result
+
+
+def deinterlaced(image, topic):
+    """one_field() of a raw image."""
+    if image.encoding.startswith("bayer") or "16" in image.encoding:
+        raise InputError(f"{topic}: encoding {image.encoding}: only pictures of 8 bits with the same colours in all rows are deinterlaced")
+    return image_of(one_field(rows_of(image, topic)), image)

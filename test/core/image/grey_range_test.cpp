@@ -1,0 +1,82 @@
+#include "uav_landing/image/grey_range.h"
+
+#include <gtest/gtest.h>
+
+namespace uav_landing {
+namespace {
+
+/// Noise between these values, both included, in equal shares.
+cv::Mat between(int low, int high) {
+  cv::Mat image(120, 160, CV_16UC1);
+  cv::randu(image, low, high + 1);
+  return image;
+}
+
+GreyRange foundIn(int low, int high) {
+  GreyRangeFinder finder(0);
+  GreyRange range;
+  for (int i = 0; i < 15; ++i) range = finder.follow(between(low, high), between(low, high));
+  return range;
+}
+
+TEST(GreyRange, IsThatOfTheBitsThatAreUsed) {
+  for (const int bits : {10, 12, 14, 16}) {
+    const int largest = (1 << bits) - 1;
+    for (const double share : {0.95, 0.5}) {
+      const GreyRange range = foundIn(0, static_cast<int>(share * largest));
+      EXPECT_EQ(range.black, 0) << bits;
+      EXPECT_EQ(range.white, largest) << bits;
+    }
+  }
+}
+
+TEST(GreyRange, OfAThermalCameraIsThatOfTheSceneWithAMargin) {
+  const GreyRange range = foundIn(29000, 29510);
+  EXPECT_NEAR(range.black, 29000 - 0.25 * 510, 4);
+  EXPECT_NEAR(range.white, 29510 + 0.25 * 510, 4);
+}
+
+TEST(GreyRange, IsOneForBothCameras) {
+  GreyRangeFinder finder(0);
+  for (int i = 0; i < 15; ++i) finder.follow(between(0, 4000), between(0, 3500));
+  const GreyRange range = finder.range();
+  finder.follow(between(0, 500), between(0, 400));
+  EXPECT_EQ(finder.range(), range) << "and is kept when the scene gets darker";
+  EXPECT_EQ(range.white, 4095);
+}
+
+TEST(GreyRange, IsNotSpoiltByFirstPicturesWithoutAnything) {
+  GreyRangeFinder finder(0);
+  for (const int nothing : {0, 65535}) finder.follow(between(nothing, nothing), between(nothing, nothing));
+  for (int i = 0; i < 15; ++i) finder.follow(between(29000, 29510), between(29000, 29510));
+  // What was outside of the first range has made it grow, until the median of the first pairs was clear.
+  EXPECT_NEAR(finder.range().black, 29000 - 0.25 * 510, 4);
+  EXPECT_NEAR(finder.range().white, 29510 + 0.25 * 510, 4);
+}
+
+TEST(GreyRange, GrowsWhenTheSceneGetsBrighterThanItsBits) {
+  GreyRangeFinder finder(0);
+  for (int i = 0; i < 15; ++i) finder.follow(between(0, 900), between(0, 900));
+  EXPECT_EQ(finder.range().white, 1023);
+  finder.follow(between(0, 3000), between(0, 3000));
+  EXPECT_EQ(finder.range().white, 4095);
+}
+
+TEST(GreyRange, MayBeGiven) {
+  GreyRangeFinder finder(12);
+  EXPECT_EQ(finder.follow(between(0, 900), between(0, 900)).white, 4095);
+  cv::Mat mono;
+  finder.range().toMono8((cv::Mat_<uint16_t>(1, 4) << 0, 2048, 4095, 60000), mono);
+  EXPECT_EQ(mono.at<uchar>(0), 0);
+  EXPECT_NEAR(mono.at<uchar>(1), 128, 1);
+  EXPECT_EQ(mono.at<uchar>(2), 255);
+  EXPECT_EQ(mono.at<uchar>(3), 255) << "saturated";
+}
+
+TEST(GreyRange, StaysAsItIsWithoutImagesOf16Bits) {
+  GreyRangeFinder finder(0);
+  EXPECT_EQ(finder.follow({}, {}), GreyRange());
+}
+
+}  // namespace
+}  // namespace uav_landing
