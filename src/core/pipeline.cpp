@@ -9,7 +9,7 @@ Expected<Pipeline> Pipeline::create(const CameraCalibration& left, const CameraC
   if (!checked) return tl::unexpected<Failure>(checked.error());
   const Expected<RigMasks> masks = loadRigMasks(parameters.rig);
   if (!masks) return tl::unexpected<Failure>(masks.error());
-  Expected<RigModel> rig = makeRigModel(left, right, *masks);
+  Expected<RigModel> rig = makeRigModel(left, right, *masks, parameters.rig);
   if (!rig) return tl::unexpected<Failure>(rig.error());
   Expected<Rectifier> left_rectifier = Rectifier::create(left);
   if (!left_rectifier) return tl::unexpected<Failure>(left_rectifier.error());

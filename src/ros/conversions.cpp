@@ -29,6 +29,8 @@ StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& h
   toArray(result.plane.g, message.plane);
   toArray(result.plane.covariance, message.plane_covariance);
   toArray(result.row_covariance, message.plane_row_covariance);
+  toArray(result.plane_rate, message.plane_rate);
+  toArray(result.plane_by_rate, message.plane_by_rate);
   message.plane_lasting_share = result.lasting_share;
   toArray(result.below.g, message.plane_below);
   toArray(result.below.covariance, message.plane_below_covariance);
@@ -72,6 +74,8 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane, result.plane.g);
   fromArray(message.plane_covariance, result.plane.covariance);
   fromArray(message.plane_row_covariance, result.row_covariance);
+  fromArray(message.plane_rate, result.plane_rate);
+  fromArray(message.plane_by_rate, result.plane_by_rate);
   // Who does not know the field leaves it 0.
   result.lasting_share = message.plane_lasting_share == 0 ? kUnknown : message.plane_lasting_share;
   fromArray(message.plane_below, result.below.g);

@@ -52,7 +52,7 @@ class RigStage {
     if (!left_view) return tl::make_unexpected(left_view.error());
     const auto right_view = toMono8(right, right_camera, right_topic);
     if (!right_view) return tl::make_unexpected(right_view.error());
-    const Failure wrong_cameras = prepare(left_info, right_info, masks, make);
+    const Failure wrong_cameras = prepare(left_info, right_info, masks, limits, make);
     if (wrong_cameras) return tl::make_unexpected(wrong_cameras);
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
@@ -70,10 +70,10 @@ class RigStage {
   // What is wrong with the cameras; without a failure there is a stage.
   template <class Make>
   Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
-                  const RigMasks& masks, Make&& make) {
+                  const RigMasks& masks, const RigParameters& parameters, Make&& make) {
     if (!cameras_.changed(left, right)) return failure_;
     stage_.reset();
-    const auto model = makeRigModel(cameras_.left(), cameras_.right(), masks);
+    const auto model = makeRigModel(cameras_.left(), cameras_.right(), masks, parameters);
     failure_ = model ? Failure() : ofCameraInfo(model.error());
     if (model) stage_.emplace(make(*model));
     return failure_;

@@ -48,6 +48,8 @@ uav_landing_add_gtest(calibration_test test/core/geometry/calibration_test.cpp)
 uav_landing_add_gtest(ground_plane_test test/core/geometry/ground_plane_test.cpp)
 uav_landing_add_gtest(half_plane_test test/core/geometry/half_plane_test.cpp)
 uav_landing_add_gtest(rig_check_test test/core/geometry/rig_check_test.cpp)
+uav_landing_add_gtest(row_times_test test/core/geometry/row_times_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(stamp_map_test test/core/geometry/stamp_map_test.cpp SOURCES test/support/ground_renderer.cpp)
 
 # results
 uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
@@ -78,6 +80,7 @@ uav_landing_add_gtest(vanishing_point_test test/core/lines/vanishing_point_test.
 
 # rig
 uav_landing_add_gtest(pair_skew_test test/core/rig/pair_skew_test.cpp)
+uav_landing_add_gtest(plane_rate_test test/core/rig/plane_rate_test.cpp)
 uav_landing_add_gtest(rig_change_test test/core/rig/rig_change_test.cpp)
 uav_landing_add_gtest(rig_rotation_filter_test test/core/rig/rig_rotation_filter_test.cpp SOURCES test/support/ground_renderer.cpp)
 
@@ -93,6 +96,8 @@ uav_landing_add_gtest(width_height_test test/core/height/width_height_test.cpp)
 
 # stereo
 uav_landing_add_gtest(corner_matcher_test test/core/stereo/matching/corner_matcher_test.cpp LIBS opencv_video
+  SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(plane_drift_test test/core/stereo/matching/plane_drift_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(aligned_rows_test test/core/stereo/photometric/aligned_rows_test.cpp
   SOURCES test/support/ground_renderer.cpp)
@@ -222,3 +227,4 @@ uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stag
 
 # the whole chain
 uav_landing_add_gtest(pipeline_test test/core/pipeline_test.cpp SOURCES test/support/ground_renderer.cpp)
+uav_landing_add_gtest(rolling_shutter_test test/core/rolling_shutter_test.cpp SOURCES test/support/ground_renderer.cpp)

@@ -94,6 +94,8 @@ StereoDepthResult distinctStereoDepth() {
   fill(result.plane.g);
   fill(result.plane.covariance);
   fill(result.row_covariance);
+  fill(result.plane_rate);
+  fill(result.plane_by_rate);
   fill(result.below.g);
   fill(result.below.covariance);
   result.curvature = next();
@@ -231,6 +233,8 @@ TEST(Conversions, StereoDepthComesBackBitForBit) {
   EXPECT_EQ(back.plane.g, result.plane.g);
   EXPECT_EQ(back.plane.covariance, result.plane.covariance);
   EXPECT_EQ(back.row_covariance, result.row_covariance);
+  EXPECT_EQ(back.plane_rate, result.plane_rate);
+  EXPECT_EQ(back.plane_by_rate, result.plane_by_rate);
   EXPECT_EQ(back.below.g, result.below.g);
   EXPECT_EQ(back.below.covariance, result.below.covariance);
   EXPECT_EQ(back.curvature, result.curvature);
@@ -414,6 +418,7 @@ TEST(Conversions, EachFieldOfStereoDepthHasItsOwnNumber) {
   expectRowMajor(message.plane, result.plane.g, "plane");
   expectRowMajor(message.plane_covariance, result.plane.covariance, "plane_covariance");
   expectRowMajor(message.plane_row_covariance, result.row_covariance, "plane_row_covariance");
+  expectRowMajor(message.plane_by_rate, result.plane_by_rate, "plane_by_rate");
   EXPECT_EQ(message.plane_lasting_share, result.lasting_share);
   expectRowMajor(message.plane_below, result.below.g, "plane_below");
   expectRowMajor(message.plane_below_covariance, result.below.covariance, "plane_below_covariance");

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/row_times.h"
 #include "uav_landing/image/rig_masks.h"
 
 namespace uav_landing {
@@ -31,15 +32,16 @@ class Rectifier {
   std::shared_ptr<const Resampler> resampler_;  // none where there is nothing to do but copy
 };
 
-/// What the stages behind rectification know of the cameras: the rig and which pixels of the rectified images
+/// What the stages behind rectification know of the cameras: the rig, which pixels of the rectified images
 /// may be used (mono8, 255 where they may): those all of whose source pixels are in the raw image, and in
-/// what its mask leaves. The one place that derives both from the two camera_infos.
+/// what its mask leaves, and when they are exposed. The one place that derives all from the two camera_infos.
 struct RigModel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;
+  RowTimes left_times = {}, right_times = {};
 };
-/// Refuses masks of another size than the raw images.
+/// Refuses masks of another size than the raw images. parameters: of the readout.
 Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,
-                                const RigMasks& masks = {});
+                                const RigMasks& masks = {}, const RigParameters& parameters = {});
 
 }  // namespace uav_landing

@@ -1,17 +1,28 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 namespace uav_landing {
 
 // visit(): see parameters.h.
 
+/// The direction in which the sensor reads the lines of a raw picture.
+enum class RowDirection { kRows, kColumns };
+
 /// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
-/// that, and which pixels see the ground.
+/// that, which pixels see the ground, and when their rows are exposed.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
   double max_baseline = 50.0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
+  /// See row_times.h. NaN: not given, for the right camera then as for both.
+  double readout_time = std::numeric_limits<double>::quiet_NaN();
+  double right_readout_time = std::numeric_limits<double>::quiet_NaN();
+  double stamp_row = 0.5;
+  double right_stamp_row = std::numeric_limits<double>::quiet_NaN();
+  RowDirection row_direction = RowDirection::kRows;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -29,6 +40,22 @@ struct RigParameters {
            "propeller. One channel of 8 bit (PNG), as large as the raw pictures. A relative path begins at "
            "the config file's folder. Empty: the whole picture is used");
     v.text("right_mask", right_mask, "the same for the right camera");
+    v.number("readout_time", readout_time, -1.0, 1.0, "s",
+             "rolling shutter: time from the exposure of the first row of a raw picture to that of the last "
+             "one, of the picture as the driver delivers it. 0: global shutter. Negative: the last row comes "
+             "first. Longer than the time between pictures is refused. Not given: not known, and taken for a "
+             "global shutter");
+    v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
+             "row that is in the middle of its exposure at the stamp of a picture: 0 the first one, 0.5 the "
+             "middle one, 1 the last one. Where the stamp is the begin of a row's exposure, subtract half of "
+             "the exposure as a share of readout_time; where it is the end, add it");
+    v.number("right_readout_time", right_readout_time, -1.0, 1.0, "s",
+             "readout_time of the right camera. Not given: the same as for the left one");
+    v.number("right_stamp_row", right_stamp_row, -2.0, 2.0, "picture heights",
+             "stamp_row of the right camera. Not given: the same as for the left one");
+    v.choice("row_direction", row_direction, {"rows", "columns"},
+             "which lines of a raw picture are exposed together: rows, or columns for cameras mounted in "
+             "portrait whose driver turns the picture. Times are then from left to right");
   }
 };
 

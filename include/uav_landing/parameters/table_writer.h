@@ -15,7 +15,12 @@ class TableWriter {
 
   template <class Number>
   void number(const char* name, Number value, double min, double max, const char* unit, const char* meaning) {
-    begin(name) << value << " | " << min << " to " << max;
+    begin(name);
+    if (!(value != value))
+      out_ << value;
+    else
+      out_ << "(not given)";
+    out_ << " | " << min << " to " << max;
     end(unit, meaning);
   }
   void flag(const char* name, bool value, const char* meaning) {

@@ -60,6 +60,10 @@ struct StereoDepthResult {
   /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
   /// 1/m^2.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
+  /// Where rows have times: how fast g changes by the pairs before (1/m/s), with which it was carried to the
+  /// stamp, and its derivative by that rate, s. Zero where all rows are exposed at once.
+  Eigen::Vector3d plane_rate = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d plane_by_rate = Eigen::Matrix3d::Zero();
   /// Share of the rest of it, without the bias of disparities, that is no noise of the images, above 0 to 1:
   /// some of that is the same in the next pairs. Unknown without direct refinement.
   double lasting_share = kUnknown;

@@ -146,13 +146,14 @@ Failure Rectifier::rectify(const cv::Mat& raw, cv::Mat& out) const {
 }
 
 Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,
-                                const RigMasks& masks) {
+                                const RigMasks& masks, const RigParameters& parameters) {
   const Expected<StereoRig> rig = makeStereoRig(left, right);
   if (!rig) return tl::unexpected(rig.error());
   if (Failure failure = checkMaskSize(masks.left, left)) return tl::unexpected(failure);
   if (Failure failure = checkMaskSize(masks.right, right)) return tl::unexpected(failure);
   return RigModel{*rig, validityMask(sourceMaps(left.ofDeliveredImage()), masks.left.usable),
-                  validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable)};
+                  validityMask(sourceMaps(right.ofDeliveredImage()), masks.right.usable),
+                  RowTimes(left, leftReadout(parameters)), RowTimes(right, rightReadout(parameters))};
 }
 
 }  // namespace uav_landing

@@ -4,6 +4,7 @@
 
 #include "integrity/test_catalogue.h"
 #include "results/result_check.h"
+#include "rig/plane_rate.h"
 
 namespace uav_landing {
 namespace {
@@ -26,6 +27,7 @@ PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo
     : stereo(checked(rig, given_stereo)),
       approach(checked(given_approach)),
       turn(turnOf(approach, fuse_imu)) {
+  carryPlane(approach.step, stereo);
   // Seen from where the camera was before.
   if (repeated())
     approach.runway.failure =

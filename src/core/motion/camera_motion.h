@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "geometry/rotation.h"
+#include "geometry/stamp_map.h"
+
 namespace uav_landing {
 
 // Motion is scale-free here: lengths are in units of the height now, so that the ground plane is the unit
@@ -15,6 +18,11 @@ struct CameraMotion {
   /// Where the point on the ray r (third component 1) at inverse depth w was seen then, up to scale.
   Eigen::Vector3d seenThen(const Eigen::Vector3d& r, double w) const { return R.transpose() * (r + w * t); }
 };
+
+/// How the camera moves now if it has moved evenly over the duration (s) of that motion.
+inline RowMotion evenMotion(const CameraMotion& motion, double duration) {
+  return {rotationVector(motion.R) / duration, motion.t / duration};
+}
 
 /// Rotation from then to now that is known beforehand, of an inertial sensor.
 struct RotationPrior {

@@ -58,6 +58,7 @@ double largestEigenvalue(const Eigen::Matrix3d& matrix) {
 
 MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
     : rig_(model.rig),
+      times_(model.left_times),
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
       parameters_(parameters),
       search_(rig_, mask_, parameters),
@@ -146,8 +147,8 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  const RotationPrior* rotation, GroundProof proof, Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{now.image, past_.back().image, corners,  textures_, memory_,
-                        normal,    covariance,         rotation, regular};
+  const StepImages step{now.image,  past_.back().image, corners, textures_, memory_, normal,
+                        covariance, rotation,           regular, duration,  &times_, past_.back().motion};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -202,9 +203,11 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     // Lengths change from units of the previous height to those of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
-    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted,
-                                    {parameters_.window_radius, parameters_.min_zncc, 0}, textures_,
-                                    memory_.matching, std::move(window_matches_));
+    const RowMotion motion = evenMotion(step, result.step.duration);
+    const TemporalMatchOptions options{
+        parameters_.window_radius, parameters_.min_zncc, 0, {&times_, motion, then.motion.value_or(motion)}};
+    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options,
+                                    textures_, memory_.matching, std::move(window_matches_));
     const Expected<MotionEstimate> estimate = estimateMotion(
         rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
@@ -272,6 +275,8 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
       frame.since = CameraMotion{step.R * frame.since->R, step.R * frame.since->t * unit + step.t};
     }
   }
+  now.motion.reset();
+  if (result.step_estimate) now.motion = evenMotion(result.step_estimate->motion, result.step.duration);
   last_window_ = result.window;
   last_step_ = result.unproven;
   if (result.step_estimate) last_step_ = result.step_estimate->motion;

@@ -45,6 +45,8 @@ class MotionTracker {
                  Timings& timings, const AttitudePrior& imu = {}, GroundProof proof = GroundProof::kGiven);
   /// Whether the last step is known, so that the next one needs no search.
   bool hasLast() const { return last_step_.has_value(); }
+  /// How the camera moved at the last stamp, as far as it is known.
+  std::optional<RowMotion> lastMotion() const { return past_.empty() ? std::nullopt : past_.back().motion; }
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when
@@ -60,6 +62,7 @@ class MotionTracker {
     double stamp = 0;
     MatchImage image;
     std::optional<CameraMotion> since;  ///< motion from then to now, when known
+    std::optional<RowMotion> motion;    ///< while its rows were exposed
   };
 
   using Corners = std::vector<TrackedCorner>;
@@ -76,6 +79,7 @@ class MotionTracker {
                                        std::optional<PathAngleFilter::Measurement>& angle) const;
 
   StereoRig rig_;
+  RowTimes times_;
   cv::Mat mask_;  // left, eroded by the window
   ApproachAngleParameters parameters_;
   StepSearch search_;

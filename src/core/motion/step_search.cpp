@@ -61,13 +61,33 @@ std::vector<TemporalMatch> StepSearch::match(const StepImages& step,
                                              const std::vector<TrackedCorner>& corners,
                                              const CameraMotion& predicted, int coarse_steps,
                                              std::vector<TemporalMatch> list) const {
-  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
-                       options(coarse_steps), step.textures, step.memory.matching, std::move(list));
+  TemporalMatchOptions wanted = options(coarse_steps);
+  wanted.rows = rowsBy(step, predicted);
+  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted, wanted,
+                       step.textures, step.memory.matching, std::move(list));
+}
+
+RowsOverTime StepSearch::rowsBy(const StepImages& step, const CameraMotion& predicted) const {
+  if (step.times == nullptr || step.times->atOnce() || !(step.duration > 0)) return {};
+  const RowMotion now = evenMotion(predicted, step.duration);
+  const double height_then = 1 + step.normal.dot(predicted.t);
+  return {step.times, now,
+          step.rows_then.value_or(RowMotion{now.w, predicted.R.transpose() * now.v / height_then})};
 }
 
 Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           const std::vector<CameraMotion>& predictions,
                                           std::vector<TemporalMatch>& matches) {
+  const Expected<MotionEstimate> found = findMotion(step, predictions, matches);
+  if (!found || step.times == nullptr || step.times->atOnce()) return found;
+  // Rows were carried to the stamps by the motion of before, which this one is not quite.
+  matches = match(step, step.corners, found->motion, 0, std::move(matches));
+  return estimate(step, found->motion, matches, parameters_.min_matches);
+}
+
+Expected<MotionEstimate> StepSearch::findMotion(const StepImages& step,
+                                                const std::vector<CameraMotion>& predictions,
+                                                std::vector<TemporalMatch>& matches) {
   Expected<MotionEstimate> estimate = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   const auto good = [&] { return estimate && estimate->inlier_count >= kLeastShare * matches.size(); };
   if (!predictions.empty() && step.regular && steadiness_.goesWithout()) {

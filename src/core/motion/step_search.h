@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/steadiness.h"
@@ -27,6 +28,9 @@ struct StepImages {
   Eigen::Matrix3d normal_covariance;        ///< rank 2
   const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
   bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
+  double duration = 0;                      ///< s
+  const RowTimes* times = nullptr;          ///< of the left image's rows
+  std::optional<RowMotion> rows_then = {};  ///< how the camera moved then, if that is known
 };
 
 /// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
@@ -47,6 +51,10 @@ class StepSearch {
 
  private:
   TemporalMatchOptions options(int coarse_steps) const;
+  /// While rows are exposed the camera moves as the predicted motion says.
+  RowsOverTime rowsBy(const StepImages& step, const CameraMotion& predicted) const;
+  Expected<MotionEstimate> findMotion(const StepImages& step, const std::vector<CameraMotion>& predictions,
+                                      std::vector<TemporalMatch>& matches);
   int wideSteps() const;  // of the coarse level, to both sides
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,

@@ -41,6 +41,7 @@ struct LocalWarp {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
   Eigen::Vector2d perspective = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d at_stamp = Eigen::Matrix2d::Identity();  // the warp, had all rows been exposed at once
 };
 
 // Image of pixel x (full size) under the plane-induced homography now -> then; false when it lies behind.
@@ -56,6 +57,7 @@ class PointWarp {
     local->centre = y.hnormalized();
     local->warp = (H_.topLeftCorner<2, 2>() - local->centre * H_.block<1, 2>(2, 0)) / y.z();
     local->perspective = H_.block<1, 2>(2, 0).transpose() / y.z();
+    local->at_stamp = local->warp;
     const double scale = local->warp.determinant();
     return scale > kSmallestScale && scale < kLargestScale;
   }
@@ -68,7 +70,8 @@ class PointWarp {
 class Predictions {
  public:
   Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
-              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius, int coarse_steps)
+              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius, int coarse_steps,
+              const RowsOverTime& rows = {})
       : rig_(rig),
         now_(now),
         then_(then),
@@ -76,14 +79,20 @@ class Predictions {
         motion_(motion),
         plane_(rig, motion, plane),
         radius_(radius),
-        coarse_steps_(coarse_steps) {}
+        coarse_steps_(coarse_steps),
+        height_then_(1 + plane.dot(motion.t)) {
+    if (rows.times == nullptr || rows.times->atOnce()) return;
+    rows_now_ = StampMap(rig.K(), *rows.times, rows.now, plane);
+    rows_then_ = StampMap(rig.K(), *rows.times, rows.then, motion.R.transpose() * plane);
+  }
 
   // False when there is none.
   bool at(const TrackedCorner& corner, LocalWarp* local) const {
     constexpr int kAround = 3;  // for interpolation and the steps of refinement
     const Eigen::Vector2d x(corner.u, corner.v);
-    const bool seen = corner.on_plane ? plane_.at(x, local)
-                                      : PointWarp(rig_, motion_, {0, 0, corner.inverse_depth}).at(x, local);
+    const bool seen = corner.on_plane
+                          ? isSeen(corner, plane_, x, local)
+                          : isSeen(corner, PointWarp(rig_, motion_, {0, 0, corner.inverse_depth}), x, local);
     if (!seen) return false;
     touchPixel(mask_, local->centre.x(), local->centre.y());
     touchWindow(now_.fine, corner.u, corner.v, radius_ + 1, radius_ + 1);
@@ -92,7 +101,57 @@ class Predictions {
     return true;
   }
 
+  // Both places of a match as they would be had all rows been exposed at the stamps.
+  void carryToStamps(TemporalMatch& match) const {
+    if (rows_now_.changesNothing()) return;
+    if (match.on_plane) {
+      match.now = rows_now_.toStamp(match.now);
+      match.then = rows_then_.toStamp(match.then);
+    } else {
+      match.now = rows_now_.toStamp(match.now, match.inverse_depth);
+      match.then = rows_then_.toStamp(match.then, inverseDepthThen(match.now, match.inverse_depth));
+    }
+  }
+
  private:
+  bool isSeen(const TrackedCorner& corner, const PointWarp& warp, const Eigen::Vector2d& x,
+              LocalWarp* local) const {
+    return rows_now_.changesNothing() ? warp.at(x, local) : throughRows(corner, warp, x, local);
+  }
+
+  // The place that a pixel has then, by the times of both rows.
+  bool placeThen(const TrackedCorner& corner, const PointWarp& warp, const Eigen::Vector2d& x,
+                 LocalWarp* local) const {
+    const Eigen::Vector2d now =
+        corner.on_plane ? rows_now_.toStamp(x) : rows_now_.toStamp(x, corner.inverse_depth);
+    if (!warp.at(now, local)) return false;
+    local->centre = corner.on_plane
+                        ? rows_then_.toRow(local->centre)
+                        : rows_then_.toRow(local->centre, inverseDepthThen(now, corner.inverse_depth));
+    return true;
+  }
+
+  // As rows have times of their own the surroundings are sheared and stretched: by differences.
+  bool throughRows(const TrackedCorner& corner, const PointWarp& warp, const Eigen::Vector2d& x,
+                   LocalWarp* local) const {
+    constexpr double kApart = 2;  // px
+    if (!placeThen(corner, warp, x, local)) return false;
+    for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::Vector2d step = kApart * Eigen::Vector2d::Unit(axis);
+      LocalWarp before, behind;
+      if (!placeThen(corner, warp, x - step, &before) || !placeThen(corner, warp, x + step, &behind))
+        return false;
+      local->warp.col(axis) = (behind.centre - before.centre) / (2 * kApart);
+    }
+    return true;
+  }
+
+  // Times the height then, of a point at this pixel and inverse depth now.
+  double inverseDepthThen(const Eigen::Vector2d& now, double inverse_depth) const {
+    const Eigen::Vector3d seen = motion_.seenThen(rig_.ray(now.x(), now.y()), inverse_depth);
+    return height_then_ * inverse_depth / seen.z();
+  }
+
   void touchCoarsely(const Eigen::Vector2d& corner, const Eigen::Vector2d& there) const {
     constexpr int kAround = 2;  // for interpolation
     const int factor = now_.factor, reach = radius_ + coarse_steps_ + kAround;
@@ -106,6 +165,8 @@ class Predictions {
   const CameraMotion& motion_;
   PointWarp plane_;
   int radius_, coarse_steps_;
+  double height_then_;  // over the height now
+  StampMap rows_now_, rows_then_;
 };
 
 // Looks for corners where they are predicted.
@@ -218,7 +279,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const TemporalMatchOptions& options, CornerTextures& textures,
                                          MatchingMemory& memory, std::vector<TemporalMatch> list) {
   const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius,
-                                options.coarse_steps);
+                                options.coarse_steps, options.rows);
   Follower follower(now, then, mask, options);
   std::vector<TemporalMatch> matches = std::move(list);
   matches.clear();
@@ -237,7 +298,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     TemporalMatch match;
     match.now = {corner.u, corner.v};
     match.then = refined.position;
-    match.warp = local.warp;
+    match.warp = local.at_stamp;
     match.on_plane = corner.on_plane;
     match.inverse_depth = corner.inverse_depth;
     match.inverse_depth_stddev = corner.inverse_depth_stddev;
@@ -246,6 +307,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     memory.windows.push_back({refined, local.perspective});
   }
   claim(now, then, options.window_radius, memory, matches);
+  for (TemporalMatch& match : matches) predictions.carryToStamps(match);
   return matches;
 }
 

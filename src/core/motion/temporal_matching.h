@@ -13,10 +13,17 @@
 
 namespace uav_landing {
 
+/// When rows are exposed, and how the camera moves while they are. Without times all are at the stamp.
+struct RowsOverTime {
+  const RowTimes* times = nullptr;
+  RowMotion now, then;  ///< each in the frame and the height of its image
+};
+
 struct TemporalMatchOptions {
   int window_radius = 5;
   double min_zncc = 0.75;
   int coarse_steps = 10;  ///< searched around the prediction at the coarse level; 0: the prediction is good
+  RowsOverTime rows = {};
 };
 
 /// What the windows of the corners of one image are by themselves, kept while it is matched with several.
@@ -56,8 +63,9 @@ struct MatchingMemory {
 };
 
 /// The paper's image velocity field: finds corners of the image now in the image then, with windows warped as
-/// the ground plane (unit normal n) and the predicted motion say. textures: of the image now. list: one that
-/// is no longer needed, for its memory.
+/// the ground plane (unit normal n) and the predicted motion say. Both places of a match are where they would
+/// be had all rows been exposed at the stamps. textures: of the image now. list: one that is no longer
+/// needed, for its memory.
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,

@@ -135,6 +135,12 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return "plane_covariance: not a covariance of this plane";
   if (!isShare(result.row_covariance, result.plane.covariance))
     return "plane_row_covariance: not a part of plane_covariance";
+  // No readout takes longer than a second, nor does a plane change by many times itself in it.
+  constexpr double kLongestReadout = 10, kLargestRate = 100;
+  if (!result.plane_by_rate.allFinite() || result.plane_by_rate.cwiseAbs().maxCoeff() > kLongestReadout)
+    return text("plane_by_rate: finite numbers up to ", kLongestReadout, " s expected");
+  if (!(result.plane_rate.norm() <= kLargestRate * size))
+    return text("plane_rate: not the rate of this plane");
   const double bias = biasVariance(rig, result.disparity_bias_stddev);
   const double with_bias = result.plane.covariance(2, 2);
   if (!(result.disparity_bias_stddev >= 0 && bias <= with_bias * (1 + kRounding)))

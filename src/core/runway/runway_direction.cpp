@@ -41,6 +41,7 @@ struct View {
   const cv::Mat& image;
   const cv::Mat& mask;
   Eigen::Matrix3d K;
+  const StampMap& rows;
 };
 
 // What is found in a view: its lines, the same freed of what blur does to stripes as far as the vanishing
@@ -50,6 +51,23 @@ struct Found {
   Expected<VanishingPoint> point = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   bool refused = false;  // there is a point, but not of a runway
 };
+
+// The same edge had all rows been exposed at the stamp.
+LineSegment atStamp(const LineSegment& segment, const StampMap& rows) {
+  const auto onLine = [&](const Eigen::Vector2d& end) -> Eigen::Vector2d {
+    return end - segment.line.dot(end.homogeneous()) * segment.line.head<2>();
+  };
+  LineSegment moved = makeLineSegment(rows.toStamp(onLine(segment.a)), rows.toStamp(onLine(segment.b)),
+                                      segment.offset_stddev, segment.angle_stddev);
+  if (moved.line.head<2>().dot(segment.line.head<2>()) < 0) moved.line = -moved.line;
+  return moved;
+}
+
+std::vector<LineSegment> atStamp(std::vector<LineSegment> lines, const StampMap& rows) {
+  if (rows.changesNothing()) return lines;
+  for (LineSegment& line : lines) line = atStamp(line, rows);
+  return lines;
+}
 
 double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).norm(); }
 
@@ -105,12 +123,12 @@ class Search {
 
   // Those that may be along the runway, if there is one.
   std::vector<LineSegment> along(const View& view, const std::vector<LineSegment>& lines) const {
-    if (!hasRunway()) return lines;
+    if (!hasRunway()) return atStamp(lines, view.rows);
     const HeadingGate gate = gateOf(view);
     std::vector<LineSegment> passing;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(passing),
                  [&](const LineSegment& line) { return gate.passes(line.line); });
-    return passing;
+    return atStamp(std::move(passing), view.rows);
   }
 
   // Whether the other view's lines may be looked for where this one has them: that view is a witness of where
@@ -153,7 +171,7 @@ class Search {
   Found withPoint(const View& view, std::vector<LineSegment> lines) const {
     Found found;
     found.lines = std::move(lines);
-    found.straight = straight(view, found.lines);
+    found.straight = atStamp(straight(view, found.lines), view.rows);
     ScopedTimer timer(timings_, "ransac");
     found.point = findVanishingPoint(found.straight, view.K, parameters_, normal());
     if (ground_ == nullptr) {
@@ -290,8 +308,9 @@ class Search {
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    RunwayDirectionMemory& memory, Timings& timings) {
-  const View left_view{left, left_mask, viewK(rig, true)}, right_view{right, right_mask, viewK(rig, false)};
+                                    RunwayDirectionMemory& memory, Timings& timings, const ViewRows& rows) {
+  const View left_view{left, left_mask, viewK(rig, true), rows.left};
+  const View right_view{right, right_mask, viewK(rig, false), rows.right};
   const Search search(ground, parameters, memory, timings);
   Found in_left = search.in(left_view);
   Found in_right =

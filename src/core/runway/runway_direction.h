@@ -33,10 +33,11 @@ struct RunwayDirectionMemory {
 /// two long edges side by side that agree in both views are enough. Where the ground has a runway already,
 /// only lines that may be along it are fitted, and if the left view's point is on the ground and not there by
 /// chance, its lines are looked for in the right view where the ground has them, instead of all lines there.
-/// Masks: of the rectified views, eroded.
+/// Masks: of the rectified views, eroded. rows: lines are those at the stamp, but for the views' reports.
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    RunwayDirectionMemory& memory, Timings& timings);
+                                    RunwayDirectionMemory& memory, Timings& timings,
+                                    const ViewRows& rows = {});
 
 }  // namespace uav_landing

@@ -31,8 +31,8 @@ tl::unexpected<Failure> noThreshold(const Parts&... parts) {
 
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway,
-                                  std::vector<LineGreys>& memory) {
-  const TopView view(image, mask, rig, axes, runway, memory);
+                                  std::vector<LineGreys>& memory, const StampMap& rows) {
+  const TopView view(image, mask, rig, axes, runway, memory, rows);
   const std::optional<ThresholdBars> bars = findThresholdBars(view);
   if (!bars) return noThreshold("no threshold bars in the picture");
   const double begin = view.distance(bars->begin);

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/stamp_map.h"
 #include "kernels/image/line_view.h"
 #include "runway/ground_edges.h"
 #include "runway/runway_edges.h"
@@ -23,9 +24,9 @@ struct Threshold {
 /// distance between its bars, before them: told in the middle, with a systematic error that takes in both
 /// ends. Bars: at least eight edges between light and dark side by side, evenly over the
 /// runway's width, unlike the marks of the touchdown zone. image: left rectified mono8. mask: 255 where it
-/// has picture. memory: for rows seen from above.
+/// has picture. memory: for rows seen from above. rows: of the image.
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway,
-                                  std::vector<LineGreys>& memory);
+                                  std::vector<LineGreys>& memory, const StampMap& rows = {});
 
 }  // namespace uav_landing

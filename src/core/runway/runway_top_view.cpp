@@ -15,8 +15,15 @@ constexpr int kColumns = TopView::kColumns;
 }  // namespace
 
 TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
-                 const RunwayCrossSection& runway, std::vector<Across>& rows)
-    : image_(image), mask_(mask), rig_(rig), axes_(axes), step_(1 / rig.fy), rows_(rows) {
+                 const RunwayCrossSection& runway, std::vector<Across>& rows, const StampMap& exposed)
+    : image_(image),
+      mask_(mask),
+      rig_(rig),
+      axes_(axes),
+      exposed_(exposed),
+      centre_(runway.centre),
+      step_(1 / rig.fy),
+      rows_(rows) {
   for (int c = 0; c < kColumns; ++c)
     across_[c] = runway.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway.width;
   // Stations lie evenly in the inverse of the distance, as pixels do.
@@ -51,7 +58,15 @@ bool TopView::mayBeSeen(double x) const {
 
 bool TopView::sample(double x, Across& row) const {
   if (image_.cols < 2 || image_.rows < 2) return false;
-  const LineView line{x * axes_.forward + axes_.down, axes_.left, rig_.fx, rig_.fy, rig_.cx, rig_.cy};
+  // A line across takes few rows of the picture, so the time of its middle is that of all of it.
+  const Eigen::Vector3d begin = x * axes_.forward + axes_.down, middle = begin + centre_ * axes_.left;
+  const double seconds = middle.z() > 0 ? exposed_.timeOf(middle) : 0;
+  const LineView line{seconds == 0 ? begin : exposed_.pointAfter(seconds, begin),
+                      seconds == 0 ? axes_.left : exposed_.directionAfter(seconds, axes_.left),
+                      rig_.fx,
+                      rig_.fy,
+                      rig_.cx,
+                      rig_.cy};
   return sampleLine(line, across_, image_, mask_, row) >= kLeastPicture * kColumns;
 }
 

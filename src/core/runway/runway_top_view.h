@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/stamp_map.h"
 #include "kernels/image/line_view.h"
 #include "runway/ground_edges.h"
 #include "runway/runway_cross_section.h"
@@ -20,9 +21,9 @@ class TopView {
   /// Grey levels across the runway from the left, not finite outside the picture.
   using Across = LineGreys;
 
-  /// rows: memory for the rows, kept by the caller.
+  /// rows: memory for the rows, kept by the caller. exposed: when the image's rows were.
   TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
-          const RunwayCrossSection& runway, std::vector<Across>& rows);
+          const RunwayCrossSection& runway, std::vector<Across>& rows, const StampMap& exposed = {});
 
   int size() const { return static_cast<int>(rows_.size()); }
   const Across& row(int k) const { return rows_[static_cast<size_t>(k)]; }
@@ -41,6 +42,8 @@ class TopView {
   const cv::Mat &image_, &mask_;
   const StereoRig& rig_;
   const GroundAxes& axes_;
+  StampMap exposed_;
+  double centre_;  // of the runway, left of the camera, in heights
   double step_;
   LinePlaces across_;  // left of the camera, in heights
   std::vector<double> inverse_;

@@ -27,9 +27,11 @@ class RunwayTracker {
                 const RunwayParameters& runway = {});
 
   /// left: rectified image. approach: of this pair, with n, the vanishing direction and the step; direction:
-  /// the lines it was found from. height: by stereo, m, or NaN; without it only the left view counts.
+  /// the lines it was found from. height: by stereo, m, or NaN; without it only the left view counts. rows:
+  /// of the left image.
   ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
-                                      const RunwayDirection& direction, double height);
+                                      const RunwayDirection& direction, double height,
+                                      const StampMap& rows = {});
   /// A pair of which nothing is known but that the motion up to the next one does not begin before it.
   void skip(double stamp);
   void reset();
@@ -71,7 +73,7 @@ class RunwayTracker {
   Edges edgesOf(const GroundAxes& axes, const RunwayDirection& direction, double height) const;
   void findCentre(double seconds, const GroundAxes& axes, const RunwayDirection& direction, double height,
                   ApproachAngleResult::Runway& result);
-  void findThresholdLine(double seconds, const cv::Mat& left, const GroundAxes& axes,
+  void findThresholdLine(double seconds, const cv::Mat& left, const StampMap& rows, const GroundAxes& axes,
                          ApproachAngleResult::Runway& result);
 
   void missAll(double seconds);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "geometry/stamp_map.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
@@ -18,6 +19,11 @@ struct SeenGround {
   std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
   RunwayParameters runway = {};  ///< what charts say of it
   double last_doubt = 0;         ///< chance that the last direction was not the runway's
+};
+
+/// Of both rectified views: where their pixels would be had all rows been exposed at the stamp.
+struct ViewRows {
+  StampMap left, right;
 };
 
 }  // namespace uav_landing

@@ -13,6 +13,7 @@
 #include "motion/motion_corners.h"
 #include "motion/motion_tracker.h"
 #include "results/result_check.h"
+#include "rig/plane_rate.h"
 #include "runway/runway_direction.h"
 #include "runway/runway_tracker.h"
 
@@ -42,21 +43,30 @@ struct ApproachAngleStage::Implementation {
   bool plane_found = false;  // in the pair before, by a search
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
+  ReadoutCheck readout;
+  Eigen::Vector3d last_normal = Eigen::Vector3d::Constant(kUnknown);
   Timings timings;
 
   Implementation(const RigModel& rig, const ApproachAngleParameters& p, const RunwayParameters& known)
-      : model(rig), parameters(p), known_runway(known), tracker(rig, p), runway(rig, p, known) {
+      : model(rig),
+        parameters(p),
+        known_runway(known),
+        tracker(rig, p),
+        runway(rig, p, known),
+        readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
   }
 
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
-                              const StereoDepthResult& stereo, const AttitudePrior& imu) {
+                              StereoDepthResult stereo, const AttitudePrior& imu) {
     timings.clear();
     ApproachAngleResult result;
     result.stamp = stamp;
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
     result.failure = checkPair(model, left, right);
+    const Failure too_long = readout.follow(stamp);
+    if (!result.failure) result.failure = too_long;
     if (result.failure) {
       nothingKnown(result);
       if (result.failure.reason == Reason::kInputInvalid) return result;
@@ -70,11 +80,13 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
+    if (const std::optional<RowMotion> motion = tracker.lastMotion()) carryPlane(*motion, stereo);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
         stereo.plane, stereo.vertical_rotation,   runway.isSettled(stamp), last.path, last.runway,
         known_runway, identity.otherProbability()};
+    if (has_plane) last_normal = stereo.plane.normal();
     const RunwayDirection direction = findDirection(left, right, has_plane ? &ground : nullptr, result);
     if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
       result.failure = {Reason::kNoGroundNormal,
@@ -84,6 +96,7 @@ struct ApproachAngleStage::Implementation {
       return result;
     }
     straightenPlan(result);
+    last_normal = result.n;
     followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
@@ -95,9 +108,23 @@ struct ApproachAngleStage::Implementation {
       result.runway.failure = result.runway.threshold_failure = result.step.failure;
     } else {
       result.runway =
-          runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown);
+          runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown,
+                         rowsOf(model.rig.K(), model.left_times));
     }
     return result;
+  }
+
+  // By the last motion over the last ground that is known.
+  StampMap rowsOf(const Eigen::Matrix3d& K, const RowTimes& times) const {
+    const std::optional<RowMotion> motion = tracker.lastMotion();
+    if (times.atOnce() || !motion || !last_normal.allFinite()) return {};
+    return {K, times, *motion, last_normal};
+  }
+
+  ViewRows viewRows() const {
+    Eigen::Matrix3d right = model.rig.K();
+    right(0, 2) = model.rig.cx_right;
+    return {rowsOf(model.rig.K(), model.left_times), rowsOf(right, model.right_times)};
   }
 
   // Motion and runway are not known, for the reason of the pair.
@@ -146,7 +173,7 @@ struct ApproachAngleStage::Implementation {
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
     RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground,
-                                                    parameters, direction_memory, timings);
+                                                    parameters, direction_memory, timings, viewRows());
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;
@@ -231,6 +258,8 @@ void ApproachAngleStage::reset() {
   implementation_->runway.reset();
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
+  implementation_->readout.reset();
+  implementation_->last_normal.setConstant(kUnknown);
   implementation_->plane_found = false;
 }
 

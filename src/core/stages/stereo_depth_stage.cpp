@@ -1,5 +1,6 @@
 #include "uav_landing/stages/stereo_depth_stage.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,7 @@ struct StereoDepthStage::Implementation {
   RepeatedImage left_repeated, right_repeated;
   SpreadSearch search;
   SurfaceMemory surface_memory;
+  ReadoutCheck readout;
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p, std::unique_ptr<CornerMatcher> given)
@@ -58,7 +60,8 @@ struct StereoDepthStage::Implementation {
                 *matcher),
         own_frame(rig.rig.size),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev),
-        search(rig, coarseFactor(rig.rig.size), p, limits) {
+        search(rig, coarseFactor(rig.rig.size), p, limits),
+        readout(rig.left_times, rig.right_times) {
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -74,6 +77,9 @@ struct StereoDepthStage::Implementation {
     tracker.begin(stamp);
     search.begin(tracker.duration());
     result.failure = checkPair(model, left_image, right_image);
+    const Failure too_long = readout.follow(stamp);
+    if (!result.failure) result.failure = too_long;
+    fine.drift = {tracker.steadyRate(), &model.left_times};
     if (result.failure.reason != Reason::kInputInvalid) {
       result.left_repeated = left_repeated.check(left_image);
       result.right_repeated = right_repeated.check(right_image);
@@ -98,6 +104,17 @@ struct StereoDepthStage::Implementation {
     for (size_t i = 0; i < samples.size(); ++i)
       if (corners.fit.agrees[i] != 0) on_ground.emplace_back(cvRound(samples[i].u), cvRound(samples[i].v));
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
+  }
+
+  // By how much the right camera's rows are later than the left one's, where they are most so, s.
+  double laterRows() const {
+    double most = 0;
+    for (const int v : {0, model.rig.size.height - 1})
+      for (const int u : {0, model.rig.size.width - 1}) {
+        const double later = model.right_times.at(u, v) - model.left_times.at(u, v);
+        if (std::abs(later) > std::abs(most)) most = later;
+      }
+    return most;
   }
 
   // Width and height of corners' windows, pixels.
@@ -204,6 +221,7 @@ struct StereoDepthStage::Implementation {
     {
       ScopedTimer timer(timings, "feature_matching");
       matched.matches = matcher->match(fine, matched.corners, start);
+      carryToStamp(model.rig, fine.drift, matched.matches.samples);
     }
     fit(start, matched, result);
     return matched;
@@ -223,6 +241,8 @@ struct StereoDepthStage::Implementation {
     corners.fit = std::move(*plane);
     const PlaneFit& fit = corners.fit;
     result.plane = fit.plane;
+    if (!fine.drift.isStill()) result.plane_rate = fine.drift.rate;
+    result.plane_by_rate = planeByRate(model.rig, fine.drift, samples, fit.agrees);
     result.residual_stddev = fit.residual_stddev;
     result.surface_variance = surfaceVariance(model.rig, samples, fit, window(), surface_memory);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = fit.agrees[i] != 0;
@@ -252,9 +272,9 @@ struct StereoDepthStage::Implementation {
   // The plane of the corners stays when the images' alignment leads elsewhere; false then.
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
-    const Expected<PlaneFit> fit =
-        direct->refine(left_image, withLevelRows(right_image), result.plane.g, limits,
-                       parameters.disparity_bias_stddev, rows.residual(fine.rig), rows.levelledBy());
+    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
+                                                  limits, parameters.disparity_bias_stddev,
+                                                  rows.residual(fine.rig), rows.levelledBy(), fine.drift);
     result.photometric_agreement = direct->agreement();
     if (!fit) return false;
     if (direct->noisy()) result.plane.covariance *= kNoisyCorners * kNoisyCorners;
@@ -264,6 +284,7 @@ struct StereoDepthStage::Implementation {
       return false;
     }
     result.plane = fit->plane;
+    result.plane_by_rate = planeByRate(model.rig, fine.drift, direct->samples(), fit->agrees);
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
     // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.
@@ -306,7 +327,7 @@ StereoDepthStage::StereoDepthStage(StereoDepthStage&&) noexcept = default;
 StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                             double skew) {
   StereoDepthResult result = implementation_->process(stamp, left, right);
-  result.skew = skew;
+  result.skew = skew + implementation_->laterRows();
   return result;
 }
 
@@ -317,6 +338,7 @@ void StereoDepthStage::reset() {
   implementation_->leaveOutOwnFrame();
   implementation_->rows.reset();
   if (implementation_->direct) implementation_->direct->reset();
+  implementation_->readout.reset();
   implementation_->left_repeated.reset();
   implementation_->right_repeated.reset();
 }

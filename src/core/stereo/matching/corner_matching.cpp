@@ -30,7 +30,7 @@ class CornerMatcher {
                 int steps)
       : level_(level),
         parameters_(parameters),
-        shift_(level.rig, g),
+        shift_(level.rig, g, level.drift),
         steps_(steps),
         forward_(level.left, level.right, parameters.window_radius, parameters.matching_cost),
         backward_(level.right, level.left, parameters.window_radius, parameters.matching_cost),

@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "stereo/matching/plane_drift.h"
 #include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
@@ -11,6 +12,7 @@ struct StereoLevel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;  ///< mono8, already eroded by the matching window
   cv::Mat left, right;            ///< CV_32F, smoothed
+  PlaneDrift drift = {};          ///< of the ground; at full resolution only
 };
 
 /// Rig and masks at a resolution reduced by an integer factor; the masks are eroded by margin pixels there.

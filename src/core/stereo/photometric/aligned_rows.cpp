@@ -66,7 +66,8 @@ int AlignedRows::findFirstRow(const ShiftModel& shift, double least) const {
   return static_cast<int>(std::clamp<double>(std::ceil(highest), 0, size_.height));
 }
 
-cv::Range AlignedRows::seenColumns(const ShiftModel& shift, double least, int v) const {
+cv::Range AlignedRows::seenColumns(const ShiftModel& model, double least, int v) const {
+  const ShiftModel shift = model.around(0.5 * size_.width, v);
   // Pixels that interpolation reads beside a place, and by which a later model may be off this one.
   constexpr int kAround = 5;
   const cv::Range &left = left_columns_[v], &right = right_columns_[v];
@@ -112,11 +113,12 @@ cv::Range AlignedRows::readableColumns(const ShiftModel& shift, int row, int col
   return whole(std::max(seen.start, inside.start), std::min(seen.end, inside.end));
 }
 
-void AlignedRows::align(const cv::Mat& right, const ShiftModel& shift) {
+void AlignedRows::align(const cv::Mat& right, const ShiftModel& model) {
   right_memory_.create(right.size(), CV_32F);
   right_ = right_memory_.rowRange(0, static_cast<int>(seen_.size()));
   for (int row = 0; row < right_.rows; ++row) {
     const int v = first_row_ + row;
+    const ShiftModel shift = model.around(0.5 * size_.width, v);
     const cv::Range columns = readableColumns(shift, row, right.cols);
     if (!columns.empty()) {
       sampleParabolicRow(

@@ -19,7 +19,7 @@ class AlignedRows {
   /// pixels, which both cameras see.
   void begin(const cv::Mat& left, const ShiftModel& shift, double least);
   /// Interpolates the right image (CV_32F) by a model that is near the one of begin().
-  void align(const cv::Mat& right, const ShiftModel& shift);
+  void align(const cv::Mat& right, const ShiftModel& model);
 
   /// Row of the whole images that the first one here is.
   int firstRow() const { return first_row_; }
@@ -32,7 +32,7 @@ class AlignedRows {
  private:
   int findFirstRow(const ShiftModel& shift, double least) const;
   /// Of row v of the whole images.
-  cv::Range seenColumns(const ShiftModel& shift, double least, int v) const;
+  cv::Range seenColumns(const ShiftModel& model, double least, int v) const;
   /// The rows to the last one that both cameras see some of.
   void findRows(const ShiftModel& shift, double least);
   cv::Range readableColumns(const ShiftModel& shift, int row, int cols) const;

@@ -31,8 +31,8 @@ bool BandDisparities::isSeen(int column, int line) const {
   return true;
 }
 
-void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
-  rows_.begin(left, ShiftModel(rig_, g), kLeastDisparity + rig_.principalOffset());
+void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift) {
+  rows_.begin(left, ShiftModel(rig_, g, drift), kLeastDisparity + rig_.principalOffset());
   grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
   const int height = std::max(0, rows_.left().rows - 2 * kGridRow);
   grid_.lines = height / kBlockHeight;
@@ -44,11 +44,12 @@ void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
   if (!grid_.seen.empty()) left_.split(rows_.left());
 }
 
-void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
+void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+                              const PlaneDrift& drift) {
   disparities_.clear();
   differ_by_noise_ = false;
   if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;
-  const ShiftModel shift(rig_, g);
+  const ShiftModel shift(rig_, g, drift);
   rows_.align(levelled(right, rows), shift);
   right_.split(rows_.right());
   weigh();

@@ -21,10 +21,11 @@ class BandDisparities {
   explicit BandDisparities(const StereoLevel& level);
 
   /// Takes the left image (mono8) below the horizon of the plane g, 1/m.
-  void choose(const cv::Mat& left, const Eigen::Vector3d& g);
+  void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
   /// Compares it with the right image (mono8) warped by the plane g. rows: rotation that the vertical
   /// disparities of the images have.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+               const PlaneDrift& drift = {});
 
   /// Whether what the images differed by was noise in the last measurement. Else they do not show the same,
   /// and there are no disparities.

@@ -11,12 +11,13 @@ constexpr int kBlocks = 800;
 BlockDisparities::BlockDisparities(const StereoLevel& level)
     : rig_(level.rig), blocks_(level.left_mask, level.right_mask) {}
 
-void BlockDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g) {
-  blocks_.choose(left, rig_, ShiftModel(rig_, g), kBlocks);
+void BlockDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift) {
+  blocks_.choose(left, rig_, ShiftModel(rig_, g, drift), kBlocks);
 }
 
-void BlockDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
-  const ShiftModel shift(rig_, g);
+void BlockDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+                               const PlaneDrift& drift) {
+  const ShiftModel shift(rig_, g, drift);
   blocks_.compare(right, shift, matches_);
   disparities_.clear();
   for (const PhotometricBlocks::Match& match : matches_)

@@ -16,10 +16,11 @@ class BlockDisparities {
   explicit BlockDisparities(const StereoLevel& level);
 
   /// Takes blocks of the left image (mono8) below the horizon of the plane g, 1/m.
-  void choose(const cv::Mat& left, const Eigen::Vector3d& g);
+  void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
   /// Compares them with the right image (mono8) warped by the plane g. rows: rotation that the vertical
   /// disparities of the images have.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+               const PlaneDrift& drift = {});
 
   /// Of the last measurement.
   const std::vector<BlockDisparity>& disparities() const { return disparities_; }

@@ -4,12 +4,13 @@
 
 namespace uav_landing {
 
-BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& shift,
+BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& model,
                            const Eigen::Vector3d& w) {
   // Comparisons are first order in the shift: farther than this (pixels) it means nothing.
   constexpr double kLargestShift = 1.5;
   // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a place
   // that has the error of the shift in it would pull the plane.
+  const ShiftModel shift = model.around(match.u, match.v);
   const double density = 1 - shift.a;  // of right pixels over left ones
   const double place = shift.at(match.u, match.v);
   const double disparity = place + match.shift * density - rig.principalOffset();

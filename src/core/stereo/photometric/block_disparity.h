@@ -17,7 +17,7 @@ struct BlockDisparity {
 
 /// Of a shift between the left image and the right one that is warped by the model. w: rotation that the
 /// vertical disparities of the images have, rad.
-BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& shift,
+BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& model,
                            const Eigen::Vector3d& w);
 
 }  // namespace uav_landing

@@ -88,9 +88,10 @@ struct DirectRefinement::Implementation {
 
   Implementation(const RigModel& model, int margin) : rig(model.rig), disparities(model, margin) {}
 
-  void takeSamples(const Eigen::Vector3d& g) {
+  void takeSamples(const Eigen::Vector3d& g, const PlaneDrift& drift) {
     samples.clear();
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
+    carryToStamp(rig, drift, samples);
     common_variance = makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
   }
 
@@ -177,17 +178,17 @@ DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
 Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& right,
                                             const Eigen::Vector3d& start, const PlaneLimits& limits,
                                             double bias_stddev, const RigRotation& rows,
-                                            const Eigen::Vector3d& levelled_by) {
+                                            const Eigen::Vector3d& levelled_by, const PlaneDrift& drift) {
   Implementation& own = *implementation_;
   own.edges.begin();
-  own.disparities.begin(left, right, start, rows);
+  own.disparities.begin(left, right, start, rows, drift);
   own.agreeing = 0;
   Eigen::Vector3d g = start;
   for (int step = 0;; ++step) {
-    if (step > 0) own.disparities.measure(right, g, rows);
+    if (step > 0) own.disparities.measure(right, g, rows, drift);
     if (static_cast<int>(own.disparities.found().size()) < limits.min_points)
       return tl::make_unexpected(own.tooFew(limits.min_points));
-    own.takeSamples(g);
+    own.takeSamples(g, drift);
     if (step == 0) {
       for (DisparitySample& sample : own.samples)
         sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "stereo/matching/plane_drift.h"
 #include "stereo/plane/plane_fit.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/results/stage_results.h"
@@ -27,11 +28,13 @@ class DirectRefinement {
   /// bias_stddev: as for refinePlane, pixels. limits.tolerance: by how much blocks of
   /// ground may be off the plane, pixels. rows: rotation that the vertical disparities of the images have
   /// (rig_rotation.h): along a row, slanted edges seem moved by them. levelled_by: what the right image has
-  /// been freed of before, rad, so that edges of pairs that were levelled otherwise count as well. Fails when
-  /// the images show too little, or when most of what they show is not on one plane.
+  /// been freed of before, rad, so that edges of pairs that were levelled otherwise count as well. drift: of
+  /// the plane while rows are exposed; start and result are at the stamp. Fails when the images show too
+  /// little, or when most of what they show is not on one plane.
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
                             const PlaneLimits& limits, double bias_stddev, const RigRotation& rows,
-                            const Eigen::Vector3d& levelled_by = Eigen::Vector3d::Zero());
+                            const Eigen::Vector3d& levelled_by = Eigen::Vector3d::Zero(),
+                            const PlaneDrift& drift = {});
   /// What the last pair's edges said of the rows does not count for the next ones, as of a plane that is not
   /// taken.
   void forgetLast();
@@ -42,7 +45,8 @@ class DirectRefinement {
   double agreement() const;
   /// Whether texture was hardly more than noise in the last refinement.
   bool noisy() const;
-  /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture.
+  /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture,
+  /// at the stamp.
   const std::vector<DisparitySample>& samples() const;
 
  private:

@@ -12,22 +12,23 @@ PairDisparities::PairDisparities(const RigModel& model, int margin)
     : blocks_(reduceLevel(model, 1, margin)), bands_(reduceLevel(model, 1, margin)) {}
 
 void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
-                            const RigRotation& rows) {
-  blocks_.choose(left, g);
-  blocks_.measure(right, g, rows);
+                            const RigRotation& rows, const PlaneDrift& drift) {
+  blocks_.choose(left, g, drift);
+  blocks_.measure(right, g, rows, drift);
   noisy_ = blocks_.certainShare() < kMostlyCertain;
   if (noisy_) {
-    bands_.choose(left, g);
-    bands_.measure(right, g, rows);
+    bands_.choose(left, g, drift);
+    bands_.measure(right, g, rows, drift);
     noisy_ = bands_.differByNoise();
   }
   collect();
 }
 
-void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows) {
-  if (noisy_) bands_.measure(right, g, rows);
+void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+                              const PlaneDrift& drift) {
+  if (noisy_) bands_.measure(right, g, rows, drift);
   noisy_ = noisy_ && bands_.differByNoise();
-  if (!noisy_) blocks_.measure(right, g, rows);
+  if (!noisy_) blocks_.measure(right, g, rows, drift);
   collect();
 }
 

@@ -15,10 +15,12 @@ class PairDisparities {
   PairDisparities(const RigModel& model, int margin);
 
   /// Takes blocks of a pair (mono8) and compares them with the right image warped by the plane g, 1/m. rows:
-  /// rotation that the vertical disparities of the images have.
-  void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+  /// rotation that the vertical disparities of the images have. drift: of the plane while rows are exposed.
+  void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+             const PlaneDrift& drift = {});
   /// Compares them on another plane. right: as for begin.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows);
+  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+               const PlaneDrift& drift = {});
 
   /// Of the last comparison, those that the right image shows.
   const std::vector<BlockDisparity>& found() const { return found_; }

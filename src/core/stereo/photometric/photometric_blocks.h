@@ -64,7 +64,7 @@ class PhotometricBlocks {
   double usualEnergy() const;
   void pick(int count);
   static bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block);
-  void multiply(const cv::Mat& right, const ShiftModel& shift);
+  void multiply(const cv::Mat& right, const ShiftModel& model);
   std::optional<Photometry> photometry() const;
   // None where the left image shows nothing but noise.
   std::optional<ShiftEvidence> evidenceOf(const Products& products, const Photometry& photometry) const;

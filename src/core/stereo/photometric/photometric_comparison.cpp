@@ -42,10 +42,11 @@ double lowerQuartileOf(const std::vector<double>& values) {
 
 }  // namespace
 
-void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& shift) {
+void PhotometricBlocks::multiply(const cv::Mat& right, const ShiftModel& model) {
   products_.clear();
-  const float step = static_cast<float>(1 - shift.a);
   for (const Block& block : blocks_) {
+    const ShiftModel shift = model.around(block.u + kWidth / 2, block.v + kHeight / 2);
+    const float step = static_cast<float>(1 - shift.a);
     const double begin = block.u - shift.at(block.u, block.v), end = begin + step * (kWidth - 1);
     const double down = -shift.b * (kHeight - 1);
     if (std::min({begin, end, begin + down, end + down}) < kMargin ||

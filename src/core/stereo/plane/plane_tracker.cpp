@@ -19,6 +19,9 @@ constexpr double kKept = 0.8;
 // Of disparities, see Steadiness: corners are looked for within two and a half pixels.
 constexpr double kSteadyOff = 1.0, kMostOff = 1.5;
 
+// Weight of the last pair's rate in the mean: that of one pair alone is mostly noise.
+constexpr double kLatest = 0.4;
+
 // Of the corners looked for, those on the plane.
 double agreeingShare(const StereoDepthResult& result) {
   const auto agreeing = std::count_if(result.points.begin(), result.points.end(),
@@ -51,6 +54,7 @@ void PlaneTracker::forget() {
   stamp_ = -INFINITY;
   has_last_ = false;
   failures_ = 0;
+  steady_rate_.setZero();
   steadiness_.lose();
 }
 
@@ -68,6 +72,11 @@ void PlaneTracker::remember(const StereoDepthResult& result, bool certain) {
     steadiness_.lose();
   }
   rate_ = follows ? Eigen::Vector3d((g - last_) / (stamp_ - last_stamp_)) : Eigen::Vector3d::Zero();
+  if (!follows) {
+    steady_rate_.setZero();
+  } else {
+    steady_rate_ += (steady_rate_.isZero(0) ? 1 : kLatest) * (rate_ - steady_rate_);
+  }
   last_ = g;
   last_stamp_ = stamp_;
   has_last_ = true;

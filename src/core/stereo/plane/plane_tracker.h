@@ -34,6 +34,8 @@ class PlaneTracker {
   void remember(const StereoDepthResult& result, bool certain);
 
   bool hasLast() const { return has_last_; }
+  /// By how much the plane changes, by the last pairs, 1/m/s; 0 while that is not known.
+  const Eigen::Vector3d& steadyRate() const { return steady_rate_; }
   /// Since the pair before, s; infinite for the first one.
   double duration() const { return duration_; }
   /// The plane as it moves on from the pairs before, where it has been where they led: good enough for all
@@ -68,6 +70,7 @@ class PlaneTracker {
   double stamp_ = -INFINITY, duration_ = 0;  // of this pair, and since the one before, s
   bool has_last_ = false;
   Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), rate_ = Eigen::Vector3d::Zero();  // of it, by second
+  Eigen::Vector3d steady_rate_ = Eigen::Vector3d::Zero();                            // mean of the last ones
   double last_stamp_ = 0;
   int failures_ = 0;                                    // pairs in a row
   Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  // in this pair

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <vector>
+
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/calibration.h"
+#include "uav_landing/parameters/rig_parameters.h"
+
+namespace uav_landing {
+
+/// How one camera reads its raw pictures, as the driver delivers them. A raw row v of `rows` is exposed at
+///   t(v) = stamp + ((v + 1/2) / rows - stamp_row) time.
+struct Readout {
+  double time = 0;         ///< s, from the first line to the last; negative: the last one comes first
+  double stamp_row = 0.5;  ///< exposed at the stamp: 0 the first line, 1 the last
+  RowDirection direction = RowDirection::kRows;
+};
+
+/// Of the left and the right camera, as the parameters say; a time that is not given is that of a global
+/// shutter.
+Readout leftReadout(const RigParameters& parameters);
+Readout rightReadout(const RigParameters& parameters);
+
+/// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
+/// to its raw row. The default is a global shutter.
+class RowTimes {
+ public:
+  RowTimes() = default;
+  /// calibration: checked.
+  RowTimes(const CameraCalibration& calibration, const Readout& readout);
+
+  /// Global shutter: nothing has to be carried to the stamp.
+  bool atOnce() const { return time_ == 0; }
+  /// From the stamp to the exposure of a rectified pixel, s.
+  double at(double u, double v) const { return atOnce() ? 0 : time_ * shareAt(u, v); }
+  /// (t0, tu, tv), the plane t0 + tu u + tv v that lies best through these times: s, s/px, s/px.
+  const Eigen::Vector3d& plane() const { return plane_; }
+  /// From the first line to the last, s; negative when the last one comes first.
+  double readoutTime() const { return time_; }
+
+ private:
+  double shareAt(double u, double v) const;
+  void fitPlane(cv::Size size);
+
+  double time_ = 0;
+  int columns_ = 0, rows_ = 0;  // of the grid
+  std::vector<float> shares_;   // of the readout time, at the nodes of a grid over the rectified image
+  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
+};
+
+/// Refuses a readout time that is longer than the time between the pictures: it is given in other units, or
+/// of another mode of the sensor.
+class ReadoutCheck {
+ public:
+  explicit ReadoutCheck(const RowTimes& times, const RowTimes& right);
+  /// Pairs in the order of their stamps, s.
+  Failure follow(double stamp);
+  void reset() { stamps_.clear(); }
+
+ private:
+  double longest_;             // readout time of either camera, s
+  std::deque<double> stamps_;  // the last ones
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/rolling_camera.h"
+#include "uav_landing/pipeline.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kReadout = 0.03, kPeriod = 0.05;  // s
+
+struct Errors {
+  double angle = 0, height = 0, pitch = 0;  // rad, share, rad: means of the last pairs
+  int count = 0;
+};
+
+/// The chain over what a rolling shutter of 30 ms sees; given: what it is told of it.
+Errors errorsOf(double readout, double given) {
+  constexpr int kPairs = 9, kFirst = 5;
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  Parameters parameters;
+  parameters.rig.readout_time = given;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  Errors errors;
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    const Pipeline::Output& output = pipeline.process(stamp, test::rollingImage(ground, rig, stamp, readout),
+                                                      test::rollingImage(ground, rig, stamp, readout, true));
+    if (i < kFirst || output.approach.step.failure || output.stereo.failure) continue;
+    const test::Pose now = test::movingPose(stamp);
+    errors.angle += output.approach.step.angle - test::Movement(test::movingPose(stamp - kPeriod), now).angle;
+    errors.height += output.stereo.plane.height() / now.height() - 1;
+    errors.pitch += pitchOf(output.stereo.plane.normal()) - now.pitch;
+    ++errors.count;
+  }
+  errors.angle /= errors.count;
+  errors.height /= errors.count;
+  errors.pitch /= errors.count;
+  return errors;
+}
+
+TEST(RollingShutter, LeavesTheEstimatesAsTheyAreWhenItsReadoutTimeIsKnown) {
+  const Errors global = errorsOf(0, 0), known = errorsOf(kReadout, kReadout), ignored = errorsOf(kReadout, 0);
+  ASSERT_EQ(known.count, 4);
+  ASSERT_EQ(global.count, 4);
+  EXPECT_LT(std::abs(known.angle), 0.05 * test::kDegree) << global.angle / test::kDegree;
+  EXPECT_LT(std::abs(known.height), 2e-3) << global.height;
+  EXPECT_LT(std::abs(known.pitch), 0.04 * test::kDegree) << global.pitch / test::kDegree;
+  EXPECT_GT(std::abs(ignored.angle) + std::abs(ignored.pitch), 0.1 * test::kDegree)
+      << "the shutter must matter";
+}
+
+TEST(RollingShutter, OfTheRightCameraAloneIsSkew) {
+  RigModel model = test::makeModel(test::makeRig(320, 240, 0.3));
+  const cv::Mat image(model.rig.size, CV_8UC1, cv::Scalar(90));
+  EXPECT_EQ(StereoDepthStage(model, {}).process(1, image, image, 0.001).skew, 0.001);
+  const RowTimes times(test::calibrationOf(model.rig), {kReadout, 0.25});
+  model.right_times = times;
+  EXPECT_NEAR(StereoDepthStage(model, {}).process(1, image, image, 0.001).skew, 0.001 + 0.75 * kReadout,
+              1e-4);
+  model.left_times = times;
+  EXPECT_EQ(StereoDepthStage(model, {}).process(1, image, image, 0.001).skew, 0.001);
+}
+
+TEST(RollingShutter, ThatTakesLongerThanAPictureMakesNoPairValid) {
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  Parameters parameters;
+  parameters.rig.readout_time = 0.06;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  const cv::Mat image = test::GroundRenderer(12).left(rig, test::movingPose(0));
+  for (int i = 0; i < 5; ++i) pipeline.process(i * kPeriod, image, image);
+  const Pipeline::Output& output = pipeline.process(5 * kPeriod, image, image);
+  for (const Failure& failure : {output.stereo.failure, output.approach.failure, output.landing.failure}) {
+    EXPECT_EQ(failure.reason, Reason::kInputInvalid);
+    EXPECT_EQ(failure.detail.substr(0, 25), "rig/readout_time: 0.06 s ");
+  }
+}
+
+}  // namespace
+}  // namespace uav_landing

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "geometry/stamp_map.h"
+#include "support/ground_renderer.h"
+#include "uav_landing/geometry/row_times.h"
+
+namespace uav_landing {
+namespace test {
+
+/// A camera that glides, pitches, rolls and yaws steadily: at rest in the picture nothing is.
+inline Pose movingPose(double t) {
+  Pose pose;
+  pose.position = {4.0 * t, 0.1 * t, 1.6 - 0.5 * t};
+  pose.pitch = (-8 + 9 * t) * kDegree;
+  pose.roll = (1 - 12 * t) * kDegree;
+  pose.yaw = (0.5 + 7 * t) * kDegree;
+  return pose;
+}
+
+/// The motion at a time by the difference of poses around it.
+inline RowMotion motionAt(double t) {
+  constexpr double kHalf = 1e-4;
+  const Pose before = movingPose(t - kHalf), behind = movingPose(t + kHalf), now = movingPose(t);
+  const Movement movement(before, behind);
+  const Eigen::AngleAxisd turn(movement.R);
+  return {turn.angle() * turn.axis() / (2 * kHalf),
+          now.seen(behind.position - before.position) / (2 * kHalf) / now.height()};
+}
+
+/// The calibration of a rectified camera without lens errors.
+inline CameraCalibration calibrationOf(const StereoRig& rig, bool right = false) {
+  CameraCalibration c;
+  c.width = rig.size.width;
+  c.height = rig.size.height;
+  c.distortion_model = "plumb_bob";
+  c.K = rig.K();
+  c.R = Eigen::Matrix3d::Identity();
+  if (right) c.K(0, 2) = rig.cx_right;
+  c.P.leftCols<3>() = c.K;
+  c.P(0, 3) = right ? -rig.fb() : 0;
+  return c;
+}
+
+/// What a rolling shutter sees whose middle row has the stamp: each row from where the camera is then.
+inline cv::Mat rollingImage(const GroundRenderer& ground, const StereoRig& rig, double stamp, double readout,
+                            bool right = false) {
+  cv::Mat image(rig.size, CV_8UC1);
+  StereoRig row = rig;
+  row.size.height = 1;
+  for (int v = 0; v < rig.size.height; ++v) {
+    const Pose pose = movingPose(stamp + ((v + 0.5) / rig.size.height - 0.5) * readout);
+    row.cy = rig.cy - v;
+    const Exposure noiseless{1, 0, 0};
+    (right ? ground.right(row, pose, noiseless) : ground.left(row, pose, noiseless)).copyTo(image.row(v));
+  }
+  return image;
+}
+
+}  // namespace test
+}  // namespace uav_landing
