@@ -39,9 +39,9 @@ PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthPar
 double PlaneSearch::budgetOf(const cv::Size& size) {
   // Measured: with lines and motion searched besides, a pair then takes two to three times as long as one
   // whose plane is followed. The coarse level of small pictures is hardly smaller than that of large ones.
-  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kAbove = 0.4, kLeast = 60e3;
+  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kAbove = 0.4, kLeast = 75e3;
   const double ratio = size.area() / kVga;
-  return std::max(kLeast, kAtVga * std::pow(ratio, ratio < 1 ? 1 : kAbove));
+  return std::max(kLeast, kAtVga * std::pow(ratio, ratio < 1 ? 0.84 : kAbove));
 }
 
 PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget) {

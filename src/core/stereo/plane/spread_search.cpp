@@ -19,7 +19,7 @@ constexpr double kUsualAge = 0.1;
 // By how much more is done in a pair of the first search: lines and motion wait for that one alone.
 constexpr double kAlone = 3.75;
 // To follow a plane in vain takes as long as scoring so many places, at any size of the pictures.
-constexpr double kFollowingCost = 40e3;
+constexpr double kFollowingCost = 55e3;
 
 Failure stillSearching() {
   return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
