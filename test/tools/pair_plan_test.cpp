@@ -201,6 +201,13 @@ TEST_F(PairPlanTest, ApproximateStampsPairWithTheNearest) {
             "in the config file, rectify: {approximate_sync: true, max_skew: 0.01}");
 }
 
+TEST_F(PairPlanTest, ApproximateStampsAreEachOthersNearest) {
+  parameters_.approximate_sync = true;
+  for (const int64_t ms : {0, 6, 50, 100}) addLeft(100 * kSecond + ms * kMs);
+  for (const int64_t ms : {8, 52, 102}) addRight(100 * kSecond + ms * kMs);
+  EXPECT_EQ(pairs(), (Stamps{{6, 6, 8, 8}, {50, 50, 52, 52}, {100, 100, 102, 102}}));
+}
+
 TEST_F(PairPlanTest, ImagesWithoutAPartnerAreCountedAndTheirReasonIsNamed) {
   for (const int64_t stamp : stamps(9)) {
     addLeft(stamp);
