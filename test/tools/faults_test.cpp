@@ -114,6 +114,19 @@ TEST_F(FaultsTest, VibrationBeginsInFlightAndRowsAreThereAllTheTime) {
   EXPECT_TRUE(fault("readout_untold").wholeRun());
 }
 
+TEST_F(FaultsTest, ReadoutTimeIsToldShorterThanItIsByAThird) {
+  SimulatorParameters scene;
+  Parameters parameters;
+  fault("readout_told").build(scene);
+  fault("readout_told").tell(parameters);
+  EXPECT_NEAR(parameters.rig.readout_time, scene.image.readout_time * 2 / 3, 1e-12);
+  SimulatorParameters shaken;
+  Parameters right;
+  fault("vibration_rows").disturb(shaken, 1);
+  fault("vibration_rows").tell(right);
+  EXPECT_EQ(right.rig.readout_time, shaken.image.readout_time);
+}
+
 TEST_F(FaultsTest, WaterMirrorsTheSkyFromItsShoreOnAndLeavesTheRestAsItWas) {
   const cv::Mat picture = spoiled(fault("water")).left;
   // Its shore is 15 m and three heights ahead, on the ground.

@@ -26,10 +26,13 @@ Delivery deliver(FaultRun& run, const FaultCombination& faults, int in_flight, i
 FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, int in_flight, int onset,
                          uint64_t seed, const Parameters& parameters, const FaultObserver& observe) {
   CameraCalibration left = flight.left, right = flight.right;
-  for (const Fault* fault : faults)
+  Parameters told = parameters;
+  for (const Fault* fault : faults) {
     if (fault->calibrate) fault->calibrate(left, right);
+    if (fault->tell) fault->tell(told);
+  }
   FaultScore score;
-  Expected<Pipeline> pipeline = Pipeline::create(left, right, parameters);
+  Expected<Pipeline> pipeline = Pipeline::create(left, right, told);
   if (!pipeline) {
     score.alarm = "refused: " + pipeline.error().detail;
     return score;

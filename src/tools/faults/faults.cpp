@@ -240,12 +240,19 @@ void shake(SimulatorParameters& p, double onset) {
 void addRows(std::vector<Fault>& all) {
   all.push_back(built("readout_untold", "a rolling shutter of 10 ms that nobody told the chain of",
                       [](SimulatorParameters& p) { p.image.readout_time = 0.01; }));
+  Fault told = built("readout_told", "a rolling shutter of 30 ms, and the chain is told 20 ms",
+                     [](SimulatorParameters& p) { p.image.readout_time = 0.03; });
+  told.tell = [](Parameters& p) { p.rig.readout_time = 0.02; };
+  all.push_back(told);
   all.push_back(disturbed("vibration", "pitch shakes by 0.1 deg at 47 Hz, roll and yaw by less", shake));
-  all.push_back(disturbed("vibration_rows", "the same with a rolling shutter of 10 ms that nobody told of",
-                          [](SimulatorParameters& p, double onset) {
-                            shake(p, onset);
-                            p.image.readout_time = 0.01;
-                          }));
+  Fault rows =
+      disturbed("vibration_rows", "the same with a rolling shutter of 10 ms, which the chain is told",
+                [](SimulatorParameters& p, double onset) {
+                  shake(p, onset);
+                  p.image.readout_time = 0.01;
+                });
+  rows.tell = [](Parameters& p) { p.rig.readout_time = 0.01; };
+  all.push_back(rows);
 }
 
 void addRig(std::vector<Fault>& all) {

@@ -40,6 +40,8 @@ struct Fault {
   std::function<void(SimulatorParameters&, double onset)> disturb;
   bool needs_scene = false;  ///< only when simulated
   bool from_first = false;   ///< from the first pair on: nothing was healthy before
+  /// Other parameters of the chain, for the whole run; empty: none.
+  std::function<void(Parameters&)> tell = {};
 
   /// There from the first pair on.
   bool wholeRun() const { return calibrate || build || from_first; }

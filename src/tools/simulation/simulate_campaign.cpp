@@ -38,6 +38,8 @@ void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vec
          CampaignCsv::Sample sample, Visitor&& visit) {
   // A flight of a few frames shows what comes after the search.
   parameters.stereo_depth.search_at_once = parameters.approach_angle.search_at_once = true;
+  parameters.rig.readout_time = drawn.image.readout_time;
+  parameters.rig.stamp_row = drawn.image.stamp_row;
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
   ImuBuffer imu(parameters.approach_angle);
   for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));

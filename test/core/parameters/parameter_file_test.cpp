@@ -25,7 +25,8 @@ struct Writer {
   std::ostringstream& out;
   template <class Number>
   void number(const char* name, Number& value, double, double, const char*, const char*) {
-    out << "  " << name << ": " << value << "\n";
+    const bool given = !(value != value);  // NaN: it has none
+    if (given) out << "  " << name << ": " << value << "\n";
   }
   void flag(const char*, bool&, const char*) {}
   void text(const char*, std::string&, const char*) {}
@@ -228,7 +229,7 @@ TEST(ParameterFile, FilesThatItNamesAreRelativeToItsFolder) {
 }
 
 TEST(ParameterFile, DefaultsLieWithinTheirOwnRanges) {
-  // Every number written out at its default must load again.
+  // Every number that has a default must load again when it is written out.
   std::ostringstream yaml;
   Parameters().visitSections([&](const char* section, auto& values) {
     yaml << section << ":\n";
