@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -42,7 +43,7 @@ class RowTimes {
 
  private:
   double shareAt(double u, double v) const;
-  void fitPlane(cv::Size size);
+  void fitPlane(cv::Size size, const std::function<bool(int u, int v)>& seen);
 
   double time_ = 0;
   int columns_ = 0, rows_ = 0;  // of the grid

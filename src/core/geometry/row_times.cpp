@@ -49,10 +49,16 @@ RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout)
   rows_ = nodes.height;
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i) {
-      const double share = std::clamp((lines.at<float>(j, i) + 0.5) / count, -kBeside, 1 + kBeside);
-      shares_.push_back(static_cast<float>(share - readout.stamp_row));
+      const double share = (lines.at<float>(j, i) + 0.5) / count;
+      const bool real = std::isfinite(share);
+      shares_.push_back(
+          static_cast<float>(real ? std::clamp(share, -kBeside, 1 + kBeside) - readout.stamp_row : 0));
     }
-  fitPlane(size);
+  const cv::Rect picture(cv::Point(), size);
+  fitPlane(size, [&](int u, int v) {
+    return picture.contains(
+        {cvRound(x.at<float>(v / kStep, u / kStep)), cvRound(y.at<float>(v / kStep, u / kStep))});
+  });
 }
 
 double RowTimes::shareAt(double u, double v) const {
@@ -64,11 +70,14 @@ double RowTimes::shareAt(double u, double v) const {
   return (1 - b) * ((1 - a) * above[0] + a * above[1]) + b * ((1 - a) * below[0] + a * below[1]);
 }
 
-void RowTimes::fitPlane(cv::Size size) {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+// seen: whether a node comes from the raw picture.
+void RowTimes::fitPlane(cv::Size size, const std::function<bool(int u, int v)>& seen) {
+  // Where no node is seen, the plane is 0.
+  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (int v = 0; v < size.height; v += kStep)
     for (int u = 0; u < size.width; u += kStep) {
+      if (!seen(u, v)) continue;
       const Eigen::Vector3d place(1, u, v);
       information += place * place.transpose();
       right += at(u, v) * place;
@@ -80,15 +89,18 @@ ReadoutCheck::ReadoutCheck(const RowTimes& times, const RowTimes& right)
     : longest_(std::max(std::abs(times.readoutTime()), std::abs(right.readoutTime()))) {}
 
 Failure ReadoutCheck::follow(double stamp) {
-  constexpr size_t kPeriods = 4;      // of which the mean counts: stamps of some drivers jitter
+  // Stamps of some drivers jitter by a tenth of the period, which the mean of several has less of.
+  constexpr size_t kFewestPeriods = 4, kMostPeriods = 20;
   constexpr double kRounding = 1.01;  // of stamps and of a measured readout time
+  constexpr double kJitter = 0.42;    // three sigma of the two stamps at the ends, periods
   if (longest_ == 0) return {};
   if (!stamps_.empty() && !(stamp > stamps_.back())) stamps_.clear();
   stamps_.push_back(stamp);
-  if (stamps_.size() <= kPeriods) return {};
-  if (stamps_.size() > kPeriods + 1) stamps_.pop_front();
-  const double period = (stamps_.back() - stamps_.front()) / kPeriods;
-  if (longest_ <= kRounding * period) return {};
+  if (stamps_.size() <= kFewestPeriods) return {};
+  if (stamps_.size() > kMostPeriods + 1) stamps_.pop_front();
+  const double periods = static_cast<double>(stamps_.size() - 1);
+  const double period = (stamps_.back() - stamps_.front()) / periods;
+  if (longest_ <= (kRounding + kJitter / periods) * period) return {};
   return {Reason::kInputInvalid,
           text("rig/readout_time: ", longest_, " s is longer than the ", rounded(period),
                " s between pictures, expected at most that; give it in seconds, as in docs/calibration.md")};

@@ -61,6 +61,7 @@ bool FirstStepSearch::isAtOnce(const StepImages& step) const { return at_once_ |
 void FirstStepSearch::fail() { with_rotation_ = !with_rotation_; }
 
 std::optional<CameraMotion> FirstStepSearch::advance(const StepMatching& matching, const StepImages& step) {
+  if (step.duration > kRare) clear();  // what was found before a gap leads nowhere
   const bool at_once = isAtOnce(step);
   if (compared_.empty()) {
     size_t time = at_once ? kSpeeds.size() : guessedIn(step.time);

@@ -107,6 +107,12 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
   return frame;
 }
 
+std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
+  constexpr double kLately = 0.3;  // s; a camera may turn and climb otherwise after that
+  if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kLately)) return std::nullopt;
+  return past_.back().motion;
+}
+
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
   Result nothing;
   nothing.window.failure = {Reason::kNotYet, "no motion to the frame before"};

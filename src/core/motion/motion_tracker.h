@@ -50,8 +50,8 @@ class MotionTracker {
                  Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
   /// Whether there is an earlier image, but no motion up to it that would lead on.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
-  /// How the camera moved at the last stamp, as far as it is known.
-  std::optional<RowMotion> lastMotion() const { return past_.empty() ? std::nullopt : past_.back().motion; }
+  /// How the camera moved at the last stamp, as far as it is known and not long before this one.
+  std::optional<RowMotion> lastMotion(double stamp) const;
   /// Keeps the image for the next step although nothing can be said about the motion to it.
   void skip(double stamp, const cv::Mat& left);
   /// The image is the very one of the call before: nothing of the motion since, the next step is from when

@@ -29,10 +29,14 @@ std::vector<TemporalMatch> StepMatching::match(const StepImages& step,
                                                const std::vector<TrackedCorner>& corners,
                                                const CameraMotion& predicted, int coarse_steps,
                                                std::vector<TemporalMatch> list) const {
-  TemporalMatchOptions options{parameters_.window_radius, parameters_.min_zncc, coarse_steps};
-  options.rows = rowsBy(step, predicted);
-  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted, options,
-                       step.textures, step.memory.matching, std::move(list));
+  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
+                       options(step, predicted, coarse_steps), step.textures, step.memory.matching,
+                       std::move(list));
+}
+
+TemporalMatchOptions StepMatching::options(const StepImages& step, const CameraMotion& predicted,
+                                           int coarse_steps) const {
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps, rowsBy(step, predicted)};
 }
 
 RowsOverTime StepMatching::rowsBy(const StepImages& step, const CameraMotion& predicted) const {
@@ -59,7 +63,7 @@ Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const Ca
 double StepMatching::likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,
                               const CameraMotion& motion) const {
   return likenessOverTime(rig_, step.now, step.then, mask_, corners, step.normal, motion,
-                          parameters_.window_radius);
+                          options(step, motion, 0));
 }
 
 }  // namespace uav_landing

@@ -67,6 +67,7 @@ class StepMatching {
   const StereoRig& rig() const { return rig_; }
 
  private:
+  TemporalMatchOptions options(const StepImages& step, const CameraMotion& predicted, int coarse_steps) const;
   /// While rows are exposed the camera moves as the predicted motion says.
   RowsOverTime rowsBy(const StepImages& step, const CameraMotion& predicted) const;
 

@@ -313,9 +313,10 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
 
 double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                        const Eigen::Vector3d& normal, const CameraMotion& motion, int window_radius) {
-  const Predictions predictions(rig, now, then, mask, motion, normal, window_radius, 0);
-  PatchSearch there(now.fine, then.fine, window_radius);
+                        const Eigen::Vector3d& normal, const CameraMotion& motion,
+                        const TemporalMatchOptions& options) {
+  const Predictions predictions(rig, now, then, mask, motion, normal, options.window_radius, 0, options.rows);
+  PatchSearch there(now.fine, then.fine, options.window_radius);
   double likeness = 0;
   LocalWarp local;
   for (const TrackedCorner& corner : corners) {

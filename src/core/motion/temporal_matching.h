@@ -76,6 +76,7 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
 /// of their correlations, without a search; what is not in view, or the other way round, adds nothing.
 double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                        const Eigen::Vector3d& normal, const CameraMotion& motion, int window_radius);
+                        const Eigen::Vector3d& normal, const CameraMotion& motion,
+                        const TemporalMatchOptions& options);
 
 }  // namespace uav_landing

@@ -82,7 +82,7 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
-    if (const std::optional<RowMotion> motion = tracker.lastMotion()) carryPlane(*motion, stereo);
+    if (const std::optional<RowMotion> motion = tracker.lastMotion(stamp)) carryPlane(*motion, stereo);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
@@ -114,22 +114,22 @@ struct ApproachAngleStage::Implementation {
     } else {
       result.runway =
           runway.process(stamp, left, result, direction, has_plane ? stereo.plane.height() : kUnknown,
-                         rowsOf(model.rig.K(), model.left_times));
+                         rowsOf(stamp, model.rig.K(), model.left_times));
     }
     return result;
   }
 
   // By the last motion over the last ground that is known.
-  StampMap rowsOf(const Eigen::Matrix3d& K, const RowTimes& times) const {
-    const std::optional<RowMotion> motion = tracker.lastMotion();
+  StampMap rowsOf(double stamp, const Eigen::Matrix3d& K, const RowTimes& times) const {
+    const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
     if (times.atOnce() || !motion || !last_normal.allFinite()) return {};
     return {K, times, *motion, last_normal};
   }
 
-  ViewRows viewRows() const {
+  ViewRows viewRows(double stamp) const {
     Eigen::Matrix3d right = model.rig.K();
     right(0, 2) = model.rig.cx_right;
-    return {rowsOf(model.rig.K(), model.left_times), rowsOf(right, model.right_times)};
+    return {rowsOf(stamp, model.rig.K(), model.left_times), rowsOf(stamp, right, model.right_times)};
   }
 
   // Motion and runway are not known, for the reason of the pair.
@@ -189,8 +189,9 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
-    RunwayDirection direction = findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground,
-                                                    parameters, direction_memory, timings, viewRows());
+    RunwayDirection direction =
+        findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground, parameters,
+                            direction_memory, timings, viewRows(result.stamp));
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;

@@ -106,15 +106,10 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
-  // By how much the right camera's rows are later than the left one's, where they are most so, s.
+  // By how much the right camera's rows are later than the left one's, s: the mean of the picture.
   double laterRows() const {
-    double most = 0;
-    for (const int v : {0, model.rig.size.height - 1})
-      for (const int u : {0, model.rig.size.width - 1}) {
-        const double later = model.right_times.at(u, v) - model.left_times.at(u, v);
-        if (std::abs(later) > std::abs(most)) most = later;
-      }
-    return most;
+    const Eigen::Vector3d later = model.right_times.plane() - model.left_times.plane();
+    return later.dot(Eigen::Vector3d(1, (model.rig.size.width - 1) / 2.0, (model.rig.size.height - 1) / 2.0));
   }
 
   // Width and height of corners' windows, pixels.

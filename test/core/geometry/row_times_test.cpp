@@ -62,6 +62,13 @@ TEST(RowTimes, AreThoseOfTheRawRowBehindLensAndRectification) {
     }
 }
 
+// A coefficient list of another length is no lens either while it holds zeros.
+TEST(RowTimes, TakeALensOfZerosForNone) {
+  CameraCalibration c = plainCamera();
+  c.D = {0, 0, 0};
+  EXPECT_NEAR(RowTimes(c, {kReadout, 0.5}).at(100, 0), (0.5 / 480 - 0.5) * kReadout, 1e-9);
+}
+
 TEST(RowTimes, AreThoseOfThePictureThatTheDriverDelivers) {
   CameraCalibration c = plainCamera();
   c.roi = cv::Rect(0, 120, 640, 240);
@@ -105,6 +112,10 @@ TEST(ReadoutCheck, RefusesRowsThatTakeLongerThanTheTimeBetweenPictures) {
   }
   EXPECT_FALSE(after(0.04, {0, 0.05, 0.1, 0.12, 0.2, 0.25})) << "one stamp that jitters";
   EXPECT_FALSE(after(0.06, {0, 0.05})) << "too few to tell";
+  std::vector<double> jittering;
+  for (int i = 0; i < 60; ++i) jittering.push_back(i / 30.0 + 0.003 * ((7 * i) % 5 - 2) / 2);
+  for (size_t n = 5; n <= jittering.size(); ++n)
+    EXPECT_FALSE(after(0.033, {jittering.begin(), jittering.begin() + static_cast<std::ptrdiff_t>(n)})) << n;
   EXPECT_FALSE(after(0.06, {0, 0.05, 0.1, 0.15, 0.2, 0})) << "a bag that begins anew";
 }
 

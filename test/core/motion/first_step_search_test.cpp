@@ -141,6 +141,16 @@ TEST(FirstStepSearch, BeginsAnewAfterARestart) {
   EXPECT_TRUE(flight.pair(5));
 }
 
+TEST(FirstStepSearch, ForgetsWhatItFoundBeforeAGap) {
+  Flight flight;
+  flight.speed = 0.8;
+  flight.pair(1);
+  flight.pair(2);
+  const std::optional<CameraMotion> found = flight.pair(3, nullptr, 0.4);
+  ASSERT_TRUE(found);
+  flight.expectRight(*found, 0.4);
+}
+
 TEST(FirstStepSearch, AfterAKnownRotationFailedItDoesWithoutIt) {
   Flight flight;
   const RotationPrior wrong{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()).toRotationMatrix(),

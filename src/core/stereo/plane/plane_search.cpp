@@ -36,12 +36,15 @@ PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthPar
   ahead_.wide.level = reduceLevel(model, halved ? 2 * factor : factor, margin);
 }
 
-double PlaneSearch::budgetOf(const cv::Size& size) {
+double PlaneSearch::budgetOf(const cv::Size& size, bool alone) {
   // Measured: with lines and motion searched besides, a pair then takes two to three times as long as one
-  // whose plane is followed. The coarse level of small pictures is hardly smaller than that of large ones.
-  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kAbove = 0.4, kLeast = 75e3;
+  // whose plane is followed. The coarse level has about one size: small pictures leave little time for it,
+  // and in large ones the pair in which the search ends has much to match.
+  constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kBelow = 0.84, kAbove = 0.4;
+  constexpr double kAloneAtVga = 900e3, kAloneAbove = 0.25, kLeast = 75e3;
   const double ratio = size.area() / kVga;
-  return std::max(kLeast, kAtVga * std::pow(ratio, ratio < 1 ? 0.84 : kAbove));
+  if (alone) return kAloneAtVga * std::pow(ratio, ratio < 1 ? kBelow : kAloneAbove);
+  return std::max(kLeast, kAtVga * std::pow(ratio, ratio < 1 ? kBelow : kAbove));
 }
 
 PlaneSearch::State PlaneSearch::advance(const StereoLevel& coarse, double budget) {

@@ -37,8 +37,8 @@ class PlaneSearch {
   /// Begins with this pair, when none is under way. The level's images must be whole. budget: places to
   /// score, about; a pair goes on until it has done so many.
   State advance(const StereoLevel& coarse, double budget);
-  /// So many places have time in a pair of this size.
-  static double budgetOf(const cv::Size& size);
+  /// So many places have time in a pair of this size. alone: as long as lines and motion wait for the plane.
+  static double budgetOf(const cv::Size& size, bool alone = false);
 
   /// What was found last, until the next pair.
   const Eigen::Vector3d& plane() const { return found_->g; }

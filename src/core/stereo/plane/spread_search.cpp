@@ -16,8 +16,6 @@ constexpr double kRare = 0.3;
 // older ones grows with their age.
 constexpr double kUsualAge = 0.1;
 
-// By how much more is done in a pair of the first search: lines and motion wait for that one alone.
-constexpr double kAlone = 3.75;
 // To follow a plane in vain takes as long as scoring so many places, at any size of the pictures.
 constexpr double kFollowingCost = 55e3;
 
@@ -93,7 +91,8 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
 double SpreadSearch::budget(bool followed) const {
   const bool rare = std::min(duration_, duration_before_) > kRare && std::isfinite(duration_);
   if (at_once_ || rare) return std::numeric_limits<double>::infinity();
-  return PlaneSearch::budgetOf(size_) * (first_ ? kAlone : 1) - (followed ? kFollowingCost : 0);
+  // Lines and motion wait for the first search alone.
+  return PlaneSearch::budgetOf(size_, first_) - (followed ? kFollowingCost : 0);
 }
 
 }  // namespace uav_landing
