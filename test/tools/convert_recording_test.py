@@ -192,7 +192,7 @@ class ConvertRecordingTest(unittest.TestCase):
                 self.refused(complaint, "videos", good, other, *files)
 
     def test_calibration_files_are_read_as_ros_reads_them(self):
-        good, files = self.video("l.avi", 2), self.calibrations()
+        good, also, files = self.video("l.avi", 2), self.video("r.avi", 2), self.calibrations()
         plain = [file.read_text() for file in files[1::2]]
         tagged = [re.sub(r": \{rows: (\d+), cols: (\d+), data: (.*)\}", r": !!opencv-matrix\n  rows: \1\n  cols: \2\n"
                          r"  dt: d\n  data: \3", "%YAML:1.0\n---\n" + text) for text in plain]
@@ -202,19 +202,19 @@ class ConvertRecordingTest(unittest.TestCase):
                   "0 150 60 0\n0 0 1 0\n\n"
         ini = [section.format("camera", shift) for shift in (0, -75)]
         both = [section.format("narrow_stereo/left", 0) + section.format("narrow_stereo/right", -75)] * 2
-        expected = self.converted("videos", good, good, *files)["/stereo/right/camera_info"][0]
+        expected = self.converted("videos", good, also, *files)["/stereo/right/camera_info"][0]
         for name, texts in (("tags", tagged), ("no distortion_model", nameless), ("ini", ini), ("ost.txt", both)):
             with self.subTest(name):
                 for file, text in zip(files[1::2], texts):
                     file.write_text(text)
-                info = self.converted("videos", good, good, *files)["/stereo/right/camera_info"][0]
+                info = self.converted("videos", good, also, *files)["/stereo/right/camera_info"][0]
                 self.assertEqual(info, expected)
 
     def test_a_file_of_a_stereo_pair_is_named_as_such(self):
-        good, files = self.video("l.avi", 2), self.calibrations()
+        good, also, files = self.video("l.avi", 2), self.video("r.avi", 2), self.calibrations()
         files[1].write_text("cam0: {resolution: [160, 120]}\ncam1: {}\n")
         self.refused("is of a stereo pair, not of one camera: make left.yaml and right.yaml of it by convert_recording "
-                     "calibration", "videos", good, good, *files)
+                     "calibration", "videos", good, also, *files)
 
     # The right camera's axes are turned, and it stands 0.3 m to the right of, below and before the left one, by hand:
     # x_right = R (x_left - c).
@@ -251,8 +251,8 @@ class ConvertRecordingTest(unittest.TestCase):
         folder = self.folder / "made"
         result = rosrun("convert_recording", "calibration", *arguments, "--output", folder)
         self.assertEqual(result.returncode, 0, result.stderr)
-        good = self.video("v.avi", 2)
-        messages = self.converted("videos", good, good, "--left-calibration", folder / "left.yaml", "--right-calibration",
+        good, also = self.video("v.avi", 2), self.video("w.avi", 2)
+        messages = self.converted("videos", good, also, "--left-calibration", folder / "left.yaml", "--right-calibration",
                                   folder / "right.yaml")
         return result.stdout, [messages[f"/stereo/{side}/camera_info"][0] for side in ("left", "right")]
 

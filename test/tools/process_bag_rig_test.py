@@ -13,7 +13,7 @@ from project import BUILD_DIR, run
 
 PROGRAMS = BUILD_DIR / "devel/lib/uav_landing"
 SIDES = ("left", "right")
-SCENE = """image: {{width: 320, height: 240}}
+SCENE = """image: {{width: 320, height: 240{image}}}
 left_camera: {{fx: 280, fy: 280, cx: 159.5, cy: 119.5{lens}}}
 right_camera: {{fx: 280, fy: 280, cx: 159.5, cy: 119.5{lens}}}
 rig: {{stretch: {stretch}}}
@@ -39,9 +39,9 @@ class ProcessBagRigTest(unittest.TestCase):
         cls.usual = cls.estimates(cls.bag)
 
     @classmethod
-    def simulated(cls, name, lens="", stretch=0):
+    def simulated(cls, name, lens="", stretch=0, image=""):
         config, bag = cls.folder / f"{name}.yaml", cls.folder / f"{name}.bag"
-        config.write_text(SCENE.format(lens=lens, stretch=stretch))
+        config.write_text(SCENE.format(lens=lens, stretch=stretch, image=image))
         run([PROGRAMS / "simulate_approach", "--config", config, "--output", bag, "--dataset", cls.folder / name], check=True)
         with open(cls.folder / name / "frames.csv", encoding="utf-8") as file:
             return bag, list(csv.DictReader(file))
@@ -93,6 +93,20 @@ class ProcessBagRigTest(unittest.TestCase):
                       "rig/upside_down: true\n", self.said)
         self.assertEqual(self.estimates(bag, "upside_down: true"), self.usual)
         self.assertEqual(self.said, "")
+
+    def test_rows_of_a_rig_upside_down_have_their_times(self):
+        self.bag, _ = self.simulated("rolling", image=", readout_time: 0.03, stamp_row: 0")
+        upright = self.estimates(self.bag, "readout_time: 0.03, stamp_row: 0")
+        # Its pictures come the other way up: the last row is the one that is exposed first.
+        given = "upside_down: true, readout_time: -0.03, stamp_row: "
+        hanging = self.changed(self.turn_over)
+        for row, usual in zip(self.estimates(hanging, given + "1"), upright):
+            self.assertEqual(row["height_valid"], usual["height_valid"])
+            for name in ("height_m", "pitch_deg", "approach_angle_deg"):
+                if usual[name]:
+                    self.assertAlmostEqual(float(row[name]), float(usual[name]), places=5)
+        wrong = self.estimates(hanging, given.replace("-", "") + "0")
+        self.assertNotAlmostEqual(float(wrong[-1]["pitch_deg"]), float(upright[-1]["pitch_deg"]), places=2)
 
     def test_the_left_camera_need_not_be_the_origin(self):
         def change(messages):

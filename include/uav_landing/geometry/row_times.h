@@ -19,13 +19,14 @@ struct Readout {
   RowDirection direction = RowDirection::kRows;
 };
 
-/// Of the left and the right camera, as the parameters say; a time that is not given is that of a global
-/// shutter.
+/// Of the left and the right camera that the stages work with (see workingPair()), as the parameters say. In
+/// a rig upside down the left one is the camera that is named right. A time that is not given is that of a
+/// global shutter.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
 
 /// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
-/// to its raw row. The default is a global shutter.
+/// to its raw row; in a rig upside down the first one is at the bottom. The default is a global shutter.
 class RowTimes {
  public:
   RowTimes() = default;

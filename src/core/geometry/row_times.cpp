@@ -3,10 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 
 #include "base/text.h"
+#include "geometry/raw_places.h"
 
 namespace uav_landing {
 namespace {
@@ -17,17 +16,22 @@ constexpr double kBeside = 0.1;
 
 double givenOr(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
-}  // namespace
-
-Readout leftReadout(const RigParameters& p) {
+/// Of the camera that is named left.
+Readout namedLeft(const RigParameters& p) {
   return {givenOr(p.readout_time, 0), p.stamp_row, p.row_direction};
 }
 
-Readout rightReadout(const RigParameters& p) {
-  const Readout left = leftReadout(p);
+Readout namedRight(const RigParameters& p) {
+  const Readout left = namedLeft(p);
   return {givenOr(p.right_readout_time, left.time), givenOr(p.right_stamp_row, left.stamp_row),
           p.row_direction};
 }
+
+}  // namespace
+
+Readout leftReadout(const RigParameters& p) { return p.upside_down ? namedRight(p) : namedLeft(p); }
+
+Readout rightReadout(const RigParameters& p) { return p.upside_down ? namedLeft(p) : namedRight(p); }
 
 RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout) : time_(readout.time) {
   if (atOnce()) return;
@@ -37,13 +41,9 @@ RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout)
   const cv::Size nodes((size.width - 1) / kStep + 2, (size.height - 1) / kStep + 2);
   Eigen::Matrix3d reduced = c.P.leftCols<3>();
   reduced.topRows<2>() /= kStep;
-  cv::Mat K, R, P, x, y;
-  cv::eigen2cv(c.K, K);
-  cv::eigen2cv(c.R, R);
-  cv::eigen2cv(reduced, P);
-  cv::initUndistortRectifyMap(K, cv::Mat(c.D, true), R, P, nodes, CV_32FC1, x, y);
+  const RawPlaces raw = rawPlaces(c, reduced, nodes);
   const bool by_columns = readout.direction == RowDirection::kColumns;
-  const cv::Mat& lines = by_columns ? x : y;
+  const cv::Mat& lines = by_columns ? raw.x : raw.y;
   const double count = by_columns ? size.width : size.height;
   columns_ = nodes.width;
   rows_ = nodes.height;

@@ -3,12 +3,11 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "geometry/lens.h"
+#include "geometry/raw_places.h"
 #include "image/resampler.h"
 
 namespace uav_landing {
@@ -82,20 +81,10 @@ struct SourceMaps {
 
 /// c: of the delivered image, checked.
 SourceMaps sourceMaps(const CameraCalibration& c) {
-  const Eigen::Matrix3d projection = c.P.leftCols<3>();
-  cv::Mat K, R, P, x, y;
-  cv::eigen2cv(c.K, K);
-  cv::eigen2cv(c.R, R);
-  cv::eigen2cv(projection, P);
-  // A lens without distortion is one by any name; R and P still count.
-  const cv::Mat D = isDistorted(c.D) ? cv::Mat(c.D, true) : cv::Mat();
-  if (isFisheye(c.distortion_model, c.D))
-    cv::fisheye::initUndistortRectifyMap(K, D, R, P, c.imageSize(), CV_32FC1, x, y);
-  else
-    cv::initUndistortRectifyMap(K, D, R, P, c.imageSize(), CV_32FC1, x, y);
-  excludeUnreal(c, x, y);
+  RawPlaces raw = rawPlaces(c, c.P.leftCols<3>(), c.imageSize());
+  excludeUnreal(c, raw.x, raw.y);
   SourceMaps maps;
-  cv::convertMaps(x, y, maps.places, maps.fractions, CV_16SC2);
+  cv::convertMaps(raw.x, raw.y, maps.places, maps.fractions, CV_16SC2);
   return maps;
 }
 

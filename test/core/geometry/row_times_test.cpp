@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "support/rolling_camera.h"
+#include "uav_landing/geometry/camera_pair.h"
+#include "uav_landing/image/rectification.h"
 
 namespace uav_landing {
 namespace {
@@ -89,6 +91,60 @@ TEST(RowTimes, OfTheRightCameraAreTheLeftOnesUnlessGiven) {
   EXPECT_EQ(leftReadout(parameters).time, kReadout);
   EXPECT_EQ(rightReadout(parameters).time, 0.01);
   EXPECT_EQ(rightReadout(parameters).stamp_row, 1);
+}
+
+// The raw row by the angle of the ray off the axis (cv::fisheye's model) written out.
+TEST(RowTimes, AreThoseOfTheRawRowBehindAFisheyeLens) {
+  CameraCalibration c = plainCamera();
+  c.distortion_model = "equidistant";
+  c.D = {-0.05, 0.01, -0.002, 0.001};
+  const RowTimes times(c, {kReadout, 0.5});
+  const Eigen::Matrix3d from_pixel = c.P.leftCols<3>().inverse();
+  for (const double u : {40.0, 333.0, 600.0})
+    for (const double v : {30.0, 250.0, 455.0}) {
+      const Eigen::Vector2d p = (from_pixel * Eigen::Vector3d(u, v, 1)).hnormalized();
+      const double angle = std::atan(p.norm()), a2 = angle * angle;
+      const double distorted = angle * (1 + a2 * (c.D[0] + a2 * (c.D[1] + a2 * (c.D[2] + a2 * c.D[3]))));
+      const double row = c.K(1, 1) * p.y() / p.norm() * distorted + c.K(1, 2);
+      EXPECT_NEAR(times.at(u, v), ((row + 0.5) / 480 - 0.5) * kReadout, 2e-3 * kReadout) << u << ' ' << v;
+    }
+}
+
+// The camera named right takes the left one's place; its first row, in the raw picture as it comes, is then
+// the last one of the rectified picture.
+TEST(RowTimes, OfARigUpsideDownFollowTheCamerasAndRunUpwards) {
+  RigParameters parameters;
+  parameters.upside_down = true;
+  parameters.readout_time = kReadout;
+  parameters.right_readout_time = 0.01;
+  parameters.right_stamp_row = 0;
+  CameraCalibration left = plainCamera(), right = left;
+  right.P(0, 3) = -left.P(0, 0);  // 1 m
+  const Expected<CameraPair> pair = workingPair(left, right, parameters);
+  ASSERT_TRUE(pair) << pair.error().message();
+  const Expected<RigModel> model = makeRigModel(pair->left, pair->right, {}, parameters);
+  ASSERT_TRUE(model) << model.error().message();
+  for (const double u : {3.0, 600.0})
+    for (const double v : {0.0, 100.0, 479.0}) {
+      const double share = (479 - v + 0.5) / 480;
+      EXPECT_NEAR(model->left_times.at(u, v), share * 0.01, 1e-9) << v;
+      EXPECT_NEAR(model->right_times.at(u, v), (share - 0.5) * kReadout, 1e-9) << v;
+    }
+  parameters.row_direction = RowDirection::kColumns;
+  const Expected<RigModel> columns = makeRigModel(pair->left, pair->right, {}, parameters);
+  ASSERT_TRUE(columns) << columns.error().message();
+  EXPECT_NEAR(columns->left_times.at(100, 7), (539 + 0.5) / 640 * 0.01, 1e-9);
+}
+
+// Not given, the right camera's are the left one's, whichever takes the other's place.
+TEST(RowTimes, OfARigUpsideDownAreAlikeUnlessGiven) {
+  RigParameters parameters;
+  parameters.upside_down = true;
+  parameters.readout_time = kReadout;
+  parameters.stamp_row = 0;
+  EXPECT_EQ(leftReadout(parameters).time, kReadout);
+  EXPECT_EQ(leftReadout(parameters).stamp_row, 0);
+  EXPECT_EQ(rightReadout(parameters).time, kReadout);
 }
 
 Failure after(double readout, const std::vector<double>& stamps) {
