@@ -57,7 +57,7 @@ RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout)
   const cv::Rect picture(cv::Point(), size);
   fitPlane(size, [&](int u, int v) {
     return picture.contains(
-        {cvRound(x.at<float>(v / kStep, u / kStep)), cvRound(y.at<float>(v / kStep, u / kStep))});
+        {cvRound(raw.x.at<float>(v / kStep, u / kStep)), cvRound(raw.y.at<float>(v / kStep, u / kStep))});
   });
 }
 
