@@ -11,7 +11,9 @@ namespace uav_landing {
 
 namespace {
 
-constexpr size_t kGivenUp = 200;  // stamps that are remembered; more than the longest queue
+constexpr size_t kLongestQueue = 100;  // what queue_size can be
+constexpr size_t kGivenUp = 200;       // stamps that are remembered; more than the longest queue
+constexpr double kMostDelay = 0.5;     // s, of messages on their way; more is rather a clock that differs
 
 /// s between a stamp and the nearest of others.
 double distance(const ros::Time& stamp, const std::deque<ros::Time>& others) {
@@ -22,8 +24,9 @@ double distance(const ros::Time& stamp, const std::deque<ros::Time>& others) {
 
 std::string milliseconds(double seconds) {
   std::ostringstream text;
-  text.precision(3);
-  text << 1e3 * seconds << " ms";
+  const double ms = 1e3 * seconds;
+  text.precision(ms < 1000 ? 3 : 15);
+  text << (ms < 1000 ? ms : std::round(ms)) << " ms";
   return text.str();
 }
 
@@ -58,13 +61,17 @@ InputWatch::Arrival InputWatch::arrived(size_t input, const ros::Time& stamp) {
 }
 
 void InputWatch::lookForGivenUp(size_t input, const ros::Time& stamp) {
-  for (const Waiting& other : waiting_) {
-    const auto found =
-        std::find_if(other.given_up.begin(), other.given_up.end(), [&](const ros::Time& given_up) {
-          return std::abs(secondsBetween(given_up, stamp)) <= max_skew_.value_or(0);
+  for (size_t i = 0; i < waiting_.size(); ++i) {
+    const Waiting& other = waiting_[i];
+    if (i == input || other.given_up.empty()) continue;
+    const auto nearest = std::min_element(
+        other.given_up.begin(), other.given_up.end(), [&](const ros::Time& a, const ros::Time& b) {
+          return std::abs(secondsBetween(a, stamp)) < std::abs(secondsBetween(b, stamp));
         });
-    if (found == other.given_up.end()) continue;
-    const size_t behind = queue_size_ + static_cast<size_t>(other.given_up.end() - found);
+    const double apart = std::abs(secondsBetween(*nearest, stamp));
+    // Where one that waits is nearer, none was given up too early: a large max_skew reaches older ones, too.
+    if (apart > max_skew_.value_or(0) || distance(stamp, other.stamps) <= apart) continue;
+    const size_t behind = queue_size_ + static_cast<size_t>(other.given_up.end() - nearest);
     waiting_[input].queue_needed = std::max(waiting_[input].queue_needed, behind);
   }
 }
@@ -72,24 +79,41 @@ void InputWatch::lookForGivenUp(size_t input, const ros::Time& stamp) {
 std::string InputWatch::shortQueue() {
   std::string late;
   size_t needed = 0;
+  double behind = 0;
   for (size_t i = 0; i < inputs_.size(); ++i) {
-    if (waiting_[i].queue_needed > 0) late += (late.empty() ? "" : ", ") + inputs_[i].topic;
+    if (waiting_[i].queue_needed == 0) continue;
+    late += (late.empty() ? "" : ", ") + inputs_[i].topic;
     needed = std::max(needed, waiting_[i].queue_needed);
+    for (const Waiting& other : waiting_)
+      if (!waiting_[i].latest.isZero())
+        behind = std::max(behind, secondsBetween(waiting_[i].latest, other.latest));
     waiting_[i].queue_needed = 0;
   }
   if (late.empty()) return "";
-  return "the queue of " + std::to_string(queue_size_) + " pairs is too short: " + late +
-         " came after the others of their stamps had been given up; rectify/queue_size has to be at least " +
-         std::to_string(needed);
+  const std::string at_least = "rectify/queue_size has to be at least " + std::to_string(needed);
+  if (behind <= kMostDelay && needed <= kLongestQueue)
+    return "the queue of " + std::to_string(queue_size_) + " pairs is too short: " + late +
+           " came after the others of their stamps had been given up; " + at_least;
+  return "the stamps are " + milliseconds(behind) + " apart: the clocks differ, or " + late +
+         " came that late" + (needed <= kLongestQueue ? "; then " + at_least : "");
+}
+
+bool InputWatch::differs() const {
+  const Waiting& first = waiting_.front();
+  return std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
+    // An input that is behind finds its stamps among those that the other one had, whichever it is.
+    return std::min(nearestOf(first.latest, other), nearestOf(other.latest, first)) > *max_skew_;
+  });
+}
+
+double InputWatch::nearestOf(const ros::Time& stamp, const Waiting& other) {
+  return std::min(distance(stamp, other.stamps), distance(stamp, other.given_up));
 }
 
 std::string InputWatch::difference() const {
   double apart = 0;
-  for (const Waiting& waiting : waiting_) {
-    std::deque<ros::Time> first = waiting_.front().stamps;
-    first.insert(first.end(), waiting_.front().given_up.begin(), waiting_.front().given_up.end());
-    apart = std::max(apart, distance(waiting.latest, first));
-  }
+  for (const Waiting& waiting : waiting_)
+    apart = std::max(apart, nearestOf(waiting.latest, waiting_.front()));
   if (!std::isfinite(apart)) return "";
   if (max_skew_ && apart > *max_skew_)
     return "the stamps are " + milliseconds(apart) + " apart, more than max_skew, " +
@@ -198,7 +222,8 @@ std::string InputWatch::complaint() {
   if (!silent.empty()) return "no message on " + silent;
   if (!unstamped.empty()) return "the stamp (header.stamp) is 0 on " + unstamped;
   if (!repeating.empty()) return "the stamp never changes on " + repeating;
-  if (!too_short.empty()) return too_short;
+  // A longer queue would not help where stamps differ by more than max_skew.
+  if (!too_short.empty() && !(max_skew_ && differs())) return too_short;
   const std::string apart = difference();
   if (max_skew_) return (apart.empty() ? "the stamps do not match" : apart) + "; latest: " + latest;
   return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger); latest: " +

@@ -73,6 +73,10 @@ class InputWatch {
   /// Whether others of this stamp were given up before, for want of room.
   void lookForGivenUp(size_t input, const ros::Time& stamp);
   std::string shortQueue();
+  /// Whether the latest stamps of inputs are farther than max_skew from all that others had.
+  bool differs() const;
+  /// s between a stamp and the nearest that an input had.
+  static double nearestOf(const ros::Time& stamp, const Waiting& other);
   std::string difference() const;
 
   std::vector<Input> inputs_;

@@ -268,6 +268,58 @@ TEST_F(ApproximatePairingTest, TheComplaintTellsByHowMuchTheSkewIsTooLarge) {
             0u);
 }
 
+class LargeSkewTest : public StereoPairingTest {
+ protected:
+  static RectifyParameters large() {
+    RectifyParameters parameters;
+    parameters.approximate_sync = true;
+    parameters.max_skew = 0.1;
+    return parameters;
+  }
+  LargeSkewTest() : StereoPairingTest(large()) {}
+  /// Both cameras at a period, the right one's stamps ahead.
+  std::string complaintOf(int count, double period, double ahead) {
+    for (int i = 0; i < count; ++i) {
+      addLeft(10 + period * i);
+      addRight(10 + ahead + period * i);
+    }
+    EXPECT_TRUE(pairs_.empty());
+    return pairing_.complaint();
+  }
+};
+
+TEST_F(LargeSkewTest, ClocksThatDifferAreNoShortQueueThoughMaxSkewReachesBehindIt) {
+  const std::string complaint = complaintOf(40, 0.01, 1);
+  EXPECT_EQ(complaint.rfind("the stamps are 1000 ms apart, more than max_skew, 100 ms; latest: ", 0), 0u)
+      << complaint;
+}
+
+TEST_F(LargeSkewTest, ClocksThatDifferAreToldThoughOneCameraReachesTheOthersStamps) {
+  const std::string complaint = complaintOf(150, 0.01, 1);
+  EXPECT_EQ(complaint.rfind("the stamps are 1000 ms apart: the clocks differ, or /left/image_raw, "
+                            "/left/camera_info came that late",
+                            0),
+            0u)
+      << complaint;
+}
+
+TEST_F(LargeSkewTest, NoQueueIsAdvisedThatCannotBe) {
+  EXPECT_EQ(complaintOf(190, 0.01, 1.2),
+            "the stamps are 1200 ms apart: the clocks differ, or /left/image_raw, /left/camera_info came "
+            "that late");
+}
+
+TEST_F(ApproximatePairingTest, ALateCameraIsAShortQueueWhicheverItIs) {
+  for (int i = 0; i < 20; ++i) {
+    addRight(1.003 + 0.05 * i);
+    if (i >= 7) addLeft(1.0 + 0.05 * (i - 7));
+  }
+  EXPECT_TRUE(pairs_.empty());
+  EXPECT_EQ(pairing_.complaint(),
+            "the queue of 5 pairs is too short: /left/image_raw, /left/camera_info came after the others of "
+            "their stamps had been given up; rectify/queue_size has to be at least 8");
+}
+
 TEST_F(StereoPairingTest, AShortageNamesTheTopicThatHasFewerMessages) {
   const std::vector<InputWatch::Input> before = pairing_.inputs();
   for (int i = 0; i < 20; ++i) {

@@ -98,6 +98,31 @@ TEST(RowAlternation, IsAboveOneWhereRowsAreOfTwoTimes) {
   EXPECT_EQ(rowAlternation(cv::Mat(20, 20, CV_8UC1, cv::Scalar(5))), 0);
 }
 
+/// A noisy grey area as cameras sharpen it: each row minus a share of those above and below.
+cv::Mat sharpened(double centre) {
+  cv::Mat noise(240, 320, CV_32FC1);
+  cv::RNG(5).fill(noise, cv::RNG::NORMAL, 128 / (centre - 2), 10 / centre);
+  const cv::Mat kernel = (cv::Mat_<float>(3, 1) << -1, centre, -1);
+  cv::filter2D(noise, noise, -1, kernel);
+  noise.convertTo(noise, CV_8U);
+  return noise;
+}
+
+TEST(PictureWatch, SharpenedNoiseIsNotInterlaced) {
+  for (const double centre : {2.2, 3.0, 5.0}) {
+    PictureWatch watch;
+    EXPECT_GT(rowAlternation(sharpened(centre)), 1.1) << centre;
+    for (int i = 0; i < 30; ++i) watch.look(sharpened(centre), "/left");
+    EXPECT_TRUE(watch.news().empty()) << centre;
+  }
+}
+
+TEST(PictureWatch, TellsInterlacedPicturesOfLittleMotion) {
+  PictureWatch watch;
+  for (int i = 0; i < 30; ++i) watch.look(interlaced(1, 3), "/left");
+  EXPECT_EQ(watch.news().size(), 1u);
+}
+
 TEST(PictureWatch, TellsInterlacedPicturesOnce) {
   PictureWatch watch;
   for (int i = 0; i < 30; ++i) watch.look(interlaced(0), "/left");

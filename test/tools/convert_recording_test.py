@@ -1,7 +1,9 @@
 import re
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import cv2
 import numpy as np
@@ -9,8 +11,13 @@ import rosbag
 import rospy
 from sensor_msgs.msg import CompressedImage
 
-from project import rosrun
+from project import SOURCE_DIR, rosrun
 from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
+
+sys.path.insert(0, str(SOURCE_DIR / "src/tools"))
+from conversion.errors import LeftOut  # noqa: E402
+from conversion.pictures import decoded  # noqa: E402
+from conversion.sources import Videos  # noqa: E402
 
 SENSOR = """%YAML:1.0
 T_BS:
@@ -169,6 +176,18 @@ class ConvertRecordingTest(unittest.TestCase):
         stamps = [m.header.stamp.to_sec() for m in messages["/stereo/left/image_raw"]]
         np.testing.assert_allclose(np.diff(stamps), 0.05, atol=1e-6)
         self.assertEqual(messages["/stereo/right/camera_info"][0].P[3], -75)
+
+    def test_a_video_that_ends_early_is_told_unless_its_header_is_about_right(self):
+        for count, said in ((98, []), (97, ["ends after 97 pictures, 100 by its header: the rest is damaged or missing"])):
+            left_out, video = LeftOut(), self.folder / f"{count}.avi"
+            reader = Videos([video], [], left_out)
+            capture = mock.Mock()
+            capture.grab.side_effect = count * [True] + [False]
+            capture.retrieve.return_value = (True, np.zeros((4, 4, 3), np.uint8))
+            capture.get.side_effect = {cv2.CAP_PROP_FPS: 20, cv2.CAP_PROP_FRAME_COUNT: 100}.get
+            with self.subTest(count), mock.patch("cv2.VideoCapture", return_value=capture):
+                self.assertEqual(len(list(reader.frames(video, 0))), count)
+                self.assertEqual(left_out.lines(), [f"{video}: {text}" for text in said])
 
     def test_video_mistakes_are_named(self):
         good, large = self.video("l.avi", 2), self.video("large.avi", 2, (320, 240))
@@ -398,6 +417,41 @@ class ConvertRecordingTest(unittest.TestCase):
         found = messages["/stereo/left/image_raw"]
         self.assertEqual((len(found), {m.encoding for m in found}), (10, {"mono16"}))
         self.assertIn("convert_recording: 2 broken pictures were left out\n", self.said)
+
+    def test_jpegs_without_an_end_marker_are_used_unless_they_are_cut(self):
+        def cut(share):
+            return lambda data: data[:int(share * len(data))]
+
+        def cut_and_filled_up(data):
+            return data[:-400] + 300 * b"\0"
+
+        bag = self.compressed_bag({1: cut(0.3), 2: cut(0.98), 3: lambda data: data[:-2], 4: lambda data: data[:-2] + 300 * b"\0",
+                                   5: cut_and_filled_up, 6: lambda data: data[:60]})
+        messages = self.converted("bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
+                                  *self.calibrations())
+        found = {round(10 * m.header.stamp.to_sec()) - 100: m for m in messages["/stereo/left/image_raw"]}
+        self.assertEqual(sorted(found), [0, 3, 4, 7, 8, 9, 10, 11])
+        self.assertEqual(self.said.count("left out: "), 4)
+        self.assertNotIn("Corrupt JPEG", self.said)
+        with rosbag.Bag(str(bag)) as recorded:
+            raw = [m.data for topic, m, _ in recorded.read_messages() if "left" in topic]
+        for number in (3, 4):
+            pixels = cv2.imdecode(np.frombuffer(raw[number].rstrip(b"\0") + b"\xff\xd9", np.uint8), cv2.IMREAD_UNCHANGED)
+            self.assertEqual(found[number].data, pixels.tobytes(), "to its last row")
+
+    def test_a_jpeg_of_any_kind_is_whole_without_its_end_marker_alone(self):
+        smooth = cv2.GaussianBlur(noise(1), (0, 0), 3)
+        for kind, pixels, options in (("grey", noise(1), []), ("restarts", noise(1), [cv2.IMWRITE_JPEG_RST_INTERVAL, 5]),
+                                      ("colour", np.dstack([smooth, noise(2), 255 - smooth]), []),
+                                      ("odd size", smooth[:-3, :-5], []), ("progressive", smooth, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])):
+            data = cv2.imencode(".jpg", pixels, options)[1].tobytes()
+            whole = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+            with self.subTest(kind):
+                np.testing.assert_array_equal(decoded(data, cv2.IMREAD_UNCHANGED), whole)
+                if kind != "progressive":  # a further scan may be missing
+                    np.testing.assert_array_equal(decoded(data[:-2], cv2.IMREAD_UNCHANGED), whole)
+                for end in range(2, len(data) - 60, 37):  # up to the last block
+                    self.assertIsNone(decoded(data[:end], cv2.IMREAD_UNCHANGED), f"{end} of {len(data)} bytes")
 
     def test_where_all_are_broken_the_bag_is_refused(self):
         bag = self.compressed_bag(dict.fromkeys(range(12), lambda data: b""))

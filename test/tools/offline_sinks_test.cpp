@@ -234,8 +234,9 @@ TEST(PairCount, CountsEachReasonTheMostFrequentFirst) {
   EXPECT_EQ(out.str(), "5 pairs, 1 valid: uniform_image 2, no reason given 1, not_yet 1\n");
 }
 
-/// Lines that a recording of these pairs ends with; failed: a test that fails on the pair, or "".
-std::string toldOf(const std::vector<std::pair<Reason, std::string>>& pairs) {
+/// Lines that a recording of these pairs ends with; failed: a test that fails on the pair, or "". repeated:
+/// cameras whose pictures are those of the pair before.
+std::string toldOf(const std::vector<std::pair<Reason, std::string>>& pairs, int repeated = 0) {
   std::ostringstream out;
   PairCount count(out);
   const StereoRig rig;
@@ -244,6 +245,8 @@ std::string toldOf(const std::vector<std::pair<Reason, std::string>>& pairs) {
     output.landing.status = Status::kTracking;
     output.landing.height_valid = output.landing.angle_valid = reason == Reason::kNone;
     output.landing.failure = {reason, ""};
+    output.stereo.left_repeated = repeated > 1;
+    output.stereo.right_repeated = repeated > 0;
     TestResult test;
     test.name = failed;
     test.ratio = failed.empty() ? 0 : 10;
@@ -294,6 +297,16 @@ TEST(PairCount, TellsEachCauseByWhatShowsIt) {
   for (int i = 0; i < 10; ++i)
     blinking.push_back({i % 2 == 0 ? Reason::kUniformImage : Reason::kTooFewMatches, ""});
   hasCause(blinking, "every second picture is black or uniform");
+}
+
+TEST(PairCount, TellsCamerasThatStandStillFromOneThatHangs) {
+  const auto pairs = times(10, Reason::kInconsistent, "repeated_image");
+  EXPECT_NE(toldOf(pairs, 1).find("likely cause: pictures of one camera come twice"), std::string::npos);
+  const std::string told = toldOf(pairs, 2);
+  EXPECT_NE(told.find("likely cause: the pictures of both cameras come again, bit by bit: the cameras stand "
+                      "still and have no noise (a simulator), or the driver sends no new pictures"),
+            std::string::npos)
+      << told;
 }
 
 TEST(PairCount, TellsNoCauseWhereMostIsValidOrLittleIsKnown) {

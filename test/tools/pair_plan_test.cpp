@@ -201,6 +201,41 @@ TEST_F(PairPlanTest, ApproximateStampsPairWithTheNearest) {
             "in the config file, rectify: {approximate_sync: true, max_skew: 0.01}");
 }
 
+/// The range of max_skew.
+struct LargestSkew {
+  void flag(const char*, bool, const char*) {}
+  template <class Value>
+  void number(const std::string& name, Value, double, double most, const char*, const char*) {
+    if (name == "max_skew") value = most;
+  }
+  double value = 0;
+};
+
+TEST_F(PairPlanTest, NoSkewIsAdvisedThatTheConfigFileMayNotHave) {
+  LargestSkew largest;
+  parameters_.visit(largest);
+  ASSERT_EQ(largest.value, 0.1);
+  parameters_.approximate_sync = true;
+  for (const int64_t ms : {0, 500, 1000}) addLeft(100 * kSecond + ms * kMs);
+  for (const int64_t ms : {95, 595, 1095}) addRight(100 * kSecond + ms * kMs);
+  EXPECT_NE(plan().complaint().find("raise max_skew in the config file, rectify: {approximate_sync: true, "
+                                    "max_skew: 0.1}"),
+            std::string::npos)
+      << plan().complaint();
+  messages_[2].clear();
+  messages_[3].clear();
+  for (const int64_t ms : {120, 620, 1120}) addRight(100 * kSecond + ms * kMs);
+  const std::string expected =
+      "images on /left/image and /right/image are 120 ms apart, more than max_skew can be, 100 ms: the "
+      "clocks "
+      "of the cameras differ, the stamps of one of them are offset, or they take pictures in turn: stamp "
+      "both "
+      "by one clock, and trigger them together";
+  EXPECT_EQ(plan().complaint(), expected);
+  parameters_.approximate_sync = false;
+  EXPECT_EQ(plan().complaint(), expected) << "approximate_sync would not help";
+}
+
 TEST_F(PairPlanTest, ApproximateStampsAreEachOthersNearest) {
   parameters_.approximate_sync = true;
   for (const int64_t ms : {0, 6, 50, 100}) addLeft(100 * kSecond + ms * kMs);

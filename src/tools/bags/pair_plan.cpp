@@ -12,6 +12,7 @@
 namespace uav_landing {
 namespace {
 
+constexpr double kLargestSkewMs = 100;  // what max_skew can be
 constexpr size_t kLeftImage = 0, kLeftInfo = 1, kRightImage = 2, kRightInfo = 3;
 
 using Key = std::pair<int, int64_t>;      // epoch and stamp
@@ -133,8 +134,8 @@ std::string seconds(int64_t ns) {
 
 std::string milliseconds(double ms) {
   std::ostringstream text;
-  text.precision(3);
-  text << ms << " ms";
+  text.precision(ms < 1000 ? 3 : 15);
+  text << (ms < 1000 ? ms : std::round(ms)) << " ms";
   return text.str();
 }
 
@@ -201,13 +202,18 @@ std::string PairPlan::complaint() const {
            seconds(right.first) + " to " + seconds(right.last) + " s on " + right.topic;
   const std::string apart =
       "images on " + left.topic + " and " + right.topic + " are " + milliseconds(left.nearest_ms) + " apart";
+  if (left.nearest_ms > kLargestSkewMs)
+    return apart + ", more than max_skew can be, " + milliseconds(kLargestSkewMs) +
+           ": the clocks of the cameras differ, the stamps of one of them are offset, or they take pictures "
+           "in "
+           "turn: stamp both by one clock, and trigger them together";
   const std::string limit = milliseconds(1e3 * max_skew);
   if (!approximate)
     return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger, within "
            "max_skew, " +
            limit + "): " + apart;
   std::ostringstream enough;  // with a fifth to spare
-  enough << 1e-3 * std::ceil(1.2 * left.nearest_ms);
+  enough << 1e-3 * std::min(std::ceil(1.2 * left.nearest_ms), kLargestSkewMs);
   return apart + ", more than max_skew, " + limit + ": raise max_skew in the config file, rectify: " +
          "{approximate_sync: true, max_skew: " + enough.str() + "}";
 }

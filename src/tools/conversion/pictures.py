@@ -1,6 +1,9 @@
 """Pictures of messages: decoded, cut in two, and freed of the second field of interlaced video."""
 
+import os
 import re
+import sys
+from contextlib import contextmanager
 
 import cv2
 import numpy as np
@@ -11,13 +14,47 @@ from .errors import BrokenPicture, InputError
 SIDE_BY_SIDE, TOP_AND_BOTTOM = "side-by-side", "top-and-bottom"
 LAYOUTS = (SIDE_BY_SIDE, TOP_AND_BOTTOM)
 YUV = ("yuv422", "uyvy", "yuv422_yuy2", "yuyv")
+JPEG_END, JPEG_SCAN, PROGRESSIVE = b"\xff\xd9", b"\xff\xda", b"\xff\xc2"  # markers
 
 
-def is_whole(data):
-    """Whether a JPEG or PNG file has its end: decoders fill what is missing with grey and say nothing."""
-    if data.startswith(b"\xff\xd8"):
-        return data.rfind(b"\xff\xd9") > data.rfind(b"\xff\xda")
-    return not data.startswith(b"\x89PNG") or b"IEND" in data[-64:]
+@contextmanager
+def without_stderr():
+    """Keeps what C libraries say from the terminal."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with open(os.devnull, "w") as nothing:
+        os.dup2(nothing.fileno(), 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
+def decoded_without_end(data, flags):
+    """Pixels of a JPEG file without its end marker, as some cameras send it; nothing where more than that is missing.
+
+    libjpeg fills what is missing with grey and says so on stderr alone. But where it still waits for data, it takes any more that come
+    for some, and the pixels are others: after the last block it skips them. A cut within the last block may pass.
+    """
+    if PROGRESSIVE in data or data.count(JPEG_SCAN) != 1:
+        return None  # further scans may be missing
+    if data.endswith(b"\0"):  # what buffers are filled up with; one may be of the picture
+        data = data.rstrip(b"\0") + b"\0"
+    some = 1024 * b"\x55"  # for several blocks, as the first ones may lie outside the picture
+    more = b"\0" + some + b"".join(bytes([0xff, restart]) + some for restart in range(0xd0, 0xd8))
+    with without_stderr():
+        pixels, others = (cv2.imdecode(np.frombuffer(data + rest + JPEG_END, np.uint8), flags) for rest in (b"", more))
+    return pixels if pixels is not None and np.array_equal(pixels, others) else None
+
+
+def decoded(data, flags):
+    """Pixels of a picture file; nothing where it cannot be decoded, or is cut: decoders fill what is missing and return no error."""
+    if data.startswith(b"\xff\xd8") and data.rfind(JPEG_END) <= data.rfind(JPEG_SCAN):
+        return decoded_without_end(data, flags)
+    if not data or data.startswith(b"\x89PNG") and b"IEND" not in data[-64:]:
+        return None
+    return cv2.imdecode(np.frombuffer(data, np.uint8), flags)
 
 
 def encoding_of(pixels, compressed_format):
@@ -37,7 +74,7 @@ def to_image(message, topic):
         return message
     data = bytes(message.data)
     # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
-    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED) if data and is_whole(data) else None
+    pixels = decoded(data, cv2.IMREAD_UNCHANGED)
     encoding = None if pixels is None else encoding_of(pixels, message.format)
     if encoding is None:
         raise BrokenPicture(f"{topic}: an image with format '{message.format}' at {message.header.stamp.to_sec():.6f} s "

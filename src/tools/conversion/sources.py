@@ -12,7 +12,7 @@ import numpy as np
 from . import cameras
 from .calibration_files import from_ros_file
 from .errors import BrokenPicture, InputError, unreadable
-from .pictures import halves, is_whole, one_field
+from .pictures import decoded, halves, one_field
 
 
 def read_image(path):
@@ -20,7 +20,7 @@ def read_image(path):
         data = Path(path).read_bytes()
     except OSError:
         data = b""
-    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data and is_whole(data) else None
+    pixels = decoded(data, cv2.IMREAD_GRAYSCALE)
     if pixels is None:
         raise BrokenPicture(f"{path}: no such image, or damaged")
     return pixels
@@ -159,8 +159,9 @@ class Videos:
                 yield (number - skip) / rate, one_field(grey) if good and self.deinterlace else grey
             number += 1
         expected = round(video.get(cv2.CAP_PROP_FRAME_COUNT))
-        if 0 < number < expected:
-            self.left_out.note(f"{path}: ends after {number} of {expected} pictures: the rest is damaged or missing")
+        # The count of the header is an estimate in many formats, made of duration and rate.
+        if 0 < number < 0.98 * expected:
+            self.left_out.note(f"{path}: ends after {number} pictures, {expected} by its header: the rest is damaged or missing")
 
     def checked(self, picture, path, info):
         """The picture, when it has the size of its calibration."""

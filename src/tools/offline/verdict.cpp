@@ -33,7 +33,13 @@ std::string causeOf(const PairTally& tally) {
     return "left and right images are swapped, or the calibration was made with them swapped: give each "
            "camera its "
            "own topic (convert_recording bag … --left … --right …)";
-  if (share.test("repeated_image") > 0.3)
+  const double repeating = share.test("repeated_image");
+  // One camera alone that repeats its pictures hangs; both at once may as well see nothing that moves.
+  if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
+    return "the pictures of both cameras come again, bit by bit: the cameras stand still and have no noise "
+           "(a "
+           "simulator), or the driver sends no new pictures";
+  if (repeating > 0.3)
     return "pictures of one camera come twice, bit by bit: its driver repeats them, or hangs";
   if (share.of(tally.alternating) > 0.6)
     return "every second picture is black or uniform: exposure bracketing, or a lamp or projector that "
@@ -77,6 +83,7 @@ void PairTally::add(const ProcessedPair& pair) {
   if (pairs > 0 && uniform != uniform_) ++alternating;
   uniform_ = uniform;
   ++pairs;
+  if (pair.output.stereo.left_repeated && pair.output.stereo.right_repeated) ++repeating;
   if (landing.valid())
     ++valid;
   else

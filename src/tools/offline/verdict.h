@@ -12,7 +12,8 @@ namespace uav_landing {
 struct PairTally {
   std::size_t pairs = 0, valid = 0;
   std::size_t alternating =
-      0;  ///< pairs that are uniform where the one before is not, or the other way round
+      0;                      ///< pairs that are uniform where the one before is not, or the other way round
+  std::size_t repeating = 0;  ///< pairs whose left and right pictures both are those of the pair before
   std::map<std::string, std::size_t> reasons;       ///< of those that are not valid
   std::map<std::string, std::size_t> failed_tests;  ///< of all pairs
 
