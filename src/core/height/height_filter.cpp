@@ -6,6 +6,8 @@
 namespace uav_landing {
 namespace {
 
+constexpr int kBaseline = 3;  // column of what is common
+
 Eigen::RowVector4d stddevs(const CommonVariance& common) {
   return Eigen::RowVector4d(common.lasting, common.bend, common.width, common.baseline)
       .cwiseMax(0)
@@ -39,11 +41,13 @@ void HeightFilter::predict(double T) {
 }
 
 HeightFilter::Update HeightFilter::update(double height, double variance, const CommonVariance& common) {
-  return fuse(Eigen::RowVector2d(1, 0), height, variance, common);
+  // A height by a known width does not depend on the baseline, and one from the images does.
+  const double unequal = common_(0, kBaseline) - stddevs(common)[kBaseline];
+  return fuse(Eigen::RowVector2d(1, 0), height, variance, common, unequal * unequal);
 }
 
 HeightFilter::Update HeightFilter::updateSpeed(double speed, double variance) {
-  return fuse(Eigen::RowVector2d(0, 1), speed, variance, {});
+  return fuse(Eigen::RowVector2d(0, 1), speed, variance, {}, 0);
 }
 
 CommonVariance HeightFilter::commonVariance() const {
@@ -52,14 +56,15 @@ CommonVariance HeightFilter::commonVariance() const {
 }
 
 HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, double measured,
-                                        double variance, const CommonVariance& common) {
+                                        double variance, const CommonVariance& common,
+                                        double baseline_variance) {
   Update update;
   update.innovation = measured - observation * state_;
   update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
+  update.gate_variance = update.innovation_variance + baseline_variance;
   // Written so that a NaN is refused too; what is infinite or has a negative variance would leave no state.
-  update.accepted = variance >= 0 && std::isfinite(common.total()) &&
-                    std::isfinite(update.innovation_variance) &&
-                    update.innovation * update.innovation <= gate_ * gate_ * update.innovation_variance;
+  update.accepted = variance >= 0 && std::isfinite(common.total()) && std::isfinite(update.gate_variance) &&
+                    update.innovation * update.innovation <= gate_ * gate_ * update.gate_variance;
   if (!update.accepted) return update;
 
   const Eigen::Vector2d gain = covariance_ * observation.transpose() / update.innovation_variance;

@@ -23,6 +23,7 @@ class HeightFilter {
   struct Update {
     double innovation = 0;           ///< measured minus predicted; m, of a speed m/s
     double innovation_variance = 0;  ///< of it, both uncertainties added; m^2, of a speed m^2/s^2
+    double gate_variance = 0;        ///< the same, and that heights depend on the baseline by unequal shares
     bool accepted = false;
   };
 
@@ -46,8 +47,9 @@ class HeightFilter {
   CommonVariance commonVariance() const;
 
  private:
+  /// baseline_variance: by how much the state and the measurement differ by the baseline.
   Update fuse(const Eigen::RowVector2d& observation, double measured, double variance,
-              const CommonVariance& common);
+              const CommonVariance& common, double baseline_variance);
 
   double acceleration_stddev_, initial_speed_stddev_, gate_;
   bool initialised_ = false;

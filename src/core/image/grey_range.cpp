@@ -15,7 +15,7 @@ constexpr double kTail = 0.001;          // of the values, on either side
 constexpr double kOutside = 0.01;        // of the values, from which on the range is too small
 constexpr double kSmallPart = 1.0 / 16;  // of the values that the bits have
 constexpr double kMargin = 0.25;         // of what is between the quantiles
-constexpr double kFewest = 16;           // values from black to white: fewer are noise
+constexpr int kPairsToGrow = 5;          // in a row, outside of the range
 
 /// How often each value occurs.
 cv::Mat histogramOf(const cv::Mat& values) {
@@ -36,6 +36,16 @@ double median(std::vector<double> values) {
 
 double largestOf(int bits) { return std::ldexp(1.0, bits) - 1; }
 
+/// Share of the values above the range or below it, the larger one. values: one channel.
+double outsideOf(const GreyRange& range, const cv::Mat& values) {
+  const double all = static_cast<double>(values.total());
+  return std::max(cv::countNonZero(values > range.white), cv::countNonZero(values < range.black)) / all;
+}
+
+GreyRange unionOf(const GreyRange& a, const GreyRange& b) {
+  return {std::min(a.black, b.black), std::max(a.white, b.white)};
+}
+
 }  // namespace
 
 void GreyRange::toMono8(const cv::Mat& grey, cv::Mat& mono) const {
@@ -48,15 +58,36 @@ std::string toText(const GreyRange& range) {
               " of 65535 become black to white");
 }
 
-GreyRangeFinder::GreyRangeFinder(int bits) : known_(bits > 0) {
-  if (known_) range_.white = largestOf(bits);
+std::string exceededText(int bits) {
+  return text("rig/bits: ", bits, ": more than 1 % of a picture's values are above ",
+              std::lround(largestOf(bits)),
+              " and become white: there are more bits, or they do not begin at the lowest one; with 0 the "
+              "range is found");
+}
+
+GreyRangeFinder::GreyRangeFinder(int bits) : bits_(bits) { reset(); }
+
+void GreyRangeFinder::reset() {
+  range_ = {};
+  if (bits_ > 0) range_.white = largestOf(bits_);
+  lows_.clear();
+  highs_.clear();
+  outside_ = 0;
 }
 
 const GreyRange& GreyRangeFinder::follow(const cv::Mat& left, const cv::Mat& right) {
-  for (const cv::Mat* values : {&left, &right}) {
-    if (known_ || values->empty()) continue;
-    if (lows_.size() < 2 * kFirstPairs) learn(quantilesOf(*values));
-    grow(*values);
+  std::vector<cv::Mat> images;
+  for (const cv::Mat* values : {&left, &right})
+    if (!values->empty()) images.push_back(values->reshape(1));
+  if (images.empty()) return range_;
+  if (bits_ > 0) {
+    exceeded_ = exceeded_ || std::any_of(images.begin(), images.end(), [&](const cv::Mat& values) {
+                  return outsideOf(range_, values) > kOutside;
+                });
+  } else if (lows_.size() < kFirstPairs) {
+    learn(images);
+  } else {
+    grow(images);
   }
   return range_;
 }
@@ -78,25 +109,38 @@ GreyRange GreyRangeFinder::rangeOf(const Quantiles& seen) {
   int bits = 8;
   while (seen.high > largestOf(bits)) bits += 2;
   const double used = seen.high - seen.low;
-  if (used >= kSmallPart * (largestOf(bits) + 1) || used < kFewest) return {0, largestOf(bits)};
+  if (used >= kSmallPart * (largestOf(bits) + 1)) return {0, largestOf(bits)};
   return {std::max(0.0, seen.low - kMargin * used), std::min(largestOf(16), seen.high + kMargin * used)};
 }
 
-void GreyRangeFinder::learn(const Quantiles& seen) {
-  lows_.push_back(seen.low);
-  highs_.push_back(seen.high);
+void GreyRangeFinder::learn(const std::vector<cv::Mat>& images) {
+  Quantiles both{kValues, 0};
+  for (const cv::Mat& values : images) {
+    const Quantiles seen = quantilesOf(values);
+    if (hasContent(seen)) both = {std::min(both.low, seen.low), std::max(both.high, seen.high)};
+  }
+  if (!hasContent(both)) return;
+  lows_.push_back(both.low);
+  highs_.push_back(both.high);
   range_ = rangeOf({median(lows_), median(highs_)});
 }
 
-void GreyRangeFinder::grow(const cv::Mat& values) {
-  const cv::Mat samples = values.reshape(1);
-  const double all = static_cast<double>(samples.total());
-  const double above = cv::countNonZero(samples > range_.white) / all;
-  const double below = cv::countNonZero(samples < range_.black) / all;
-  if (std::max(above, below) <= kOutside) return;
-  const Quantiles seen = quantilesOf(values);
-  const GreyRange now = rangeOf(seen);
-  range_ = {std::min(range_.black, now.black), std::max(range_.white, now.white)};
+void GreyRangeFinder::grow(const std::vector<cv::Mat>& images) {
+  GreyRange now = range_;
+  for (const cv::Mat& values : images) {
+    if (outsideOf(range_, values) <= kOutside) continue;
+    const Quantiles seen = quantilesOf(values);
+    if (hasContent(seen)) now = unionOf(now, rangeOf(seen));
+  }
+  if (now == range_) {
+    outside_ = 0;
+    return;
+  }
+  wider_ =
+      outside_ == 0 ? now : GreyRange{std::max(wider_.black, now.black), std::min(wider_.white, now.white)};
+  if (++outside_ < kPairsToGrow) return;
+  range_ = wider_;
+  outside_ = 0;
 }
 
 }  // namespace uav_landing

@@ -9,8 +9,8 @@
 namespace uav_landing {
 
 void TrackVerdict::addTo(PairTests& tests) const {
-  if (std::isfinite(innovation_variance))
-    tests.addRatio(IntegrityTest::kInnovation, innovation, innovation * innovation / innovation_variance);
+  if (std::isfinite(gate_variance))
+    tests.addRatio(IntegrityTest::kInnovation, innovation, innovation * innovation / gate_variance);
 }
 
 HeightTrack::HeightTrack(const KalmanHeightParameters& parameters, int resets)
@@ -55,6 +55,7 @@ void HeightTrack::follow(double stamp, const MeasuredHeight& measured, const Ver
   const HeightFilter::Update update = filter_.update(measured.height, measured.variance, measured.common());
   verdict.innovation = update.innovation;
   verdict.innovation_variance = update.innovation_variance;
+  verdict.gate_variance = update.gate_variance;
   scatter_.add(update.innovation * update.innovation / update.innovation_variance);
   if (update.accepted) {
     accept(stamp);
@@ -66,7 +67,7 @@ void HeightTrack::follow(double stamp, const MeasuredHeight& measured, const Ver
   verdict.rejection = {Reason::kRejected,
                        text("raw height ", rounded(measured.height), " m, expected ",
                             rounded(measured.height - update.innovation), " m with 1 sigma of ",
-                            rounded(std::sqrt(update.innovation_variance)), " m")};
+                            rounded(std::sqrt(update.gate_variance)), " m")};
   if (confirmations_ < kConfirmations) {
     // Two measurements that contradict each other, and nothing yet that says which one is wrong.
     lose();

@@ -33,6 +33,7 @@ struct TrackVerdict {
   Status status = Status::kSearching;
   Failure rejection;                                             ///< the pair's height failed the gate
   double innovation = kUnknown, innovation_variance = kUnknown;  ///< m, m^2
+  double gate_variance = kUnknown;                               ///< m^2, see HeightFilter::Update
   double height = kUnknown, height_variance = kUnknown;          ///< filtered, m, m^2
   double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< up, m/s, m^2/s^2
   Failure failure;  ///< why the filtered height may not be used

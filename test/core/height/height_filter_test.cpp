@@ -118,6 +118,22 @@ TEST(HeightFilter, RefusesAMeasurementBeyondTheGateAndStaysAsItWas) {
   EXPECT_NEAR(filter.state()[0], 10 + 0.89 / 3, 1e-12);
 }
 
+TEST(HeightFilter, GrantsTheBaselineWhereOnlyOneOfTwoHeightsDependsOnIt) {
+  // A baseline that is known to 3 %: by 0.3 m at 10 m. Its square is in no measurement's variance.
+  const CommonVariance by_images{0, 0, 0, 0.09}, by_width;
+  HeightFilter filter(1.0, 0.1, 3.0);
+  filter.initialise(10, 0.01, by_images);
+  EXPECT_FALSE(filter.update(10.8, 0.01, by_images).accepted) << "both are wrong by the same";
+  const HeightFilter::Update update = filter.update(10.8, 0.01, by_width);
+  EXPECT_TRUE(update.accepted) << "0.8 m at 1 sigma of sqrt(0.01 + 0.01 + 0.09) m";
+  EXPECT_NEAR(update.gate_variance, 0.11, 1e-12);
+  EXPECT_NEAR(update.innovation_variance, 0.02, 1e-12);
+  EXPECT_NEAR(filter.state()[0], 10.4, 1e-12) << "the gain is as before";
+  filter.initialise(10, 0.01, by_width);
+  EXPECT_TRUE(filter.update(10.8, 0.01, by_images).accepted);
+  EXPECT_FALSE(filter.update(12, 0.01, by_width).accepted) << "beyond that as well";
+}
+
 TEST(HeightFilter, RefusesNaN) {
   HeightFilter filter(1.0, 0.1, 3.0);
   filter.initialise(10, 0.03);
