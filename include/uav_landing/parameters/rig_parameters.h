@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "uav_landing/base/failure.h"
+
 namespace uav_landing {
 
 // visit(): see parameters.h.
@@ -47,8 +49,8 @@ struct RigParameters {
            "pictures are turned by 180 deg, and left and right are exchanged. Masks, readout times and stamp "
            "rows stay those of the cameras as they are named, and of their pictures as they come");
     v.number("bits", bits, 0, 16, "bits",
-             "used bits of images with 16 bits a pixel, from the lowest one on; 0: the range of values is "
-             "found over the first pairs, one for both cameras");
+             "used bits of images with 16 bits a pixel, from the lowest one on, 8 or more; 0: the range of "
+             "values is found over the first pairs, one for both cameras");
     v.text("left_mask", left_mask,
            "image file with the pixels of the left camera that may be used: nonzero = use, 0 = leave out, as "
            "OpenCV's masks. For what does not move with the ground: the aircraft's nose, a strut, a "
@@ -71,6 +73,12 @@ struct RigParameters {
     v.choice("row_direction", row_direction, {"rows", "columns"},
              "which lines of a raw picture are exposed together: rows, or columns for cameras mounted in "
              "portrait whose driver turns the picture. Times are then from left to right");
+  }
+
+  /// What no camera has.
+  Failure check() const {
+    if (bits == 0 || bits >= 8) return {};
+    return {Reason::kInputInvalid, "rig/bits: " + std::to_string(bits) + ", expected 0 or 8 to 16 bits"};
   }
 };
 
