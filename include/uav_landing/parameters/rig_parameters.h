@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "uav_landing/base/failure.h"
+
 namespace uav_landing {
 
 // visit(): see parameters.h.
@@ -34,14 +36,20 @@ struct RigParameters {
            "the rig is mounted upside down, and its calibration is of the pictures as they come. The "
            "pictures are turned by 180 deg, and left and right are exchanged");
     v.number("bits", bits, 0, 16, "bits",
-             "used bits of images with 16 bits a pixel, from the lowest one on; 0: the range of values is "
-             "found over the first pairs, one for both cameras");
+             "used bits of images with 16 bits a pixel, from the lowest one on, 8 or more; 0: the range of "
+             "values is found over the first pairs, one for both cameras");
     v.text("left_mask", left_mask,
            "image file with the pixels of the left camera that may be used: nonzero = use, 0 = leave out, as "
            "OpenCV's masks. For what does not move with the ground: the aircraft's nose, a strut, a "
            "propeller. One channel of 8 bit (PNG), as large as the raw pictures. A relative path begins at "
            "the config file's folder. Empty: the whole picture is used");
     v.text("right_mask", right_mask, "the same for the right camera");
+  }
+
+  /// What no camera has.
+  Failure check() const {
+    if (bits == 0 || bits >= 8) return {};
+    return {Reason::kInputInvalid, "rig/bits: " + std::to_string(bits) + ", expected 0 or 8 to 16 bits"};
   }
 };
 
