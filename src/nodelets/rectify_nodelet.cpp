@@ -156,6 +156,7 @@ class RectifyNodelet : public StageNodelet {
 
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }
+  void forget() override { renew_range_ = true; }
 
   void enqueue(Job job) {
     const std::lock_guard<std::mutex> lock(jobs_mutex_);
@@ -194,6 +195,7 @@ class RectifyNodelet : public StageNodelet {
     for (const std::string& news : pictures_.news()) NODELET_WARN("%s: %s", getName().c_str(), news.c_str());
     if (repetition) return;
     followCameras(*job.left_info, *job.right_info);
+    if (wrong_rig_) return refuse(wrong_rig_.detail);
     followGreyRange(job);
     Timings timings;
     sensor_msgs::ImagePtr left, right;
@@ -217,7 +219,8 @@ class RectifyNodelet : public StageNodelet {
            infoTopic(view) + ")");
   }
 
-  /// What cannot be used as a pair stays as it is: the stages behind say what is wrong with it.
+  /// What cannot be used as a pair stays as it is: the stages behind say what is wrong with it. They would
+  /// take an exchanged one for another one, so it goes no farther.
   void followCameras(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right) {
     if (!cameras_.changed(left, right)) return;
     const bool exchanged = shared_.rig.upside_down;
@@ -226,12 +229,20 @@ class RectifyNodelet : public StageNodelet {
     warnOfRig(ofCameraInfo(rigWarnings(given_left, given_right, shared_.rig)));
     const Expected<CameraPair> working = workingPair(given_left, given_right, shared_.rig);
     working_ = working ? *working : CameraPair{cameras_.left(), cameras_.right()};
+    wrong_rig_ = exchanged && !working ? ofCameraInfo(working.error()) : Failure();
   }
 
   void followGreyRange(const Job& job) {
+    // A clock that was set back is that of another recording, or of cameras that started anew.
+    const ros::Time stamp = job.left->header.stamp;
+    if (renew_range_.exchange(false) || stamp < last_stamp_) range_.reset();
+    last_stamp_ = stamp;
     const GreyRange before = range_.range();
+    const bool told = range_.exceeded();
     const GreyRange now = followRange(range_, job.left, working_.left, job.right, working_.right);
     if (now != before) NODELET_INFO("%s: %s", getName().c_str(), toText(now).c_str());
+    if (range_.exceeded() && !told)
+      NODELET_WARN("%s: %s", getName().c_str(), exceededText(shared_.rig.bits).c_str());
   }
 
   /// The rectified image, or null when the input cannot be used.
@@ -314,7 +325,10 @@ class RectifyNodelet : public StageNodelet {
   PictureWatch pictures_;
   size_t looked_ = 0;
   CameraPair working_;
+  Failure wrong_rig_;  // why there is no working pair of a rig upside down
   GreyRangeFinder range_{0};
+  ros::Time last_stamp_;                  // that the range has followed
+  std::atomic<bool> renew_range_{false};  // with the next pair
   ros::Publisher skew_publisher_;
   std::unique_ptr<StereoPairing> pairing_;
   std::shared_ptr<PairsInFlight> in_flight_;

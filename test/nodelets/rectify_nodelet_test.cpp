@@ -1,3 +1,4 @@
+#include <std_srvs/Empty.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -85,21 +86,56 @@ TEST_F(RectifyNodeletTest, OfARigUpsideDownComesThePairThatStandsUpright) {
   EXPECT_EQ(left.R[8], 1);
 }
 
+TEST_F(RectifyNodeletTest, OfARigUpsideDownThatIsNoPairNothingComes) {
+  ros::param::set("/uav_landing/rig/upside_down", true);
+  start();
+  auto info = scene_.info(true);
+  info->P[3] = 0;
+  cameras_.publishLeft(ros::Time(1000), scene_.image(0, false), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), scene_.image(0, true), info);
+  ASSERT_TRUE(logged("camera_info: right P[3]: 0, expected -P[0] times the baseline")) << wholeLog();
+  cameras_.publishLeft(ros::Time(1001), scene_.image(0, false), scene_.info(false));
+  cameras_.publishRight(ros::Time(1001), scene_.image(0, true), scene_.info(true));
+  ASSERT_TRUE(left_->waitFor(1));
+  EXPECT_EQ(left_->messages()[0]->header.stamp, ros::Time(1001));
+}
+
+/// With 16 bits, values times this.
+sensor_msgs::ImagePtr deep(sensor_msgs::ImagePtr image, int times) {
+  std::vector<uint8_t> data;
+  for (const uint8_t grey : image->data) {  // the last byte first
+    data.push_back(static_cast<uint8_t>((times * grey) & 255));
+    data.push_back(static_cast<uint8_t>((times * grey) >> 8));
+  }
+  image->data = data;
+  image->step *= 2;
+  image->encoding = "mono16";
+  return image;
+}
+
+TEST_F(RectifyNodeletTest, FindsTheBitsAnewAfterAResetAndWhenTheClockIsSetBack) {
+  start();
+  const auto publish = [&](double stamp, int times) {
+    cameras_.publishLeft(ros::Time(stamp), deep(scene_.image(0, false), times), scene_.info(false));
+    cameras_.publishRight(ros::Time(stamp), deep(scene_.image(0, true), times), scene_.info(true));
+  };
+  publish(1000, 64);
+  ASSERT_TRUE(logged("values 0 to 16383 of 65535")) << wholeLog();
+  publish(1001, 16);
+  ASSERT_TRUE(left_->waitFor(2));
+  EXPECT_EQ(wholeLog().find("values 0 to 4095"), std::string::npos) << wholeLog();
+  std_srvs::Empty nothing;
+  ASSERT_TRUE(ros::service::call("/uav_landing/rectify/reset", nothing));
+  publish(1002, 16);
+  EXPECT_TRUE(logged("values 0 to 4095 of 65535")) << wholeLog();
+  publish(900, 4);
+  EXPECT_TRUE(logged("values 0 to 1023 of 65535")) << wholeLog();
+}
+
 TEST_F(RectifyNodeletTest, StretchesTheBitsThatAreUsedAndSaysSo) {
   start();
-  const auto deep = [](sensor_msgs::ImagePtr image) {
-    std::vector<uint8_t> data;
-    for (const uint8_t grey : image->data) {  // 10 bits, the last byte first
-      data.push_back(static_cast<uint8_t>((4 * grey) & 255));
-      data.push_back(static_cast<uint8_t>((4 * grey) >> 8));
-    }
-    image->data = data;
-    image->step *= 2;
-    image->encoding = "mono16";
-    return image;
-  };
-  cameras_.publishLeft(ros::Time(1000), deep(scene_.image(0, false)), scene_.info(false));
-  cameras_.publishRight(ros::Time(1000), deep(scene_.image(0, true)), scene_.info(true));
+  cameras_.publishLeft(ros::Time(1000), deep(scene_.image(0, false), 4), scene_.info(false));
+  cameras_.publishRight(ros::Time(1000), deep(scene_.image(0, true), 4), scene_.info(true));
   ASSERT_TRUE(left_->waitFor(1));
   const auto expected = scene_.image(0, false)->data, data = left_->messages()[0]->data;
   for (size_t i = 0; i < expected.size(); i += 97) EXPECT_NEAR(data[i], expected[i], 1) << i;

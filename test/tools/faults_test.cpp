@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "faults/fault_flight.h"
+
 namespace uav_landing {
 namespace {
 
@@ -61,6 +63,17 @@ TEST_F(FaultsTest, EachHasANameOfItsOwnAndDoesSomething) {
     EXPECT_TRUE(fault.spoil || fault.calibrate || fault.build || fault.disturb) << fault.name;
   }
   EXPECT_EQ(allFaults()[0].name, "none");
+}
+
+TEST_F(FaultsTest, AreFlownWithRigsThatTheChainTakes) {
+  Parameters parameters;
+  flight_.right.P(1, 3) = 0.01 * flight_.right.P(0, 3);
+  const auto flown = [&] { return flyWithFaults(flight_, {&fault("none")}, 1, 1, 1, parameters, {}).alarm; };
+  EXPECT_EQ(flown().find("refused"), std::string::npos) << "aslant: " << flown();
+  parameters.rig.upside_down = true;
+  EXPECT_EQ(flown().find("refused"), std::string::npos) << "and upside down: " << flown();
+  flight_.right.P(1, 3) = 0.1 * flight_.right.P(0, 3);
+  EXPECT_EQ(flown().rfind("refused: right P[7]", 0), 0u) << flown();
 }
 
 TEST_F(FaultsTest, WhatBuildsOrPaintsASceneIsForTheSimulatorAlone) {

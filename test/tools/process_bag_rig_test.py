@@ -17,7 +17,7 @@ SCENE = """image: {{width: 320, height: 240{image}}}
 left_camera: {{fx: 280, fy: 280, cx: 159.5, cy: 119.5{lens}}}
 right_camera: {{fx: 280, fy: 280, cx: 159.5, cy: 119.5{lens}}}
 rig: {{stretch: {stretch}}}
-path: {{duration: 0.6, rate: 20, start_height: 6, start_x: 60, glide_angle_deg: 4, flare_height: 0, pitch_deg: -6}}
+path: {{duration: {duration}, rate: 20, start_height: 6, start_x: 60, glide_angle_deg: 4, flare_height: 0, pitch_deg: -6}}
 """
 
 
@@ -39,9 +39,9 @@ class ProcessBagRigTest(unittest.TestCase):
         cls.usual = cls.estimates(cls.bag)
 
     @classmethod
-    def simulated(cls, name, lens="", stretch=0, image=""):
+    def simulated(cls, name, lens="", stretch=0, image="", duration=0.6):
         config, bag = cls.folder / f"{name}.yaml", cls.folder / f"{name}.bag"
-        config.write_text(SCENE.format(lens=lens, stretch=stretch, image=image))
+        config.write_text(SCENE.format(lens=lens, stretch=stretch, image=image, duration=duration))
         run([PROGRAMS / "simulate_approach", "--config", config, "--output", bag, "--dataset", cls.folder / name], check=True)
         with open(cls.folder / name / "frames.csv", encoding="utf-8") as file:
             return bag, list(csv.DictReader(file))
@@ -54,10 +54,16 @@ class ProcessBagRigTest(unittest.TestCase):
         with table.open() as file:
             return [{name: value for name, value in row.items() if name != "compute_ms"} for row in csv.DictReader(file)]
 
-    def changed(self, change):
+    def reasons(self, bag):
+        result = self.folder / "result.bag"
+        run([PROGRAMS / "process_bag", "--input", bag, "--output", result], check=True)
+        with rosbag.Bag(str(result)) as messages:
+            return [message.reason for topic, message, _ in messages.read_messages() if topic.endswith("/landing_estimate")]
+
+    def changed(self, change, bag=None):
         """The bag with each pair's messages, {"left/image_raw": ...}, changed."""
         path = self.folder / "changed.bag"
-        with rosbag.Bag(str(self.bag)) as bag, rosbag.Bag(str(path), "w") as result:
+        with rosbag.Bag(str(bag or self.bag)) as bag, rosbag.Bag(str(path), "w") as result:
             pairs = {}
             for topic, message, _ in bag.read_messages():
                 if topic.startswith("/stereo/"):
@@ -86,11 +92,15 @@ class ProcessBagRigTest(unittest.TestCase):
             K[2], K[5], P[2], P[6] = 319 - K[2], 239 - K[5], 319 - P[2], 239 - P[6]
             info.K, info.P = K, P
 
-    def test_a_rig_upside_down_is_told_and_then_gives_the_same(self):
+    def test_a_rig_upside_down_is_told_within_three_seconds(self):
+        bag, _ = self.simulated("long", duration=3)
+        reasons = self.reasons(self.changed(self.turn_over, bag))
+        self.assertEqual(reasons[-1], "no_plane: what looks like the ground is above the horizon: if this stays, the cameras may be "
+                         "mounted upside down: set rig/upside_down: true")
+
+    def test_a_rig_upside_down_gives_the_same(self):
         bag = self.changed(self.turn_over)
-        self.assertEqual({row["reason"] for row in self.estimates(bag)}, {"not_yet", "input_invalid"})
-        self.assertIn("the ground is above the horizon: the cameras are mounted upside down; if they are meant to be, set "
-                      "rig/upside_down: true\n", self.said)
+        self.assertEqual({row["reason"] for row in self.estimates(bag)}, {"not_yet", "no_plane"})
         self.assertEqual(self.estimates(bag, "upside_down: true"), self.usual)
         self.assertEqual(self.said, "")
 
@@ -130,6 +140,14 @@ class ProcessBagRigTest(unittest.TestCase):
                 error, claimed = self.errors(self.estimates(self.changed(change), rig), self.truth)
                 self.assertLess(np.abs(error).max(), 0.03)
                 self.assertTrue((np.abs(error) < 3 * claimed).all(), error / claimed)
+
+    def test_bits_that_are_given_and_exceeded_are_told_once(self):
+        def change(messages):
+            for side in SIDES:
+                image = messages[f"{side}/image_raw"]
+                put(image, pixels(image).astype(np.uint16) * 256, "mono16")
+        self.estimates(self.changed(change), "bits: 12")
+        self.assertEqual(self.said.count("rig/bits: 12: more than 1 % of a picture's values are above 4095"), 1, self.said)
 
     def test_fisheye_lenses(self):
         bag, truth = self.simulated("fisheye", ", lens: equidistant, k1: -0.02, k2: 0.01, k3: -0.004, k4: 0.0005")

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "uav_landing/geometry/camera_pair.h"
 #include "uav_landing/integrity/stamp_order.h"
 #include "uav_landing/pipeline.h"
 
@@ -32,7 +33,9 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     if (fault->tell) fault->tell(told);
   }
   FaultScore score;
-  Expected<Pipeline> pipeline = Pipeline::create(left, right, told);
+  Expected<Pipeline> pipeline = workingPair(left, right, told.rig).and_then([&](const CameraPair& working) {
+    return Pipeline::create(working.left, working.right, told);
+  });
   if (!pipeline) {
     score.alarm = "refused: " + pipeline.error().detail;
     return score;
@@ -47,7 +50,9 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     if (!pair.delivered) continue;
     // As where images are paired.
     if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
-    const Pipeline::Output& output = pipeline->process(kStart + pair.time, pair.left, pair.right);
+    const bool exchanged = parameters.rig.upside_down;
+    const Pipeline::Output& output = pipeline->process(kStart + pair.time, exchanged ? pair.right : pair.left,
+                                                       exchanged ? pair.left : pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;
     const FaultTruth truth{trueHeight(flight, pair.time), trueAngle(flight, pair.time),
                            trueYaw(flight, pair.time)};

@@ -69,6 +69,7 @@ class OfflineChain {
   CameraCalibration left_calibration_, right_calibration_;  // as given
   CameraPair working_;
   GreyRangeFinder range_;
+  ros::Time last_stamp_;  // that the range has followed
   std::optional<Pipeline> pipeline_;
   std::optional<ImuInput> imu_;  // none: not to be used
   std::deque<Waiting> waiting_;

@@ -44,6 +44,8 @@ class PlaneSearch {
   const Eigen::Vector3d& plane() const { return found_->g; }
   /// Whether it began with the last pair that it was given.
   bool beganHere() const { return began_here_; }
+  /// A search that finds nothing, from this one on, looks for why, even if one has done so lately.
+  void lookAgain() { failed_ = 0; }
   /// Begins anew with the next pair.
   void restart() { phase_ = Phase::kNone; }
   /// A plane is known again: there is nothing to search for.

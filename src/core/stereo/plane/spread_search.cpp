@@ -19,6 +19,18 @@ constexpr double kUsualAge = 0.1;
 // To follow a plane in vain takes as long as scoring so many places, at any size of the pictures.
 constexpr double kFollowingCost = 55e3;
 
+// A plane above the horizon has to be there so long, s, before it is told. A hangar's roof, trees and clouds
+// over water look like one, too.
+constexpr double kOverheadLasts = 1.5;
+
+Failure noPlane() { return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"}; }
+
+Failure perhapsUpsideDown() {
+  return {Reason::kNoPlane,
+          "what looks like the ground is above the horizon: if this stays, the cameras may be mounted upside "
+          "down: set rig/upside_down: true"};
+}
+
 Failure stillSearching() {
   return {Reason::kNotYet, "the ground plane is being searched for, over several pairs"};
 }
@@ -34,6 +46,7 @@ SpreadSearch::SpreadSearch(const RigModel& model, int factor, const StereoDepthP
 void SpreadSearch::begin(double duration) {
   duration_before_ = std::exchange(duration_, duration);
   age_ += duration;
+  if (overhead_age_) *overhead_age_ += duration;
   if (std::isinf(duration)) {
     reset();
   } else if (duration > kRare) {
@@ -45,19 +58,25 @@ void SpreadSearch::stop() {
   search_.stop();
   first_ = false;
   not_found_ = {};
+  overhead_age_.reset();
 }
 
 void SpreadSearch::reset() {
   search_.reset();
   first_ = true;
   not_found_ = {};
+  overhead_age_.reset();
 }
 
 Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker,
                                              bool followed) {
+  if (overhead_age_ && *overhead_age_ >= kOverheadLasts && !overhead_lasts_) search_.lookAgain();
   const PlaneSearch::State state = search_.advance(coarse, budget(followed));
   if (state != PlaneSearch::State::kGoesOn) first_ = false;
   if (search_.beganHere()) age_ = 0;
+  if (state == PlaneSearch::State::kGoesOn)
+    return tl::make_unexpected(not_found_ ? not_found_ : stillSearching());
+  noteOverhead(state == PlaneSearch::State::kOverhead);
   switch (state) {
     case PlaneSearch::State::kFound: {
       not_found_ = {};
@@ -67,24 +86,27 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
       if (followed) return *followed;
       return tl::make_unexpected(stillSearching());
     }
-    case PlaneSearch::State::kGoesOn:
-      return tl::make_unexpected(not_found_ ? not_found_ : stillSearching());
     case PlaneSearch::State::kSwapped:
       not_found_ = {
           Reason::kNegativeDisparity,
           "disparities are negative: left and right images are swapped, or the baseline has the wrong sign"};
       break;
     case PlaneSearch::State::kOverhead:
-      not_found_ = {
-          Reason::kInputInvalid,
-          "the ground is above the horizon: the cameras are mounted upside down; if they are meant to "
-          "be, set rig/upside_down: true"};
+      not_found_ = overhead_lasts_ ? perhapsUpsideDown() : noPlane();
       break;
     case PlaneSearch::State::kNotFound:
-      not_found_ = {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"};
+    case PlaneSearch::State::kGoesOn:
+      not_found_ = noPlane();
       break;
   }
   return tl::make_unexpected(not_found_);
+}
+
+// Two searches count that began seconds apart.
+void SpreadSearch::noteOverhead(bool seen) {
+  if (!seen) overhead_age_.reset();
+  overhead_lasts_ = overhead_age_ && *overhead_age_ - age_ >= kOverheadLasts;
+  if (seen && !overhead_age_) overhead_age_ = age_;
 }
 
 // A single gap is none of the camera's, and nobody knows when the pair after the first one comes.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "stereo/plane/plane_search.h"
 #include "stereo/plane/plane_tracker.h"
@@ -24,6 +25,7 @@ class SpreadSearch {
 
  private:
   double budget(bool followed) const;
+  void noteOverhead(bool seen);
 
   PlaneSearch search_;
   cv::Size size_;  // of the pictures
@@ -32,6 +34,8 @@ class SpreadSearch {
   double duration_ = 0, duration_before_ = 0;  // s
   double age_ = 0;                             // of the pair that the search began with, s
   Failure not_found_;                          // by the last search; none before it
+  std::optional<double> overhead_age_;         // since a plane was first seen above the horizon, s
+  bool overhead_lasts_ = false;                // it was seen again, seconds later
 };
 
 }  // namespace uav_landing
