@@ -95,7 +95,8 @@ Clock::duration NodeletChain::process(const Pair& pair) {
   const auto start = Clock::now();
   publish(pair);
   if (!waitFor(pair.left->header.stamp, kDeadline))
-    throw std::runtime_error("a pair has no estimate within 20 s");
+    throw std::runtime_error("the pair of " + std::to_string(pair.left->header.stamp.toSec()) +
+                             " s has no estimate within 20 s");
   return when_ - start;
 }
 

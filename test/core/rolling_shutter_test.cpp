@@ -63,6 +63,11 @@ TEST(RollingShutter, OfTheRightCameraAloneIsSkew) {
               1e-4);
   model.left_times = times;
   EXPECT_EQ(StereoDepthStage(model, {}).process(1, image, image, 0.001).skew, 0.001);
+  // A camera that is rolled by a degree against the other, as in any rig, is read at the same time.
+  CameraCalibration rolled = test::calibrationOf(model.rig);
+  rolled.R = Eigen::AngleAxisd(0.0175, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  model.right_times = RowTimes(rolled, {kReadout, 0.25});
+  EXPECT_NEAR(StereoDepthStage(model, {}).process(1, image, image, 0.001).skew, 0.001, 5e-5);
 }
 
 TEST(RollingShutter, ThatTakesLongerThanAPictureMakesNoPairValid) {

@@ -1,5 +1,6 @@
 #include "uav_landing/stages/stereo_depth_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -106,10 +107,22 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
-  // By how much the right camera's rows are later than the left one's, s: the mean of the picture.
+  // By how much the right camera's rows are later than the left one's, s: in the middle where lenses and
+  // rectification alone make a difference, as in any rig; else where they are most so.
   double laterRows() const {
-    const Eigen::Vector3d later = model.right_times.plane() - model.left_times.plane();
-    return later.dot(Eigen::Vector3d(1, (model.rig.size.width - 1) / 2.0, (model.rig.size.height - 1) / 2.0));
+    constexpr double kAlike = 0.1;  // of the readout time
+    const auto later = [&](double u, double v) {
+      return model.right_times.at(u, v) - model.left_times.at(u, v);
+    };
+    const double right = model.rig.size.width - 1, bottom = model.rig.size.height - 1;
+    const double middle = later(right / 2, bottom / 2);
+    double most = middle;
+    for (const double v : {0.0, bottom})
+      for (const double u : {0.0, right})
+        if (std::abs(later(u, v)) > std::abs(most)) most = later(u, v);
+    const double readout =
+        std::max(std::abs(model.left_times.readoutTime()), std::abs(model.right_times.readoutTime()));
+    return std::abs(most - middle) <= kAlike * readout ? middle : most;
   }
 
   // Width and height of corners' windows, pixels.
