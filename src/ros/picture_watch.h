@@ -37,8 +37,4 @@ class PictureWatch {
   std::vector<std::string> news_;
 };
 
-/// Power of what changes from row to row over the power of what changes three quarters as fast. Above 1 in
-/// pictures whose rows are of two fields or two colours; below 1 in others, as lenses blur; 1 in noise.
-double rowAlternation(const cv::Mat& grey);
-
 }  // namespace uav_landing

@@ -58,6 +58,7 @@ uav_landing_add_gtest(result_check_test test/core/results/result_check_test.cpp)
 # image
 uav_landing_add_gtest(clipping_test test/core/image/clipping_test.cpp)
 uav_landing_add_gtest(corners_test test/core/image/corners_test.cpp)
+uav_landing_add_gtest(row_alternation_test test/core/image/row_alternation_test.cpp)
 uav_landing_add_gtest(grey_range_test test/core/image/grey_range_test.cpp)
 uav_landing_add_gtest(image_cells_test test/core/image/image_cells_test.cpp)
 uav_landing_add_gtest(window_overlap_test test/core/image/window_overlap_test.cpp)
@@ -226,6 +227,8 @@ uav_landing_add_gtest(kalman_height_reconstruction_test
   test/core/stages/kalman_height_reconstruction_test.cpp)
 uav_landing_add_gtest(kalman_height_reset_test test/core/stages/kalman_height_reset_test.cpp)
 uav_landing_add_gtest(kalman_height_stage_test test/core/stages/kalman_height_stage_test.cpp)
+uav_landing_add_gtest(stereo_depth_search_test test/core/stages/stereo_depth_search_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(stereo_depth_stage_test test/core/stages/stereo_depth_stage_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 

@@ -10,17 +10,7 @@ import numpy as np
 import rospy
 from launch_test import Listener, Process, eventually
 from sensor_msgs.msg import CameraInfo, Image
-
-WIDTH, HEIGHT = 160, 120
-CALIBRATION = """image_width: {width}
-image_height: 120
-camera_name: {side}
-camera_matrix: {{rows: 3, cols: 3, data: [150, 0, 80, 0, 150, 60, 0, 0, 1]}}
-distortion_model: plumb_bob
-distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}
-rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}
-projection_matrix: {{rows: 3, cols: 4, data: [150, 0, 80, {shift}, 0, 150, 60, 0, 0, 0, 1, 0]}}
-"""
+from stereo_bag import CALIBRATION_FILE, HEIGHT, WIDTH
 
 
 class SplitImagesTest(unittest.TestCase):
@@ -37,7 +27,7 @@ class SplitImagesTest(unittest.TestCase):
         files = []
         for side, shift in (("left", 0), ("right", -75)):
             file = self.folder / f"{side}.yaml"
-            file.write_text(CALIBRATION.format(side=side, shift=shift, width=width))
+            file.write_text(CALIBRATION_FILE.format(side=side, shift=shift, width=width))
             files += [f"--{side}-calibration", file]
         return Process("rosrun", "uav_landing", "split_images", option, "/usb_cam/image_raw", "--camera", "rig", *files)
 

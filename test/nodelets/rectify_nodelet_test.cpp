@@ -23,6 +23,14 @@ class RectifyNodeletTest : public NodeletTest {
         eventually([&] { return cameras_.connected() && left_->connected() && right_->connected(); }));
   }
 
+  /// As OtherTopics has them.
+  void nameTopics() {
+    setParameter("rectify", "left_image", std::string("/cam0/image"));
+    setParameter("rectify", "left_info", std::string("/cam0/info"));
+    setParameter("rectify", "right_image", std::string("/cam1/image"));
+    setParameter("rectify", "right_info", std::string("/cam1/info"));
+  }
+
   StereoScene scene_;
   PairPublisher cameras_{PairPublisher::kRaw};
   std::unique_ptr<Listener<sensor_msgs::Image>> left_, right_;
@@ -359,10 +367,7 @@ struct OtherTopics {
 
 TEST_F(RectifyNodeletTest, NamedTopicsStayThoseOfTheirCameraWhereTheRigIsUpsideDown) {
   ros::param::set("/uav_landing/rig/upside_down", true);
-  setParameter("rectify", "left_image", std::string("/cam0/image"));
-  setParameter("rectify", "left_info", std::string("/cam0/info"));
-  setParameter("rectify", "right_image", std::string("/cam1/image"));
-  setParameter("rectify", "right_info", std::string("/cam1/info"));
+  nameTopics();
   load("rectify");
   const OtherTopics topics(handle_);
   Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");
@@ -381,10 +386,7 @@ TEST_F(RectifyNodeletTest, NamedTopicsStayThoseOfTheirCameraWhereTheRigIsUpsideD
 }
 
 TEST_F(RectifyNodeletTest, EachTopicMayHaveANameOfItsOwn) {
-  setParameter("rectify", "left_image", std::string("/cam0/image"));
-  setParameter("rectify", "left_info", std::string("/cam0/info"));
-  setParameter("rectify", "right_image", std::string("/cam1/image"));
-  setParameter("rectify", "right_info", std::string("/cam1/info"));
+  nameTopics();
   load("rectify");
   const OtherTopics topics(handle_);
   Listener<sensor_msgs::Image> listener("/uav_landing/left/image_rect");

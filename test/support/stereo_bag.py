@@ -7,6 +7,17 @@ from sensor_msgs.msg import CameraInfo, Image
 
 WIDTH, HEIGHT, FOCAL_LENGTH, BASELINE = 160, 120, 150.0, 0.5
 
+# A calibration file of ROS: of such a camera, or of a wider picture.
+CALIBRATION_FILE = """image_width: {width}
+image_height: 120
+camera_name: {side}
+camera_matrix: {{rows: 3, cols: 3, data: [150, 0, 80, 0, 150, 60, 0, 0, 1]}}
+distortion_model: plumb_bob
+distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}
+rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}
+projection_matrix: {{rows: 3, cols: 4, data: [150, 0, 80, {shift}, 0, 150, 60, 0, 0, 0, 1, 0]}}
+"""
+
 
 def camera_info(right=False):
     """An ideal, already rectified camera."""

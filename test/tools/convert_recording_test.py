@@ -12,7 +12,7 @@ import rospy
 from sensor_msgs.msg import CompressedImage
 
 from project import SOURCE_DIR, rosrun
-from stereo_bag import HEIGHT, WIDTH, image, noise, noise_frames, write_bag
+from stereo_bag import CALIBRATION_FILE, HEIGHT, WIDTH, image, noise, noise_frames, write_bag
 
 sys.path.insert(0, str(SOURCE_DIR / "src/tools"))
 from conversion.errors import LeftOut  # noqa: E402
@@ -28,15 +28,6 @@ resolution: [160, 120]
 distortion_model: {model}
 intrinsics: [150.0, 151.0, 79.0, 60.5]
 distortion_coefficients: [-0.2, 0.05, 0.001, -0.0005]
-"""
-CALIBRATION = """image_width: 160
-image_height: 120
-camera_name: {side}
-camera_matrix: {{rows: 3, cols: 3, data: [150, 0, 80, 0, 150, 60, 0, 0, 1]}}
-distortion_model: plumb_bob
-distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}
-rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}
-projection_matrix: {{rows: 3, cols: 4, data: [150, 0, 80, {shift}, 0, 150, 60, 0, 0, 0, 1, 0]}}
 """
 
 
@@ -72,7 +63,7 @@ class ConvertRecordingTest(unittest.TestCase):
     def calibrations(self):
         files = [self.folder / "left.yaml", self.folder / "right.yaml"]
         for file, shift in zip(files, (0, -75)):
-            file.write_text(CALIBRATION.format(side=file.stem, shift=shift))
+            file.write_text(CALIBRATION_FILE.format(side=file.stem, shift=shift, width=160))
         return ["--left-calibration", files[0], "--right-calibration", files[1]]
 
     def euroc(self, model="radial-tangential", baseline=0.4):

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <deque>
-#include <functional>
 #include <vector>
 
 #include "uav_landing/base/failure.h"
@@ -44,13 +43,17 @@ class RowTimes {
 
  private:
   double shareAt(double u, double v) const;
-  void fitPlane(cv::Size size, const std::function<bool(int u, int v)>& seen);
 
   double time_ = 0;
   int columns_ = 0, rows_ = 0;  // of the grid
   std::vector<float> shares_;   // of the readout time, at the nodes of a grid over the rectified image
   Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
 };
+
+/// By how much the right camera's rows are exposed later than the left one's, s. size: of the rectified
+/// images. Where lenses and rectification alone make a difference, as in any rig, it is that of the middle;
+/// else the largest one.
+double laterRows(const RowTimes& left, const RowTimes& right, const cv::Size& size);
 
 /// Refuses a readout time that is longer than the time between the pictures: it is given in other units, or
 /// of another mode of the sensor.

@@ -47,18 +47,23 @@ RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout)
   const double count = by_columns ? size.width : size.height;
   columns_ = nodes.width;
   rows_ = nodes.height;
+  const cv::Rect picture(cv::Point(), size);
+  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();  // where no node is seen, the plane is 0
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i) {
       const double share = (lines.at<float>(j, i) + 0.5) / count;
       const bool real = std::isfinite(share);
       shares_.push_back(
           static_cast<float>(real ? std::clamp(share, -kBeside, 1 + kBeside) - readout.stamp_row : 0));
+      const cv::Point node(i * kStep, j * kStep);
+      const cv::Point2f source(raw.x.at<float>(j, i), raw.y.at<float>(j, i));
+      if (!real || !picture.contains(node) || !picture.contains(cv::Point(source))) continue;
+      const Eigen::Vector3d place(1, node.x, node.y);
+      information += place * place.transpose();
+      right += time_ * shares_.back() * place;
     }
-  const cv::Rect picture(cv::Point(), size);
-  fitPlane(size, [&](int u, int v) {
-    return picture.contains(
-        {cvRound(raw.x.at<float>(v / kStep, u / kStep)), cvRound(raw.y.at<float>(v / kStep, u / kStep))});
-  });
+  plane_ = information.ldlt().solve(right);
 }
 
 double RowTimes::shareAt(double u, double v) const {
@@ -70,19 +75,17 @@ double RowTimes::shareAt(double u, double v) const {
   return (1 - b) * ((1 - a) * above[0] + a * above[1]) + b * ((1 - a) * below[0] + a * below[1]);
 }
 
-// seen: whether a node comes from the raw picture.
-void RowTimes::fitPlane(cv::Size size, const std::function<bool(int u, int v)>& seen) {
-  // Where no node is seen, the plane is 0.
-  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  for (int v = 0; v < size.height; v += kStep)
-    for (int u = 0; u < size.width; u += kStep) {
-      if (!seen(u, v)) continue;
-      const Eigen::Vector3d place(1, u, v);
-      information += place * place.transpose();
-      right += at(u, v) * place;
-    }
-  plane_ = information.ldlt().solve(right);
+double laterRows(const RowTimes& left, const RowTimes& right, const cv::Size& size) {
+  constexpr double kAlike = 0.1;  // of the readout time
+  const auto later = [&](double u, double v) { return right.at(u, v) - left.at(u, v); };
+  const double end = size.width - 1, bottom = size.height - 1;
+  const double middle = later(end / 2, bottom / 2);
+  double most = middle;
+  for (const double v : {0.0, bottom})
+    for (const double u : {0.0, end})
+      if (std::abs(later(u, v)) > std::abs(most)) most = later(u, v);
+  const double readout = std::max(std::abs(left.readoutTime()), std::abs(right.readoutTime()));
+  return std::abs(most - middle) <= kAlike * readout ? middle : most;
 }
 
 ReadoutCheck::ReadoutCheck(const RowTimes& times, const RowTimes& right)

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/text.h"
+#include "estimation/robust.h"
 
 namespace uav_landing {
 namespace {
@@ -26,12 +27,6 @@ cv::Mat histogramOf(const cv::Mat& values) {
   cv::Mat histogram;
   cv::calcHist(&samples, 1, channels, cv::noArray(), histogram, 1, sizes, ranges);
   return histogram;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double largestOf(int bits) { return std::ldexp(1.0, bits) - 1; }
@@ -122,7 +117,7 @@ void GreyRangeFinder::learn(const std::vector<cv::Mat>& images) {
   if (!hasContent(both)) return;
   lows_.push_back(both.low);
   highs_.push_back(both.high);
-  range_ = rangeOf({median(lows_), median(highs_)});
+  range_ = rangeOf({medianOf(lows_), medianOf(highs_)});
 }
 
 void GreyRangeFinder::grow(const std::vector<cv::Mat>& images) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/rare_pairs.h"
 #include "base/thinned.h"
 
 namespace uav_landing {
@@ -21,10 +22,6 @@ size_t guessedIn(SearchTime time) {
 size_t comparedIn(SearchTime time) {
   return time == SearchTime::kAmple ? 4 : time == SearchTime::kShort ? 3 : 2;
 }
-
-// Steps that take longer, s, are searched at once: there is time, and the motion changes from one to the
-// next.
-constexpr double kRare = 0.3;
 
 // In how many searches in a row that few corners agree with all of them are compared.
 constexpr int kUnsureInterval = 10;
@@ -56,12 +53,14 @@ void FirstStepSearch::reset() {
   unsure_ = 0;
 }
 
-bool FirstStepSearch::isAtOnce(const StepImages& step) const { return at_once_ || step.duration > kRare; }
+bool FirstStepSearch::isAtOnce(const StepImages& step) const {
+  return at_once_ || step.duration > kRarePairs;
+}
 
 void FirstStepSearch::fail() { with_rotation_ = !with_rotation_; }
 
 std::optional<CameraMotion> FirstStepSearch::advance(const StepMatching& matching, const StepImages& step) {
-  if (step.duration > kRare) clear();  // what was found before a gap leads nowhere
+  if (step.duration > kRarePairs) clear();  // what was found before a gap leads nowhere
   const bool at_once = isAtOnce(step);
   if (compared_.empty()) {
     size_t time = at_once ? kSpeeds.size() : guessedIn(step.time);

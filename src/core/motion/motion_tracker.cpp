@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rare_pairs.h"
 #include "base/text.h"
 #include "base/thinned.h"
 #include "geometry/rotation.h"
@@ -108,8 +109,7 @@ MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left)
 }
 
 std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
-  constexpr double kLately = 0.3;  // s; a camera may turn and climb otherwise after that
-  if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kLately)) return std::nullopt;
+  if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kRarePairs)) return std::nullopt;
   return past_.back().motion;
 }
 

@@ -158,8 +158,8 @@ struct ApproachAngleStage::Implementation {
     return stereo.from_search;
   }
 
-  // The first step of the motion over the ground takes the time of the lines. What it is for, to know the
-  // ground that the aircraft comes to be above, bears no delay.
+  // The search for the first step of the motion takes the time of the lines. The motion comes first, as it
+  // carries the ground that is in view now to below the aircraft.
   bool leavesOutLines(double stamp, bool has_plane) const {
     return has_plane && !lines_left_out && tracker.needsSearch() && !runway.isSettled(stamp) &&
            !parameters.search_at_once;

@@ -1,7 +1,5 @@
 #include "uav_landing/stages/stereo_depth_stage.h"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -50,6 +48,7 @@ struct StereoDepthStage::Implementation {
   SpreadSearch search;
   SurfaceMemory surface_memory;
   ReadoutCheck readout;
+  double later_rows;  // s, of the right camera
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p, std::unique_ptr<CornerMatcher> given)
@@ -62,7 +61,8 @@ struct StereoDepthStage::Implementation {
         own_frame(rig.rig.size),
         rows(p.vertical_disparities, p.window_radius, p.disparity_bias_stddev, p.row_bias_stddev),
         search(rig, coarseFactor(rig.rig.size), p, limits),
-        readout(rig.left_times, rig.right_times) {
+        readout(rig.left_times, rig.right_times),
+        later_rows(laterRows(rig.left_times, rig.right_times, rig.rig.size)) {
     fine.rig = rig.rig;
     fine.left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     fine.right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -105,24 +105,6 @@ struct StereoDepthStage::Implementation {
     for (size_t i = 0; i < samples.size(); ++i)
       if (corners.fit.agrees[i] != 0) on_ground.emplace_back(cvRound(samples[i].u), cvRound(samples[i].v));
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
-  }
-
-  // By how much the right camera's rows are later than the left one's, s: in the middle where lenses and
-  // rectification alone make a difference, as in any rig; else where they are most so.
-  double laterRows() const {
-    constexpr double kAlike = 0.1;  // of the readout time
-    const auto later = [&](double u, double v) {
-      return model.right_times.at(u, v) - model.left_times.at(u, v);
-    };
-    const double right = model.rig.size.width - 1, bottom = model.rig.size.height - 1;
-    const double middle = later(right / 2, bottom / 2);
-    double most = middle;
-    for (const double v : {0.0, bottom})
-      for (const double u : {0.0, right})
-        if (std::abs(later(u, v)) > std::abs(most)) most = later(u, v);
-    const double readout =
-        std::max(std::abs(model.left_times.readoutTime()), std::abs(model.right_times.readoutTime()));
-    return std::abs(most - middle) <= kAlike * readout ? middle : most;
   }
 
   // Width and height of corners' windows, pixels.
@@ -336,7 +318,7 @@ StereoDepthStage::StereoDepthStage(StereoDepthStage&&) noexcept = default;
 StereoDepthResult StereoDepthStage::process(double stamp, const cv::Mat& left, const cv::Mat& right,
                                             double skew) {
   StereoDepthResult result = implementation_->process(stamp, left, right);
-  result.skew = skew + implementation_->laterRows();
+  result.skew = skew + implementation_->later_rows;
   return result;
 }
 

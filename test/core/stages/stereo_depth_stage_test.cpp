@@ -8,60 +8,19 @@
 #include <string>
 
 #include "image/image_check.h"
-#include "support/ground_renderer.h"
+#include "support/stereo_stage_scene.h"
 
 namespace uav_landing {
 namespace {
 
+using test::expectPose;
 using test::Exposure;
 using test::GroundRenderer;
 using test::kDegree;
 using test::makePose;
 using test::Pose;
-
-constexpr double kBaseline = 0.65;
-
-struct Pair {
-  cv::Mat left, right;
-};
-
-/// One rig, one ground, one stage.
-struct Scene {
-  StereoRig rig = test::makeRig(320, 240, kBaseline);
-  RigModel model = test::makeModel(rig);
-  GroundRenderer ground;
-  StereoDepthParameters parameters;
-
-  explicit Scene(unsigned seed, double grain = 0.01) : ground(seed) {
-    ground.grain = grain;
-    parameters.search_at_once = true;
-  }
-
-  Pair render(const Pose& pose, const Exposure& left = {}, const Exposure& right = {}) const {
-    return {ground.left(rig, pose, left), ground.right(rig, pose, right)};
-  }
-  StereoDepthResult first(const Pair& pair) const {
-    return StereoDepthStage(model, parameters).process(1, pair.left, pair.right);
-  }
-};
-
-/// Height, pitch and roll are within 3.5 of the claimed sigmas of the truth, and these are small. A surface
-/// is not known to be a plane to better than a thousandth of the height, so a third of that is granted
-/// besides.
-void expectPose(const StereoDepthResult& result, const Pose& truth, const std::string& where) {
-  ASSERT_FALSE(result.failure) << where << ": " << result.failure.message();
-  const GroundPlane& plane = result.plane;
-  const double height_stddev = std::hypot(std::sqrt(plane.heightVariance()), truth.height() / 3000);
-  const Eigen::Vector3d n = plane.normal();
-  const double pitch_stddev = std::sqrt(pitchVariance(n, plane.normalCovariance()));
-  const double roll_stddev = std::sqrt(rollVariance(n, plane.normalCovariance()));
-  EXPECT_NEAR(plane.height(), truth.height(), 3.5 * height_stddev) << where;
-  EXPECT_NEAR(pitchOf(n), truth.pitch, 3.5 * pitch_stddev) << where;
-  EXPECT_NEAR(rollOf(n), truth.roll, 3.5 * roll_stddev) << where;
-  EXPECT_LT(height_stddev, 0.005 * truth.height()) << where;
-  EXPECT_LT(pitch_stddev, 0.2 * kDegree) << where;
-  EXPECT_LT(roll_stddev, 0.2 * kDegree) << where;
-}
+using Scene = test::StereoStageScene;
+using Pair = test::StereoStageScene::Pair;
 
 TEST(StereoDepthStage, FindsThePlaneFromFarToVeryLow) {
   // At 0.48 m the nearest ground has a disparity of two thirds of the width.
@@ -469,90 +428,6 @@ TEST(StereoDepthStage, HasNoPlaneOfAPairThatDoesNotMatchAfterSteadyFlight) {
   EXPECT_TRUE(result.failure);
   EXPECT_FALSE(result.plane.valid());
   for (const StereoDepthResult::Point& point : result.points) EXPECT_FALSE(point.on_plane);
-}
-
-// In half a second while it sinks, of pairs at this rate.
-StereoDepthResult searchOverPairs(const Scene& scene, StereoDepthStage& stage, double rate, Pose& pose) {
-  StereoDepthResult result;
-  for (int i = 0; i <= 0.5 * rate; ++i) {
-    pose = makePose(2 - 0.4 * i / rate, -8 + 2 * i / rate, 0);
-    const Pair pair = scene.render(pose);
-    result = stage.process(1 + i / rate, pair.left, pair.right);
-    if (!result.failure) break;
-    EXPECT_EQ(result.failure.reason, Reason::kNotYet) << result.failure.message();
-  }
-  return result;
-}
-
-TEST(StereoDepthStage, SearchesOverSomePairsAndFindsThePlaneOfTheLast) {
-  for (const double rate : {10, 20, 50}) {
-    Scene scene(14);
-    scene.parameters.search_at_once = false;
-    StereoDepthStage stage(scene.model, scene.parameters);
-    Pose pose;
-    const StereoDepthResult result = searchOverPairs(scene, stage, rate, pose);
-    expectPose(result, pose, "searched");
-    EXPECT_TRUE(result.from_search);
-    EXPECT_LT(pose.height(), 2) << "not with the first pair";
-  }
-}
-
-TEST(StereoDepthStage, SearchesWithinOnePairWherePairsAreRare) {
-  Scene scene(14);
-  scene.parameters.search_at_once = false;
-  StereoDepthStage stage(scene.model, scene.parameters);
-  const Pose pose = makePose(2, -8, 0);
-  const Pair pair = scene.render(pose), other = scene.render(makePose(3, -8, 0));
-  EXPECT_EQ(stage.process(1, other.left, other.right).failure.reason, Reason::kNotYet);
-  expectPose(stage.process(1.5, pair.left, pair.right), pose, "half a second later");
-}
-
-// A pair that comes late does not make the next ones come late, too.
-TEST(StereoDepthStage, GoesOnWithTheSearchOverPairsAfterOneGap) {
-  Scene scene(14);
-  scene.parameters.search_at_once = false;
-  StereoDepthStage stage(scene.model, scene.parameters);
-  const Pair pair = scene.render(makePose(2, -8, 0)), elsewhere = scene.render(makePose(0.7, -8, 0));
-  for (int i = 0; i < 6; ++i) stage.process(1 + 0.05 * i, pair.left, pair.right);
-  EXPECT_EQ(stage.process(1.6, elsewhere.left, elsewhere.right).failure.reason, Reason::kNotYet);
-}
-
-TEST(StereoDepthStage, ForgetsWhatASearchHasSaidWhenStampsJumpBack) {
-  Scene scene(10);
-  scene.parameters.search_at_once = false;
-  const Pair pair = scene.render(makePose(1.6, -8, 0));
-  StereoDepthStage stage(scene.model, scene.parameters);
-  for (int i = 0; i < 12; ++i) stage.process(5 + 0.05 * i, pair.right, pair.left);
-  EXPECT_EQ(stage.process(1, pair.left, pair.right).failure.reason, Reason::kNotYet);
-}
-
-TEST(StereoDepthStage, ForgetsThePairThatItSearchesWhenStampsJumpBackOrAfterAReset) {
-  Scene scene(14);
-  scene.parameters.search_at_once = false;
-  const Pair high = scene.render(makePose(6, -8, 0));
-  for (const bool reset : {false, true}) {
-    StereoDepthStage stage(scene.model, scene.parameters);
-    EXPECT_TRUE(stage.process(9, high.left, high.right).failure);
-    if (reset) stage.reset();
-    Pose pose;
-    expectPose(searchOverPairs(scene, stage, 20, pose), pose, "after another pair");
-  }
-}
-
-TEST(StereoDepthStage, SaysOverSomePairsThatTheImagesAreSwapped) {
-  Scene scene(10);
-  scene.parameters.search_at_once = false;
-  const Pair pair = scene.render(makePose(1.6, -8, 0));
-  StereoDepthStage stage(scene.model, scene.parameters);
-  Reason reason = Reason::kNone;
-  for (int i = 0; i < 20; ++i) {
-    const Reason now = stage.process(1 + 0.05 * i, pair.right, pair.left).failure.reason;
-    const bool was_told = reason == Reason::kNegativeDisparity;
-    reason = now;
-    if (i >= 10 || was_told) {
-      EXPECT_EQ(reason, Reason::kNegativeDisparity) << i;
-    }
-  }
 }
 
 TEST(StereoDepthStage, RefusesAnotherSize) {

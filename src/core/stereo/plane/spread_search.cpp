@@ -6,12 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "base/rare_pairs.h"
+
 namespace uav_landing {
 namespace {
 
-// From so much time between two pairs on, s, a search is done within one: there is time, and in the next pair
-// the plane would be far from where it was.
-constexpr double kRare = 0.3;
 // A plane that was known so long ago, s, is within the reach in which a plane is followed; the reach for
 // older ones grows with their age.
 constexpr double kUsualAge = 0.1;
@@ -49,7 +48,7 @@ void SpreadSearch::begin(double duration) {
   if (overhead_age_) *overhead_age_ += duration;
   if (std::isinf(duration)) {
     reset();
-  } else if (duration > kRare) {
+  } else if (duration > kRarePairs) {
     search_.restart();
   }
 }
@@ -111,7 +110,7 @@ void SpreadSearch::noteOverhead(bool seen) {
 
 // A single gap is none of the camera's, and nobody knows when the pair after the first one comes.
 double SpreadSearch::budget(bool followed) const {
-  const bool rare = std::min(duration_, duration_before_) > kRare && std::isfinite(duration_);
+  const bool rare = std::min(duration_, duration_before_) > kRarePairs && std::isfinite(duration_);
   if (at_once_ || rare) return std::numeric_limits<double>::infinity();
   // Lines and motion wait for the first search alone.
   return PlaneSearch::budgetOf(size_, first_) - (followed ? kFollowingCost : 0);
