@@ -68,7 +68,7 @@ class RectifyNodelet : public StageNodelet {
 
   void setUp() override {
     parameters_ = loadParametersOrThrow<RectifyParameters>();
-    range_ = GreyRangeFinder(shared_.rig.bits);
+    range_ = PairGreyRange(shared_.rig.bits);
     RectifyParameters pairing = parameters_;
     // In order and complete: the four inputs are read from four connections, and one may be far ahead.
     if (!node_.drop_frames) pairing.queue_size = std::max(pairing.queue_size, node_.backlog);
@@ -233,16 +233,11 @@ class RectifyNodelet : public StageNodelet {
   }
 
   void followGreyRange(const Job& job) {
-    // A clock that was set back is that of another recording, or of cameras that started anew.
-    const ros::Time stamp = job.left->header.stamp;
-    if (renew_range_.exchange(false) || stamp < last_stamp_) range_.reset();
-    last_stamp_ = stamp;
+    if (renew_range_.exchange(false)) range_.reset();
     const GreyRange before = range_.range();
-    const bool told = range_.exceeded();
-    const GreyRange now = followRange(range_, job.left, working_.left, job.right, working_.right);
-    if (now != before) NODELET_INFO("%s: %s", getName().c_str(), toText(now).c_str());
-    if (range_.exceeded() && !told)
-      NODELET_WARN("%s: %s", getName().c_str(), exceededText(shared_.rig.bits).c_str());
+    const std::string news = range_.follow(job.left, working_.left, job.right, working_.right);
+    if (!news.empty()) NODELET_WARN("%s: %s", getName().c_str(), news.c_str());
+    if (range_.range() != before) NODELET_INFO("%s: %s", getName().c_str(), toText(range_.range()).c_str());
   }
 
   /// The rectified image, or null when the input cannot be used.
@@ -326,8 +321,7 @@ class RectifyNodelet : public StageNodelet {
   size_t looked_ = 0;
   CameraPair working_;
   Failure wrong_rig_;  // why there is no working pair of a rig upside down
-  GreyRangeFinder range_{0};
-  ros::Time last_stamp_;                  // that the range has followed
+  PairGreyRange range_{0};
   std::atomic<bool> renew_range_{false};  // with the next pair
   ros::Publisher skew_publisher_;
   std::unique_ptr<StereoPairing> pairing_;

@@ -150,10 +150,16 @@ cv::Mat valuesOf16Bits(const sensor_msgs::ImageConstPtr& image, const CameraCali
 
 }  // namespace
 
-GreyRange followRange(GreyRangeFinder& finder, const sensor_msgs::ImageConstPtr& left,
-                      const CameraCalibration& left_camera, const sensor_msgs::ImageConstPtr& right,
-                      const CameraCalibration& right_camera) {
-  return finder.follow(valuesOf16Bits(left, left_camera), valuesOf16Bits(right, right_camera));
+std::string PairGreyRange::follow(const sensor_msgs::ImageConstPtr& left,
+                                  const CameraCalibration& left_camera,
+                                  const sensor_msgs::ImageConstPtr& right,
+                                  const CameraCalibration& right_camera) {
+  const ros::Time stamp = left->header.stamp;
+  if (stamp < last_stamp_) reset();
+  last_stamp_ = stamp;
+  const bool told = finder_.exceeded();
+  finder_.follow(valuesOf16Bits(left, left_camera), valuesOf16Bits(right, right_camera));
+  return finder_.exceeded() && !told ? exceededText(bits_) : "";
 }
 
 Expected<cv_bridge::CvImageConstPtr> toMono8(const sensor_msgs::ImageConstPtr& image,

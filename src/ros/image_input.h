@@ -18,9 +18,24 @@ Expected<cv_bridge::CvImageConstPtr> toMono8(const sensor_msgs::ImageConstPtr& i
                                              const CameraCalibration& calibration, const std::string& topic,
                                              const GreyRange& range = {});
 
-/// The range for both images of a pair; a pair that has not 16 bit, or cannot be used, leaves it as it is.
-GreyRange followRange(GreyRangeFinder& finder, const sensor_msgs::ImageConstPtr& left,
-                      const CameraCalibration& left_camera, const sensor_msgs::ImageConstPtr& right,
-                      const CameraCalibration& right_camera);
+/// The range of the pairs of a recording, for both images. A stamp that goes back is of another recording, or
+/// of cameras that started anew, and so is the range then.
+class PairGreyRange {
+ public:
+  /// bits: see GreyRangeFinder.
+  explicit PairGreyRange(int bits) : finder_(bits), bits_(bits) {}
+
+  /// A pair that has not 16 bit, or cannot be used, leaves the range as it is. Returns what a person should
+  /// know, each once; mostly nothing.
+  std::string follow(const sensor_msgs::ImageConstPtr& left, const CameraCalibration& left_camera,
+                     const sensor_msgs::ImageConstPtr& right, const CameraCalibration& right_camera);
+  const GreyRange& range() const { return finder_.range(); }
+  void reset() { finder_.reset(); }
+
+ private:
+  GreyRangeFinder finder_;
+  int bits_;
+  ros::Time last_stamp_;
+};
 
 }  // namespace uav_landing

@@ -177,12 +177,43 @@ TEST(ImageInput, TheRangeIsThatOfBothImagesInEitherByteOrder) {
     right->data[2 * i] = static_cast<uint8_t>((100 * i) >> 8);
     right->data[2 * i + 1] = static_cast<uint8_t>((100 * i) & 255);
   }
-  GreyRangeFinder finder(0);
-  EXPECT_EQ(followRange(finder, left, announcing(4, 2), right, announcing(4, 2)), (GreyRange{0, 1023}));
-  GreyRangeFinder other(0);
+  PairGreyRange range(0), other(0);
+  EXPECT_EQ(range.follow(left, announcing(4, 2), right, announcing(4, 2)), "");
+  EXPECT_EQ(range.range(), (GreyRange{0, 1023}));
   right->data.resize(3);
-  EXPECT_EQ(followRange(other, makeImage("mono8", 1), announcing(4, 2), right, announcing(4, 2)),
-            GreyRange());
+  other.follow(makeImage("mono8", 1), announcing(4, 2), right, announcing(4, 2));
+  EXPECT_EQ(other.range(), GreyRange());
+}
+
+/// Values from 0 to the largest one.
+sensor_msgs::ImagePtr deepImage(double stamp, int largest) {
+  const auto image = makeImage("mono16", 2);
+  image->header.stamp = ros::Time(stamp);
+  auto* values = reinterpret_cast<uint16_t*>(image->data.data());
+  for (int i = 0; i < 8; ++i) values[i] = static_cast<uint16_t>(largest * i / 7);
+  return image;
+}
+
+TEST(ImageInput, TheRangeIsFoundAnewWhenStampsGoBackAndAfterAReset) {
+  PairGreyRange range(0);
+  const auto follow = [&](double stamp, int largest) {
+    const auto image = deepImage(stamp, largest);
+    range.follow(image, announcing(4, 2), image, announcing(4, 2));
+    return range.range().white;
+  };
+  EXPECT_EQ(follow(10, 4000), 4095);
+  EXPECT_EQ(follow(11, 1000), 4095);
+  EXPECT_EQ(follow(9, 1000), 1023);
+  range.reset();
+  EXPECT_EQ(follow(12, 4000), 4095);
+}
+
+TEST(ImageInput, ValuesBeyondTheGivenBitsAreToldOnce) {
+  PairGreyRange range(10);
+  const auto image = deepImage(10, 4000);
+  EXPECT_EQ(range.follow(image, announcing(4, 2), image, announcing(4, 2)), exceededText(10));
+  EXPECT_EQ(range.follow(image, announcing(4, 2), image, announcing(4, 2)), "");
+  EXPECT_EQ(range.range().white, 1023);
 }
 
 TEST(ImageInput, AnotherSizeThanAnnouncedIsRefused) {
@@ -217,8 +248,9 @@ TEST(ImageInput, AStepOfHalfAValueIsRefused) {
   image->data.resize(18);
   EXPECT_EQ(failureOf(image, announcing(4, 2)),
             "input_invalid: /stereo/left/image_raw: step: 9 bytes are no whole number of values of 16 bits");
-  GreyRangeFinder finder(0);
-  EXPECT_EQ(followRange(finder, image, announcing(4, 2), image, announcing(4, 2)), GreyRange());
+  PairGreyRange range(0);
+  range.follow(image, announcing(4, 2), image, announcing(4, 2));
+  EXPECT_EQ(range.range(), GreyRange());
 }
 
 TEST(ImageInput, NoCalibrationSizeIsRefusedWithoutACrash) {

@@ -4,7 +4,6 @@
 
 #include "camera_info.h"
 #include "datasets/decimal_time.h"
-#include "image_input.h"
 #include "time_difference.h"
 #include "uav_landing/geometry/rig_check.h"
 
@@ -139,15 +138,11 @@ Failure OfflineChain::run(const sensor_msgs::ImageConstPtr& left, const sensor_m
   const auto topic = [&](bool of_left) {
     return "/" + camera_ + (of_left != exchanged ? "/left/image_raw" : "/right/image_raw");
   };
-  // As the nodelet: a clock that was set back is that of another recording.
-  if (left->header.stamp < last_stamp_) range_.reset();
-  last_stamp_ = left->header.stamp;
-  const bool told = range_.exceeded();
-  const GreyRange range = followRange(range_, left, working_.left, right, working_.right);
-  if (range_.exceeded() && !told) complain_(exceededText(parameters_.rig.bits));
-  const auto left_image = toMono8(left, working_.left, topic(true), range);
+  const std::string warning = range_.follow(left, working_.left, right, working_.right);
+  if (!warning.empty()) complain_(warning);
+  const auto left_image = toMono8(left, working_.left, topic(true), range_.range());
   if (!left_image) return left_image.error();
-  const auto right_image = toMono8(right, working_.right, topic(false), range);
+  const auto right_image = toMono8(right, working_.right, topic(false), range_.range());
   if (!right_image) return right_image.error();
   if (pairs_ % kRowsLookedAt == 0) {
     pictures_.look((*left_image)->image, topic(true));

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "image_input.h"
 #include "imu_input.h"
 #include "offline/processed_pair.h"
 #include "picture_watch.h"
 #include "uav_landing/geometry/camera_pair.h"
-#include "uav_landing/image/grey_range.h"
 #include "uav_landing/parameters/parameters.h"
 
 namespace uav_landing {
@@ -68,8 +68,7 @@ class OfflineChain {
   std::function<void(const std::string&)> complain_;
   CameraCalibration left_calibration_, right_calibration_;  // as given
   CameraPair working_;
-  GreyRangeFinder range_;
-  ros::Time last_stamp_;  // that the range has followed
+  PairGreyRange range_;
   std::optional<Pipeline> pipeline_;
   std::optional<ImuInput> imu_;  // none: not to be used
   std::deque<Waiting> waiting_;
