@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import rosbag
 import rospy
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CompressedImage, Image
 
 from project import SOURCE_DIR, rosrun
 from stereo_bag import CALIBRATION_FILE, HEIGHT, WIDTH, image, noise, noise_frames, write_bag
@@ -96,6 +96,15 @@ class ConvertRecordingTest(unittest.TestCase):
         self.assertEqual(info.D, (-0.2, 0.05, 0.001, -0.0005, 0.0))
         self.assertAlmostEqual(-info.P[3] / info.P[0], 0.4, places=9)
         np.testing.assert_allclose(np.reshape(info.R, (3, 3)), np.eye(3), atol=1e-9)  # no turn between the cameras
+
+    def test_euroc_folder_of_deep_pictures_keeps_their_bits(self):
+        self.euroc()
+        for file in sorted((self.folder / "mav0").glob("cam*/data/*.png")):
+            cv2.imwrite(str(file), cv2.imread(str(file), cv2.IMREAD_UNCHANGED).astype(np.uint16) * 16 + 5)
+        for message in self.converted("euroc", self.folder)["/stereo/left/image_raw"][:1]:
+            self.assertEqual((message.encoding, message.step), ("mono16", 320))
+            pixels = np.frombuffer(message.data, "<u2").reshape(120, 160)
+            np.testing.assert_array_equal(pixels, noise(0).astype(np.uint16) * 16 + 5)
 
     def test_euroc_mistakes_are_named(self):
         self.refused("sensor.yaml: no such file", "euroc", self.folder)
@@ -536,24 +545,35 @@ class ConvertRecordingTest(unittest.TestCase):
                          messages[f"/stereo/{side}/image_raw"]]
                 np.testing.assert_allclose([[np.min(m), np.max(m)] for m in found], [2 * [grey + step * i] for i in range(4)], atol=2)
 
-    def test_one_field_of_interlaced_pictures(self):
-        rows = np.arange(HEIGHT)
-        steady = np.repeat((2 * rows).astype(np.uint8)[:, None], WIDTH, 1)  # a ramp: rows between are half way
-        path = self.folder / "interlaced.bag"
+    def interlaced_bag(self, encoding, steady):
+        """Every second row is of another time."""
+        path = self.folder / f"{encoding}.bag"
         with rosbag.Bag(str(path), "w") as result:
             for frame in noise_frames(3):
                 for side in ("left", "right"):
                     pixels = steady.copy()
-                    pixels[1::2] = 255  # the other field, of another time
-                    message = image(pixels)
+                    pixels[1::2] = 255
+                    message = Image(height=HEIGHT, width=WIDTH, encoding=encoding, is_bigendian=steady.dtype == ">u2",
+                                    step=WIDTH * steady.itemsize, data=pixels.tobytes())
                     message.header.stamp = rospy.Time.from_sec(frame.stamp)
                     result.write(f"/cam/{side}/image_raw", message, message.header.stamp)
-        messages = self.converted("bag", path, "--left", "/cam/left/image_raw", "--right", "/cam/right/image_raw", "--deinterlace",
-                                  *self.calibrations())
-        for message in messages["/stereo/left/image_raw"]:
-            pixels = np.frombuffer(message.data, np.uint8).reshape(HEIGHT, WIDTH)
-            np.testing.assert_array_equal(pixels[:-1], steady[:-1])
-            np.testing.assert_array_equal(pixels[-1], steady[-2])
+        return path
+
+    def test_one_field_of_interlaced_pictures(self):
+        ramp = np.repeat(2 * np.arange(HEIGHT)[:, None], WIDTH, 1)  # rows between are half way
+        for encoding, kind, factor in (("mono8", "u1", 1), ("mono16", "<u2", 15), ("16UC1", ">u2", 270)):
+            steady = (factor * ramp).astype(kind)
+            with self.subTest(kind):
+                messages = self.converted("bag", self.interlaced_bag(encoding, steady), "--left", "/cam/left/image_raw", "--right",
+                                          "/cam/right/image_raw", "--deinterlace", *self.calibrations())
+                for message in messages["/stereo/left/image_raw"]:
+                    pixels = np.frombuffer(message.data, kind).reshape(HEIGHT, WIDTH)
+                    np.testing.assert_array_equal(pixels[:-1], steady[:-1])
+                    np.testing.assert_array_equal(pixels[-1], steady[-2])
+                self.output.unlink()
+        bayer = self.interlaced_bag("bayer_rggb8", ramp.astype(np.uint8))
+        self.refused("bayer_rggb8: only pictures with the same colours in all rows are deinterlaced", "bag", bayer, "--left",
+                     "/cam/left/image_raw", "--right", "/cam/right/image_raw", "--deinterlace", *self.calibrations())
 
     def test_bag_mistakes_are_named(self):
         bag = self.renamed_bag(True)

@@ -130,7 +130,7 @@ def raw_halves(image, layout, topic):
 def one_field(pixels):
     """Interlaced video's upper field, with the rows between made of those above and below: the picture keeps its size."""
     field = pixels[::2]
-    between = ((field[:-1].astype(np.uint16) + field[1:]) // 2).astype(pixels.dtype)
+    between = ((field[:-1].astype(np.uint32) + field[1:]) // 2).astype(pixels.dtype)
     result = pixels.copy()
     result[::2] = field
     result[1:2 * len(between):2] = between
@@ -141,6 +141,9 @@ def one_field(pixels):
 
 def deinterlaced(image, topic):
     """one_field() of a raw image."""
-    if image.encoding.startswith("bayer") or "16" in image.encoding:
-        raise InputError(f"{topic}: encoding {image.encoding}: only pictures of 8 bits with the same colours in all rows are deinterlaced")
-    return image_of(one_field(rows_of(image, topic)), image)
+    if image.encoding.startswith("bayer"):
+        raise InputError(f"{topic}: encoding {image.encoding}: only pictures with the same colours in all rows are deinterlaced")
+    pixels = rows_of(image, topic)
+    if "16" in image.encoding:
+        pixels = pixels.view(">u2" if image.is_bigendian else "<u2")
+    return image_of(one_field(pixels).view(np.uint8), image)

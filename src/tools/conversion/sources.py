@@ -1,6 +1,6 @@
 """Recordings of others as stereo frames.
 
-Each source yields (stamp in ns, left image, right image), mono8, with the cameras' CameraInfo in .cameras.
+Each source yields (stamp in ns, left image, right image), grey of 8 or 16 bits, with the cameras' CameraInfo in .cameras.
 """
 
 import csv
@@ -20,9 +20,11 @@ def read_image(path):
         data = Path(path).read_bytes()
     except OSError:
         data = b""
-    pixels = decoded(data, cv2.IMREAD_GRAYSCALE)
+    pixels = decoded(data, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH)
     if pixels is None:
         raise BrokenPicture(f"{path}: no such image, or damaged")
+    if pixels.dtype not in (np.uint8, np.uint16):
+        raise BrokenPicture(f"{path}: pixels are {pixels.dtype}, expected grey or colour of 8 or 16 bits")
     return pixels
 
 

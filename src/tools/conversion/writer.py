@@ -1,5 +1,7 @@
 """Stereo frames to a bag."""
 
+import sys
+
 import rosbag
 import rospy
 from sensor_msgs.msg import Image
@@ -22,7 +24,8 @@ def write_frames(source, output, camera):
                 if (pixels.shape[1], pixels.shape[0]) != (info.width, info.height):
                     raise InputError(f"frame {count}: the {side} image has {pixels.shape[1]}x{pixels.shape[0]} pixels, "
                                      f"its calibration is for {info.width}x{info.height}")
-                image = Image(height=pixels.shape[0], width=pixels.shape[1], encoding="mono8", step=pixels.shape[1])
+                image = Image(height=pixels.shape[0], width=pixels.shape[1], step=pixels.shape[1] * pixels.itemsize,
+                              encoding=f"mono{8 * pixels.itemsize}", is_bigendian=sys.byteorder == "big")
                 image.data = pixels.tobytes()
                 for topic, message in (("image_raw", image), ("camera_info", info)):
                     message.header.stamp, message.header.frame_id = stamp, f"{camera}_{side}"
