@@ -1,6 +1,7 @@
 # The programs.
 uav_landing_add_python_test(test/tools/process_bag_input_test.py DEPENDENCIES process_bag dataset_to_bag)
 uav_landing_add_python_test(test/tools/process_bag_rig_test.py DEPENDENCIES process_bag simulate_approach)
+uav_landing_add_python_test(test/tools/verdict_test.py DEPENDENCIES process_bag simulate_approach)
 uav_landing_add_python_test(test/tools/evaluate_test.py)
 uav_landing_add_python_test(test/tools/convert_recording_test.py DEPENDENCIES process_bag)
 uav_landing_add_python_test(test/tools/rosrun_test.py

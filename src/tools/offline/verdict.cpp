@@ -1,7 +1,8 @@
 #include "offline/verdict.h"
 
 #include <algorithm>
-#include <initializer_list>
+
+#include "integrity/test_catalogue.h"
 
 namespace uav_landing {
 namespace {
@@ -21,7 +22,7 @@ class Shares {
     return static_cast<double>(count) / static_cast<double>(tally_.pairs);
   }
   double reason(Reason reason) const { return of(countOf(tally_.reasons, toString(reason))); }
-  double test(const std::string& name) const { return of(countOf(tally_.failed_tests, name)); }
+  double test(IntegrityTest test) const { return of(countOf(tally_.failed_tests, toString(test))); }
 
  private:
   const PairTally& tally_;
@@ -31,47 +32,39 @@ std::string causeOf(const PairTally& tally) {
   const Shares share(tally);
   if (share.reason(Reason::kNegativeDisparity) > 0.3)
     return "left and right images are swapped, or the calibration was made with them swapped: give each "
-           "camera its "
-           "own topic (convert_recording bag … --left … --right …)";
-  const double repeating = share.test("repeated_image");
+           "camera its own topic (convert_recording bag … --left … --right …)";
+  const double repeating = share.test(IntegrityTest::kRepeatedImage);
   // One camera alone that repeats its pictures hangs; both at once may as well see nothing that moves.
   if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
     return "the pictures of both cameras come again, bit by bit: the cameras stand still and have no noise "
-           "(a "
-           "simulator), or the driver sends no new pictures";
+           "(a simulator), or the driver sends no new pictures";
   if (repeating > 0.3)
     return "pictures of one camera come twice, bit by bit: its driver repeats them, or hangs";
   if (share.of(tally.alternating) > 0.6)
     return "every second picture is black or uniform: exposure bracketing, or a lamp or projector that "
-           "blinks; switch it "
-           "off, or record the bright pictures alone";
+           "blinks; switch it off, or record the bright pictures alone";
   if (share.reason(Reason::kUniformImage) > 0.3)
     return "the pictures are black, saturated or uniform: exposure, lens cap, or an encoding that is not "
            "what it says";
-  if (share.test("baseline_direction") > 0.2)
+  if (share.test(IntegrityTest::kBaselineDirection) > 0.2)
     return "the images of a pair were not taken at the same time (test baseline_direction): the right "
-           "pictures are late "
-           "or early by some frames, their stamps are not those of the exposure, or there is no trigger. If "
-           "the cameras "
-           "are triggered and stamped well, one camera's focal length is wrong: calibrate again";
-  if (share.test("row_agreement") + share.reason(Reason::kRigBent) > 0.3)
+           "pictures are late or early by some frames, their stamps are not those of the exposure, or there "
+           "is no trigger. If the cameras are triggered and stamped well, one camera's focal length is "
+           "wrong: calibrate again";
+  if (share.test(IntegrityTest::kRowAgreement) + share.reason(Reason::kRigBent) > 0.3)
     return "the rows of left and right images do not belong together (test row_agreement): this is another "
-           "rig's "
-           "calibration, or a camera has turned since: calibrate again";
-  if (share.test("sink_rate") + share.test("motion_normal") > 0.4)
+           "rig's calibration, or a camera has turned since: calibrate again";
+  if (share.test(IntegrityTest::kSinkRate) + share.test(IntegrityTest::kMotionNormal) > 0.4)
     return "heights change otherwise than the motion says (tests motion_normal, sink_rate): a camera has "
-           "turned sideways "
-           "since the calibration: calibrate again";
+           "turned sideways since the calibration: calibrate again";
   if (share.reason(Reason::kTooFewMatches) + share.reason(Reason::kTooFewFeatures) +
           share.reason(Reason::kNoPlane) >
       0.4)
     return "the pictures show hardly any texture or are blurred, the ground fills too little of them, or "
-           "they are not aligned "
-           "at all (calibration of another rig): look at the pictures of --report-data";
+           "they are not aligned at all (calibration of another rig): look at the pictures of --report-data";
   if (share.reason(Reason::kNoMotion) > 0.5)
     return "the cameras stand still, or move too slowly for an approach angle: heights are valid alone "
-           "(column "
-           "height_valid)";
+           "(column height_valid)";
   return "";
 }
 
