@@ -22,7 +22,7 @@ struct RefinedPair : GroundPair {
   explicit RefinedPair(unsigned seed = 5, double roll = 3) : GroundPair({320, 240}, seed, 4, -8, roll) {}
 
   Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
-    return DirectRefinement(model, 4).refine(left, right, start, groundLimits(), 0, rows);
+    return DirectRefinement(model, 4).refine(left, right, {start, rows}, groundLimits(), 0);
   }
   /// Largest error of the disparity over the ground's part of the image, pixels.
   double error(const Eigen::Vector3d& g) const {

@@ -263,9 +263,10 @@ struct StereoDepthStage::Implementation {
   // The plane of the corners stays when the images' alignment leads elsewhere; false then.
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
-    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), result.plane.g,
-                                                  limits, parameters.disparity_bias_stddev,
-                                                  rows.residual(fine.rig), rows.levelledBy(), fine.drift);
+    RefinementStart start{result.plane.g, rows.residual(fine.rig), rows.levelledBy(), fine.drift};
+    start.brief = result.from_search && !parameters.search_at_once;
+    const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), start, limits,
+                                                  parameters.disparity_bias_stddev);
     result.photometric_agreement = direct->agreement();
     if (!fit) return false;
     if (direct->noisy()) result.plane.covariance *= kNoisyCorners * kNoisyCorners;

@@ -57,7 +57,11 @@ void fillUp(const cv::Range& known, cv::Mat& image, int row) {
 }  // namespace
 
 AlignedRows::AlignedRows(const cv::Mat& left_mask, const cv::Mat& right_mask)
-    : size_(left_mask.size()), left_columns_(setColumns(left_mask)), right_columns_(setColumns(right_mask)) {}
+    : size_(left_mask.size()),
+      left_columns_(setColumns(left_mask)),
+      right_columns_(setColumns(right_mask)),
+      left_memory_(cv::Mat::zeros(size_, CV_32F)),
+      right_memory_(cv::Mat::zeros(size_, CV_32F)) {}
 
 // The highest row that may be ground, at either side.
 int AlignedRows::findFirstRow(const ShiftModel& shift, double least) const {
@@ -97,7 +101,6 @@ void AlignedRows::findRows(const ShiftModel& shift, double least) {
 void AlignedRows::begin(const cv::Mat& left, const ShiftModel& shift, double least) {
   findRows(shift, least);
   const int count = static_cast<int>(seen_.size());
-  left_memory_.create(left.size(), CV_32F);
   left_ = left_memory_.rowRange(0, count);
   left.rowRange(first_row_, first_row_ + count).convertTo(left_, CV_32F);
   for (int row = 0; row < count; ++row) fillUp(seen_[row], left_, row);
@@ -114,7 +117,6 @@ cv::Range AlignedRows::readableColumns(const ShiftModel& shift, int row, int col
 }
 
 void AlignedRows::align(const cv::Mat& right, const ShiftModel& model) {
-  right_memory_.create(right.size(), CV_32F);
   right_ = right_memory_.rowRange(0, static_cast<int>(seen_.size()));
   for (int row = 0; row < right_.rows; ++row) {
     const int v = first_row_ + row;

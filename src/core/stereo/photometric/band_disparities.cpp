@@ -19,7 +19,12 @@ constexpr double kKnown = 0.25, kLeastKnown = 1.0;
 }  // namespace
 
 BandDisparities::BandDisparities(const StereoLevel& level)
-    : rig_(level.rig), rows_(level.left_mask, level.right_mask) {}
+    : rig_(level.rig),
+      rows_(level.left_mask, level.right_mask),
+      grey_(cv::Mat::zeros(rig_.size, CV_32F)),
+      straightened_(cv::Mat::zeros(rig_.size, CV_32F)),
+      left_(rig_.size),
+      right_(rig_.size) {}
 
 bool BandDisparities::isSeen(int column, int line) const {
   constexpr int kAround = 4;  // pixels beside what is filled up
@@ -44,24 +49,25 @@ void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, cons
   if (!grid_.seen.empty()) left_.split(rows_.left());
 }
 
-void BandDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
-                              const PlaneDrift& drift) {
+// By how much a row that is off moves what fine texture shows, its derivatives tell too little of.
+void BandDisparities::takeRight(const cv::Mat& right, const RigRotation& rows) {
+  right.convertTo(grey_, CV_32F);
+  level_ = grey_;
+  if (rows.w.isZero()) return;
+  const int first = rows_.firstRow();
+  straightenRows(rig_, rows.w, grey_, straightened_, {first, first + rows_.left().rows});
+  level_ = straightened_;
+}
+
+void BandDisparities::measure(const Eigen::Vector3d& g, const PlaneDrift& drift) {
   disparities_.clear();
   differ_by_noise_ = false;
   if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;
   const ShiftModel shift(rig_, g, drift);
-  rows_.align(levelled(right, rows), shift);
+  rows_.align(level_, shift);
   right_.split(rows_.right());
   weigh();
   for (int line = 0; differ_by_noise_ && line < grid_.lines; ++line) tellLine(line, shift);
-}
-
-// By how much a row that is off moves what fine texture shows, its derivatives tell too little of.
-const cv::Mat& BandDisparities::levelled(const cv::Mat& right, const RigRotation& rows) {
-  right.convertTo(grey_, CV_32F);
-  if (rows.w.isZero()) return grey_;
-  straightenRows(rig_, rows.w, grey_, level_);
-  return level_;
 }
 
 void BandDisparities::weigh() {

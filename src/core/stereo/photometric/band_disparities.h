@@ -22,10 +22,11 @@ class BandDisparities {
 
   /// Takes the left image (mono8) below the horizon of the plane g, 1/m.
   void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
-  /// Compares it with the right image (mono8) warped by the plane g. rows: rotation that the vertical
-  /// disparities of the images have.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
-               const PlaneDrift& drift = {});
+  /// Takes the right image (mono8) of the same pair. rows: rotation that the vertical disparities of the
+  /// images have.
+  void takeRight(const cv::Mat& right, const RigRotation& rows);
+  /// Compares the left image with the right one warped by the plane g.
+  void measure(const Eigen::Vector3d& g, const PlaneDrift& drift = {});
 
   /// Whether what the images differed by was noise in the last measurement. Else they do not show the same,
   /// and there are no disparities.
@@ -34,8 +35,6 @@ class BandDisparities {
   const std::vector<BlockDisparity>& disparities() const { return disparities_; }
 
  private:
-  /// The right image as floats, its rows level with the left one's.
-  const cv::Mat& levelled(const cv::Mat& right, const RigRotation& rows);
   bool isSeen(int column, int line) const;
   void weigh();
   void tellLine(int line, const ShiftModel& shift);
@@ -50,7 +49,7 @@ class BandDisparities {
 
   StereoRig rig_;
   AlignedRows rows_;
-  cv::Mat grey_, level_;
+  cv::Mat grey_, straightened_, level_;  // the right image as floats; level_ is one of the others
   BlockGrid grid_;
   TextureBands left_, right_;
   std::vector<BandSums> sums_, around_;  // of one band

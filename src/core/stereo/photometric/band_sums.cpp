@@ -49,12 +49,17 @@ void addUp(const cv::Mat& left, const cv::Mat& right, int factor, const BlockGri
 
 void addNeighbours(const BlockGrid& grid, const std::vector<BandSums>& sums, std::vector<BandSums>& around) {
   around.assign(sums.size(), {});
+  std::vector<BandSums> columns(grid.columns);  // of three lines, or two at an edge
   for (int line = 0; line < grid.lines; ++line) {
     for (int column = 0; column < grid.columns; ++column) {
-      BandSums& total = around[grid.at(column, line)];
+      columns[column] = {};
       for (int j = std::max(line - 1, 0); j <= std::min(line + 1, grid.lines - 1); ++j)
-        for (int i = std::max(column - 1, 0); i <= std::min(column + 1, grid.columns - 1); ++i)
-          total.add(sums[grid.at(i, j)]);
+        columns[column].add(sums[grid.at(column, j)]);
+    }
+    for (int column = 0; column < grid.columns; ++column) {
+      BandSums& total = around[grid.at(column, line)];
+      for (int i = std::max(column - 1, 0); i <= std::min(column + 1, grid.columns - 1); ++i)
+        total.add(columns[i]);
     }
   }
 }

@@ -17,7 +17,7 @@ namespace {
 // Gauss-Newton steps at most, and the change of the largest disparity that ends them, in pixels or as a share
 // of it, whichever is larger. A step leaves about a tenth of itself, so that such a share moves the height by
 // 5e-5 of itself; in noise, where less is sure, the share does not count.
-constexpr int kSteps = 10;
+constexpr int kSteps = 10, kBriefSteps = 2;
 constexpr double kConverged = 0.01, kConvergedShare = 5e-4;
 // By how much disparities of the first plane may be off, pixels.
 constexpr double kStartStddev = 0.3;
@@ -93,6 +93,22 @@ struct DirectRefinement::Implementation {
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
     carryToStamp(rig, drift, samples);
     common_variance = makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
+  }
+
+  // The plane of what the last comparison found. rough: the first plane, g, may be off by kStartStddev.
+  Expected<PlaneFit> fitFound(const Eigen::Vector3d& g, const PlaneDrift& drift, const PlaneLimits& limits,
+                              double bias_stddev, bool rough) {
+    agreeing = 0;
+    if (static_cast<int>(disparities.found().size()) < limits.min_points)
+      return tl::make_unexpected(tooFew(limits.min_points));
+    takeSamples(g, drift);
+    for (DisparitySample& sample : samples)
+      if (rough) sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
+    Expected<PlaneFit> fit = refinePlane(rig, samples, g, limits, bias_stddev, memory);
+    if (!fit) return fit;
+    agreeing = blocksOn(*fit);
+    if (agreeing < kLeastShare * disparities.informative()) return tl::make_unexpected(tooFewOnThePlane());
+    return fit;
   }
 
   // Blocks and not samples: a share of them must not depend on how many speak together.
@@ -176,39 +192,31 @@ DirectRefinement::~DirectRefinement() = default;
 DirectRefinement::DirectRefinement(DirectRefinement&&) noexcept = default;
 
 Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& right,
-                                            const Eigen::Vector3d& start, const PlaneLimits& limits,
-                                            double bias_stddev, const RigRotation& rows,
-                                            const Eigen::Vector3d& levelled_by, const PlaneDrift& drift) {
+                                            const RefinementStart& start, const PlaneLimits& limits,
+                                            double bias_stddev) {
   Implementation& own = *implementation_;
   own.edges.begin();
-  own.disparities.begin(left, right, start, rows, drift);
-  own.agreeing = 0;
-  Eigen::Vector3d g = start;
+  own.disparities.begin(left, right, start.plane, start.rows, start.drift);
+  const int last = start.brief ? kBriefSteps : kSteps;
+  Eigen::Vector3d g = start.plane;
+  bool rough = true;
   for (int step = 0;; ++step) {
-    if (step > 0) own.disparities.measure(right, g, rows, drift);
-    if (static_cast<int>(own.disparities.found().size()) < limits.min_points)
-      return tl::make_unexpected(own.tooFew(limits.min_points));
-    own.takeSamples(g, drift);
-    if (step == 0) {
-      for (DisparitySample& sample : own.samples)
-        sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
-    }
-    Expected<PlaneFit> fit = refinePlane(own.rig, own.samples, g, limits, bias_stddev, own.memory);
-    own.agreeing = fit ? own.blocksOn(*fit) : 0;
+    if (step > 0) own.disparities.measure(right, g, start.rows, start.drift);
+    Expected<PlaneFit> fit = own.fitFound(g, start.drift, limits, bias_stddev, rough);
+    if (!fit && step == 0 && own.disparities.areFaint()) continue;
     if (!fit) return fit;
-    if (own.agreeing < kLeastShare * own.disparities.informative())
-      return tl::make_unexpected(own.tooFewOnThePlane());
     const double change = own.largestDisparity(fit->plane.g - g);
     const double share = noisy() ? 0 : kConvergedShare * own.largestDisparity(g);
     const double least = std::max(kConverged, share);
-    if (step + 1 == kSteps || (step > 0 && change < least)) {
+    if (step + 1 == last || (!rough && change < least)) {
       fit->lasting_share = own.lastingShare(*fit);
-      own.solveWithRows(priorOf(rows, noisy()), levelled_by + rows.w, bias_stddev, *fit);
+      own.solveWithRows(priorOf(start.rows, noisy()), start.levelled_by + start.rows.w, bias_stddev, *fit);
       // What has not settled is known no better than it moves.
       if (change > least) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
     }
     g = fit->plane.g;
+    rough = false;
   }
 }
 

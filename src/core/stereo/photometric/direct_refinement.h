@@ -10,6 +10,21 @@
 
 namespace uav_landing {
 
+/// What is known of a pair before its images are aligned.
+struct RefinementStart {
+  Eigen::Vector3d plane;  ///< good to a fraction of a pixel of disparity, 1/m, at the stamp
+  /// Rotation that the vertical disparities of the images have: along a row, slanted edges seem moved by
+  /// them.
+  RigRotation rows;
+  /// What the right image has been freed of before, rad, so that edges of pairs that were levelled otherwise
+  /// count as well.
+  Eigen::Vector3d levelled_by = Eigen::Vector3d::Zero();
+  PlaneDrift drift = {};  ///< of the plane while rows are exposed
+  /// Something else took this pair's time: the second step is the last one, and what has not settled by then
+  /// is claimed.
+  bool brief = false;
+};
+
 /// Direct photometric refinement of the ground plane: aligns the left image with the right one warped by the
 /// plane's homography (along the rows only, as the images are rectified), over the blocks of ground that have
 /// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
@@ -24,17 +39,11 @@ class DirectRefinement {
   ~DirectRefinement();
   DirectRefinement(DirectRefinement&&) noexcept;
 
-  /// left, right: rectified mono8. start: plane vector good to a fraction of a pixel of disparity, 1/m.
-  /// bias_stddev: as for refinePlane, pixels. limits.tolerance: by how much blocks of
-  /// ground may be off the plane, pixels. rows: rotation that the vertical disparities of the images have
-  /// (rig_rotation.h): along a row, slanted edges seem moved by them. levelled_by: what the right image has
-  /// been freed of before, rad, so that edges of pairs that were levelled otherwise count as well. drift: of
-  /// the plane while rows are exposed; start and result are at the stamp. Fails when the images show too
-  /// little, or when most of what they show is not on one plane.
-  Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& start,
-                            const PlaneLimits& limits, double bias_stddev, const RigRotation& rows,
-                            const Eigen::Vector3d& levelled_by = Eigen::Vector3d::Zero(),
-                            const PlaneDrift& drift = {});
+  /// left, right: rectified mono8. limits.tolerance: by how much blocks of ground may be off the plane,
+  /// pixels. bias_stddev: as for refinePlane, pixels. Fails when the images show too little, or when most of
+  /// what they show is not on one plane.
+  Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const RefinementStart& start,
+                            const PlaneLimits& limits, double bias_stddev);
   /// What the last pair's edges said of the rows does not count for the next ones, as of a plane that is not
   /// taken.
   void forgetLast();

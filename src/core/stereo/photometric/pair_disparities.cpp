@@ -15,27 +15,27 @@ void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eig
                             const RigRotation& rows, const PlaneDrift& drift) {
   blocks_.choose(left, g, drift);
   blocks_.measure(right, g, rows, drift);
-  noisy_ = blocks_.certainShare() < kMostlyCertain;
-  if (noisy_) {
+  faint_ = blocks_.certainShare() < kMostlyCertain;
+  by_bands_ = false;
+  if (faint_) {
     bands_.choose(left, g, drift);
-    bands_.measure(right, g, rows, drift);
-    noisy_ = bands_.differByNoise();
+    bands_.takeRight(right, rows);
   }
   collect();
 }
 
 void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
                               const PlaneDrift& drift) {
-  if (noisy_) bands_.measure(right, g, rows, drift);
-  noisy_ = noisy_ && bands_.differByNoise();
-  if (!noisy_) blocks_.measure(right, g, rows, drift);
+  if (faint_) bands_.measure(g, drift);
+  faint_ = by_bands_ = faint_ && bands_.differByNoise();
+  if (!by_bands_) blocks_.measure(right, g, rows, drift);
   collect();
 }
 
 void PairDisparities::collect() {
   found_.clear();
   informative_ = 0;
-  for (const BlockDisparity& disparity : noisy_ ? bands_.disparities() : blocks_.disparities()) {
+  for (const BlockDisparity& disparity : by_bands_ ? bands_.disparities() : blocks_.disparities()) {
     informative_ += disparity.blocks;
     if (disparity.alike) found_.push_back(disparity);
   }

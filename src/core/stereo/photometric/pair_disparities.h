@@ -14,11 +14,12 @@ class PairDisparities {
   /// margin: pixels that stay away from the edges of the model's masks, at least 4.
   PairDisparities(const RigModel& model, int margin);
 
-  /// Takes blocks of a pair (mono8) and compares them with the right image warped by the plane g, 1/m. rows:
+  /// Takes a pair (mono8) and compares blocks of it with the right image warped by the plane g, 1/m. rows:
   /// rotation that the vertical disparities of the images have. drift: of the plane while rows are exposed.
   void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
              const PlaneDrift& drift = {});
-  /// Compares them on another plane. right: as for begin.
+  /// Compares the same pair once more, on another plane. right, rows: as for begin. Only this looks at faint
+  /// texture, as a first comparison does well enough without.
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
                const PlaneDrift& drift = {});
 
@@ -27,14 +28,16 @@ class PairDisparities {
   /// Blocks that show more than noise, also those that the right image does not show.
   int informative() const { return informative_; }
   /// Whether neighbours have errors in common, so that they scatter less than they are wrong.
-  bool haveCommonErrors() const { return noisy_; }
+  bool haveCommonErrors() const { return by_bands_; }
+  /// Whether blocks are hardly more than noise in this pair, so that measure() may show more than begin().
+  bool areFaint() const { return faint_; }
 
  private:
   void collect();
 
   BlockDisparities blocks_;
   BandDisparities bands_;
-  bool noisy_ = false;  // by which of them
+  bool faint_ = false, by_bands_ = false;
   std::vector<BlockDisparity> found_;
   int informative_ = 0;
 };

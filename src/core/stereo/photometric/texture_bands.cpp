@@ -15,22 +15,24 @@ constexpr double kReducing = 0.25;
 double reducedSigma(double from_variance, double to) { return 0.5 * std::sqrt(to * to - from_variance); }
 
 void blur(const cv::Mat& image, double sigma, cv::Mat& out) {
+  const int size = 2 * static_cast<int>(std::lround(3 * sigma)) + 1;
   // Rows of the same memory beside the image's are none of it.
-  cv::GaussianBlur(image, out, cv::Size(), sigma, sigma, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
+  cv::GaussianBlur(image, out, {size, size}, sigma, sigma, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
 }
 
 }  // namespace
 
-void TextureBands::Rows::create(const cv::Size& size) {
-  if (memory.cols != size.width || memory.rows < size.height) memory.create(size, CV_32F);
-  image = memory.rowRange(0, size.height);
-}
+TextureBands::TextureBands(const cv::Size& largest)
+    : smooth_(largest),
+      reduced_(largest / 2),
+      smoother_(largest / 2),
+      smoothest_(largest / 2),
+      bands_{Rows(largest), Rows(largest / 2), Rows(largest / 2)} {}
 
 void TextureBands::split(const cv::Mat& image) {
   const cv::Size whole = image.size(), half = whole / 2;
-  smooth_.create(whole);
-  bands_[0].create(whole);
-  for (Rows* rows : {&reduced_, &smoother_, &smoothest_, &bands_[1], &bands_[2]}) rows->create(half);
+  for (Rows* rows : {&smooth_, &bands_[0]}) rows->setCount(whole.height);
+  for (Rows* rows : {&reduced_, &smoother_, &smoothest_, &bands_[1], &bands_[2]}) rows->setCount(half.height);
   blur(image, kSmooth, smooth_.image);
   cv::subtract(image, smooth_.image, bands_[0].image);
   cv::resize(smooth_.image(cv::Rect(cv::Point(), half * 2)), reduced_.image, half, 0, 0, cv::INTER_AREA);

@@ -29,15 +29,18 @@ class TextureBands {
   /// Variance of white noise in the coarsest band over that in the finest.
   static constexpr double kWhiteCoarsest = 0.0105;
 
-  /// image: CV_32F, of no more rows than the first one had, unless memory is to be taken anew.
+  /// Takes and touches all memory, so that no pair has to. largest: of the images.
+  explicit TextureBands(const cv::Size& largest);
+  /// image: CV_32F, as wide as the largest one and not higher.
   void split(const cv::Mat& image);
   const cv::Mat& operator[](int band) const { return bands_[band].image; }
 
  private:
   /// Part of an image that is kept for its memory.
   struct Rows {
+    explicit Rows(const cv::Size& largest) : memory(cv::Mat::zeros(largest, CV_32F)) {}
+    void setCount(int count) { image = memory.rowRange(0, count); }
     cv::Mat memory, image;
-    void create(const cv::Size& size);
   };
   Rows smooth_, reduced_, smoother_, smoothest_;
   std::array<Rows, kBands> bands_;

@@ -160,9 +160,11 @@ double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w) 
   return largest;
 }
 
-void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out) {
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out,
+                    const cv::Range& rows) {
   out.create(right.size(), CV_32F);
-  for (int v = 0; v < out.rows; ++v) {
+  const cv::Range wanted = rows == cv::Range::all() ? cv::Range(0, out.rows) : rows;
+  for (int v = wanted.start; v < wanted.end; ++v) {
     // Linear in the column.
     const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
     const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);

@@ -42,8 +42,10 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
 double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w);
 
 /// Takes the vertical disparities of w out of the right image: its rows then match the left image's. Columns
-/// are not moved, so that disparities keep what w does to them. right: CV_32F, of the rig's size.
-void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out);
+/// are not moved, so that disparities keep what w does to them. right: CV_32F, of the rig's size. rows: those
+/// of out that are wanted, others hold anything.
+void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& right, cv::Mat& out,
+                    const cv::Range& rows = cv::Range::all());
 
 /// Covariance, 1/m^2, that vertical disparities of the residual rotation add to a plane g fitted to corners,
 /// by a rule of thumb. Where a row is off by dv, a slanted line seems moved along the row by dv times its

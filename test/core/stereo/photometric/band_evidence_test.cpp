@@ -15,6 +15,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kColumns = 12, kLines = 16;
+const cv::Size kSize(kColumns* kBlockWidth + 2 * kGridColumn, kLines* kBlockHeight + 2 * kGridRow);
 
 BlockGrid everywhere() {
   BlockGrid grid;
@@ -33,7 +34,7 @@ struct Picture {
 
   cv::Mat shown(uint64_t seed) const {
     const test::RandomTexture random(texture), other(texture + 1000);
-    cv::Mat image(kLines * kBlockHeight + 2 * kGridRow, kColumns * kBlockWidth + 2 * kGridColumn, CV_32F);
+    cv::Mat image(kSize, CV_32F);
     const double middle = image.cols / 2.0;
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
@@ -57,7 +58,7 @@ struct Compared {
 
   /// known: a gain; 0: it is found.
   Compared(const Picture& left, const Picture& right, uint64_t seed, double known = 0) : gain(known) {
-    TextureBands of_left, of_right;
+    TextureBands of_left(kSize), of_right(kSize);
     of_left.split(left.shown(2 * seed));
     of_right.split(right.shown(2 * seed + 1));
     std::vector<BandSums> sums, around;
@@ -175,7 +176,7 @@ TEST(BandEvidence, KnowsHowAlikeNoiseIsInTwoBands) {
   noise.noise = 1;
   std::array<std::vector<double>, TextureBands::kBands> scores;
   for (uint64_t seed = 1; seed <= 16; ++seed) {
-    TextureBands left, right;
+    TextureBands left(kSize), right(kSize);
     left.split(noise.shown(2 * seed));
     right.split(noise.shown(2 * seed + 1));
     for (int band = 0; band < TextureBands::kBands; ++band) {
@@ -204,7 +205,7 @@ TEST(BandEvidence, KnowsHowFarNoiseScatters) {
     int beyond = 0, all = 0;
     double largest = 0;
     for (uint64_t seed = 1; seed <= 16; ++seed) {
-      TextureBands left, right;
+      TextureBands left(kSize), right(kSize);
       left.split(noise.shown(2 * seed));
       right.split(noise.shown(2 * seed + 1));
       std::vector<BandSums> sums, around;
@@ -231,7 +232,7 @@ TEST(BandEvidence, KnowsByHowMuchNoiseLooksLikeASignal) {
   for (int band = 0; band < TextureBands::kBands; ++band) {
     double squares = 0, expected = 0;
     for (uint64_t seed = 1; seed <= 8; ++seed) {
-      TextureBands left, right;
+      TextureBands left(kSize), right(kSize);
       left.split(noise.shown(2 * seed));
       right.split(noise.shown(2 * seed + 1));
       std::vector<BandSums> sums;

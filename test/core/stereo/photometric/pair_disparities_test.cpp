@@ -41,13 +41,21 @@ TEST(PairDisparities, AreOfAllTextureWhereItIsHardlyMoreThanNoise) {
   const GroundPair pair = closeBelow({0.2, 90, 8});
   PairDisparities disparities(pair.model, 4);
   BandDisparities bands(pair.level());
+  BlockDisparities clear(pair.level());
   disparities.begin(pair.left, pair.right, pair.truth, pair.rows);
+  EXPECT_TRUE(disparities.areFaint());
+  EXPECT_FALSE(disparities.haveCommonErrors());
+  clear.choose(pair.left, pair.truth);
+  clear.measure(pair.right, pair.truth, pair.rows);
+  expectSame(disparities.found(), clear.disparities());
   bands.choose(pair.left, pair.truth);
-  for (int i = 0; i < 2; ++i) {
-    bands.measure(pair.right, pair.truth, pair.rows);
+  bands.takeRight(pair.right, pair.rows);
+  for (const double off : {0.0, 0.3}) {
+    disparities.measure(pair.right, pair.off(off), pair.rows);
+    bands.measure(pair.off(off));
     ASSERT_GT(bands.disparities().size(), 20u);
     expectSame(disparities.found(), bands.disparities());
-    disparities.measure(pair.right, pair.truth, pair.rows);
+    EXPECT_TRUE(disparities.haveCommonErrors());
   }
   int blocks = 0;
   for (const BlockDisparity& disparity : bands.disparities()) blocks += disparity.blocks;

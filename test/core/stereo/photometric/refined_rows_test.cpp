@@ -63,7 +63,7 @@ TEST(RefinedRows, AreKnownBetterByTheEdgesOfMorePairs) {
       scene.rows.covariance(0, 0) = scene.rows.covariance(2, 2) = std::pow(0.3 / scene.rig.fy, 2);
       scene.render({0.5, 50, 7}, {0.45, 60, 7});
       const Expected<PlaneFit> fit =
-          refinement.refine(scene.left, scene.right, scene.truth, test::groundLimits(), 0, scene.rows);
+          refinement.refine(scene.left, scene.right, {scene.truth, scene.rows}, test::groundLimits(), 0);
       ASSERT_TRUE(fit) << i << ", " << k;
       if (k > 0 && k + 1 < kPairs) continue;
       const GroundPlane rows{fit->plane.g, fit->row_covariance};
@@ -91,10 +91,10 @@ TEST(RefinedRows, OfPairsThatWereLevelledOtherwiseCountAsWell) {
     for (unsigned seed = 820; seed < 828; ++seed) {
       const RefinedPair scene = pair(seed, bend);
       EXPECT_TRUE(
-          refinement.refine(scene.left, scene.right, scene.truth, test::groundLimits(), 0, scene.rows));
+          refinement.refine(scene.left, scene.right, {scene.truth, scene.rows}, test::groundLimits(), 0));
     }
-    return level.rollError(refinement.refine(level.left, level.right, level.truth, test::groundLimits(), 0,
-                                             level.rows, levelled_by));
+    return level.rollError(refinement.refine(level.left, level.right, {level.truth, level.rows, levelled_by},
+                                             test::groundLimits(), 0));
   };
   const double told = rollAfter({taken_out / level.rig.fy, 0, 0}), untold = rollAfter({0, 0, 0});
   EXPECT_LT(std::abs(told), 0.3 * std::abs(untold));
@@ -112,7 +112,7 @@ TEST(RefinedRows, OfAPlaneThatIsNotTakenDoNotCount) {
   const auto rollAfter = [&](bool sees, bool forgets) {
     DirectRefinement refinement(level.model, 4);
     const auto refine = [&](const RefinedPair& scene) {
-      return refinement.refine(scene.left, scene.right, scene.truth, test::groundLimits(), 0, scene.rows);
+      return refinement.refine(scene.left, scene.right, {scene.truth, scene.rows}, test::groundLimits(), 0);
     };
     if (sees) {
       EXPECT_TRUE(refine(astray));

@@ -8,8 +8,11 @@
 namespace uav_landing {
 namespace {
 
+constexpr int kRows = 128;
+const cv::Size kSize(256, kRows);
+
 cv::Mat wave(double period) {
-  cv::Mat image(128, 256, CV_32F);
+  cv::Mat image(kSize, CV_32F);
   for (int v = 0; v < image.rows; ++v)
     for (int u = 0; u < image.cols; ++u)
       image.at<float>(v, u) = static_cast<float>(std::sin(2 * M_PI * (u + 0.3 * v) / period));
@@ -32,7 +35,7 @@ double kept(double sigma, double period) {
 TEST(TextureBands, HoldWhatTwoGaussiansDifferBy) {
   const double sigmas[] = {0, 1, 2.5, 6.4};
   for (const double period : {3.0, 6.0, 12.0, 30.0}) {
-    TextureBands bands;
+    TextureBands bands(kSize);
     bands.split(wave(period));
     for (int i = 0; i < TextureBands::kBands; ++i) {
       const double expected = (kept(sigmas[i], period) - kept(sigmas[i + 1], period)) / std::sqrt(2);
@@ -44,7 +47,7 @@ TEST(TextureBands, HoldWhatTwoGaussiansDifferBy) {
 TEST(TextureBands, HoldOfNoiseWhatTheySay) {
   cv::Mat noise(512, 512, CV_32F);
   cv::RNG(1).fill(noise, cv::RNG::NORMAL, 0, 1);
-  TextureBands bands;
+  TextureBands bands(noise.size());
   bands.split(noise);
   const double ratio = std::pow(size(bands[2]) / size(bands[0]), 2);
   EXPECT_NEAR(ratio, TextureBands::kWhiteCoarsest, 0.1 * TextureBands::kWhiteCoarsest);
@@ -52,7 +55,7 @@ TEST(TextureBands, HoldOfNoiseWhatTheySay) {
 
 TEST(TextureBands, LeaveOutAnOffset) {
   cv::Mat image = wave(8), brighter = image + 100;
-  TextureBands bands, of_brighter;
+  TextureBands bands(kSize), of_brighter(kSize);
   bands.split(image);
   of_brighter.split(brighter);
   for (int i = 0; i < TextureBands::kBands; ++i)
@@ -62,10 +65,10 @@ TEST(TextureBands, LeaveOutAnOffset) {
 TEST(TextureBands, TakeNothingFromRowsBesideTheImage) {
   cv::Mat memory = wave(8);
   memory.rowRange(0, 40) = 1e6;
-  TextureBands of_part, of_copy;
+  TextureBands of_part(kSize), of_copy(kSize);
   of_part.split(wave(5));  // of more rows: its memory is used again
-  of_part.split(memory.rowRange(40, 128));
-  of_copy.split(memory.rowRange(40, 128).clone());
+  of_part.split(memory.rowRange(40, kRows));
+  of_copy.split(memory.rowRange(40, kRows).clone());
   for (int i = 0; i < TextureBands::kBands; ++i) {
     ASSERT_EQ(of_part[i].size(), of_copy[i].size());
     EXPECT_EQ(cv::norm(of_part[i], of_copy[i], cv::NORM_INF), 0) << i;

@@ -40,7 +40,7 @@ double meanOverScenes(double contrast, double noise, double bumps) {
     if (bumps > 0) unlevel(pair, bumps);
     DirectRefinement direct(pair.model, 4);
     const Expected<PlaneFit> fit =
-        direct.refine(pair.left, pair.right, pair.truth, test::groundLimits(), 0, pair.rows);
+        direct.refine(pair.left, pair.right, {pair.truth, pair.rows}, test::groundLimits(), 0);
     EXPECT_TRUE(fit) << fit.error().message();
     if (fit) sum += surfaceVariance(pair.rig, direct.samples(), *fit, 1);
   }
