@@ -1,6 +1,8 @@
 """scripts/fault_campaign: what it counts, and a short campaign without a misleading frame."""
 
 import csv
+import importlib.machinery
+import importlib.util
 import shutil
 import sys
 import tempfile
@@ -90,6 +92,15 @@ class CountsTest(unittest.TestCase):
         table = faults.Campaign(rows).false_alarms()
         self.assertRegex(table, r"`tilt` *\| *100 *\| *2 *\| *2.00%")
         self.assertRegex(table, r"`innovation` *\| *50 *\| *0 *\|")
+
+
+class SeedsTest(unittest.TestCase):
+    def test_seeds_in_a_row_are_a_range(self):
+        loader = importlib.machinery.SourceFileLoader("fault_campaign", str(SOURCE_DIR / "scripts/fault_campaign"))
+        campaign = importlib.util.module_from_spec(importlib.util.spec_from_loader("fault_campaign", loader))
+        loader.exec_module(campaign)
+        rows = [{"source": "lab", "seed": str(seed)} for seed in (5, 1, 3, 2)]
+        self.assertIn("seeds 1-3 5 (lab)", campaign.seeds(rows))
 
 
 class ShortCampaignTest(unittest.TestCase):
