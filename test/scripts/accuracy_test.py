@@ -223,7 +223,7 @@ class ReadmeTest(unittest.TestCase):
         performance = "# Performance\n| frames | ms |\n|---|---|\n| simulated 640x480 | 11 |\n| simulated 1280x960 | 12 |\n"
         text = readme.render(accuracy, performance)
         self.assertIn("| 99.0% | 1 | 3 | 4 | 6 | 8 |", text)
-        self.assertIn("11 ms of one core at 640x480 and 12 ms at 1280x960", text)
+        self.assertIn("11 ms of one core of an AMD EPYC at 640x480, and 12 ms at 1280x960", text)
 
     def test_readme_is_short(self):
         self.assertLessEqual(len(self.page("README.md").splitlines()), 150)
