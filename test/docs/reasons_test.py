@@ -27,6 +27,14 @@ class ReasonsTest(unittest.TestCase):
         self.assertEqual(list_messages.sentence('"one "\n    "sentence"'), "one sentence")
         self.assertEqual(list_messages.sentence("detail"), "")
 
+    def test_formats_are_sentences_with_ellipses(self):
+        self.assertEqual(list_messages.formatted("%s: %.3g s, %d %% of %lu"), "…: … s, … % of …")
+
+    def test_the_log_the_diagnostics_and_the_causes_are_found(self):
+        self.assertIn(("every nodelet", "warn", "nothing to work on for … s: …"), list_messages.logged())
+        self.assertIn("latency behind the image stamp", list_messages.diagnosed()["every nodelet", "number"])
+        self.assertGreater(len(list_messages.causes()), 7)
+
     def test_an_expression_ends_at_its_own_bracket(self):
         self.assertEqual(list_messages.expression('text("a, (b", c)}; "next"'), 'text("a, (b", c)')
         self.assertEqual(list_messages.expression('"one" + f(a, b), other'), '"one" + f(a, b)')
