@@ -44,9 +44,10 @@ class PagesTest(unittest.TestCase):
             self.translated("nowhere.md")
 
     def test_lists_tables_and_code_in_lists_get_what_mkdocs_needs(self):
-        self.assertEqual(make_site.spaced("Text:\n- one\n  more\n- two\n"), "Text:\n\n- one\n  more\n- two\n")
+        self.assertEqual(make_site.spaced("Text:\n- one\n  more\n- two\n"), "Text:\n\n- one\n    more\n- two\n")
         self.assertEqual(make_site.spaced("Text:\n| a |\n|---|\n"), "Text:\n\n| a |\n|---|\n")
-        self.assertEqual(make_site.spaced("1. Do:\n   ```\n   make\n   ```\n2. Done\n"), "1. Do:\n\n        make\n\n2. Done\n")
+        self.assertEqual(make_site.spaced("1. Do:\n   ```\n   make\n   ```\n   Wait.\n2. Done\n"),
+                         "1. Do:\n\n        make\n\n    Wait.\n\n2. Done\n")
         self.assertEqual(make_site.spaced("```\n- no list\ntext\n- none\n```\n"), "```\n- no list\ntext\n- none\n```\n")
 
     def test_code_keeps_what_looks_like_a_link(self):
