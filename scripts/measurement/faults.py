@@ -10,6 +10,8 @@ from .markdown import table
 from .programs import save_figure
 
 TITLE = "# Fault campaign\n"
+SUMMARY_BEGIN = "<!-- Summary: made by scripts/fault_campaign. -->\n"
+SUMMARY_END = "<!-- End of summary. -->\n"
 DATASETS = ("fg_noon", "lab", "kitti_road")
 SCENERY = ("town", "fields", "shore", "airport", "hills", "random")
 # Ground that is no plane: a height that is refused there is no false alarm.
@@ -84,6 +86,12 @@ def machine():
     except (OSError, AttributeError):
         name = platform.processor() or platform.machine()
     return name
+
+
+def renew_summary(page, summary):
+    """docs/integrity.md with this summary."""
+    before, rest = page.split(SUMMARY_BEGIN)
+    return f"{before}{SUMMARY_BEGIN}\n{summary}\n{SUMMARY_END}{rest.split(SUMMARY_END)[1]}"
 
 
 class Campaign:
@@ -219,6 +227,7 @@ class Campaign:
                            runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
                            bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
                            healthy_misleading=misleading)
+        text = text.replace("\n\nA run is", f"\n\n{self.summary()}\nA run is", 1)
         return (f"{TITLE}{text}\n{self.false_alarms()}\n## Heights with a fault\n"
                 f"Of {faulted} frames with a fault ({AIM:,} are aimed at) {misled} are misleading, {self.unobservable()} of these by a "
                 "baseline that is wrong, which no image shows.\n\n"
@@ -227,9 +236,27 @@ class Campaign:
                 f"{self.remarks()}\n## Picture\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
+    def summary(self):
+        """What the campaign shows, in three lines."""
+        frames, alarms, misleading = self.healthy()
+        runs = [row for row in self.rows if int(row["faulted"])]
+        misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
+        others = sum(int(row["misleading"]) > 0 for row in self.rows if not self.is_unobservable(row))
+        angles = self.angle_rows()
+        return (f"- **Without a fault**: {frames} frames. {alarms} have no valid height, {misleading} a misleading one, and "
+                f"{self.healthy_angles()} a misleading angle.\n"
+                f"- **Heights with a fault**: {self.total(runs, 'faulted')} frames in {len(runs)} runs. {misled} are misleading, {unobservable} "
+                f"of these by a\n  baseline that is wrong, which no image shows. The other {misled - unobservable} are in {others} runs.\n"
+                f"- **Angles with a fault**: {self.total(angles, 'angle_misleading')} of {self.total(angles, 'faulted')} frames are misleading, in "
+                f"{sum(int(row['angle_misleading']) > 0 for row in angles)} runs.\n")
+
+    @staticmethod
+    def is_unobservable(row):
+        return any(name in UNOBSERVABLE for name in row["faults"].split("+"))
+
     def unobservable(self):
         """Misleading heights of faults that nothing can tell."""
-        return self.total([row for row in self.rows if any(name in UNOBSERVABLE for name in row["faults"].split("+"))], "misleading")
+        return self.total([row for row in self.rows if self.is_unobservable(row)], "misleading")
 
     def yaw_text(self):
         rows = [row for row in self.healthy_rows() if row["source"] != "kitti_road"]
