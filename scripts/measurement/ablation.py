@@ -42,11 +42,11 @@ VARIANTS = (
 )
 PAPER = "the paper's choices, also on frames that are not valid"
 HEADER = ("changed", "coverage", "height, cm: 95 %", "angle, °: mean", "95 %", "pitch, °: 95 %", "roll, °: 95 %")
-TEXT = """One improvement over the paper is switched off at a time, by the parameter in brackets; scored as above, on the frames that
-are valid. What makes a number worse was worth having on that set; what changes nothing there earns its place elsewhere: the
-watch on the rig and the motion's normal, for instance, on a rig that has turned (`simulator/bent_rig`), the runway's width
-where stereo is out, the tests of integrity under faults ([integrity](integrity.md)). A variant with fewer valid frames shows
-easier ones.
+TEXT = """One improvement over the paper is switched off at a time, by the parameter in brackets. Scored as above, on the frames that are valid.
+
+What makes a number worse was worth having on that set. What changes nothing there earns its place elsewhere. The watch on the rig and the
+motion's normal help on a rig that has turned (`simulator/bent_rig`). The runway's width helps where stereo is out, the tests of
+integrity under faults ([integrity](integrity.md)). A variant with fewer valid frames shows easier ones.
 """
 
 

@@ -13,14 +13,21 @@ HEADER = ("approach", "frames", "coverage", "height in max(5 cm, 0.5 %), below 3
           "angle, °: 95 %", "its lag, s", "pitch, °: 95 %", "roll, °: 95 %", "lateral in max(0.15 m, 1 % of distance)",
           "lateral known")
 TARGET = ("asked", "", "", "95 %", "95 %", "0.2", "0.25", "0.1", "0.1", "95 %", "")
-TEXT = """Approaches of `simulate_campaign approaches`: baseline 1 m, 640×480, noise of 2 grey levels, lens blur 0.4–0.9 px, gain and
-offset differing between the cameras, runways 18–60 m wide with all or few markings, glide 2.2–6° from 60 m to the flare,
-15–30 m/s, roll up to ±8°, pitch −8–0°, crab up to ±10°, a flare of 3 s, a gust on half of them; the calibration is exact.
-Scored are valid frames later than 1 s after the first; *lag* is the time by which the true angle has to be later to be
-most like the published one, but for a constant, over flare, gust and what the path bends besides; *lateral known* is the
-share of frames on which the lateral offset is known. The last rows are all frames together, with the largest lag, and what is
-asked. Approach 13 is slow (16 m/s), and its angle swings by half a degree all the way down: above 30 m a single step of the
-camera tells it to half a degree only; its errors are within what is claimed on 96 % of the frames.
+TEXT = """Approaches of `simulate_campaign approaches`, drawn at random; the calibration is exact.
+
+| drawn | range |
+|---|---|
+| rig | baseline 1 m, 640×480, noise of 2 grey levels, lens blur of 0.4 to 0.9 px, gain and offset that differ between the cameras |
+| runway | 18 to 60 m wide, all or few markings |
+| path | glide of 2.2 to 6° from 60 m to the flare of 3 s, 15 to 30 m/s, a gust on half of them |
+| attitude | roll up to ±8°, pitch −8 to 0°, crab up to ±10° |
+
+Scored are valid frames later than 1 s after the first. *Lag* is the time by which the true angle has to be later to be most like the
+published one, but for a constant. *Lateral known* is the share of frames with a known lateral offset. The last rows are all frames
+together, with the largest lag, and what is asked.
+
+Approach 13 is slow (16 m/s), and its angle swings by half a degree all the way down. Above 30 m a single frame step tells it to half a
+degree only. Its errors are within what is claimed on 96 % of the frames.
 """
 
 

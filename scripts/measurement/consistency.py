@@ -22,36 +22,40 @@ SENSORS = (("rolling shutter", ("--rolling-shutter",)),
            ("the same with an inertial sensor", ("--rolling-shutter", "--vibration", "--imu")))
 SENSOR_NOISE = 2
 SENSOR_TEXT = """
-{count} more snippets for each row, under noise of {noise} grey levels and over flat ground, have a rolling shutter of 5 to 40 ms, a
-fifth of them from bottom to top, with the stamp of the middle row or of one at an edge (`--rolling-shutter`); with `--vibration` the
-rig is shaken at 15 to 120 Hz by up to 0.2°, less when it is faster. *Valid* is the share of snippets with a valid height; the
-other columns are as above.
+### Rolling shutters and vibration
+{count} more snippets for each row, with noise of {noise} grey levels and over flat ground. They have a rolling shutter of 5 to 40 ms, a fifth
+of them from bottom to top. The stamp is that of the middle row or of one at an edge (`--rolling-shutter`). With `--vibration` the rig is
+shaken at 15 to 120 Hz by up to 0.2°, less when it is faster. *Valid* is the share of snippets with a valid height. The other columns are
+as above.
 
 """
 IMAGE = ROOT / "docs/images/consistency.png"
-TEXT = """{count} snippets for each noise and height, of {frames} frames at 20 Hz and drawn like the approaches above, one sample
-each: the last frame. Every snippet has another scene and path, and other errors of calibration, drawn from what the
-estimator expects: the right camera's rotation and the baseline (`disparity_bias_stddev`, `height_model_error`), and a right
-picture whose rows lie `row_bias_stddev` (0.03 px, 1 sigma) too low and, 0.3 focal lengths from the middle, are off by as
-much again because they are inclined, as a lens's calibration leaves them. The table shows which share of the errors is
-within the claimed 95 % interval, and in brackets the 95 % confidence interval (Wilson) of that share; then the ratio of
-errors to claimed standard deviations, root mean square: 1 when the claim is true, less when it is too cautious. Counted are
-the valid ones; *n* is the number of them for what follows.
+TEXT = """{count} snippets for each noise and height, drawn like the approaches above. A snippet has {frames} frames at 20 Hz, and only its last frame
+counts: samples are independent. Every snippet has another scene and path, and other errors of calibration, drawn from what the estimator
+expects:
 
-Height is that over ground that bends by as much and as often as the estimator is told to expect: flat in 60 of 100 snippets,
-in 10 each with one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 sigma),
-somewhere from 100 m behind the aircraft to 300 m ahead. The others are over flat ground, *n* of them, as pitch, roll and angle
-are against the surface ahead, which has no one direction where it bends, and the speed is that along the path of the last step;
-one column shows the height there, which must be found too cautious: from 30 m most of its claim is for a bend between the ground
-seen and the ground below.
+- the rotation of the right camera and the baseline (`disparity_bias_stddev`, `height_model_error`),
+- rows of the right picture that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
+- rows that are inclined: as much again at 0.3 focal lengths from the middle, as a lens's calibration leaves them.
 
-Roll is claimed a little too cautiously at 10 m: most of what pairs of a second have in common is what rows may be off by (up to
-8° of roll for a pixel), and a row of a single match is claimed to 0.04 px at best, of which the simulator's lenses, which have
-no errors but a shift and an inclination of the rows, show half; with half of it the heights of the cars' recordings, which real
-lenses made, were less often within their claims. Under noise of 5 grey levels roll and speed from 3 m and pitch from 10 m
-claim an eighth to a fifth too little. Height from 30 m under little noise is wrong by what bends more than expected.
-Lateral from 10 m under little noise has its ratio from one snippet of 372, which is 1.25 m off, 17 times its claim.
-Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
+Each cell has three numbers: the share of the errors within the claimed 95 % interval; in brackets the 95 % confidence interval (Wilson) of
+that share; then the ratio of errors to claimed standard deviations, root mean square. The ratio is 1 when the claim is true, and less
+when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
+
+**Ground.** The height is that over ground that bends as much and as often as the estimator is told to expect. 60 of 100 snippets are flat. 10
+each have one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 σ). It lies somewhere from
+100 m behind the aircraft to 300 m ahead. The other quantities are over flat ground: where it bends, the surface ahead has no one
+direction. One column shows the height there. It must be too cautious: from 30 m most of its claim is for a bend between the ground seen
+and the ground below.
+
+**What stands out**
+- Roll is claimed a little too cautiously at 10 m. Most of what pairs of a second share is what rows may be off by; a pixel is up to 8° of
+  roll. The row of a single match claims 0.04 px at best, and the simulator's lenses show half of that. With half of it, heights of the
+  cars' recordings, made through real lenses, were less often within their claims.
+- Under noise of 5 grey levels roll and speed from 3 m and pitch from 10 m claim an eighth to a fifth too little.
+- Height from 30 m under little noise is wrong by what bends more than expected.
+- Lateral from 10 m under little noise has its ratio from one snippet of 372, which is 1.25 m off, 17 times its claim.
+- Where the aircraft has been seen for 0.6 s only, most of the angle's claim at 30 m is for a gust that may just have begun.
 
 ![Share of errors within the claimed interval, and ratio of errors to the claim](images/consistency.png)
 

@@ -9,7 +9,9 @@ from collections import defaultdict
 from .markdown import table
 from .programs import save_figure
 
-TITLE = "## Campaign\n"
+TITLE = "# Fault campaign\n"
+SUMMARY_BEGIN = "<!-- Summary: made by scripts/fault_campaign. -->\n"
+SUMMARY_END = "<!-- End of summary. -->\n"
 DATASETS = ("fg_noon", "lab", "kitti_road")
 SCENERY = ("town", "fields", "shore", "airport", "hills", "random")
 # Ground that is no plane: a height that is refused there is no false alarm.
@@ -27,30 +29,39 @@ HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "r
           "error / level, worst", "error / limit, worst", "longest, s")
 ANGLE_HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "runs misled", "95 % bound",
                 "error / bound, worst")
-ANGLE_TEXT = """The approach angle of the same runs, without those of `kitti_road`, where the truth is the road's 0° and not the car's own
-movement. *Misleading* frames have a valid angle that is off by more than 5 claimed standard deviations and by more than 0.3°: an
-angle has no protection level, and a monitor of a glide path of 3° may leave a tenth of it unnoticed (ICAO Annex 10). *Error /
-bound* is over the larger of the two. On healthy frames (of the runs without a fault) {healthy} are misleading.
+ANGLE_TEXT = """## Approach angles with a fault
+The same runs, without those of `kitti_road`: the truth there is the road's 0° and not the car's own movement. An angle has no
+protection level. *Misleading* frames have a valid angle that is off by more than 5 claimed standard deviations and by more than 0.3°.
+A monitor of a glide path of 3° may leave a tenth of it unnoticed (ICAO Annex 10). *Error / bound* is over the larger of the two. On
+frames of the runs without a fault, {healthy} are misleading.
 """
-YAW_TEXT = """The yaw of the same runs, where it is known to be true: of `camera_info` nothing could tell, as a wrong principal point turns
-all directions alike. *Available* is the share of frames with a known yaw. *Misleading* ones are off by more than 5 claimed standard
-deviations and by more than 0.5°; *error / bound* is over the larger of the two. On healthy frames (of the runs without a fault) it is
+YAW_TEXT = """## Yaw with a fault
+The same runs, where the truth of the yaw is known. Runs with `camera_info` are left out: a wrong principal point turns all directions
+alike, and nothing can tell. *Available* is the share of frames with a known yaw. *Misleading* ones are off by more than 5 claimed
+standard deviations and by more than 0.5°. *Error / bound* is over the larger of the two. On frames of the runs without a fault it is
 known on {known} of {frames}, and {healthy} are misleading.
 """
-TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}.
+TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}. What it shows and what is open: [integrity](integrity.md).
 
-A run is a piece of an approach ({frames} frames at most) with a fault from a random moment on, or from the first pair on: those
-named so, and changes of scene and calibration; *frames* are those with the fault, later than 1 s after the start. *Available* is the share of them with a valid height. *Misleading* frames have a valid
-height and an error beyond the protection level or the alert limit; *runs misled* are the runs with at least one. Frames of
-one run are not independent, so the bound per run is the one that means something. Bounds are Clopper and Pearson's, one
-sided, 95 %: no campaign of this size proves 1e-5. *Longest* is the longest time for which the error was beyond the alert
-limit while the height was valid: the time to alert. Pairs of faults are in one row together, those with an unobservable
-fault in another.
+A run is a piece of an approach of at most {frames} frames, with one fault or with two. A fault begins at a random moment. Faults with
+*first* in their name, and changes of the scene and the calibration, are there from the first pair on.
 
-Healthy frames (of the runs without a fault): {healthy} in {runs} runs, {false_alarms} without a valid
-height ({share:.2%}, 95 % bound {bound:.2%}), {healthy_misleading} misleading. Besides {uncertain} frames that passed all tests
-but had a protection level above the alert limit: these are not available, with or without a fault. Each test on the
-healthy frames:
+| column | meaning |
+|---|---|
+| frames | frames with the fault, later than 1 s after the start |
+| available | share of them with a valid height |
+| misleading | valid height with an error beyond the protection level or the alert limit |
+| runs misled | runs with at least one misleading frame |
+| 95 % bound | by Clopper and Pearson, one sided. Frames of one run are not independent, so the bound per run counts. No campaign of this size proves 1e-5 |
+| error / level, error / limit | largest error over the protection level, and over the alert limit, of valid heights |
+| longest | longest time with a valid height and an error beyond the alert limit: the time to alert |
+
+Pairs of faults are in one row together, those with an unobservable fault in another.
+
+## Without a fault
+There are {healthy} healthy frames in {runs} runs. {false_alarms} of them have no valid height ({share:.2%}, 95 % bound {bound:.2%}), and
+{healthy_misleading} are misleading. {uncertain} more passed all tests, but their protection level was above the alert limit: such frames are
+not available, with or without a fault. Each test on the healthy frames:
 """
 
 
@@ -75,6 +86,12 @@ def machine():
     except (OSError, AttributeError):
         name = platform.processor() or platform.machine()
     return name
+
+
+def renew_summary(page, summary):
+    """docs/integrity.md with this summary."""
+    before, rest = page.split(SUMMARY_BEGIN)
+    return f"{before}{SUMMARY_BEGIN}\n{summary}\n{SUMMARY_END}{rest.split(SUMMARY_END)[1]}"
 
 
 class Campaign:
@@ -210,12 +227,36 @@ class Campaign:
                            runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
                            bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
                            healthy_misleading=misleading)
-        return (f"{TITLE}{text}\n{self.false_alarms()}\nFaulted frames: {faulted} of the {AIM:,} aimed at, of them misleading: "
-                f"{misled}.\n\n"
+        text = text.replace("\n\nA run is", f"\n\n{self.summary()}\nA run is", 1)
+        return (f"{TITLE}{text}\n{self.false_alarms()}\n## Heights with a fault\n"
+                f"Of {faulted} frames with a fault ({AIM:,} are aimed at) {misled} are misleading, {self.unobservable()} of these by a "
+                "baseline that is wrong, which no image shows.\n\n"
                 f"{self.table()}\n{ANGLE_TEXT.format(healthy=self.healthy_angles() or 'none')}\n{self.angle_table()}\n"
                 f"{self.yaw_text()}\n{self.yaw_table()}\n"
-                f"{self.remarks()}\n"
+                f"{self.remarks()}\n## Picture\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
+
+    def summary(self):
+        """What the campaign shows, in three lines."""
+        frames, alarms, misleading = self.healthy()
+        runs = [row for row in self.rows if int(row["faulted"])]
+        misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
+        others = sum(int(row["misleading"]) > 0 for row in self.rows if not self.is_unobservable(row))
+        angles = self.angle_rows()
+        return (f"- **Without a fault**: {frames} frames. {alarms} have no valid height, {misleading} a misleading one, and "
+                f"{self.healthy_angles()} a misleading angle.\n"
+                f"- **Heights with a fault**: {self.total(runs, 'faulted')} frames in {len(runs)} runs. {misled} are misleading, {unobservable} "
+                f"of these by a\n  baseline that is wrong, which no image shows. The other {misled - unobservable} are in {others} runs.\n"
+                f"- **Angles with a fault**: {self.total(angles, 'angle_misleading')} of {self.total(angles, 'faulted')} frames are misleading, in "
+                f"{sum(int(row['angle_misleading']) > 0 for row in angles)} runs.\n")
+
+    @staticmethod
+    def is_unobservable(row):
+        return any(name in UNOBSERVABLE for name in row["faults"].split("+"))
+
+    def unobservable(self):
+        """Misleading heights of faults that nothing can tell."""
+        return self.total([row for row in self.rows if self.is_unobservable(row)], "misleading")
 
     def yaw_text(self):
         rows = [row for row in self.healthy_rows() if row["source"] != "kitti_road"]
@@ -226,8 +267,8 @@ class Campaign:
         """What should not be, as a list."""
         problems = self.problems()
         if not problems:
-            return "No frame was misleading where there is something to see.\n"
-        return "Should not be:\n\n" + "".join(f"- {problem}\n" for problem in problems)
+            return "## What should not be\nNo frame was misleading where there is something to see.\n"
+        return "## What should not be\nFault, misleading frames, and the runs that have them:\n\n" + "".join(f"- {problem}\n" for problem in problems)
 
     def plot(self, file):
         """Worst error over protection level, and availability, of each fault."""

@@ -16,21 +16,26 @@ PRESETS = (("Default preset", "stereo", ()),
 HEADER = ("set", "frames", "coverage", "height, cm: mean", "median", "95 %", "worst", "in 95 %",
           "angle, °: mean", "median", "95 %", "worst", "signed", "in 95 %", "pitch, °: 95 %", "roll, °: 95 %",
           "speed, m/s: 95 %", "in 95 %", "ms")
-TEXT = """Each set goes through `dataset_to_bag` (or `simulate_approach`), `process_bag --config config/<preset>.yaml` and `evaluate`,
-with one parameter set for all. Scored are frames later than 1 s after the first on which `valid` is 1; *coverage* is their
-share. (The paper's choices are seldom certain enough to be valid; their errors are those of all frames that have a number.)
-Errors are absolute: mean, median, 95th percentile and worst; *signed* is the mean with sign. *In 95 %* is the share of
-errors within the 95 % interval that the estimate itself claims. *ms* is the mean time of all stages for a pair while this
-was measured; it is not a benchmark.
+TEXT = """Each set goes through `dataset_to_bag` (or `simulate_approach`), `process_bag --config config/<preset>.yaml` and `evaluate`. One parameter
+set serves all.
 
-`lab` is a ray-traced replica of the paper's laboratory with a lens model and noise, `fg_noon` a FlightGear approach,
-`kitti_*` recordings from a car (Geiger et al., CC BY-NC-SA 3.0), with cameras 1.65 m above the road; the truth is exact
-for the first two, and good to the suspension's ±2 cm for the others. The angle of `kitti_road` is scored against the road's
-0°, although the car itself moves up and down on its springs: what it does beyond the claim is mostly real. The street of
-`kitti_raw` is patched and uneven, the car pitches by 2° within 0.6 s there, and its height is then not 1.65 m to 2 cm.
-`simulator/*` are approaches of `simulate_approach` with the configurations in `config/simulator/`; the right camera of
-`bent_rig` has turned by ten (pitch) to twenty (yaw) times what a good calibration leaves. The paper reports for its
-own laboratory: height mean 1.57 cm, worst 5.97 cm; approach angle mean 0.66°.
+| column | meaning |
+|---|---|
+| coverage | share of the frames later than 1 s after the first on which `valid` is 1; the other columns are of these |
+| mean, median, 95 %, worst | of the absolute error; *signed* is the mean with sign |
+| in 95 % | share of the errors within the 95 % interval that the estimate itself claims |
+| ms | mean time of all stages for a pair while this was measured. It is no benchmark: see [performance](performance.md) |
+
+| set | what it is | truth |
+|---|---|---|
+| `lab` | ray-traced replica of the paper's laboratory, with a lens model and noise | exact |
+| `fg_noon` | FlightGear approach | exact |
+| `kitti_road` | recording from a car (Geiger et al., CC BY-NC-SA 3.0), cameras 1.65 m above the road | ±2 cm by the suspension. The angle is scored against the road's 0°, although the car moves on its springs: errors beyond the claim are mostly real movement |
+| `kitti_raw` | the same, on a patched and uneven street | the car pitches by 2° within 0.6 s, so its height is then not 1.65 m to 2 cm |
+| `simulator/*` | `simulate_approach` with `config/simulator/*.yaml` | exact. The right camera of `bent_rig` has turned by ten (pitch) to twenty (yaw) times what a good calibration leaves |
+
+The paper reports for its own laboratory: height mean 1.57 cm, worst 5.97 cm; approach angle mean 0.66°. The paper's choices are seldom
+certain enough to be valid. Their errors are those of all frames that have a number.
 """
 
 

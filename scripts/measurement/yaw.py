@@ -9,10 +9,12 @@ from .markdown import DASH, table
 HEIGHTS, NOISE, FRAMES = (10, 30, 60, 100), 2, 9
 WRONG = 1.0  # deg, from which on the direction is that of something else
 HEADER = ("height", "snippets", "yaw known", "within claimed 95 %; ratio", "error, °: median", "95 %", "largest", "more than 1° off")
-TEXT = """{snippets} snippets like those above, each with scenery of its own: `simulate_campaign snippets --scenery` puts fields with crop
-rows (in half of them), towns, rivers, shores, roads, taxiways, crossing runways and the own nose around the runway at random.
-Noise is 2 grey levels, and one sample is the last of {frames} frames at 20 Hz, so that samples are independent. The yaw is that of
-the runway or not known at all: *more than 1° off* is one that belongs to something else. The other columns are of the known ones.
+TEXT = """{snippets} snippets like those above, each with scenery of its own. `simulate_campaign snippets --scenery` puts fields with crop rows (in
+half of them), towns, rivers, shores, roads, taxiways, crossing runways and the own nose around the runway at random. Noise is 2 grey
+levels. One sample is the last of {frames} frames at 20 Hz, so samples are independent.
+
+The yaw is that of the runway, or not known at all. *More than 1° off* counts those that belong to something else. The other columns are of
+the known ones.
 
 """
 

@@ -6,23 +6,22 @@ import yaml
 
 TEXT = """# Mutation test
 A test that cannot fail proves nothing. `scripts/mutation` puts plausible slips into the code, one at a time, and looks whether a
-test fails: a term of a variance that is dropped, a wrong sign, a reset that is forgotten, an error that is swallowed, a field
-that is mixed up with its neighbour.
+test fails. Such slips are a term of a variance that is dropped, a wrong sign, a reset that is forgotten, an error that is swallowed,
+a field that is mixed up with its neighbour.
 
 ```
 scripts/mutation --seed 1 --number 30                      # thirty mutants of the whole tree, some minutes
 scripts/mutation --seed 2 --number 30 src/core/integrity   # of one folder, or of one file
 scripts/mutation --seed 1 --number 300 --page              # writes this page
 ```
-It works on a copy of the tree in `build/mutation/`. It builds each mutant there and runs the tests that reach the changed file by
-includes: the nearest first, and the quickest of those that are as near. A test that fails has to pass without the mutant. A header
-that many sources see is compiled into the nearest ones first, and into all of them when that kills nothing.
-
-It keeps every result and goes on where it was stopped. A mutant that was killed counts as long as its file is the same; one that
-survived has to face new tests again. A mutant that cannot be compiled does not count.
+- It works on a copy of the tree in `build/mutation/`. There it builds each mutant and runs the tests that reach the changed file by
+  includes. The nearest come first, and of these the quickest. A test that fails has to pass without the mutant.
+- A header that many sources see is compiled into the nearest ones first, and into all of them when that kills nothing.
+- It keeps every result and goes on where it was stopped. A killed mutant counts as long as its file is the same. A survivor has to
+  face new tests again. A mutant that cannot be compiled does not count.
 
 A mutant that survives shows a missing test, or code that does nothing. `test/mutation/judged.yaml` names those that somebody has
-looked at: *equivalent* ones, which no input can tell from the original, with the reason, and others with what is missing.
+looked at. *Equivalent* ones, which no input can tell from the original, have the reason there, and others what is missing.
 """
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from project import SOURCE_DIR
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
-from measurement import ablation, approaches, consistency, kept, markdown, noise, sets, yaw  # noqa: E402
+from measurement import ablation, approaches, consistency, kept, markdown, noise, readme, sets, yaw  # noqa: E402
 
 
 def cells(line):
@@ -206,6 +206,27 @@ class PageTest(unittest.TestCase):
             after = accuracy.page(before)
         sections = [dict(part.split("\n", 1) for part in text.split("\n## ")[1:]) for text in (before, after)]
         self.assertEqual({title for title in sections[1] if sections[0].get(title) != sections[1][title]}, {"Yaw over scenery"})
+
+
+class ReadmeTest(unittest.TestCase):
+    def page(self, name):
+        return (SOURCE_DIR / name).read_text(encoding="utf-8")
+
+    def test_numbers_are_those_of_accuracy_and_performance(self):
+        pages = [self.page(name) for name in ("README.md", "docs/accuracy.md", "docs/performance.md")]
+        self.assertEqual(readme.renew(*pages), pages[0], "Renew them: scripts/accuracy --page")
+        self.assertGreaterEqual(pages[0].count("% |"), 5)
+
+    def test_each_number_comes_from_its_column(self):
+        accuracy = ("### Default preset\n\n| set | frames |\n|---|---|\n"
+                    "| lab | 120 | 99.0% | 1 | 2 | 3 | 4 | 5% | 6 | 7 | 8 | 9 | 10 |\n\n### Next\n| lab | 0 |\n")
+        performance = "# Performance\n| frames | ms |\n|---|---|\n| simulated 640x480 | 11 |\n| simulated 1280x960 | 12 |\n"
+        text = readme.render(accuracy, performance)
+        self.assertIn("| 99.0% | 1 | 3 | 4 | 6 | 8 |", text)
+        self.assertIn("11 ms of one core of an AMD EPYC at 640x480, and 12 ms at 1280x960", text)
+
+    def test_readme_is_short(self):
+        self.assertLessEqual(len(self.page("README.md").splitlines()), 150)
 
 
 class NoiseTest(unittest.TestCase):

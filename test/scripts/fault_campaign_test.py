@@ -1,6 +1,8 @@
 """scripts/fault_campaign: what it counts, and a short campaign without a misleading frame."""
 
 import csv
+import importlib.machinery
+import importlib.util
 import shutil
 import sys
 import tempfile
@@ -90,6 +92,35 @@ class CountsTest(unittest.TestCase):
         table = faults.Campaign(rows).false_alarms()
         self.assertRegex(table, r"`tilt` *\| *100 *\| *2 *\| *2.00%")
         self.assertRegex(table, r"`innovation` *\| *50 *\| *0 *\|")
+
+
+class SummaryTest(unittest.TestCase):
+    def test_counts_frames_and_runs_apart_from_what_nothing_can_tell(self):
+        misled = dict(faulted=40, faulted_valid=40, misleading=3, angle_misleading=1)
+        rows = [row("none", healthy=50, healthy_valid=49), row("dirt", **misled), row("dirt", faulted=40), row("baseline_8", **misled),
+                row("dirt+baseline_2", **misled), {**row("snow", **misled), "source": "kitti_road"}]
+        summary = faults.Campaign(rows).summary().replace("\n  ", " ")
+        self.assertIn("50 frames. 1 have no valid height, 0 a misleading one, and 0 a misleading angle.", summary)
+        self.assertIn("200 frames in 5 runs. 12 are misleading, 6 of these by", summary)
+        self.assertIn("The other 6 are in 2 runs.", summary)
+        self.assertIn("3 of 160 frames are misleading, in 3 runs.", summary)
+
+    def test_both_pages_say_the_same(self):
+        integrity, campaign = ((SOURCE_DIR / f"docs/{name}.md").read_text(encoding="utf-8")
+                               for name in ("integrity", "integrity_campaign"))
+        summary = integrity.split(faults.SUMMARY_BEGIN)[1].split(faults.SUMMARY_END)[0].strip()
+        self.assertIn(summary, campaign)
+        self.assertEqual(faults.renew_summary(integrity, summary + "\n"), integrity)
+        self.assertIn("frames in", summary)
+
+
+class SeedsTest(unittest.TestCase):
+    def test_seeds_in_a_row_are_a_range(self):
+        loader = importlib.machinery.SourceFileLoader("fault_campaign", str(SOURCE_DIR / "scripts/fault_campaign"))
+        campaign = importlib.util.module_from_spec(importlib.util.spec_from_loader("fault_campaign", loader))
+        loader.exec_module(campaign)
+        rows = [{"source": "lab", "seed": str(seed)} for seed in (5, 1, 3, 2)]
+        self.assertIn("seeds 1-3 5 (lab)", campaign.seeds(rows))
 
 
 class ShortCampaignTest(unittest.TestCase):
