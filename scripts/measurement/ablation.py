@@ -3,6 +3,9 @@
 import os
 from concurrent.futures import ThreadPoolExecutor
 
+import cv2
+import numpy as np
+import rosbag
 import yaml
 
 from . import kept
@@ -11,6 +14,16 @@ from .programs import ROOT, WORK, run
 from .sets import find_sets, make_bag, quantity, score
 
 SETS = ("lab", "fg_noon", "kitti_road", "simulator/full_scale", "simulator/bent_rig")
+# What parts may be worth something for and those sets do not have: title, file in config/simulator, what is changed in it, and the quality
+# of JPEG pictures where they are such.
+CONDITIONS = (
+    ("noise of 5 grey levels", "demo.yaml", {"image": {"noise": 5}}, None),
+    ("noise of 8 grey levels", "demo.yaml", {"image": {"noise": 8}}, None),
+    ("JPEG pictures of quality 60", "demo.yaml", {}, 60),
+    ("ground that bends", "scenes/sloped.yaml", {"path": {"duration": 14, "start_height": 25}}, None),
+    ("a dark night", "scenes/night.yaml", {"path": {"duration": 12}}, None),
+    ("from 200 m", "scenes/far.yaml", {}, None),
+)
 # what is changed: title and values by section
 VARIANTS = (
     ("all as by default", {}),
@@ -41,7 +54,8 @@ VARIANTS = (
     ("angle without stereo (`use_stereo`)", {"approach_angle": {"use_stereo": False}}),
 )
 PAPER = "the paper's choices, also on frames that are not valid"
-HEADER = ("changed", "coverage", "height, cm: 95 %", "angle, °: mean", "95 %", "pitch, °: 95 %", "roll, °: 95 %")
+HEADER = ("changed", "coverage", "height, cm: 95 %", "angle, °: mean", "95 %", "pitch, °: 95 %", "roll, °: 95 %", "yaw, °: 95 %",
+          "lateral, m: 95 %")
 TEXT = """One improvement over the paper is switched off at a time, by the parameter in brackets. Scored as above, on the frames that are valid.
 
 What makes a number worse was worth having on that set. What changes nothing there earns its place elsewhere. The watch on the rig and the
@@ -87,15 +101,51 @@ def config_of(changes, number_of_variant):
 def row(title, scores):
     return [title, number(scores["coverage"], ".1%"), number(quantity(scores, "height", "percentile_95"), ".2f", 100),
             number(quantity(scores, "approach_angle", "mean"), ".3f"),
-            *(number(quantity(scores, name, "percentile_95"), ".3f") for name in ("approach_angle", "pitch", "roll"))]
+            *(number(quantity(scores, name, "percentile_95"), ".3f") for name in ("approach_angle", "pitch", "roll", "yaw", "y"))]
+
+
+def compress(bag, quality):
+    """Makes the bag's pictures what a JPEG encoder leaves of them."""
+    compressed = bag.with_suffix(".compressed.bag")
+    with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(compressed), "w") as result:
+        for topic, message, stamp in source.read_messages():
+            if message._type == "sensor_msgs/Image":
+                pixels = np.frombuffer(message.data, np.uint8).reshape(message.height, message.width)
+                _, data = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])
+                message.data = cv2.imdecode(data, cv2.IMREAD_GRAYSCALE).tobytes()
+            result.write(topic, message, stamp)
+    os.replace(str(compressed), str(bag))
+
+
+def make_condition(title, file, changes, quality):
+    """Name, bag and truth of one of CONDITIONS."""
+    name = "conditions/" + title.replace(" ", "_")
+    config = yaml.safe_load((ROOT / "config/simulator" / file).read_text(encoding="utf-8"))
+    for section, values in changes.items():
+        config[section] = {**(config.get(section) or {}), **values}
+    path = WORK / "ablation" / f"{title.replace(' ', '_')}.yaml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(yaml.safe_dump(config), encoding="utf-8")
+    bag, truth = make_bag(name, path)
+    if quality:
+        compress(bag, quality)
+    return name, bag, truth
+
+
+def inputs(data):
+    """Title, and what makes name, bag and truth, of all that is measured."""
+    for name, source in find_sets(data, SETS):
+        yield f"`{name}`", lambda name=name, source=source: (name, *make_bag(name, source))
+    for condition in CONDITIONS:
+        yield condition[0][0].upper() + condition[0][1:], lambda condition=condition: make_condition(*condition)
 
 
 def measure(options):
     runs = [(title, config_of(changes, i), ()) for i, (title, changes) in enumerate(variants())]
     runs.append((PAPER, ROOT / "config/paper.yaml", ("--invalid-too",)))
     results = {}
-    for name, source in find_sets(options.data, SETS):
-        bag, truth = make_bag(name, source)
+    for heading, make in inputs(options.data):
+        name, bag, truth = make()
 
         def one(variant):
             title, config, evaluate_options = variant
@@ -104,11 +154,11 @@ def measure(options):
             return [title, scores]
 
         with ThreadPoolExecutor(options.jobs) as pool:
-            results[name] = list(pool.map(one, runs))
+            results[heading] = list(pool.map(one, runs))
         os.remove(str(bag))
     kept.keep("ablation", results)
 
 
 def render(results):
-    return TEXT + "".join(f"\n### `{name}`\n\n" + table(HEADER, [row(*entry) for entry in entries])
-                          for name, entries in results.items())
+    return TEXT + "".join(f"\n### {heading}\n\n" + table(HEADER, [row(*entry) for entry in entries])
+                          for heading, entries in results.items())

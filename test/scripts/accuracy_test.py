@@ -51,8 +51,8 @@ class MarkdownTest(unittest.TestCase):
 
 class AblationTest(unittest.TestCase):
     def test_row_fits_the_header_also_when_nothing_is_valid(self):
-        self.assertEqual(ablation.row("x", {"coverage": 0.0, "quantities": {}}), ["x", "0.0%"] + 5 * ["–"])
-        self.assertEqual(len(ablation.HEADER), 7)
+        self.assertEqual(ablation.row("x", {"coverage": 0.0, "quantities": {}}), ["x", "0.0%"] + 7 * ["–"])
+        self.assertEqual(len(ablation.HEADER), 9)
 
     def test_every_variant_differs_from_the_default_in_its_own_file(self):
         with tempfile.TemporaryDirectory(prefix="uav_landing_accuracy_") as folder, \
