@@ -159,10 +159,12 @@ struct ApproachAngleStage::Implementation {
   }
 
   // The search for the first step of the motion takes the time of the lines. The motion comes first, as it
-  // carries the ground that is in view now to below the aircraft.
+  // carries the ground that is in view now to below the aircraft. It needs lines only where they alone give
+  // the normal.
   bool leavesOutLines(double stamp, bool has_plane) const {
-    return has_plane && !lines_left_out && tracker.needsSearch() && !runway.isSettled(stamp) &&
-           !parameters.search_at_once;
+    const bool needs_lines = parameters.normal_source == NormalSource::kVanishingLine;
+    return has_plane && !needs_lines && !lines_left_out && tracker.needsSearch() &&
+           !runway.isSettled(stamp) && !parameters.search_at_once;
   }
 
   static RunwayDirection noDirection(ApproachAngleResult& result) {

@@ -69,10 +69,12 @@ struct Searching {
   ApproachAngleStage stage;
   bool corners = true;  // that the stereo stage has matched
 
-  explicit Searching(bool at_once = true) : stage(scene.model, searching(at_once)) {}
-  static ApproachAngleParameters searching(bool at_once) {
+  explicit Searching(bool at_once = true, NormalSource source = NormalSource::kFused)
+      : stage(scene.model, searching(at_once, source)) {}
+  static ApproachAngleParameters searching(bool at_once, NormalSource source) {
     ApproachAngleParameters parameters;
     parameters.search_at_once = at_once;
+    parameters.normal_source = source;
     return parameters;
   }
 
@@ -129,6 +131,17 @@ TEST(ApproachAngleStage, LeavesOutTheLinesWhileItSearchesForTheFirstStep) {
   EXPECT_FALSE(second.step.failure);
   EXPECT_FALSE(second.left.failure) << second.left.failure.message();
   EXPECT_FALSE(second.right.failure) << second.right.failure.message();
+}
+
+TEST(ApproachAngleStage, LooksForLinesInEveryPairWhereTheyAloneGiveTheNormal) {
+  Searching flight(false, NormalSource::kVanishingLine);
+  flight.next(0, Plane::kFound);
+  ApproachAngleResult result;
+  for (int i = 1; i < 5; ++i) {
+    result = flight.next(i, Plane::kFollowed);
+    EXPECT_FALSE(result.left.failure) << i << ' ' << result.left.failure.message();
+  }
+  EXPECT_FALSE(result.step.failure) << result.step.failure.message();
 }
 
 TEST(ApproachAngleStage, LooksForLinesInEverySecondPairWhereNoMotionIsFound) {
