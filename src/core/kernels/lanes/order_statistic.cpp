@@ -11,9 +11,9 @@ namespace uav_landing {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kFew = 2;     // values in a range that are looked at one by one
-constexpr int kSlow = 3;    // consecutive limits that leave most of a range, before a value of it is taken as
-                            // the limit
+constexpr int kFew = 2;  // values in a range that are looked at one by one
+constexpr int kSlow =
+    3;  // consecutive limits that leave most of a range; then the smallest value is looked at
 constexpr int kTries = 10;  // limits after the samples
 
 [[gnu::always_inline]] inline int sumOf(const IntLanes& n) {
