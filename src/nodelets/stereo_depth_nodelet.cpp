@@ -90,8 +90,10 @@ class StereoDepthNodelet : public StageNodelet {
 
   void noteOwnFrame(double share) {
     if (share > 0 && !own_frame_told_)
-      NODELET_INFO("%s: left out: %.1f %% of the left picture does not move with the ground",
-                   getName().c_str(), 100 * share);
+      NODELET_INFO(
+          "%s: %.1f %% of the left image does not move with the ground (the aircraft's own frame) and is not "
+          "used",
+          getName().c_str(), 100 * share);
     own_frame_told_ = own_frame_told_ || share > 0;
     own_frame_ = share;
   }

@@ -54,7 +54,7 @@ Failure check(const VanishingLines& lines, const Eigen::Vector3d& direction, con
     return noVanishingPoint("lines are parallel within ", std::round(10 * spread / kDegree) / 10,
                             " deg, less than ", kMinSpread / kDegree);
   if (lines.parameters().min_lines > 2 && coincidences > kChance)
-    return noVanishingPoint("as many lines meet by chance: ", used.size(), " of ", lines.count());
+    return noVanishingPoint("as many lines would meet by chance: ", used.size(), " of ", lines.count());
   return {};
 }
 

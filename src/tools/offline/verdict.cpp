@@ -91,7 +91,7 @@ std::string verdictOf(const PairTally& tally) {
   if (!cause.empty()) return cause;
   const auto most = std::max_element(tally.reasons.begin(), tally.reasons.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  return "most pairs are " + most->first + ": see Troubleshooting in README.md";
+  return "most pairs are " + most->first + ": see docs/troubleshooting.md";
 }
 
 }  // namespace uav_landing
