@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kMinSpread = 3 * kDegree;  // between the inlier lines in the image
-constexpr Sigmas kGate(4);                  // robust ones, of the lines that count in the end
-constexpr double kChance = 1;               // accepted number of such coincidences among random lines
+constexpr Sigmas kGate(4);                  // robust sigmas; lines within it count in the end
+constexpr double kChance = 1;               // largest accepted number of such coincidences among random lines
 
 template <class... Parts>
 Failure noVanishingPoint(const Parts&... parts) {
@@ -58,7 +58,7 @@ Failure check(const VanishingLines& lines, const Eigen::Vector3d& direction, con
   return {};
 }
 
-/// The lines that pass through where RANSAC found most of them to meet, and where they do.
+/// The lines that pass through the direction of the consensus, and the point fitted to them.
 Expected<VanishingPoint> fitTo(const VanishingLines& lines, const VanishingConsensus& consensus) {
   VanishingFit fit(lines, consensus.direction);
   LineIndices used = lines.passing(fit.direction());
