@@ -9,7 +9,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kStartStddev = 1000;  // m: a finite number for "not known"
-// 1 sigma of the speed that does not average out, m/s: while the speed is seen, and after it was seen.
+// Error of the speed that does not average out, 1 sigma as a share of the speed: while it is seen, and after
+// that.
 constexpr double kSpeedError = 0.05, kOldSpeedError = 1;
 constexpr size_t kTrackPoints = 2000;
 constexpr double kTrackSpacing = 0.02;  // of the height
