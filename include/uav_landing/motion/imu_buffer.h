@@ -34,9 +34,9 @@ class ImuBuffer {
   bool covers(double stamp) const;
 
   /// Attitude at the image of this stamp, and the rotation since the image before. The attitude is
-  /// interpolated between the neighbours in time, or taken from the newest message up to imu_max_gap ahead.
-  /// The rotation follows from the angular velocity or, without one, from the attitudes. camera_from_imu:
-  /// rotation to the rectified left camera's optical frame.
+  /// interpolated between the neighbours in time, or carried on from the newest message for at most
+  /// imu_max_gap. The rotation follows from the angular velocity or, without one, from the attitudes.
+  /// camera_from_imu: rotation to the rectified left camera's optical frame.
   AttitudePrior at(double stamp, std::optional<double> before, const Eigen::Matrix3d& camera_from_imu) const;
 
  private:

@@ -30,8 +30,8 @@ class AttitudeFilter {
     Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without errors common to all pairs
     Eigen::Matrix3d common_root = Eigen::Matrix3d::Zero();  ///< symmetric root of the common errors'
                                                             ///< covariance
-    /// Covariance if the normal were a plain average of pairs, rad^2. Fading memory enlarges it, as old pairs
-    /// count less.
+    /// Covariance of the normal as the average that it is, rad^2. The other covariance is larger, because it
+    /// belongs to a memory that fades: old pairs count less.
     Eigen::Matrix3d average_covariance = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d commonCovariance() const { return common_root * common_root.transpose(); }
     double ratio = kUnknown;  ///< squared normalised difference from the pairs before

@@ -22,9 +22,9 @@ class WidthHeight {
   std::optional<Estimate> height(double ratio, double variance) const;
   /// Whether the edges seen are those whose width is known or was learned. They may be others, such as the
   /// other sides of the lines along the runway. The test uses the height (m, m^2) that is expected without
-  /// this pair. After other edges were seen, it says so until the difference is small, apart from the
-  /// height's own uncertainty. That uncertainty grows while stereo is out. ratio and variance: as for
-  /// height().
+  /// this pair. Once other edges were seen, they remain others until the difference is within its uncertainty
+  /// without that of the height. The latter does not count, because it grows while stereo is out. ratio and
+  /// variance: as for height().
   bool isSame(double ratio, double variance, double height, double height_variance);
   /// Learns from a pair with a believed height by stereo (m, m^2). Other edges replace the former ones when
   /// some pairs in a row have seen them.

@@ -43,7 +43,8 @@ class PlaneSearch {
   const Eigen::Vector3d& plane() const { return found_->g; }
   /// Whether the search began with the latest pair.
   bool beganHere() const { return began_here_; }
-  /// The next searches that find nothing look for the cause, even if an earlier one did so recently.
+  /// The next search that finds nothing looks for the cause, even if an earlier one did so recently. It may
+  /// be the one in progress.
   void lookAgain() { failed_ = 0; }
   /// Begins anew with the next pair.
   void restart() { phase_ = Phase::kNone; }

@@ -16,9 +16,8 @@ class SpreadSearch {
 
   /// Call it first for each pair. duration: since the previous pair, s; infinite for the first one.
   void begin(double duration);
-  /// The plane in this pair. While the search goes on, the failure is that of the last search, or `not_yet`
-  /// before the first one has ended. followed: this pair has already spent time on following a plane, in
-  /// vain.
+  /// The plane in this pair. While the search goes on, the failure is that of the last search that failed,
+  /// else `not_yet`. followed: this pair has already spent time on following a plane, in vain.
   Expected<Eigen::Vector3d> find(const StereoLevel& coarse, PlaneTracker& tracker, bool followed);
   /// The plane is known in this pair, so there is nothing to search for.
   void stop();
