@@ -12,8 +12,7 @@ namespace uav_landing {
 /// forward-left-up axes. An unknown yaw counts as 0. No row is finite when pitch or roll is unknown.
 Eigen::Matrix3d runwayFromCamera(const LandingResult& camera);
 
-/// By how much a point of the rectified left camera's optical frame (m) rises per radian of roll, or of
-/// pitch, m.
+/// Rise of a point of the rectified left camera's optical frame (m) per radian of roll, or of pitch, m.
 double heightByRoll(const LandingResult& camera, const Eigen::Vector3d& point);
 double heightByPitch(const LandingResult& camera, const Eigen::Vector3d& point);
 

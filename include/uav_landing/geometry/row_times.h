@@ -50,9 +50,8 @@ class RowTimes {
   Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
 };
 
-/// By how much the right camera's rows are exposed later than the left one's, s. size: of the rectified
-/// images. If only lenses and rectification make a difference, as in any rig, it is that in the middle;
-/// otherwise the largest one.
+/// Delay of the right camera's rows after the left one's, s. size: of the rectified images. If only lenses
+/// and rectification make a difference, as in any rig, it is that in the middle; otherwise the largest one.
 double laterRows(const RowTimes& left, const RowTimes& right, const cv::Size& size);
 
 /// Refuses a readout time that is longer than the time between the images. It is then in other units, or that

@@ -39,7 +39,7 @@ class StampMap {
   Eigen::Vector2d toRow(const Eigen::Vector2d& at_stamp, double inverse_depth) const;
   /// Time from the stamp to the row that sees a point of the frame at the stamp (in heights), s.
   double timeOf(const Eigen::Vector3d& point) const;
-  /// That point in the frame of the camera some seconds after the stamp; the same for a direction.
+  /// The same point in the frame of the camera some seconds after the stamp; the same for a direction.
   Eigen::Vector3d pointAfter(double seconds, const Eigen::Vector3d& point) const;
   Eigen::Vector3d directionAfter(double seconds, const Eigen::Vector3d& direction) const;
 

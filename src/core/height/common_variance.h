@@ -14,7 +14,7 @@ struct CommonVariance {
   /// heights makes no difference between them.
   double baseline = 0;
 
-  /// Of a measurement, without the baseline.
+  /// Variance of a measurement, without the baseline.
   double total() const { return lasting + bend + width; }
   double withBaseline() const { return total() + baseline; }
 };

@@ -9,7 +9,7 @@
 
 namespace uav_landing {
 
-/// What counts as an edge, and how long a straight one must be.
+/// Limits of an edge, and of the length of a straight one.
 struct EdgeLimits {
   double low, high;   ///< weak edges, and edges from which a line starts: |gu| + |gv| of 3x3 Sobel responses
   double min_length;  ///< px

@@ -90,7 +90,7 @@ using Matrix5d = Eigen::Matrix<double, 5, 5>;
 struct Patch {
   // Fisher's information, at noise of 1 grey level, if the texture's gradients are known.
   Matrix5d information = Matrix5d::Zero();
-  // Of its frequencies: power spectral density, and this times the squared frequency along u.
+  // Its spectrum: power spectral density, and this times the squared frequency along u.
   std::vector<double> power, slope;
 };
 

@@ -24,7 +24,7 @@ class Surroundings {
     }
   }
 
-  // Of the block's pixels from (x, y) on.
+  // The block's pixels from (x, y) on.
   [[gnu::always_inline]] inline void greys(int x, int y, Lanes& out) const { load(at(x, y), out); }
 
   // Difference between the pixels to the right and to the left.
@@ -35,7 +35,7 @@ class Surroundings {
     out = after - before;
   }
 
-  // Of fourth order, because the difference of two neighbours sees too little of a sharp edge.
+  // Derivative of fourth order, because the difference of two neighbours sees too little of a sharp edge.
   [[gnu::always_inline]] inline void derivative(int x, int y, int dx, int dy, Lanes& out) const {
     Lanes before2, before, after, after2;
     const float* place = at(x, y);
