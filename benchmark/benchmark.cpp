@@ -1,4 +1,4 @@
-// Measures the time of each stage and of the whole chain, with peers on the same frames in the same run.
+// Measures the time of each stage and of the whole chain, and of peers on the same frames in the same run.
 
 #include <cv_bridge/cv_bridge.h>
 #include <sensor_msgs/image_encodings.h>
@@ -36,12 +36,13 @@ using namespace uav_landing::benchmark;
 
 constexpr size_t kWarmUp = 3;  // pairs whose times do not count: first search, buffers
 
-/// What was measured on one sequence. Names in order of their first appearance.
+/// Measurements on one sequence. Names are in the order of their first appearance.
 struct Measurement {
   std::string sequence;
   cv::Size size;
   std::vector<std::pair<std::string, Times>> programs, stages;
-  // A pair, in the last quarter: those before fill the memory. Image-sized ones, and all by operator new.
+  // Per pair, in the last quarter, as the pairs before fill the memory: allocations as large as an image, and
+  // all by operator new.
   double image_allocations = 0, allocations = 0;
   double peak_memory = 0;                // MB
   std::vector<double> pairs_per_second;  // of 1, 2, ... chains side by side
@@ -107,7 +108,7 @@ Expected<Measurement> measure(const Sequence& sequence, const Parameters& parame
     run("image floor", [&] { floor.process(pair.left, pair.right); });
     last = pair.stamp;
   }
-  // Stages in a run of their own, so that the peers do not empty the caches between them.
+  // Stages have a run of their own, so that the peers do not empty the caches between them.
   for (size_t i = 0; i < sequence.pairs.size(); ++i) {
     const Sequence::Pair& pair = sequence.pairs[i];
     const Pipeline::Output& output = chain->process(pair.stamp + 1e3, pair.left, pair.right);

@@ -6,8 +6,8 @@ namespace {
 std::atomic<std::size_t> copied{0};
 }  // namespace
 
-// What the C library's own copies end in; a program's definition of memcpy comes before the library's for all
-// libraries that it loads.
+// The functions in which the C library's own copies end. A program's definition of memcpy comes before the
+// library's for all libraries that it loads.
 extern "C" {
 void* __memcpy_chk(void* to, const void* from, std::size_t size, std::size_t room);
 void* __memmove_chk(void* to, const void* from, std::size_t size, std::size_t room);

@@ -5,8 +5,9 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// Bytes that all threads have copied by memcpy and memmove, which the program (copied_bytes.cpp) replaces,
-/// since it began. Copies of a size known to the compiler, a few bytes, are not calls and not counted.
+/// Number of bytes that all threads have copied by memcpy and memmove since the program began;
+/// copied_bytes.cpp replaces these functions. Copies of a few bytes whose size the compiler knows are no
+/// calls and are not counted.
 std::size_t copiedBytes();
 
 }  // namespace benchmark

@@ -5,11 +5,11 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// While it lives, counts what the program takes by operator new, which its program (heap.cpp) replaces. One
-/// at a time.
+/// While it exists, counts the memory that the program takes by operator new, which heap.cpp replaces. Only
+/// one at a time.
 class HeapCounter {
  public:
-  /// least: bytes from which on memory is as large as an image.
+  /// least: bytes from which on memory counts as large as an image.
   explicit HeapCounter(std::size_t least);
   ~HeapCounter();
   HeapCounter(const HeapCounter&) = delete;

@@ -6,7 +6,7 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// While it lives, counts the matrices of at least this many bytes that OpenCV allocates.
+/// While it exists, counts the matrices of at least this many bytes that OpenCV allocates.
 class ImageAllocations : public cv::MatAllocator {
  public:
   explicit ImageAllocations(size_t least) : least_(least), standard_(cv::Mat::getStdAllocator()) {
@@ -18,7 +18,7 @@ class ImageAllocations : public cv::MatAllocator {
 
   cv::UMatData* allocate(int dims, const int* sizes, int type, void* data, size_t* step, cv::AccessFlag flags,
                          cv::UMatUsageFlags usage) const override {
-    // The matrix stays the standard allocator's, which may outlive this one.
+    // The matrix belongs to the standard allocator, because it may outlive this one.
     cv::UMatData* image = standard_->allocate(dims, sizes, type, data, step, flags, usage);
     if (data == nullptr && image->size >= least_) ++count_;
     return image;

@@ -1,6 +1,5 @@
-// Measures what the nodelets take besides the chain's own work: the latency from a pair to its estimate
-// beside the chain's time on the same pair in the same run, memory, copies, and CPU time while nobody
-// listens.
+// Measures what the nodelets take besides the chain's own work: latency from a pair to its estimate, compared
+// with the chain's time on the same pair in the same run; memory; copies; and CPU time while nobody listens.
 
 #include <ros/ros.h>
 
@@ -28,12 +27,12 @@ using namespace uav_landing;
 using namespace uav_landing::benchmark;
 using Clock = std::chrono::steady_clock;
 
-// Pairs that do not count: first search, pools and buffers that grow, the frames of the window over time.
+// Pairs that do not count: first search, pools and buffers that grow, the frames of the sliding window.
 constexpr size_t kWarmUp = 30;
 
 double milliseconds(Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); }
 
-/// What one way of processing took for the pairs that count.
+/// Cost of one way of processing for the pairs that count.
 struct Cost {
   Times times;
   double image_allocations = 0, allocations = 0, copied = 0;  // sums
@@ -69,8 +68,8 @@ struct Cost {
 
 struct Measurement {
   Cost nodelets, chain;
-  size_t pairs = 0;       // all, the first ones included
-  size_t late = 0;        // of them, whose estimate took longer than a period
+  size_t pairs = 0;       // all, including the first ones
+  size_t late = 0;        // pairs whose estimate took longer than a period
   double idle_share = 0;  // CPU time over wall-clock time while nobody subscribes
 };
 
@@ -100,7 +99,7 @@ double idleShare(NodeletChain& nodelets, const Sequence& sequence, const Options
 
 Measurement measure(const Sequence& sequence, Pipeline& chain, const Options& options) {
   NodeletChain nodelets(sequence);
-  nodelets.listen(sequence, 1);  // not with the first pair: one that comes again is left out
+  nodelets.listen(sequence, 1);  // not with the first pair, because a repeated one is skipped
   Measurement result;
   auto slot = Clock::now();
   for (size_t i = 0; i < sequence.pairs.size(); ++i, slot += period(options)) {
@@ -113,7 +112,7 @@ Measurement measure(const Sequence& sequence, Pipeline& chain, const Options& op
       if (time > period(options)) ++result.late;
       return time;
     });
-    // The nodelets are done with it: the same pair by the chain itself.
+    // The nodelets have finished it; now the chain itself processes the same pair.
     result.chain.measure(i, pair.left.total(), [&] {
       const auto start = Clock::now();
       chain.process(pair.stamp, pair.left, pair.right);

@@ -41,7 +41,7 @@ sensor_msgs::ImagePtr toImage(const cv::Mat& image, const std_msgs::Header& head
 
 NodeletChain::NodeletChain(const Sequence& sequence) : left_(advertise("left")), right_(advertise("right")) {
   spinner_.start();
-  // With it the chain never rests: who listens to tf cannot be told.
+  // With it the chain never rests, because nobody can tell who listens to tf.
   ros::param::set("/uav_landing/kalman_height/publish_tf", false);
   for (const std::string nodelet : {"rectify", "stereo_depth", "approach_angle", "kalman_height", "overlay"})
     if (!loader_.load("/uav_landing/" + nodelet, "uav_landing/" + nodelet, {}, {}))

@@ -16,8 +16,8 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// All nodelets in this process with a stereo camera in it: messages go from one to the next without a copy.
-/// Errors are std::runtime_error.
+/// All nodelets in this process together with a stereo camera, so messages go from one to the next without a
+/// copy. Errors are std::runtime_error.
 class NodeletChain {
  public:
   /// A pair as the camera's driver has it, ready to be published.
@@ -32,14 +32,14 @@ class NodeletChain {
 
   static Pair message(const Sequence& sequence, size_t pair, const ros::Time& stamp);
 
-  /// Subscribes the estimates and waits until the stages have found each other: the pair is published, with
-  /// stamps before its own, until an estimate comes.
+  /// Subscribes the estimates and waits until the stages are connected: it publishes the pair, with earlier
+  /// stamps, until an estimate comes.
   void listen(const Sequence& sequence, size_t pair);
-  /// Nobody wants the estimates any more, and the cameras have no subscriber.
+  /// Unsubscribes the estimates, so that the cameras have no subscriber.
   void stopListening();
 
   void publish(const Pair& pair);
-  /// From publishing the pair to its estimate.
+  /// Time from publishing the pair to its estimate.
   std::chrono::steady_clock::duration process(const Pair& pair);
 
  private:
@@ -57,7 +57,7 @@ class NodeletChain {
 
   std::mutex mutex_;
   std::condition_variable came_;
-  ros::Time latest_;  // estimate, and when it came
+  ros::Time latest_;  // of the latest estimate, and when it came
   std::chrono::steady_clock::time_point when_;
   ros::Subscriber estimates_;
 };

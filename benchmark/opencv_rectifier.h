@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// Rectification by OpenCV's own calls: maps in fixed point, made once, and cv::remap with bilinear
+/// Rectification by OpenCV's own calls: fixed-point maps, made once, and cv::remap with bilinear
 /// interpolation.
 class OpenCvRectifier {
  public:

@@ -15,7 +15,7 @@ cv::Rect windowAround(const cv::Point& p) {
   return {p.x - kRadius, p.y - kRadius, 2 * kRadius + 1, 2 * kRadius + 1};
 }
 
-/// Where in `area` of the other image a window looks most alike by the sum of squared differences.
+/// Place in `area` of the other image where a window looks most alike by the sum of squared differences.
 cv::Point bestMatch(const cv::Mat& image, const cv::Point& corner, const cv::Mat& other,
                     const cv::Rect& area) {
   cv::Mat score;

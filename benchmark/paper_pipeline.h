@@ -9,9 +9,9 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// The paper's method written literally with OpenCV calls: Canny, Hough transform and RANSAC for the
-/// vanishing point of each view, Harris corners, their image velocity by SSD and the focus of expansion, eq
-/// (1), SSD along the rows, eqs (3) to (5), mean and a Kalman filter.
+/// The paper's method to the letter, with OpenCV calls: Canny, Hough transform and RANSAC for the vanishing
+/// point of each view; Harris corners, their image velocity by SSD and the focus of expansion; eq (1); SSD
+/// along the rows, eqs (3) to (5), mean and a Kalman filter.
 class PaperPipeline {
  public:
   PaperPipeline(const StereoRig& rig, const CameraCalibration& left, const CameraCalibration& right);

@@ -11,8 +11,8 @@ namespace uav_landing {
 namespace benchmark {
 namespace {
 
-/// Least squares over the valid disparities of the lower half, every fourth pixel, refined twice without what
-/// is off the plane.
+/// Least squares over the valid disparities of the lower half, every fourth pixel, refined twice without
+/// those off the plane.
 cv::Vec3d fitPlane(const cv::Mat_<float>& disparity) {
   constexpr int kStep = 4, kPasses = 3;
   constexpr double kTolerance = 1;
@@ -33,7 +33,7 @@ cv::Vec3d fitPlane(const cv::Mat_<float>& disparity) {
   return plane;
 }
 
-/// As the node does before it has been reconfigured.
+/// As the node does before it is reconfigured.
 void setDefaults(stereo_image_proc::StereoProcessor& processor) {
   const auto& config = stereo_image_proc::DisparityConfig::__getDefault__();
   processor.setPreFilterSize(config.prefilter_size);

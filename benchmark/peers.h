@@ -12,8 +12,8 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// What a user would otherwise run: stereo_image_proc's library with the settings its node begins with (64
-/// disparities, block 15), from raw images to disparities, then a ground plane by least squares over them.
+/// What a user would otherwise run: the library of stereo_image_proc with its node's initial settings (64
+/// disparities, block 15), from raw images to disparities, then a ground plane through them by least squares.
 class StereoImageProcPeer {
  public:
   using Processor = stereo_image_proc::StereoProcessor;
@@ -31,7 +31,7 @@ class StereoImageProcPeer {
   stereo_image_proc::StereoImageSet images_;
 };
 
-/// The least that any method does that looks at whole images: two remaps and the 3x3 Sobel gradients of both.
+/// The least work of any method that uses whole images: two remaps and the 3x3 Sobel gradients of both.
 class ImageFloor {
  public:
   explicit ImageFloor(const Sequence& sequence);

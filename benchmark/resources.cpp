@@ -16,7 +16,7 @@ namespace uav_landing {
 namespace benchmark {
 namespace {
 
-/// A line of /proc/self/status, kB; not a number where there is none.
+/// A line of /proc/self/status, kB; NaN when it does not exist.
 double statusOf(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -28,7 +28,7 @@ double statusOf(const std::string& name) {
   return std::nan("");
 }
 
-/// Makes the system's peak of the resident memory that of now.
+/// Resets the system's peak of the resident memory to the present value.
 bool resetPeak() {
   std::ofstream command("/proc/self/clear_refs");
   command << "5";
@@ -46,7 +46,7 @@ void process(Pipeline& chain, const Sequence& sequence) {
 }  // namespace
 
 double peakMemory(const Sequence& sequence, const Parameters& parameters) {
-  malloc_trim(0);  // what is free already would hide what the chain takes
+  malloc_trim(0);  // free memory would hide what the chain takes
   if (!resetPeak()) return std::nan("");
   const double before = statusOf("VmRSS");
   Pipeline chain = chainFor(sequence, parameters);

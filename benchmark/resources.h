@@ -8,11 +8,11 @@
 namespace uav_landing {
 namespace benchmark {
 
-/// Most memory that one chain takes on a sequence, MB: resident, over what the program had before. Not a
-/// number where the system does not tell (Linux does).
+/// Largest memory that one chain takes on a sequence, MB: resident, minus what the program had before. NaN
+/// when the system does not tell it (Linux does).
 double peakMemory(const Sequence& sequence, const Parameters& parameters);
 
-/// Pairs a second of wall-clock time of 1, 2, ... chains side by side, each in a thread of its own, up to the
+/// Pairs per second of wall-clock time of 1, 2, ... chains side by side, each in its own thread, up to the
 /// number of cores and at most 4.
 std::vector<double> pairsPerSecond(const Sequence& sequence, const Parameters& parameters);
 

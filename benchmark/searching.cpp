@@ -9,11 +9,11 @@ namespace uav_landing {
 namespace benchmark {
 namespace {
 
-constexpr int kFlights = 5;  // other work on the machine disturbs one, not all
+constexpr int kFlights = 5;  // other work on the machine disturbs one flight, but not all
 constexpr int kSteadyPairs = 40;
 constexpr size_t kUntilSteady = 10;  // pairs
 
-// Least CPU time of each pair over several flights of a new chain, the first pair included.
+// Smallest CPU time of each pair over several flights of a new chain, the first pair included.
 Expected<Times> leastTimes(const Sequence& sequence, const Parameters& parameters) {
   Times least;
   least.ms.assign(sequence.pairs.size(), INFINITY);

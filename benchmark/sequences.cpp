@@ -31,7 +31,7 @@ void resize(SimulatorParameters& parameters, const cv::Size& size) {
   scale(parameters.right_camera, factor, rows_added);
 }
 
-// Pairs from first on, so many at most.
+// Adds at most so many pairs, from `first` on.
 void add(const ApproachSimulator& simulator, int first, int pairs, Sequence& sequence) {
   for (int i = first; i < std::min(first + pairs, simulator.frames()); ++i) {
     const ApproachSimulator::Frame frame = simulator.frame(i);
@@ -53,7 +53,7 @@ Expected<Sequence> simulatedSequence(const std::string& config, const cv::Size& 
   if (!simulator) return tl::make_unexpected(simulator.error());
   Sequence sequence =
       withoutPairs("simulated " + std::to_string(size.width) + "x" + std::to_string(size.height), *simulator);
-  // From the middle of the approach on, where the runway fills much of the picture.
+  // From the middle of the approach on, where the runway fills much of the image.
   add(*simulator, simulator->frames() / 2, pairs, sequence);
   return sequence;
 }

@@ -21,11 +21,11 @@ struct Sequence {
   std::vector<Pair> pairs;
 };
 
-/// Successive pairs of a simulated approach, seen by cameras of this width with lenses that need
-/// rectification. config: file of the simulator; its focal lengths are scaled with the width.
+/// Consecutive pairs of a simulated approach, seen by cameras of this width whose lenses need rectification.
+/// config: file of the simulator; its focal lengths are scaled with the width.
 Expected<Sequence> simulatedSequence(const std::string& config, int width, int pairs);
 
-/// The same by pictures of this size, of which the upper and lower rows are cut away or added.
+/// The same with images of this size, whose upper and lower rows are cut off or added.
 Expected<Sequence> simulatedSequence(const std::string& config, const cv::Size& size, int pairs);
 
 /// All pairs of a simulated approach as its file describes them.

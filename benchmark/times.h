@@ -28,7 +28,7 @@ struct Times {
   }
 };
 
-/// CPU time of this process, ms: other processes do not count.
+/// CPU time of this process, ms, so that other processes do not count.
 inline double cpuMilliseconds() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

@@ -14,26 +14,26 @@ namespace uav_landing {
 /// The whole chain for one pair after another, as the nodelets run it.
 class Pipeline {
  public:
-  /// left, right: see workingPair(). Refuses what parameters.rig does not let through, and masks that it
-  /// names and that cannot be used.
+  /// left, right: see workingPair(). Fails when parameters.rig does not accept the cameras, and when a mask
+  /// that it names cannot be used.
   static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
                                    const Parameters& parameters);
 
   struct Output {
-    cv::Mat left, right;  ///< rectified; views of buffers reused by the next call
+    cv::Mat left, right;  ///< rectified; views of buffers that the next call reuses
     StereoDepthResult stereo;
     ApproachAngleResult approach;
     LandingResult landing;
     Timings parts;   ///< of the parts of all stages
     Timings stages;  ///< of the stages: rectify, stereo_depth, approach_angle, kalman_height
   };
-  /// left, right: raw mono8 of the size the calibrations announce; another size is a failure in every
-  /// stage's result. stamp: of the left image, s. skew: right minus left, s. imu: of this pair.
+  /// left, right: raw mono8 of the size that the calibrations announce; with another size all results are
+  /// failures. stamp: of the left image, s. skew: right minus left, s. imu: of this pair.
   const Output& process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0,
                         const AttitudePrior& imu = {});
 
   const RigModel& rig() const { return rig_; }
-  /// What is unlikely about the calibrations (see rigWarnings()).
+  /// Warnings about the calibrations (see rigWarnings()).
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

@@ -14,13 +14,12 @@
 namespace uav_landing {
 
 /// Vanishing points, ground normal, focus of expansion and approach angle.
-///
 /// Parameters: ApproachAngleParameters and the common ones of NodeParameters.
 /// Subscribes {left,right}/{image_rect, camera_info} of rectify and, unless use_stereo is false,
-/// stereo_depth, while somebody wants the output. Subscribes the topic of parameter imu (sensor_msgs/Imu) and
-/// /tf_static (its mounting; /tf, to say what is missing there) unless use_imu is false; while somebody
-/// publishes it, a pair waits up to imu_wait for the message after it. Publishes approach_angle
-/// (ApproachAngle): one message per pair, also without an angle.
+/// stereo_depth, while somebody wants the output. Unless use_imu is false, it subscribes the topic of
+/// parameter imu (sensor_msgs/Imu) and /tf_static (its mounting; /tf only to say what is missing there).
+/// While somebody publishes on this topic, a pair waits up to imu_wait for the message after it.
+/// Publishes approach_angle (ApproachAngle): one message per pair, also without an angle.
 class ApproachAngleNodelet : public StageNodelet {
  public:
   ApproachAngleNodelet() : StageNodelet("approach_angle") {}
@@ -37,7 +36,7 @@ class ApproachAngleNodelet : public StageNodelet {
   static constexpr uint32_t kImuQueue = 1000;
   static constexpr double kPatience = 0.5;  // s, with recorded data
 
-  /// A pair that waits for the imu, since then.
+  /// A pair that waits for the imu, and the time since when it does.
   struct Waiting {
     ros::Time stamp;
     ros::WallTime since;
@@ -72,7 +71,7 @@ class ApproachAngleNodelet : public StageNodelet {
     tf_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
         "/tf", 100,
         [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addMovingTransforms(*m); }); });
-    // Recorded data is to be used completely.
+    // Recorded data should be used completely, so pairs wait longer.
     wait_ = ros::WallDuration(node_.drop_frames ? parameters_.imu_wait : kPatience);
     wait_timer_ = getNodeHandle().createWallTimer(
         wait_, [this](const ros::WallTimerEvent&) { release(); }, true, false);
@@ -136,7 +135,7 @@ class ApproachAngleNodelet : public StageNodelet {
     release();
   }
 
-  // Pairs go on in order, each when the imu message after it is there.
+  // Pairs go on in order, each when the imu message after it has arrived.
   void take(const ros::Time& stamp, std::function<void()> pair) {
     waiting_.push_back({stamp, ros::WallTime::now(), std::move(pair)});
     release();
@@ -204,20 +203,20 @@ class ApproachAngleNodelet : public StageNodelet {
   RigMasks masks_;
   ros::Publisher publisher_;
   std::vector<ros::Subscriber> subscribers_;
-  std::unique_ptr<StereoInputs> with_stereo_;  // one of the two
+  std::unique_ptr<StereoInputs> with_stereo_;  // one of the two is set
   std::unique_ptr<StereoPairing> without_stereo_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
   RigStage<ApproachAngleStage> stage_;
 
-  std::unique_ptr<ImuInput> imu_;  // null: not to be used
+  std::unique_ptr<ImuInput> imu_;  // null: not used
   ros::Subscriber imu_subscriber_, tf_subscriber_, tf_static_subscriber_;
   std::deque<Waiting> waiting_;
   ros::WallDuration wait_;
   ros::WallTimer wait_timer_;
-  bool imu_silent_ = false;                      // nothing came while the last pair waited
+  bool imu_silent_ = false;                      // no message came while the last pair waited
   bool imu_heard_ = false, imu_unused_ = false;  // since the last complaint; by the last pair
   std::string imu_reason_;                       // of the last pair
-  std::string imu_use_ = "no pair yet";          // by that, for the diagnostics
+  std::string imu_use_ = "no pair yet";          // by the last pair, for the diagnostics
 };
 
 }  // namespace uav_landing

@@ -8,13 +8,14 @@
 
 namespace uav_landing {
 
-/// What an autopilot may fuse: silent whenever there is nothing valid to say.
-///
+/// Messages that an autopilot may fuse. It is silent while there is nothing valid.
 /// Parameters: AutopilotParameters, which dynamic_reconfigure may change in flight, and the common ones of
-/// NodeParameters. Subscribes height (Range), pose (PoseWithCovarianceStamped) and twist
-/// (TwistWithCovarianceStamped) of kalman_height. Publishes autopilot/range (Range, along the aircraft's down
-/// axis), autopilot/pose (PoseWithCovarianceStamped) and autopilot/velocity (TwistWithCovarianceStamped),
-/// both east-north-up; all with the image's stamp.
+/// NodeParameters.
+/// Subscribes height (Range), pose (PoseWithCovarianceStamped) and twist (TwistWithCovarianceStamped) of
+/// kalman_height.
+/// Publishes autopilot/range (Range, along the aircraft's down axis), autopilot/pose
+/// (PoseWithCovarianceStamped) and autopilot/velocity (TwistWithCovarianceStamped), both east-north-up. All
+/// have the image's stamp.
 class AutopilotNodelet : public StageNodelet {
  public:
   AutopilotNodelet() : StageNodelet("autopilot") {}
@@ -22,7 +23,7 @@ class AutopilotNodelet : public StageNodelet {
 
  private:
   using Inputs = Pairing<sensor_msgs::Range, geometry_msgs::PoseWithCovarianceStamped>;
-  // Apart, as pairs without a motion have a height and a pose all the same.
+  // Paired separately, because pairs without a motion still have a height and a pose.
   using Movements =
       Pairing<geometry_msgs::TwistWithCovarianceStamped, geometry_msgs::PoseWithCovarianceStamped>;
 
@@ -40,7 +41,7 @@ class AutopilotNodelet : public StageNodelet {
     movements_ = std::make_unique<Movements>(
         exactPairing(), resolved({"twist", "pose"}),
         [this](const auto& twist, const auto& pose) { passVelocity(*twist, *pose); });
-    // Under the names of this nodelet's namespace, to be remapped as a whole.
+    // The names are in the namespace of this nodelet, so that all can be remapped together.
     range_publisher_ = getNodeHandle().advertise<sensor_msgs::Range>("autopilot/range", kStageQueue);
     pose_publisher_ =
         getNodeHandle().advertise<geometry_msgs::PoseWithCovarianceStamped>("autopilot/pose", kStageQueue);
@@ -71,10 +72,10 @@ class AutopilotNodelet : public StageNodelet {
     complainOf("no velocity sent for", velocity_);
   }
 
-  /// Of what was to be sent since the last complaint.
+  /// Messages of one kind since the last complaint.
   struct Sent {
     bool lately = false;
-    std::string why_not;  // of the last that was not
+    std::string why_not;  // reason for the last one that was not sent
   };
   void complainOf(const char* what, Sent& sent) {
     if (!sent.lately && !sent.why_not.empty())

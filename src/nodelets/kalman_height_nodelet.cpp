@@ -24,17 +24,19 @@
 
 namespace uav_landing {
 
-/// Height by reconstruction and Kalman filter; the landing estimate and what is made of it.
-///
+/// Height by reconstruction and Kalman filter, the landing estimate, and what is made of it.
 /// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, drawn_runway_width,
-/// drawn_runway_length, ellipsoid_scale, drop_frames and the common ones of NodeParameters. Subscribes
-/// stereo_depth, approach_angle and {left,right}/camera_info, without publish_tf only while somebody wants
-/// the output; /tf_static (lever arm) and /tf (parents of frames). Publishes landing_estimate
-/// (LandingEstimate): one message per pair, and without a pair for max_age one with status LOST (not when
-/// drop_frames is false: recorded pairs do not grow old). height (Range): NaN while not valid. pose
-/// (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid. twist
-/// (TwistWithCovarianceStamped), of the child in its own axes: while the height is valid and the motion
-/// known. markers (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
+/// drawn_runway_length, ellipsoid_scale, drop_frames and the common ones of NodeParameters.
+/// Subscribes stereo_depth, approach_angle and {left,right}/camera_info; without publish_tf only while
+/// somebody wants the output. Subscribes /tf_static (lever arm) and /tf (parents of frames).
+/// Publishes:
+/// - landing_estimate (LandingEstimate): one message per pair. Without a pair for max_age, one with status
+/// LOST (not when drop_frames is false, as recorded pairs do not grow old).
+/// - height (Range): NaN while not valid.
+/// - pose (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid.
+/// - twist (TwistWithCovarianceStamped) of the child in its own axes: while the height is valid and the
+/// motion known.
+/// - markers (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
 class KalmanHeightNodelet : public StageNodelet {
  public:
   KalmanHeightNodelet() : StageNodelet("kalman_height") {}
@@ -81,7 +83,7 @@ class KalmanHeightNodelet : public StageNodelet {
     return getNodeHandle().advertise<Message>(topic, queue, onConnection(), onConnection());
   }
 
-  // Who listens to the transform cannot be told, so with it the chain always runs.
+  // Nobody can tell who listens to a transform, so with publish_tf the chain always runs.
   bool wanted() const override {
     return node_.publish_tf ||
            estimate_publisher_.getNumSubscribers() + range_publisher_.getNumSubscribers() +
@@ -119,7 +121,7 @@ class KalmanHeightNodelet : public StageNodelet {
       NODELET_WARN("%s: /use_sim_time is set and nobody publishes /clock", getName().c_str());
   }
 
-  /// The estimate may be valid all the same, so this is not said each time.
+  /// The estimate may be valid nevertheless, so this is not said every time.
   void complainOfFrames() {
     const std::lock_guard<std::mutex> lock(rig_mutex_);
     if (frame_reminder_.due(frame_complaint_))
@@ -189,13 +191,14 @@ class KalmanHeightNodelet : public StageNodelet {
     return rig_failure_;
   }
 
-  /// Returns what was published: of the child frame, and not valid where its transform is missing.
+  /// Returns the estimate published: it is that of the child frame, and not valid when its transform is
+  /// missing.
   LandingResult publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
                         const GroundPlane& plane, const ApproachAngleResult::Motion& step,
                         const sensor_msgs::CameraInfo& left_info) {
     left_frame_ = left_info.header.frame_id;
     const RigFrames::Child child = frames_->find(left_frame_);
-    // camera_info's R turns the camera as it is mounted into the rectified one.
+    // R of camera_info turns the camera as it is mounted into the rectified one.
     const Eigen::Isometry3d rectified_from_left(Eigen::Quaterniond(cameras_.left().R));
     const Eigen::Isometry3d rectified_from_child =
         child.left_from_child ? rectified_from_left * *child.left_from_child : Eigen::Isometry3d::Identity();
@@ -246,7 +249,7 @@ class KalmanHeightNodelet : public StageNodelet {
 
   void broadcast(const std_msgs::Header& header, const std::string& child_frame,
                  const Eigen::Isometry3d& runway_from_child) {
-    // One transform per stamp: the pairing drops stamps that repeat.
+    // One transform per stamp, as the pairing drops repeated stamps.
     if (!node_.publish_tf || !runway_from_child.matrix().allFinite()) return;
     geometry_msgs::TransformStamped transform = tf2::eigenToTransform(runway_from_child);
     transform.header = header;
@@ -255,24 +258,24 @@ class KalmanHeightNodelet : public StageNodelet {
   }
 
   static bool clockIsMissing() { return ros::Time::isSimTime() && ros::Time::now().isZero(); }
-  /// By the ROS clock or, while /use_sim_time is set and nobody publishes /clock, that of the machine.
+  /// ROS time, or the machine's time while /use_sim_time is set and nobody publishes /clock.
   static ros::Time now() {
     if (!clockIsMissing()) return ros::Time::now();
     const ros::WallTime wall = ros::WallTime::now();
     return {wall.sec, wall.nsec};
   }
 
-  /// Says that there is no estimate when no pair came for max_age, once per max_age of the clock.
+  /// When no pair came for max_age, publishes that there is no estimate, once per max_age of the clock.
   void checkAge() {
-    if (clockIsMissing() && last_stamp_.isZero()) return;  // it may be a bag that is about to begin
+    if (clockIsMissing() && last_stamp_.isZero()) return;  // a bag may be about to begin
     const ros::Time now = KalmanHeightNodelet::now();
     const ros::Duration max_age(parameters_.max_age);
     if (last_pair_.isZero() || now < last_pair_) last_pair_ = now;  // just started, or the clock was set back
     if (now < last_timeout_) last_timeout_ = now;
     if (now - std::max(last_pair_, last_timeout_) < max_age) return;
     last_timeout_ = now;
-    // In the clock of the images, which may be another one than that of this machine.
-    // Adding up throws where a stamp is at the end of what can be told.
+    // The stamp is in the clock of the images, which may differ from this machine's clock. The sum would
+    // throw for a stamp at the end of the range.
     const ros::Duration age = now - last_pair_;
     const bool own_clock = !last_stamp_.isZero() && last_stamp_ < ros::TIME_MAX - age;
     const ros::Time stamp = own_clock ? last_stamp_ + age : now;
@@ -297,7 +300,7 @@ class KalmanHeightNodelet : public StageNodelet {
     if (marker_publisher_.getNumSubscribers() > 0) {
       LandingScene scene = drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(),
                                        path_.track(), path_.runwayWidth());
-      // The images' clock may be another one: tf would take nothing older than this for what comes.
+      // The images may have another clock: tf would then ignore their older transforms.
       if (!own_clock) scene.view.header.stamp = ros::Time(0, 1);
       show(scene);
     }
@@ -345,7 +348,7 @@ class KalmanHeightNodelet : public StageNodelet {
   ros::Time last_pair_, last_timeout_;  // by now()
   ros::Time last_stamp_;                // of the last pair
   std::mutex rig_mutex_;
-  // Of the last pair, for the diagnostics.
+  // Values of the last pair, for the diagnostics.
   RigRotation rig_rotation_;
   std::vector<TestResult> test_results_;
   double protection_level_ = kUnknown, alert_limit_ = kUnknown;

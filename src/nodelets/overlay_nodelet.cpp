@@ -16,7 +16,6 @@
 namespace uav_landing {
 
 /// Draws what the other nodelets found over the left image.
-///
 /// Parameters: OverlayParameters, which dynamic_reconfigure may change in flight, and the common ones of
 /// NodeParameters.
 /// Subscribes left/image_rect, {left,right}/camera_info, stereo_depth, approach_angle and landing_estimate,

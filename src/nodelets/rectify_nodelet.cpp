@@ -24,17 +24,18 @@
 namespace uav_landing {
 
 /// Pairs and rectifies the images of two cameras.
-///
 /// Parameters: RectifyParameters; camera, left_image, left_info, right_image, right_info, image_transport,
-/// drop_frames, backlog and the common ones of NodeParameters. Subscribes
-/// CAMERA/{left,right}/{image_raw, camera_info}, or the topics that are named, while somebody wants the
-/// output. Pairs that repeat the pictures of the one before are left out where all of them come so. Publishes
-/// {left,right}/{image_rect (mono8), camera_info} and right/time_reference, all with the stamp of the left
-/// image and in the frames of the cameras; the time reference holds the stamp of the right image (the skew).
-/// A pair whose image or calibration cannot be used is left out, and the log says what is wrong with it.
-/// Where the rig is mounted upside down, left and right are exchanged on the way, and camera_info is that of
-/// the rectified pair as it would stand upright; so it is where the baseline is aslant (see workingPair()).
-/// Else it is what came.
+/// drop_frames, backlog and the common ones of NodeParameters.
+/// Subscribes CAMERA/{left,right}/{image_raw, camera_info}, or the topics that are named, while somebody
+/// wants the output. A pair that repeats the images of the previous one is skipped, if all pairs come
+/// repeatedly.
+/// Publishes {left,right}/{image_rect (mono8), camera_info} and right/time_reference. All have the stamp of
+/// the left image and the frames of the cameras. The time reference contains the stamp of the right image
+/// (the skew). A pair with an unusable image or calibration is dropped, and the log says what is wrong with
+/// it.
+/// camera_info is passed on as it came, with two exceptions (see workingPair()). For a rig that is mounted
+/// upside down, left and right are exchanged, and camera_info is that of the rectified pair turned upright.
+/// For a slanted baseline, it is that of the levelled pair.
 class RectifyNodelet : public StageNodelet {
  public:
   RectifyNodelet() : StageNodelet("rectify") {}
@@ -46,23 +47,23 @@ class RectifyNodelet : public StageNodelet {
   }
 
  private:
-  /// The stages work on one pair each, and one waits.
+  /// Each stage works on one pair, and one pair waits.
   static constexpr size_t kPairsInFlight = 3;
   static constexpr uint32_t kOutputQueue = 20;
-  static constexpr size_t kRowsLookedAt = 20;  // of so many pairs, one
+  static constexpr size_t kRowsLookedAt = 20;  // one in so many pairs is looked at
 
   struct Job {
     sensor_msgs::ImageConstPtr left, right;
     sensor_msgs::CameraInfoConstPtr left_info, right_info;
   };
   struct View {
-    std::string camera;  // left or right, as its topics have it
+    std::string camera;  // left or right, as in its topics
     std::string topic;   // of the raw image
     image_transport::Subscriber image_subscriber;
     ros::Subscriber info_subscriber;
     image_transport::Publisher image_publisher;
     ros::Publisher info_publisher;
-    std::optional<CameraCalibration> calibration;  // that the rectifier was made for
+    std::optional<CameraCalibration> calibration;  // of the rectifier
     Expected<Rectifier> rectifier = tl::make_unexpected(Failure{Reason::kNotYet, ""});
   };
 
@@ -70,7 +71,8 @@ class RectifyNodelet : public StageNodelet {
     parameters_ = loadParametersOrThrow<RectifyParameters>();
     range_ = PairGreyRange(shared_.rig.bits);
     RectifyParameters pairing = parameters_;
-    // In order and complete: the four inputs are read from four connections, and one may be far ahead.
+    // Recorded pairs are processed in order and completely. The four inputs come from four connections, and
+    // one may be far ahead of the others.
     if (!node_.drop_frames) pairing.queue_size = std::max(pairing.queue_size, node_.backlog);
     input_queue_ = static_cast<uint32_t>(pairing.queue_size);
 
@@ -89,7 +91,8 @@ class RectifyNodelet : public StageNodelet {
     worker_ = std::thread([this] { work(); });
   }
 
-  // To subscribe by one that is not there throws, in whatever thread a subscriber connects.
+  // Subscribing with a transport that is not installed would throw in any thread in which a subscriber
+  // connects.
   void checkTransport() {
     const std::vector<std::string> there = transport_->getLoadableTransports();
     if (std::find(there.begin(), there.end(), "image_transport/" + node_.image_transport) == there.end())
@@ -177,7 +180,7 @@ class RectifyNodelet : public StageNodelet {
         if (!job_came_.wait_for(lock, milliseconds(100), [this] { return stopping_ || !jobs_.empty(); }))
           continue;
       }
-      // Waiting comes before taking the job: what is taken is then the newest.
+      // It waits before it takes the job, so that it takes the newest one.
       if (!in_flight_->waitUntilBelow(kPairsInFlight, milliseconds(100))) continue;
       Job job;
       {
@@ -201,7 +204,7 @@ class RectifyNodelet : public StageNodelet {
     sensor_msgs::ImagePtr left, right;
     {
       const ScopedTimer timer(timings, "rectify");
-      // Both, so that the log names both when both are wrong.
+      // Both are tried, so that the log names both when both are wrong.
       left = rectify(left_, job.left, working_.left);
       right = rectify(right_, job.right, working_.right);
     }
@@ -213,14 +216,15 @@ class RectifyNodelet : public StageNodelet {
   }
 
   using StageNodelet::refuse;
-  /// Says what is wrong with a camera's calibration.
+  /// Logs what is wrong with a camera's calibration.
   void refuse(const View& view, const Failure& failure) {
     refuse(ofCameraInfo({failure.reason, view.camera + " " + failure.detail}).detail + " (" +
            infoTopic(view) + ")");
   }
 
-  /// What cannot be used as a pair stays as it is: the stages behind say what is wrong with it. They would
-  /// take an exchanged one for another one, so it goes no farther.
+  /// Makes the working pair of new cameras. Calibrations that do not make a pair are passed on as they are,
+  /// and the stages behind say what is wrong. But an upside-down pair stops here, because they would take it
+  /// for another one.
   void followCameras(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right) {
     if (!cameras_.changed(left, right)) return;
     const bool exchanged = shared_.rig.upside_down;
@@ -247,7 +251,8 @@ class RectifyNodelet : public StageNodelet {
       refuse(view, failure);
       return nullptr;
     }
-    // The image comes before the rectifier: maps of a size that no image has would fill the memory.
+    // The image is checked before the rectifier is made, because maps of a size that no image has would fill
+    // the memory.
     const auto mono = toMono8(raw, calibration, view.topic, range_.range());
     if (!mono) {
       refuse(mono.error().detail);
@@ -320,7 +325,7 @@ class RectifyNodelet : public StageNodelet {
   PictureWatch pictures_;
   size_t looked_ = 0;
   CameraPair working_;
-  Failure wrong_rig_;  // why there is no working pair of a rig upside down
+  Failure wrong_rig_;  // why a rig that is upside down has no working pair
   PairGreyRange range_{0};
   std::atomic<bool> renew_range_{false};  // with the next pair
   ros::Publisher skew_publisher_;

@@ -26,14 +26,15 @@ constexpr char kRightTime[] = "right/time_reference";
 constexpr char kStereoDepth[] = "stereo_depth", kApproachAngle[] = "approach_angle";
 constexpr char kLandingEstimate[] = "landing_estimate";
 
-/// Messages that a stage may be behind. Much more than the pairs in flight, so that nothing is lost between
-/// stages.
+/// Messages that a stage may be behind. It is much more than the pairs in flight, so that nothing is lost
+/// between stages.
 constexpr uint32_t kStageQueue = 20;
 
-/// For a complaint that lasts: when to say it again.
+/// Tells when a complaint that lasts has to be logged again.
 class Reminder {
  public:
-  /// True when this is another complaint than at the last call, or was said a minute ago. "": there is none.
+  /// True for a complaint that differs from the last call's, or that was logged a minute ago. "": there is
+  /// none.
   bool due(const std::string& complaint);
 
  private:
@@ -41,36 +42,37 @@ class Reminder {
   ros::WallTime said_;
 };
 
-/// What all nodelets of the chain share: parameters, those of rig and runway as well, are checked before
-/// anything is subscribed; inputs are
-/// subscribed while somebody wants the output; a missing input is named in the log; diagnostics; no exception
-/// leaves a callback; topics between nodelets of one process are linked once.
+/// Common part of all nodelets of the chain. Parameters, also those of rig and runway, are checked before
+/// anything is subscribed. Inputs are subscribed while somebody wants the output. A missing input is named in
+/// the log. It has diagnostics. No exception leaves a callback. Topics between nodelets of one process are
+/// linked once.
 class StageNodelet : public nodelet::Nodelet {
  protected:
-  /// section: of the parameters, and the name in diagnostics.
+  /// section: of the parameters; also the name in the diagnostics.
   explicit StageNodelet(const char* section) : section_(section) {}
 
-  /// Loads the parameters, creates what needs them, advertises with onConnection(). In a process only one
-  /// nodelet at a time is in here or in subscribe(), so neither may wait for callbacks or other nodelets.
+  /// Loads the parameters, creates what needs them, and advertises with onConnection(). Only one nodelet of a
+  /// process at a time runs this function or subscribe(), so neither may wait for callbacks or for other
+  /// nodelets.
   virtual void setUp() = 0;
-  /// Somebody wants the output.
+  /// Whether somebody wants the output.
   virtual bool wanted() const = 0;
-  /// In the callbacks' thread, like unsubscribe(); that one also in the thread that destroys the nodelet.
+  /// Both run in the callbacks' thread; unsubscribe() also in the thread that destroys the nodelet.
   virtual void subscribe() = 0;
   virtual void unsubscribe() = 0;
   /// Counts per input, and why nothing was paired since the last call ("" when something was).
   virtual std::vector<InputWatch::Input> inputs() const = 0;
   virtual std::string complaint() = 0;
-  /// More for the log, once per complaint_period.
+  /// Further lines for the log, once per complaint_period.
   virtual void complainMore() {}
-  /// Service ~reset: what earlier pairs left behind is forgotten; messages that wait to be paired stay. Runs
-  /// like a callback.
+  /// Service ~reset: forgets everything from earlier pairs; messages that wait to be paired stay. Runs like a
+  /// callback.
   virtual void forget() {}
-  /// Values of its own for the diagnostics; called by a timer.
+  /// Further values for the diagnostics; called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
-  /// Reads those that the nodelets share into shared_, and the private parameters, also into node_. Throws
-  /// with the parameter's name, so that the nodelet is not loaded.
+  /// Reads the shared parameters into shared_, and the private parameters, also into node_. Throws with the
+  /// parameter's name, so that the nodelet is not loaded.
   template <class Section>
   Section loadParametersOrThrow() {
     const Failure shared_failure = loadSharedParameters(getNodeHandle(), shared_);
@@ -83,17 +85,18 @@ class StageNodelet : public nodelet::Nodelet {
     return parameters;
   }
 
-  /// The masks that rig/left_mask and rig/right_mask name, after loadParametersOrThrow(). Throws likewise.
+  /// The masks of rig/left_mask and rig/right_mask. Call it after loadParametersOrThrow(); it throws in the
+  /// same way.
   RigMasks loadMasksOrThrow();
 
-  /// Throws what setUp() is to throw, after it is in the log.
+  /// Throws the exception of setUp() after logging it.
   [[noreturn]] void refuseToLoad(const std::string& problem);
 
-  /// For publishers: (un)subscribes as subscribers come and go.
+  /// For publishers: subscribes and unsubscribes as subscribers come and go.
   ros::SubscriberStatusCallback onConnection();
   void updateSubscription();
 
-  /// Runs a callback's work; an exception is logged and counted.
+  /// Runs the work of a callback; an exception is logged and counted.
   template <class Work>
   void guard(Work&& work) {
     try {
@@ -102,8 +105,8 @@ class StageNodelet : public nodelet::Nodelet {
       refuse(error.what());
     }
   }
-  /// The result of a stage, which is a failure also when it could not be computed at all: there is a message
-  /// for every pair.
+  /// The result of a stage. If it cannot be computed at all, it is a failure, because every pair has a
+  /// message.
   template <class Result, class Work>
   static Result attempt(Work&& work) {
     Result result;
@@ -116,17 +119,16 @@ class StageNodelet : public nodelet::Nodelet {
     }
     return result;
   }
-  /// Counts an input that cannot be used and says why, in the log at most once per complaint_period.
+  /// Counts an input that cannot be used, and logs why, at most once per complaint_period.
   void refuse(const std::string& problem);
 
-  /// Puts a failure that a person has to mend (wrong input, cameras swapped) in the log, as refuse() does.
+  /// Logs a failure that a person has to correct (wrong input, cameras swapped), as refuse() does.
   void warnOf(const Failure& failure);
 
-  /// What is unlikely about the calibrations, from now on: in the diagnostics as long as it holds, in the log
-  /// once.
+  /// Warnings about the calibrations from now on: in the diagnostics as long as they hold, in the log once.
   void warnOfRig(const std::vector<std::string>& warnings);
 
-  /// How everything behind rectify is paired: that has left out what was late.
+  /// Pairing of the nodelets behind rectify, which has already dropped late messages.
   static RectifyParameters exactPairing() {
     RectifyParameters parameters;
     parameters.queue_size = kStageQueue;
@@ -149,7 +151,7 @@ class StageNodelet : public nodelet::Nodelet {
         ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
   }
 
-  /// To be called first by every destructor: no callback runs afterwards.
+  /// Every destructor must call it first; no callback runs afterwards.
   void stop();
 
   NodeParameters node_;
@@ -159,7 +161,7 @@ class StageNodelet : public nodelet::Nodelet {
  private:
   void onInit() final;
   void subscribeIfWanted();
-  /// Since when the inputs are subscribed, s; none while nobody wants the output.
+  /// Time since the inputs were subscribed, s; none while nobody wants the output.
   std::optional<double> subscribedFor() const;
   void complain();
   void diagnose();
@@ -174,7 +176,7 @@ class StageNodelet : public nodelet::Nodelet {
   Reminder complaint_reminder_, shortage_reminder_;
   std::vector<InputWatch::Input> inputs_before_;  // at the last complaint
   std::mutex refusal_mutex_;
-  ros::WallTime last_refusal_;  // logged
+  ros::WallTime last_refusal_;  // time of the last one that was logged
 };
 
 }  // namespace uav_landing

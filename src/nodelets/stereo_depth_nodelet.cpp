@@ -15,10 +15,9 @@
 namespace uav_landing {
 
 /// Sparse stereo depth and the ground plane.
-///
 /// Parameters: StereoDepthParameters and the common ones of NodeParameters.
 /// Subscribes {left,right}/{image_rect, camera_info} and right/time_reference of rectify, while somebody
-/// wants the output. Publishes stereo_depth (StereoDepth): one message per pair, also when there is no plane.
+/// wants the output. Publishes stereo_depth (StereoDepth): one message per pair, also without a plane.
 class StereoDepthNodelet : public StageNodelet {
  public:
   StereoDepthNodelet() : StageNodelet("stereo_depth") {}
@@ -90,8 +89,10 @@ class StereoDepthNodelet : public StageNodelet {
 
   void noteOwnFrame(double share) {
     if (share > 0 && !own_frame_told_)
-      NODELET_INFO("%s: left out: %.1f %% of the left picture does not move with the ground",
-                   getName().c_str(), 100 * share);
+      NODELET_INFO(
+          "%s: %.1f %% of the left image does not move with the ground (the aircraft's own frame) and is not "
+          "used",
+          getName().c_str(), 100 * share);
     own_frame_told_ = own_frame_told_ || share > 0;
     own_frame_ = share;
   }
@@ -103,7 +104,7 @@ class StereoDepthNodelet : public StageNodelet {
   std::unique_ptr<Inputs> pairing_;
   std::unique_ptr<PairsInFlight::Consumer> in_flight_;
   RigStage<StereoDepthStage> stage_;
-  std::atomic<double> own_frame_{0};  // share of the left picture; the diagnostics have their own thread
+  std::atomic<double> own_frame_{0};  // share of the left image; the diagnostics have their own thread
   bool own_frame_told_ = false;
 };
 

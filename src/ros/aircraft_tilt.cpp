@@ -9,9 +9,9 @@
 namespace uav_landing {
 namespace {
 
-/// What to mend where the mounting turns the aircraft's up axis too far from the camera's.
+/// What to correct when the mounting turns the aircraft's up axis too far from the camera's.
 std::string wrongMounting(const Eigen::Matrix3d& rectified_from_child, const std::string& left_frame) {
-  // Upside down, but with the camera looking ahead: the aircraft's z axis is down, or the camera's y axis up.
+  // Upside down while the camera looks ahead: the aircraft's z axis is down, or the camera's y axis is up.
   const bool upside_down = rectified_from_child(1, 2) > kMinCosTilt;
   const bool looks_ahead = rectified_from_child(2, 0) > kMinCosTilt;
   if (upside_down && looks_ahead)
@@ -24,7 +24,7 @@ std::string wrongMounting(const Eigen::Matrix3d& rectified_from_child, const std
 }  // namespace
 
 double tiltInDegrees(double cos_tilt) {
-  // Rotations are orthogonal to the last digit but one.
+  // Rotations are orthogonal to the last digit but one, so the cosine may slightly exceed 1.
   return std::round(std::acos(std::clamp(cos_tilt, -1.0, 1.0)) * 180 / M_PI);
 }
 

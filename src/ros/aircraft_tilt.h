@@ -8,19 +8,19 @@
 
 namespace uav_landing {
 
-/// Cosine of 60 degrees. No landing aircraft is tilted by more: then a frame has other axes than it should.
+/// Cosine of 60 degrees. No landing aircraft is tilted by more, so beyond it a frame has wrong axes.
 constexpr double kMinCosTilt = 0.5;
 
 /// Cosine of the angle between a frame's z axis and the vertical. runway_from_frame: its rotation.
 inline double cosTilt(const Eigen::Matrix3d& runway_from_frame) { return runway_from_frame(2, 2); }
-/// That angle for people, in whole degrees.
+/// This angle for people, in whole degrees.
 double tiltInDegrees(double cos_tilt);
 
-/// Whether the axes of the rig's frames can be right: the aircraft's up axis has to be within 60 degrees of
-/// the vertical. Body frames (forward-left-up, forward-right-down) as frame_id of a camera turn it by about
-/// 90 degrees, and the lever arm with it. The mounting alone shows that, with the rectified camera taken as
-/// level, before an attitude is known and however far the camera looks down. The estimated attitude counts
-/// while something is valid, as a wrong one has a reason of its own.
+/// Tests whether the axes of the rig's frames can be right: the aircraft's up axis has to be within 60
+/// degrees of the vertical. A camera with a body frame (forward-left-up, forward-right-down) as frame_id
+/// turns this axis, and the lever arm, by about 90 degrees. The mounting alone shows that, with the rectified
+/// camera taken as level. So it is found before an attitude is known, and however far the camera looks down.
+/// The estimated attitude counts only while something is valid, as a wrong attitude has a reason of its own.
 /// rectified_from_child: rotation of the frame that is estimated into the rectified left camera.
 /// left_frame: frame_id of the left camera_info.
 Failure wrongTilt(const RigFrames::Child& child, const Eigen::Matrix3d& rectified_from_child,

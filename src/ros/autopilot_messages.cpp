@@ -16,9 +16,9 @@ namespace {
 using Covariance = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using CovarianceMap = Eigen::Map<const Covariance>;
 
-constexpr double kMaxYawStddev = 0.1;  // rad; unknown before the runway is seen
+constexpr double kMaxYawStddev = 0.1;  // rad; the yaw is unknown before the runway is seen
 
-/// Of the pose's up axis against the vertical.
+/// Cosine of the angle between the pose's up axis and the vertical.
 double cosTiltOf(const geometry_msgs::PoseWithCovarianceStamped& pose) {
   Eigen::Isometry3d runway_from_aircraft;
   tf2::fromMsg(pose.pose.pose, runway_from_aircraft);
@@ -31,7 +31,7 @@ Eigen::Isometry3d enuFromRunway(const AutopilotParameters& parameters) {
   return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
 }
 
-/// Turns both halves of a pose's or a twist's covariance.
+/// Turns both halves of the covariance of a pose or a twist.
 Covariance turned(const Covariance& covariance, const Eigen::Matrix3d& rotation) {
   Covariance turn = Covariance::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;

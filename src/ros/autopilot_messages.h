@@ -10,7 +10,8 @@
 
 namespace uav_landing {
 
-/// What the autopilot is given (nodelet autopilot). visit() as in uav_landing/parameters/parameters.h.
+/// Parameters of the messages to the autopilot (nodelet autopilot). visit(): as in
+/// uav_landing/parameters/parameters.h.
 struct AutopilotParameters {
   double max_range = 655.0;
   double max_rate = 50.0;
@@ -36,34 +37,34 @@ struct AutopilotParameters {
 };
 
 /// The reading of a range finder that looks along the aircraft's down axis: height over the cosine of the
-/// tilt, which an autopilot multiplies by again. The pose is that of the aircraft, forward-left-up. None
-/// without a height, above max_range, below the ground or tilted by more than 60 degrees.
+/// tilt. An autopilot multiplies by this cosine again. pose: of the aircraft, forward-left-up. None without a
+/// height, above max_range, below the ground, or tilted by more than 60 degrees.
 std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
                                                  const geometry_msgs::PoseWithCovarianceStamped& pose,
                                                  const AutopilotParameters& parameters);
 
-/// Why there is none.
+/// Why autopilotRange() has none.
 std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose,
                        const AutopilotParameters& parameters);
 
-/// The pose with east, north, up for axes, covariance included. None without the runway's heading, when a
-/// number is not finite, the covariance not positive definite, the place not known well enough, or tilted by
-/// more than 60 degrees: that is no aircraft but a camera, whose z axis is forward.
+/// The pose in the axes east, north, up, covariance included. None in four cases: without the runway's
+/// heading; when a number is not finite or the covariance not positive definite; when the place is not known
+/// well enough; when it is tilted by more than 60 degrees, as this is a camera, whose z axis is forward.
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
-/// The aircraft's own movement (twist, in its axes) with east, north, up for axes; the uncertainty of the
-/// attitude turns with it. None without the runway's heading, before the runway's direction is seen (yaw
-/// known to 0.1 rad, 1 sigma), when a number is not finite, the covariance not positive definite, or tilted
-/// by more than 60 degrees.
+/// The aircraft's own motion (twist, in its axes) in the axes east, north, up. The uncertainty of the
+/// attitude is turned as well. None in four cases: without the runway's heading; before the runway's
+/// direction is seen (yaw known to 0.1 rad, 1 sigma); when a number is not finite or the covariance not
+/// positive definite; when tilted by more than 60 degrees.
 std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
     const geometry_msgs::TwistWithCovarianceStamped& twist,
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
-/// Why there is none, of a runway with a heading.
+/// Why autopilotVelocity() has none, for a runway with a heading.
 std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose);
 
-/// Whether somebody said where the runway leads; else the range is all there is.
+/// Whether the runway's heading is given; otherwise only the range is sent.
 bool headingKnown(const AutopilotParameters& parameters);
 
 }  // namespace uav_landing

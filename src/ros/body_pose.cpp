@@ -18,7 +18,7 @@ void refuseHeight(const Failure& failure, LandingResult& body) {
 Failure levelAbove(double limit, double level, double by) {
   if (!(level > limit)) return {};
   std::ostringstream text;
-  text.precision(4);  // as the reasons of the stages
+  text.precision(4);  // as in the reasons of the stages
   text << "the lever arm adds " << by << " m to the protection level: " << level << " m, alert limit "
        << limit << " m";
   return {Reason::kUncertain, text.str()};
@@ -36,7 +36,7 @@ Eigen::Matrix3d runwayFromCamera(const LandingResult& camera) {
          AngleAxisd(camera.roll, Vector3d::UnitX()) * body_from_optical;
 }
 
-// n = (sin roll cos pitch, cos roll cos pitch, -sin pitch), and the height moves by -n.point.
+// n = (sin roll cos pitch, cos roll cos pitch, -sin pitch), and the height changes by -n.point.
 double heightByRoll(const LandingResult& camera, const Eigen::Vector3d& point) {
   return -Eigen::Vector3d(std::cos(camera.roll), -std::sin(camera.roll), 0).dot(point) *
          std::cos(camera.pitch);
@@ -87,7 +87,7 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
     body.vertical_speed = body.vertical_speed_variance = kUnknown;
     return body;
   }
-  // The normal of the frame before, as that frame's camera saw it; the point is at rest in the camera frame.
+  // The normal at the previous pair, in that pair's camera frame. The point is at rest in the camera frame.
   const Eigen::AngleAxisd now_from_then(
       angle, angle > 0 ? (step.rotation / angle).eval() : Eigen::Vector3d::UnitX());
   const Eigen::Vector3d n_then = now_from_then.inverse() * n;

@@ -12,7 +12,7 @@ std::optional<BodyTwist> bodyTwist(const LandingResult& camera, double duration,
       !camera.twist_covariance.allFinite() || !std::isfinite(duration))
     return std::nullopt;
   Matrix6d of_camera = camera.twist_covariance;
-  // Of the middle of the step.
+  // The mean velocity is that of the middle of the step.
   of_camera.diagonal().head<3>().array() += std::pow(0.5 * duration * acceleration_stddev, 2);
   const Eigen::Matrix3d turn = camera_from_child.linear().transpose();
   const Eigen::Vector3d arm = camera_from_child.translation();

@@ -7,15 +7,16 @@
 
 namespace uav_landing {
 
-/// How a frame that is fixed to the aircraft moves against the ground, in its own axes.
+/// Motion of a frame that is fixed to the aircraft against the ground, in its own axes.
 struct BodyTwist {
   Eigen::Vector3d linear, angular;  ///< of its origin, m/s; rad/s
   Matrix6d covariance;              ///< linear first
 };
 
-/// camera: estimate of the left rectified camera, whose velocity is the mean over a step of this duration, s.
-/// acceleration_stddev: m/s^2, by which the velocity now may be another. camera_from_child: the frame's pose
-/// in the rectified left camera's frame. None while the velocity is not known.
+/// Twist of a frame from the estimate of the left rectified camera. duration: of the frame step over which
+/// the camera's velocity is the mean, s. acceleration_stddev: m/s^2, as the velocity now may differ from this
+/// mean. camera_from_child: pose of the frame in the rectified left camera's frame. None while the velocity
+/// is unknown.
 std::optional<BodyTwist> bodyTwist(const LandingResult& camera, double duration, double acceleration_stddev,
                                    const Eigen::Isometry3d& camera_from_child);
 

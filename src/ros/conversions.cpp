@@ -76,11 +76,11 @@ StereoDepthResult toResult(const StereoDepth& message) {
   fromArray(message.plane_row_covariance, result.row_covariance);
   fromArray(message.plane_rate, result.plane_rate);
   fromArray(message.plane_by_rate, result.plane_by_rate);
-  // Who does not know the field leaves it 0.
+  // A publisher that does not know this field leaves it 0.
   result.lasting_share = message.plane_lasting_share == 0 ? kUnknown : message.plane_lasting_share;
   fromArray(message.plane_below, result.below.g);
   fromArray(message.plane_below_covariance, result.below.covariance);
-  // Who does not know the field leaves it empty.
+  // A publisher that does not know this field leaves it zero.
   if (result.below.g.isZero()) result.below = GroundPlane();
   result.curvature = message.surface_curvature;
   result.curvature_variance = message.surface_curvature_variance;

@@ -11,8 +11,9 @@
 
 namespace uav_landing {
 
-// Stage results and their messages, lossless both ways: messages carry float64, so that a stage computes the
-// same from a message as from the result itself. A result's stamp is header.stamp in seconds.
+// Stage results and their messages. The conversion loses nothing in either direction: messages carry float64,
+// so a stage computes the same from a message as from the result itself. A result's stamp is header.stamp in
+// seconds.
 
 StereoDepth toMessage(const StereoDepthResult& result, const std_msgs::Header& header, double compute_ms);
 StereoDepthResult toResult(const StereoDepth& message);

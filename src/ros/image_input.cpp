@@ -13,8 +13,8 @@ namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
 
-/// How an encoding is read. OpenCV's names say how many channels there are and not which; most drivers that
-/// use them have a grey or a blue-green-red picture.
+/// How an encoding is read. OpenCV's names tell the number of channels but not which they are. Most drivers
+/// that use them have a grey or a blue-green-red image.
 struct Encoding {
   const char* name;
   const char* like;  // the name that cv_bridge knows it by
@@ -23,7 +23,7 @@ struct Encoding {
   bool has16Bits() const { return encodings::bitDepth(like) == 16; }
 };
 
-// sensor_msgs of Noetic does not know it.
+// sensor_msgs of Noetic does not know this name.
 constexpr const char* kYuy2 = "yuv422_yuy2";
 
 const Encoding kEncodings[] = {
@@ -63,7 +63,7 @@ const Encoding* encodingOf(const sensor_msgs::Image& image) {
   return found == std::end(kEncodings) ? nullptr : found;
 }
 
-/// What is wrong with the message, "" when nothing is.
+/// What is wrong with the message; "": nothing.
 std::string checkImage(const sensor_msgs::Image& image, const cv::Size& expected) {
   std::ostringstream problem;
   const Encoding* encoding = encodingOf(image);
@@ -111,11 +111,11 @@ sensor_msgs::ImageConstPtr inNativeByteOrder(const sensor_msgs::ImageConstPtr& i
   return swapped;
 }
 
-/// The message's pixels as they are, by the name that cv_bridge knows them by. They keep the message alive.
+/// The message's pixels as they are, under the name that cv_bridge knows. They keep the message alive.
 cv_bridge::CvImageConstPtr shared(const sensor_msgs::ImageConstPtr& image, const char* like) {
   if (image->encoding == like) return cv_bridge::toCvShare(image);
   const int depth = encodings::bitDepth(like) == 16 ? CV_16U : CV_8U;
-  // The pixels are not written to: CvImageConstPtr is of a constant image.
+  // The pixels are not written to, as CvImageConstPtr points to a constant image.
   auto* data = const_cast<uint8_t*>(image->data.data());
   const cv::Mat pixels(static_cast<int>(image->height), static_cast<int>(image->width),
                        CV_MAKETYPE(depth, encodings::numChannels(like)), data, image->step);
@@ -141,7 +141,7 @@ cv_bridge::CvImageConstPtr grey(const sensor_msgs::ImageConstPtr& image, const G
   return mono;
 }
 
-/// The values of an image of 16 bit, empty for others.
+/// The values of a 16-bit image; empty for others.
 cv::Mat valuesOf16Bits(const sensor_msgs::ImageConstPtr& image, const CameraCalibration& calibration) {
   if (!checkImage(*image, calibration.imageSize()).empty() || !encodingOf(*image)->has16Bits()) return {};
   const cv_bridge::CvImageConstPtr pixels = shared(inNativeByteOrder(image), encodingOf(*image)->like);

@@ -10,23 +10,23 @@
 
 namespace uav_landing {
 
-/// The image as mono8 of calibration.imageSize(), or what is wrong with the message (size, step, length of
-/// the data, encoding), with the topic's name in front. Shares the message's memory when it is mono8 already;
-/// the returned object keeps the message alive. Colour and Bayer images become grey by the luma weights.
-/// range: of the values of an image of 16 bit.
+/// The image as mono8 of calibration.imageSize(). The failure names the topic and what is wrong with the
+/// message (size, step, length of the data, encoding). A mono8 message's memory is shared, and the returned
+/// object keeps the message alive. Colour and Bayer images become grey by the luma weights. range: of the
+/// values of a 16-bit image.
 Expected<cv_bridge::CvImageConstPtr> toMono8(const sensor_msgs::ImageConstPtr& image,
                                              const CameraCalibration& calibration, const std::string& topic,
                                              const GreyRange& range = {});
 
-/// The range of the pairs of a recording, for both images. A stamp that goes back is of another recording, or
-/// of cameras that started anew, and so is the range then.
+/// The grey range of a recording's pairs, for both images. When a stamp goes back, the recording is another
+/// one or the cameras have restarted, so the range is found anew.
 class PairGreyRange {
  public:
   /// bits: see GreyRangeFinder.
   explicit PairGreyRange(int bits) : finder_(bits), bits_(bits) {}
 
-  /// A pair that has not 16 bit, or cannot be used, leaves the range as it is. Returns what a person should
-  /// know, each once; mostly nothing.
+  /// Takes a pair. One that does not have 16 bits, or that cannot be used, leaves the range as it is. Returns
+  /// what a person should know, each message once; mostly nothing.
   std::string follow(const sensor_msgs::ImageConstPtr& left, const CameraCalibration& left_camera,
                      const sensor_msgs::ImageConstPtr& right, const CameraCalibration& right_camera);
   const GreyRange& range() const { return finder_.range(); }

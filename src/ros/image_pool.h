@@ -9,16 +9,16 @@
 
 namespace uav_landing {
 
-/// Image messages whose memory is used again once nobody holds them any more. Thread safe.
+/// Image messages whose memory is used again when nobody holds them any more. Thread safe.
 class ImagePool {
  public:
   /// At most this many unused messages are kept.
   explicit ImagePool(size_t kept) : store_(std::make_shared<Store>(kept)) {}
 
-  /// A message to fill in; what is in it is left over from before.
+  /// A message to fill in; its contents are left over from before.
   boost::shared_ptr<sensor_msgs::Image> take() {
     std::unique_ptr<sensor_msgs::Image> image = store_->take();
-    // The deleter holds the store: subscribers may keep a message longer than the pool lives.
+    // The deleter holds the store, because subscribers may keep a message longer than the pool lives.
     return {image.release(), [store = store_](sensor_msgs::Image* used) { store->give(used); }};
   }
 

@@ -9,8 +9,9 @@ namespace uav_landing {
 namespace {
 
 using Covariance = boost::array<double, 9>;
-constexpr double kMostVariance = 1e6;  // rad^2 or rad^2/s^2; more says nothing, and overflows further on
-constexpr double kSilence = 1;         // s, of a sensor until another one takes its place
+constexpr double kMostVariance = 1e6;  // rad^2 or rad^2/s^2; more says nothing, and would overflow later
+constexpr double kSilence = 1;         // s without a message from a sensor, after which another one may take
+                                       // its place
 constexpr double kMostRate = 100;      // rad/s; gyroscopes end at 4000 deg/s
 
 bool absent(const Covariance& covariance) { return covariance[0] == -1; }
@@ -72,7 +73,7 @@ ImuReading toReading(const sensor_msgs::Imu& message) {
 Failure ImuInput::add(const sensor_msgs::Imu& message) {
   const ImuReading reading = toReading(message);
   if (message.header.frame_id != frame_) {
-    // Another sensor that comes in between must not silence the first one.
+    // Another sensor in between must not silence the first one.
     if (!buffer_.empty() && std::abs(reading.sample.stamp - buffer_.newest()) < kSilence)
       return {Reason::kInputInvalid, "frame_id: '" + message.header.frame_id + "' after '" + frame_ +
                                          "': are there two sensors on this topic?"};

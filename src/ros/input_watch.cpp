@@ -11,11 +11,12 @@ namespace uav_landing {
 
 namespace {
 
-constexpr size_t kLongestQueue = 100;  // what queue_size can be
+constexpr size_t kLongestQueue = 100;  // largest possible queue_size
 constexpr size_t kGivenUp = 200;       // stamps that are remembered; more than the longest queue
-constexpr double kMostDelay = 0.5;     // s, of messages on their way; more is rather a clock that differs
+constexpr double kMostDelay = 0.5;     // s that messages may take; a longer delay rather means that the
+                                       // clocks differ
 
-/// s between a stamp and the nearest of others.
+/// Time between a stamp and the nearest of others, s.
 double distance(const ros::Time& stamp, const std::deque<ros::Time>& others) {
   double least = std::numeric_limits<double>::infinity();
   for (const ros::Time& other : others) least = std::min(least, std::abs(secondsBetween(stamp, other)));
@@ -69,7 +70,8 @@ void InputWatch::lookForGivenUp(size_t input, const ros::Time& stamp) {
           return std::abs(secondsBetween(a, stamp)) < std::abs(secondsBetween(b, stamp));
         });
     const double apart = std::abs(secondsBetween(*nearest, stamp));
-    // Where one that waits is nearer, none was given up too early: a large max_skew reaches older ones, too.
+    // When a waiting message is nearer, none was given up too early, because a large max_skew reaches older
+    // ones, too.
     if (apart > max_skew_.value_or(0) || distance(stamp, other.stamps) <= apart) continue;
     const size_t behind = queue_size_ + static_cast<size_t>(other.given_up.end() - nearest);
     waiting_[input].queue_needed = std::max(waiting_[input].queue_needed, behind);
@@ -101,7 +103,7 @@ std::string InputWatch::shortQueue() {
 bool InputWatch::differs() const {
   const Waiting& first = waiting_.front();
   return std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
-    // An input that is behind finds its stamps among those that the other one had, whichever it is.
+    // An input that is behind, whichever it is, finds its stamps among those that the other one had.
     return std::min(nearestOf(first.latest, other), nearestOf(other.latest, first)) > *max_skew_;
   });
 }
@@ -133,7 +135,7 @@ std::string InputWatch::shortage(const std::vector<Input>& now, const std::vecto
     if (lost == 0) missing += (missing.empty() ? "" : ", ") + now[i].topic;
     topics += (topics.empty() ? "" : ", ") + now[i].topic;
   }
-  // Single ones are lost on the way now and then.
+  // Single messages are lost now and then.
   if (5 * most < received || most < 2) return "";
   const std::string count = std::to_string(most) + " of " + std::to_string(received);
   if (missing.empty()) return count + " messages have no counterpart: the stamps differ on " + topics;
@@ -152,7 +154,7 @@ InputWatch::Arrival InputWatch::refused(size_t input, Arrival arrival) {
 bool InputWatch::isLeftOver(size_t input, const ros::Time& stamp) {
   std::optional<ros::Time>& before = waiting_[input].before_jump;
   if (!before || stamp.isZero()) return false;
-  // The inputs that went back may be as far again meanwhile.
+  // The inputs that went back may have caught up meanwhile.
   const bool caught_up = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
     return !other.before_jump && other.latest > *before;
   });
@@ -222,7 +224,7 @@ std::string InputWatch::complaint() {
   if (!silent.empty()) return "no message on " + silent;
   if (!unstamped.empty()) return "the stamp (header.stamp) is 0 on " + unstamped;
   if (!repeating.empty()) return "the stamp never changes on " + repeating;
-  // A longer queue would not help where stamps differ by more than max_skew.
+  // A longer queue would not help when stamps differ by more than max_skew.
   if (!too_short.empty() && !(max_skew_ && differs())) return too_short;
   const std::string apart = difference();
   if (max_skew_) return (apart.empty() ? "the stamps do not match" : apart) + "; latest: " + latest;

@@ -16,18 +16,19 @@ constexpr double kDegree = M_PI / 180;
 constexpr double kDashes = 20;  // of the centre line, gaps included
 
 // The scene beside the runway is drawn in units of the aircraft's height, down to this share of the runway's
-// width. So it looks the same from the view in rviz/landing.rviz, which is fixed against landing_view.
+// width. So it looks the same in the view of rviz/landing.rviz, which is fixed to landing_view.
 constexpr double kLeastUnit = 0.1;
-// What is looked at while no aircraft has been seen: above the threshold, in widths of the runway.
+// Point that is looked at before an aircraft has been seen: above the threshold, in widths of the runway.
 constexpr double kIdleHeight = 0.2;
 const Eigen::Vector3d kViewPoint(-3.4, -0.7, 0.9);  // from the aircraft
-// Above the horizon and the aircraft: of the middle of the text's last line's foot, and of its letters.
+// Above the horizon and the aircraft: middle of the foot of the text's last line.
 const Eigen::Vector3d kNumbersFoot(0, -0.36, 1.0);
+// Height of letters, thickness of lines, span of the aircraft.
 constexpr double kLetters = 0.11, kLine = 0.012, kSpan = 0.6;
 constexpr double kLineSpacing = 1.0;  // of rviz, in heights of letters
 constexpr size_t kTextWidth = 42;     // letters; longer lines do not fit into the view
 
-/// By which rviz tells markers apart.
+/// How rviz tells markers apart.
 struct Identity {
   int id;
   const char* name;
@@ -77,7 +78,7 @@ void addRunway(const std_msgs::Header& header, double length, double width, std:
                              Eigen::Vector3d(length, half, below), Eigen::Vector3d(length, half, below),
                              Eigen::Vector3d(0, -half, below), Eigen::Vector3d(length, -half, below)}) {
     surface.points.push_back(point(corner));
-    surface.colors.push_back(colour(0.25F, 0.25F, 0.27F));  // without rviz's light, in which it is black
+    surface.colors.push_back(colour(0.25F, 0.25F, 0.27F));  // rviz's light would make it black
   }
   Marker outline = marker(header, kOutline, Marker::LINE_STRIP, line, colour(1, 1, 1));
   for (const auto& corner :
@@ -85,7 +86,7 @@ void addRunway(const std_msgs::Header& header, double length, double width, std:
         Eigen::Vector3d(0, -half, 0), Eigen::Vector3d(0, half, 0)})
     outline.points.push_back(point(corner));
   Marker centre = marker(header, kCentreLine, Marker::LINE_LIST, line, colour(1, 1, 1));
-  // Not of the width, with every measurement of which all dashes would move.
+  // In proportion to the length: with the width, all dashes would move at every measurement.
   const double dash = length / kDashes;
   for (double x = dash; x + dash < length; x += 2 * dash) {
     centre.points.push_back(point({x, 0, 0}));
@@ -108,7 +109,8 @@ Marker glidePath(const std_msgs::Header& header, double line, const LandingResul
   return glide;
 }
 
-/// A glider's outline, of the given wing span: nose along the camera's axis. It is a sign, not to scale.
+/// A glider's outline with the given wing span and its nose along the camera's axis. It is a symbol, not to
+/// scale.
 Marker silhouette(const std_msgs::Header& header, double span, const DrawnAircraft& aircraft) {
   Marker shape = marker(header, kAircraft, Marker::TRIANGLE_LIST, 1, colour(0.95F, 0.95F, 1.0F));
   shape.scale.y = shape.scale.z = 1;
@@ -123,7 +125,7 @@ Marker silhouette(const std_msgs::Header& header, double span, const DrawnAircra
   for (const auto& [forward, left, up] : kTriangles) {
     const Eigen::Vector3d optical(-left, -up, forward);
     shape.points.push_back(point(aircraft.position + span * (aircraft.runway_from_camera * optical)));
-    // Colours of their own leave rviz's light out, in which flat wings are black.
+    // With colours of their own, triangles ignore rviz's light, which would make flat wings black.
     const float shade = up > 0.1 || forward < -0.3 ? 0.7F : 1.0F;
     shape.colors.push_back(colour(shade, shade, shade));
   }
@@ -135,9 +137,9 @@ bool hasEllipsoid(const NodeParameters& parameters, const DrawnAircraft& aircraf
   return aircraft.stddev.maxCoeff() < parameters.drawn_runway_length / 6;
 }
 
-/// Where the aircraft is with three sigma, ellipsoid_scale times larger: the three ellipses about its axes,
-/// behind which nothing is hidden. No axis is longer than one unit: that along the runway would reach beyond
-/// the view.
+/// Ellipsoid of the position's three sigma, ellipsoid_scale times larger, drawn as the three ellipses about
+/// its axes, so that it hides nothing. No axis is longer than one unit, because the axis along the runway
+/// would leave the view.
 Marker ellipsoid(const std_msgs::Header& header, double unit, const NodeParameters& parameters,
                  const DrawnAircraft& aircraft) {
   Marker shape =
@@ -167,7 +169,7 @@ std::string number(const char* format, double value, const char* unknown) {
   return buffer;
 }
 
-/// Lines of kTextWidth letters at most where there are spaces.
+/// Breaks the text at spaces into lines of at most kTextWidth letters.
 std::string wrapped(const std::string& text) {
   std::istringstream words(text);
   std::string word, lines;
@@ -199,7 +201,7 @@ Marker numbersAt(const std_msgs::Header& header, const LandingResult& estimate, 
                         estimate.valid() ? colour(0.3F, 1.0F, 0.3F) : colour(1.0F, 0.4F, 0.3F));
   shown.text = text;
   shown.scale.z = kLetters * unit;
-  // rviz wants the middle of the text.
+  // rviz needs the middle of the text.
   const auto lines = static_cast<double>(1 + std::count(text.begin(), text.end(), '\n'));
   shown.pose.position =
       point(anchor + unit * kNumbersFoot + Eigen::Vector3d(0, 0, lines * kLineSpacing * shown.scale.z / 2));
@@ -231,7 +233,7 @@ LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& p
     markers.push_back(silhouette(header, kSpan * unit, *aircraft));
     markers.push_back(ellipsoid(header, unit, parameters, *aircraft));
   } else {
-    // rviz would go on showing them where the aircraft was.
+    // Without this rviz would go on showing them at the aircraft's last place.
     for (const Identity& shown : {kGlidePath, kAircraft, kUncertainty}) {
       markers.push_back(marker(header, shown, Marker::CUBE, 0, {}));
       markers.back().action = Marker::DELETE;

@@ -12,7 +12,7 @@
 
 namespace uav_landing {
 
-/// Where the left camera is in the runway frame, for drawing.
+/// Pose of the left camera in the runway frame, for drawing.
 struct DrawnAircraft {
   Eigen::Vector3d position;            ///< m
   Eigen::Vector3d stddev;              ///< of position, m
@@ -22,16 +22,17 @@ struct DrawnAircraft {
 /// What rviz shows besides the images.
 struct LandingScene {
   visualization_msgs::MarkerArray markers;
-  /// Runway frame to landing_view, where the view of rviz/landing.rviz is from: level, behind, right of and
-  /// above the aircraft, as many heights away as make it look the same from far and near.
+  /// Runway frame to landing_view, the frame of the view in rviz/landing.rviz. It is level and lies behind,
+  /// right of and above the aircraft. Its distance is a number of heights, so that near and far look the
+  /// same.
   geometry_msgs::TransformStamped view;
 };
 
-/// The runway's outline and centre line, the path flown, the aircraft with the ellipsoid of three sigma
-/// (ellipsoid_scale times larger, cut to the height), the straight path ahead down to the ground, and the
-/// numbers as text. All but the runway grows with the height. header: stamp of the image, runway frame.
-/// aircraft: or none; then only runway, path and text are drawn, and the others taken away. direction: of
-/// flight over the ground. runway_width: as measured, m; not known: as in the parameters.
+/// Draws the scene: outline and centre line of the runway, path flown, aircraft with the ellipsoid of three
+/// sigma (ellipsoid_scale times larger, limited by the height), straight path ahead down to the ground, and
+/// the numbers as text. All but the runway grow with the height. header: stamp of the image, runway frame.
+/// aircraft: if there is none, only runway, path and text are drawn, and the other markers are removed.
+/// direction: of flight over the ground. runway_width: as measured, m; unknown: as in the parameters.
 LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
                          const LandingResult& estimate, const std::optional<DrawnAircraft>& aircraft,
                          const Eigen::Vector2d& direction, const std::deque<Eigen::Vector3d>& track,

@@ -11,7 +11,7 @@
 
 namespace uav_landing {
 
-/// The height, straight below; NaN while it is not valid.
+/// The height as the range of a sensor that looks straight down; NaN while it is not valid.
 sensor_msgs::RangePtr heightMessage(const LandingResult& estimate, const ros::Time& stamp,
                                     const std::string& frame);
 
@@ -20,7 +20,7 @@ geometry_msgs::PoseWithCovarianceStampedPtr poseMessage(const std_msgs::Header& 
                                                         const Eigen::Isometry3d& pose,
                                                         const Matrix6d& covariance);
 
-/// frame: the one that moves, whose axes the twist has.
+/// frame: the frame that moves, in whose axes the twist is.
 geometry_msgs::TwistWithCovarianceStampedPtr twistMessage(const ros::Time& stamp, const std::string& frame,
                                                           const BodyTwist& twist);
 

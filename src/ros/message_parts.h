@@ -12,7 +12,7 @@
 
 namespace uav_landing {
 
-// What the results of stages and their messages (conversions.h) consist of, both ways.
+// Parts that the results of stages and their messages (conversions.h) share, in both directions.
 
 /// Inverse of Failure::message().
 Failure parseFailure(const std::string& reason);

@@ -13,8 +13,8 @@
 namespace uav_landing {
 namespace {
 
-/// A plain value. Lists and maps become an empty list: no parameter is one, and the parameter server's may be
-/// nested without end.
+/// A plain value. Lists and maps become an empty list, because no parameter is one, and those of the
+/// parameter server may be nested without end.
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
@@ -33,8 +33,9 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   }
 }
 
-/// Somebody else's: image_transport's plugins write theirs below the nodelet's name as well, as maps under
-/// the topic's name or their own, and they outlive the nodelet. No parameter of ours is a map.
+/// Whether the parameter belongs to somebody else. Plugins of image_transport write theirs below the
+/// nodelet's name as well, as maps under the topic's name or their own, and these outlive the nodelet. None
+/// of our parameters is a map.
 bool isForeign(const std::string& section, const std::string& name, const XmlRpc::XmlRpcValue& value,
                const std::vector<std::string>& own) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeStruct &&
@@ -42,8 +43,8 @@ bool isForeign(const std::string& section, const std::string& name, const XmlRpc
          whereItBelongs(section, name).empty();
 }
 
-/// The values that the parameter server has for a section, without those that skip(name, value) says are
-/// none. map: its name there.
+/// The values of a section on the parameter server, without those that skip(name, value) excludes. map: its
+/// name there.
 template <class Skip>
 Expected<YAML::Node> readSection(const std::string& map, const std::string& section, Skip&& skip) {
   YAML::Node all(YAML::NodeType::Map);
@@ -57,7 +58,7 @@ Expected<YAML::Node> readSection(const std::string& map, const std::string& sect
   return all;
 }
 
-/// Takes the keys of NodeParameters out of the map of all private parameters.
+/// Moves the keys of NodeParameters out of the map of all private parameters.
 YAML::Node takeNodeKeys(YAML::Node& all) {
   YAML::Node taken(YAML::NodeType::Map);
   for (const std::string& name : parameterNames<NodeParameters>()) {

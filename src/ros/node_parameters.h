@@ -8,9 +8,9 @@
 
 namespace uav_landing {
 
-/// What concerns ROS alone and therefore is not in config/*.yaml. Every nodelet accepts all of them, so that
-/// one set serves all; each reads those that concern it. No section has a key of the same name. visit() as in
-/// uav_landing/parameters/parameters.h, with text() for strings.
+/// Parameters that concern only ROS and are therefore not in config/*.yaml. Every nodelet accepts all of
+/// them, so that one set serves all; each reads those that it needs. No section has a key of the same name.
+/// visit(): as in uav_landing/parameters/parameters.h, with text() for strings.
 struct NodeParameters {
   std::string camera = "/stereo";
   std::string left_image, left_info, right_image, right_info;
@@ -78,18 +78,18 @@ struct NodeParameters {
 };
 
 /// Reads a nodelet's private parameters: the keys of NodeParameters, and the section's own (see
-/// uav_landing/parameters/parameters.h). Defaults stay where nothing is given. The failure names the
-/// parameter, or what is wrong with the config_file.
+/// uav_landing/parameters/parameters.h). Parameters that are not given keep their defaults. The failure names
+/// the parameter, or what is wrong with the config_file.
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);
 
-/// Gives the files that the shared parameters name their full path: a relative one begins at the folder of
-/// the config_file. Refuses a relative one when there is no config_file, as it would begin at the manager's
+/// Makes the paths of files in the shared parameters absolute: a relative one begins at the folder of the
+/// config_file. Without a config_file a relative path is refused, because it would begin at the manager's
 /// folder.
 Failure resolveFiles(const NodeParameters& node_parameters, RigParameters& parameters);
 
-/// Reads what all nodelets of a namespace share: its parameters rig/* and runway/*. Defaults and failure as
+/// Reads the parameters rig/* and runway/* that all nodelets of a namespace share. Defaults and failure as
 /// above.
 Failure loadSharedParameters(const ros::NodeHandle& handle, SharedParameters& parameters);
 

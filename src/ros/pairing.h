@@ -21,12 +21,11 @@
 
 namespace uav_landing {
 
-/// Finds the messages that belong together by their stamps (header.stamp), with message_filters. Fed by plain
-/// calls, so it serves subscriptions and bags alike. Repeated, late and missing (0) stamps are dropped; one
-/// that goes back farther clears everything that waits (StampOrder). The same message object twice counts
-/// once: roscpp may have linked a publisher in this process twice, if it is somebody else's (see
-/// stage_nodelet.cpp). Thread safe; the callback runs in the thread of the add() that completed the set,
-/// without the lock.
+/// Pairs messages by their stamps (header.stamp), with message_filters. Messages come by plain calls, so it
+/// serves subscriptions and bags. Repeated, late and missing (0) stamps are dropped. A stamp that goes back
+/// farther clears everything that waits (StampOrder). The same message object twice counts once: roscpp may
+/// have linked a foreign publisher in this process twice (see stage_nodelet.cpp). Thread safe. The callback
+/// runs in the thread of the add() that completed the set, without the lock.
 template <class... Messages>
 class Pairing {
  public:
@@ -34,8 +33,8 @@ class Pairing {
   using Pointer = boost::shared_ptr<const std::tuple_element_t<kInput, std::tuple<Messages...>>>;
   using Callback = std::function<void(const boost::shared_ptr<const Messages>&...)>;
 
-  /// topics: one name per input, for the words of complaint(). queue_size of the parameters bounds what
-  /// waits.
+  /// topics: one name per input, for complaint(). queue_size of the parameters limits the number of messages
+  /// that wait.
   Pairing(const RectifyParameters& parameters, const std::vector<std::string>& topics, Callback callback)
       : parameters_(parameters),
         callback_(std::move(callback)),
@@ -55,8 +54,7 @@ class Pairing {
       if (!StampOrder::isUsed(arrival)) return;
       if (arrival == InputWatch::Arrival::kBackwards) rebuild();
       using Message = std::tuple_element_t<kInput, std::tuple<Messages...>>;
-      // The stamp stands in for the receipt time: the system clock need not be known (bags are read without
-      // one).
+      // The stamp replaces the receipt time, because bags are read without a system clock.
       const ros::MessageEvent<const Message> event(message, stamp);
       if (exact_)
         exact_->template add<kInput>(event);
@@ -84,7 +82,7 @@ class Pairing {
     const std::lock_guard<std::mutex> lock(mutex_);
     return watch_.jumps();
   }
-  /// Why nothing was paired since the last call, "" when something was. See InputWatch::complaint().
+  /// Why nothing was paired since the last call; "" when something was. See InputWatch::complaint().
   std::string complaint() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return watch_.complaint();
@@ -98,10 +96,11 @@ class Pairing {
   template <class Message>
   struct Last {
     boost::weak_ptr<const Message> message;
-    ros::Time stamp;  // a publisher may fill the same message in anew
+    ros::Time stamp;  // a publisher may fill the same message anew
   };
 
-  /// The very message before, for the second time; a third one is somebody who sends it again.
+  /// Whether this is the previous message object for the second time. A third time means that somebody sends
+  /// it again.
   template <class Message>
   static bool cameTwice(const boost::shared_ptr<const Message>& message, Last<Message>& last) {
     const bool twice = last.message.lock() == message && last.stamp == message->header.stamp;
@@ -112,7 +111,7 @@ class Pairing {
     return twice;
   }
 
-  // A new synchronizer forgets also what its policy remembers of the stamps already served.
+  // A new synchronizer also forgets the stamps that its policy has already served.
   void rebuild() {
     const auto queue_size = static_cast<uint32_t>(parameters_.queue_size);
     exact_.reset();
@@ -125,8 +124,8 @@ class Pairing {
     ApproximatePolicy policy(queue_size);
     const ros::Duration max_skew(parameters_.max_skew);
     policy.setMaxIntervalDuration(max_skew);
-    // Two images of one camera are farther apart than max_skew: then the best set is known as soon as it is
-    // complete, and need not wait for the next image.
+    // Two images of one camera are farther apart than max_skew. With this bound, the best set is known as
+    // soon as it is complete, and need not wait for the next image.
     policy.setInterMessageLowerBound(max_skew);
     approximate_ = std::make_unique<message_filters::Synchronizer<ApproximatePolicy>>(policy);
     approximate_->registerCallback(&Pairing::collect, this);

@@ -61,7 +61,7 @@ bool PairsInFlight::below(size_t limit) const {
 void PairsInFlight::forgetLost() {
   const auto now = std::chrono::steady_clock::now();
   for (Consumer* consumer : consumers_) {
-    // One that finishes others is only slow.
+    // A stage that finishes other pairs is only slow.
     if (now - consumer->last_finished_ <= kLostAfter) continue;
     while (!consumer->pairs_.empty() && now - consumer->pairs_.front().since > kLostAfter)
       consumer->pairs_.pop_front();

@@ -12,9 +12,10 @@
 
 namespace uav_landing {
 
-/// How far the stages are behind rectify. Only rectify may drop a pair, so that everything behind it stays
-/// exactly synchronised; so it must know when the stages cannot keep up, before their queues overflow. The
-/// stages of one rig in one process share this object; stages in other processes are not seen. Thread safe.
+/// Counts how far the stages are behind rectify. Only rectify may drop a pair, so that everything behind it
+/// stays exactly synchronised. So it has to know when the stages cannot keep up, before their queues
+/// overflow. The stages of one rig in one process share this object; stages in other processes are not seen.
+/// Thread safe.
 class PairsInFlight {
  public:
   /// A stage that works through the pairs.
@@ -23,7 +24,7 @@ class PairsInFlight {
     ~Consumer();
     Consumer(const Consumer&) = delete;
     Consumer& operator=(const Consumer&) = delete;
-    /// The stage is done with the pair of this stamp, and with those handed on before.
+    /// The stage has finished the pair of this stamp, and all pairs before it.
     void finished(const ros::Time& stamp);
 
    private:
@@ -40,15 +41,16 @@ class PairsInFlight {
     std::chrono::steady_clock::time_point last_finished_;
   };
 
-  /// The object that everybody shares who names the same topic.
+  /// The object that all users of the same topic share.
   static std::shared_ptr<PairsInFlight> of(const std::string& topic);
 
   /// A stage begins to listen; it stops when the consumer is destroyed.
   static std::unique_ptr<Consumer> join(const std::string& topic);
 
   void handedOn(const ros::Time& stamp);
-  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. True when so.
-  /// Where a stage finishes nothing for a second, pairs that it has had as long count as lost on the way.
+  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. Returns whether
+  /// this is so. When a stage finishes nothing for a second, pairs that it has had for as long count as lost
+  /// on their way.
   bool waitUntilBelow(size_t limit, std::chrono::milliseconds timeout);
 
  private:

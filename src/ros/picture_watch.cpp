@@ -8,20 +8,21 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kMostRepetitions = 4;  // of one pair; more are those of a camera that hangs
-constexpr int kSure = 2;             // pictures in a row that came as often
-// Noise alone is at 1.0, and at most at 1.4 after the sharpening of three rows that cameras do: its second
-// difference has 4^2 / (2 + sqrt(2))^2. Fields half a pixel apart are above 1.6, those farther apart above 2.
+constexpr int kMostRepetitions = 4;  // of one pair; more are those of a frozen camera
+constexpr int kSure = 2;             // images in a row that came equally often
+// Noise alone is at 1.0. After the sharpening over three rows that cameras do, it is at 1.4 at most: its
+// second difference has 4^2 / (2 + sqrt(2))^2. Fields half a pixel apart are above 1.6, those farther apart
+// above 2.
 constexpr double kAlternating = 1.5;
 constexpr uint64_t kSaidAt = 3;         // repetitions
-constexpr int kLooks = 6, kEnough = 5;  // of the pictures looked at
+constexpr int kLooks = 6, kEnough = 5;  // of the images looked at
 
 bool same(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::ImageConstPtr& before) {
   return before && image->data == before->data && image->width == before->width;
 }
 
-/// A black or saturated picture is like the one before it whatever the driver does. Its pixels are alike, but
-/// not their bytes: those of 16 bits and of colours differ.
+/// Whether an image is black or saturated; it then equals the previous one whatever the driver does. Pixels
+/// are compared, not bytes, which differ within a pixel of 16 bits or of colours.
 bool uniform(const sensor_msgs::ImageConstPtr& image) {
   const size_t pixel = std::max<size_t>(1, image->width > 0 ? image->step / image->width : 1);
   if (pixel >= image->data.size()) return true;
@@ -37,7 +38,7 @@ bool PictureWatch::isRepetition(const sensor_msgs::ImageConstPtr& left,
   left_ = left;
   right_ = right;
   if (!once_more) {
-    // The first pair may have come before we looked.
+    // The first pair may have come before this object existed.
     if (++pictures_ > 2) {
       times_ = repeated_ > 0 && repeated_ == usual_ ? times_ + 1 : 1;
       usual_ = repeated_;

@@ -9,26 +9,26 @@
 
 namespace uav_landing {
 
-/// What drivers do to pictures: a pair once more, bit by bit, under a new stamp, and rows of two times.
-/// Thread safe only in so far as one thread uses it.
+/// Detects what drivers do to images: the same pair again, bit by bit, under a new stamp; and rows of two
+/// different times. For use by one thread.
 class PictureWatch {
  public:
-  /// Whether a pair is to be left out because its pictures are those of the pair before. Only where they come
-  /// so all the time, each as often: what a camera that hangs sends is not left out. At the start twice is
-  /// taken for the usual, until a picture comes once.
+  /// Whether to skip a pair because its images are those of the previous pair. It does so only when all pairs
+  /// are repeated equally often, so images of a frozen camera are not skipped. At the start, twice is
+  /// assumed, until an image comes once.
   bool isRepetition(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::ImageConstPtr& right);
-  /// Looks at the rows of a raw grey picture of this topic.
+  /// Looks at the rows of a raw grey image of this topic.
   void look(const cv::Mat& grey, const std::string& topic);
 
-  /// What a person should know, each of it once.
+  /// What a person should know, each message once.
   std::vector<std::string> news();
-  /// Pairs that were left out.
+  /// Number of pairs that were skipped.
   uint64_t repetitions() const { return left_out_; }
 
  private:
-  sensor_msgs::ImageConstPtr left_, right_;  // of the pair before
-  int pictures_ = 0, repeated_ = 0;          // so far, and pairs in a row that repeat the same ones
-  int usual_ = 1, times_ = 2;  // repetitions of the pictures before, and of how many of them in a row
+  sensor_msgs::ImageConstPtr left_, right_;  // of the previous pair
+  int pictures_ = 0, repeated_ = 0;          // so far, and consecutive pairs that repeat the same ones
+  int usual_ = 1, times_ = 2;  // repetitions of the earlier images, and how many of them in a row had so many
   uint64_t left_out_ = 0;
   bool said_repetitions_ = false;
 

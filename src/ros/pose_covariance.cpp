@@ -22,8 +22,8 @@ Eigen::Matrix3d ofPlane(const GroundPlane& plane) {
   return by_g * plane.covariance * by_g.transpose();
 }
 
-/// Of the camera's (height, roll, pitch). What the estimate claims beyond the plane's own variance is
-/// independent; where a filter claims less, the correlation stays.
+/// Covariance of the camera's (height, roll, pitch). What the estimate claims beyond the plane's own variance
+/// is independent. When a filter claims less, the correlation stays.
 Eigen::Matrix3d ofCamera(const Eigen::Vector3d& claimed, const GroundPlane& plane) {
   Eigen::Matrix3d covariance = claimed.asDiagonal();
   if (!plane.valid() || !plane.covariance.allFinite()) return covariance;
@@ -35,7 +35,7 @@ Eigen::Matrix3d ofCamera(const Eigen::Vector3d& claimed, const GroundPlane& plan
   return covariance;
 }
 
-/// Of the camera's (x, y, height, roll, pitch, yaw).
+/// Covariance of the camera's (x, y, height, roll, pitch, yaw).
 Matrix6d ofCamera(const LandingResult& camera, const GroundPlane& plane, const Eigen::Vector2d& xy_variance) {
   const double yaw_variance = std::isfinite(camera.yaw_variance) ? camera.yaw_variance : M_PI * M_PI;
   Matrix6d covariance = Matrix6d::Zero();

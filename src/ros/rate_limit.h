@@ -6,12 +6,12 @@
 
 namespace uav_landing {
 
-/// Lets at most so many messages a second pass, by their stamps. A message may come a quarter of a period
-/// early, which the next ones make up for: stamps of a camera jitter, and of those that come just as fast as
-/// allowed every second one would be left out.
+/// Lets at most so many messages per second pass, by their stamps. A message may come a quarter of a period
+/// early, and the next ones make up for it. Otherwise jitter of the stamps would remove every second message
+/// of a camera that is just as fast as allowed.
 class RateLimit {
  public:
-  /// rate: Hz. A stamp that is not after the last one that passed (the clock was set back) begins anew.
+  /// rate: Hz. A stamp that is not after the last one that passed (the clock was set back) starts anew.
   bool passes(const ros::Time& stamp, double rate) {
     const double period = 1 / rate, slack = 0.25 * period;
     const bool begins = last_.isZero() || stamp <= last_;
@@ -24,8 +24,8 @@ class RateLimit {
   }
 
  private:
-  ros::Time last_;   // that passed
-  double wait_ = 0;  // s, from there to when the next one is due
+  ros::Time last_;   // of the last message that passed
+  double wait_ = 0;  // s, from then until the next one is due
 };
 
 }  // namespace uav_landing

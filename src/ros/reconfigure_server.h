@@ -11,8 +11,8 @@
 
 namespace uav_landing {
 
-/// Names, ranges and meanings of a parameter struct (visit() as in uav_landing/parameters/parameters.h) as
-/// dynamic_reconfigure tells them to its clients; the values are its defaults.
+/// Names, ranges and meanings of a parameter struct, as dynamic_reconfigure describes them to its clients.
+/// visit(): as in uav_landing/parameters/parameters.h. The values are the struct's defaults.
 class ReconfigureDescription {
  public:
   void number(const char* name, double value, double min, double max, const char* unit, const char* meaning);
@@ -28,7 +28,7 @@ class ReconfigureDescription {
   dynamic_reconfigure::ConfigDescription description_;
 };
 
-/// Takes the values that a request gives; what it does not name stays. node: for the warnings.
+/// Takes the values of a request; parameters that it does not name stay. node: name for the warnings.
 class ReconfigureRequestReader {
  public:
   ReconfigureRequestReader(const dynamic_reconfigure::Config& request, const std::string& node)
@@ -47,7 +47,7 @@ class ReconfigureRequestReader {
 };
 
 /// The server side of dynamic_reconfigure for a parameter struct, from the same visit() that reads and
-/// documents it; values out of range become the nearest that is not, as clients expect, with a warning.
+/// documents it. A value out of range becomes the nearest one in range, as clients expect, with a warning.
 /// Topics and service are private names of the handle. Callbacks run where those of the handle do.
 template <class Parameters>
 class ReconfigureServer {

@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr size_t kMostFrames = 10000;     // of a whole robot there are hundreds
+constexpr size_t kMostFrames = 10000;     // a whole robot has hundreds
 constexpr size_t kMostLinks = 100;        // from a frame to the root
 constexpr double kUnitTolerance = 0.001;  // of a quaternion's length
 
@@ -18,7 +18,8 @@ constexpr char kAircraft[] = "base_link";
 /// tf2 knows frames without a leading slash.
 std::string stripped(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
 
-/// What tf2 lets pass: lengths that are no number, and quaternions that are not quite of unit length.
+/// Rejects what tf2 lets pass: lengths that are not numbers, and quaternions that are not quite of unit
+/// length.
 bool usable(const geometry_msgs::Transform& transform) {
   const auto& t = transform.translation;
   const Eigen::Quaterniond q(transform.rotation.w, transform.rotation.x, transform.rotation.y,
@@ -44,11 +45,11 @@ void RigFrames::add(const tf2_msgs::TFMessage& message, bool is_static) {
     const std::string child = stripped(transform.child_frame_id);
     if (parent == child || parent.empty() || child.empty()) continue;
     if (parent == runway_frame_ || !usable(transform.transform)) continue;
-    // tf2 never forgets a name, be it of a parent or a child.
+    // tf2 never forgets a name, be it of a parent or of a child.
     if (names_.size() + 2 > kMostFrames && (names_.count(parent) == 0 || names_.count(child) == 0)) continue;
     names_.insert({parent, child});
     Link& link = parents_[child];
-    // What is on both topics is known, whichever came last.
+    // A link that is on both topics is static, whichever message came last.
     link.is_static = is_static || (link.is_static && link.parent == parent);
     link.parent = parent;
     if (is_static) static_transforms_.setTransform(transform, "tf_static", true);
@@ -73,7 +74,7 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
       camera.complaint = whyUnknown(left, base, "") + ": the left camera is estimated";
     return camera;
   }
-  // Not the root of the tree: without being told to, the estimate does not interfere with it.
+  // The frame is not the root of the tree. Unless it is asked to, the estimate does not change such a tree.
   if (has_parent && base_frame_.empty()) return camera;
   Child child;
   child.frame = base;
@@ -104,7 +105,7 @@ std::string RigFrames::whyUnknown(const std::string& left, const std::string& fr
   return otherwise;
 }
 
-/// "parent -> child" of the first transform between two frames that is on /tf alone; "": there is none.
+/// "parent -> child" of the first transform between two frames that is only on /tf; "": there is none.
 std::string RigFrames::movingLink(const std::string& a, const std::string& b) const {
   const std::vector<std::string> from_a = towardsRoot(a), from_b = towardsRoot(b);
   const auto common = std::find_first_of(from_a.begin(), from_a.end(), from_b.begin(), from_b.end());

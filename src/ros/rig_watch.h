@@ -12,10 +12,11 @@
 
 namespace uav_landing {
 
-/// The two calibrations a nodelet works with; notices when a camera_info differs from the one before.
+/// The two calibrations that a nodelet works with. It notices when a camera_info differs from the previous
+/// one.
 class RigWatch {
  public:
-  /// True for the first pair of camera_infos and for each that differs (stamps aside).
+  /// True for the first pair of camera_infos and for each that differs (apart from the stamps).
   bool changed(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right) {
     CameraCalibration new_left = toCalibration(left), new_right = toCalibration(right);
     if (left_ == new_left && right_ == new_right) return false;
@@ -23,7 +24,7 @@ class RigWatch {
     right_ = std::move(new_right);
     return true;
   }
-  /// After the first call of changed().
+  /// Valid after the first call of changed().
   const CameraCalibration& left() const { return *left_; }
   const CameraCalibration& right() const { return *right_; }
 
@@ -31,12 +32,12 @@ class RigWatch {
   std::optional<CameraCalibration> left_, right_;
 };
 
-/// A stage that works on rectified images, made anew whenever the cameras are new or changed.
+/// A stage that works on rectified images. It is made anew whenever the cameras are new or changed.
 template <class Stage>
 class RigStage {
  public:
-  /// work(stage, left, right), with the images as mono8, or what is wrong with the cameras or the images. The
-  /// topics are for the message. make(rig model): a new stage, for the rig with these masks.
+  /// Calls work(stage, left, right), with the images as mono8. The failure is what is wrong with the cameras
+  /// or the images; the topics are for its text. make(rig model): makes a stage for the rig with these masks.
   template <class Make, class Work>
   auto run(const sensor_msgs::ImageConstPtr& left, const std::string& left_topic,
            const sensor_msgs::CameraInfo& left_info, const sensor_msgs::ImageConstPtr& right,
@@ -44,7 +45,7 @@ class RigStage {
            const RigParameters& limits, const RigMasks& masks, Make&& make, Work&& work)
       -> Expected<decltype(work(std::declval<Stage&>(), cv::Mat(), cv::Mat()))> {
     const CameraCalibration left_camera = toCalibration(left_info), right_camera = toCalibration(right_info);
-    // In this order: images before a stage is made for their size, which takes memory.
+    // Images are checked before a stage is made for their size, because it takes memory.
     warnings_ = ofCameraInfo(rigWarnings(left_camera, right_camera, limits));
     const auto rig = makeStereoRig(left_camera, right_camera, limits);
     if (!rig) return tl::make_unexpected(ofCameraInfo(rig.error()));
@@ -57,10 +58,10 @@ class RigStage {
     return work(*stage_, (*left_view)->image, (*right_view)->image);
   }
 
-  /// What is unlikely about the cameras of the last pair.
+  /// Warnings about the cameras of the last pair.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// The next pair is the first again.
+  /// The next pair is treated as the first one.
   void reset() {
     cameras_ = RigWatch();
     stage_.reset();

@@ -8,12 +8,13 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kStartStddev = 1000;  // m: says "not known" in finite numbers
-// Of the speed, 1 sigma that does not average out: of one that is seen, and of one that was seen before.
+constexpr double kStartStddev = 1000;  // m: a finite number for "not known"
+// Error of the speed that does not average out, 1 sigma as a share of the speed: while it is seen, and after
+// that.
 constexpr double kSpeedError = 0.05, kOldSpeedError = 1;
 constexpr size_t kTrackPoints = 2000;
 constexpr double kTrackSpacing = 0.02;  // of the height
-constexpr double kMaxStart = 100;       // heights: a path that hardly descends meets the ground far away
+constexpr double kMaxStart = 100;       // heights, as a path that hardly descends meets the ground far away
 constexpr int kMeanOf = 20;             // widths of the runway
 
 }  // namespace
@@ -53,7 +54,7 @@ void RunwayPath::takeKnown(int axis, double value, double value_variance, Eigen:
     known_[axis] = false;
     return;
   }
-  // When the runway is found the path behind, drawn from an arbitrary start, moves with the aircraft.
+  // When the runway is found, the path so far, drawn from an arbitrary start, moves with the aircraft.
   if (!known_[axis])
     for (Eigen::Vector3d& point : track_) point[axis] += value - xy_[axis];
   known_[axis] = true;

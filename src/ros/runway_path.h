@@ -8,9 +8,9 @@
 
 namespace uav_landing {
 
-/// Where the left camera is in the runway frame. Along and across the runway it is as the estimate says once
-/// that knows; until then the velocity is summed up from an arbitrary start: the point where the first path
-/// meets the ground becomes the origin. And how wide the runway is, for drawing.
+/// Position of the left camera in the runway frame. Along and across the runway it is that of the estimate,
+/// when this is known. Until then the velocity is summed up from an arbitrary start: the origin is the point
+/// where the first path meets the ground. It also has the width of the runway, for drawing.
 class RunwayPath {
  public:
   struct Position {
@@ -18,18 +18,19 @@ class RunwayPath {
     Eigen::Vector2d variance;  ///< of x and y, m^2: huge and growing while not known
   };
 
-  /// Of one pair; none while the height is not valid or the attitude unknown. A stamp that goes back starts
-  /// anew.
+  /// The position at a pair; none while the height is not valid or the attitude is unknown. A stamp that goes
+  /// back starts anew.
   std::optional<Position> update(const LandingResult& camera);
   void reset();
 
-  /// The positions so far, thinned out; the last kept ones.
+  /// The last positions, thinned out.
   const std::deque<Eigen::Vector3d>& track() const { return track_; }
-  /// Mean of what the last pairs measured, as some take other lines for its edges, m; unknown: none has.
+  /// Mean width over the last pairs that measured it, as some take other lines for the edges, m; unknown:
+  /// none has.
   double runwayWidth() const { return widths_ > 0 ? runway_width_ : kUnknown; }
 
  private:
-  /// Of x (axis 0) or y (1), when it is known.
+  /// For x (axis 0) or y (1), when it is known.
   void takeKnown(int axis, double value, double value_variance, Eigen::Vector2d& variance);
   void remember(const Eigen::Vector3d& position);
 

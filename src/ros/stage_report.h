@@ -16,18 +16,18 @@ namespace uav_landing {
 /// What a nodelet did since the last diagnostics: rates, times, failures. Thread safe.
 class StageReport {
  public:
-  /// One pair was served. stamp: of its left image. compute_ms: time it took. reason: "" or why there is no
-  /// result.
+  /// One pair was served. stamp: of its left image. compute_ms: time that it took. reason: why there is no
+  /// result, or "".
   void served(const ros::Time& stamp, double compute_ms, const std::string& reason);
-  /// A pair was left out because newer ones were waiting.
+  /// A pair was dropped because newer ones were waiting.
   void dropped(uint64_t count = 1);
-  /// All that a person should know from now on, as long as it holds. Returns what was not there before.
+  /// All warnings that hold from now on. Returns those that are new.
   std::vector<std::string> warned(const std::vector<std::string>& warnings);
-  /// An input could not be used; what is wrong with it.
+  /// An input could not be used. problem: what is wrong with it.
   void refused(const std::string& problem);
 
-  /// Fills in summary and values for the time since the last call and starts anew. inputs: counts of what is
-  /// paired here. subscribed: since when the inputs are, s; none when nobody wants the output.
+  /// Writes summary and values for the time since the last call, and starts anew. inputs: counts of what is
+  /// paired here. subscribed: time since the inputs were subscribed, s; none when nobody wants the output.
   void write(diagnostic_updater::DiagnosticStatusWrapper& status,
              const std::vector<InputWatch::Input>& inputs, std::optional<double> subscribed);
 
@@ -41,7 +41,7 @@ class StageReport {
   std::mutex mutex_;
   Counts now_;
   std::vector<std::string> warnings_;
-  uint64_t served_ = 0, dropped_ = 0, refused_ = 0;  // in all
+  uint64_t served_ = 0, dropped_ = 0, refused_ = 0;  // in total
   std::vector<InputWatch::Input> inputs_before_;
   ros::WallTime since_ = ros::WallTime::now();
 };

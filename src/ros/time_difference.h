@@ -6,8 +6,8 @@
 
 namespace uav_landing {
 
-/// Seconds from then to now, as (now - then).toSec(), which throws when they are more than 68 years apart:
-/// stamps come from anybody.
+/// Seconds from then to now. (now - then).toSec() throws when they are more than 68 years apart, and foreign
+/// stamps may be.
 inline double secondsBetween(const ros::Time& then, const ros::Time& now) {
   constexpr int64_t kSecond = 1000000000;
   int64_t seconds = static_cast<int64_t>(now.sec) - then.sec;

@@ -5,8 +5,8 @@
 
 namespace uav_landing {
 
-/// A file that gets its name only when it is complete: it is written as "<path>.part" and renamed by
-/// commit(); without that it is removed.
+/// A file that gets its name only when it is complete. It is written as "<path>.part" and renamed by
+/// commit(); otherwise it is removed.
 class PendingFile {
  public:
   explicit PendingFile(const std::string& path) : path_(path), temporary_(path + ".part") {}

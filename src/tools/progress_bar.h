@@ -13,7 +13,7 @@
 
 namespace uav_landing {
 
-/// A progress bar on stderr when that is a terminal, else nothing.
+/// A progress bar on stderr if this is a terminal, else nothing.
 class ProgressBar {
  public:
   explicit ProgressBar(unsigned long steps) {

@@ -28,6 +28,7 @@ class TroubleshootingTest(unittest.TestCase):
         self.assertEqual([phrase for phrase in quoted if phrase not in sources], [])
 
     def test_what_the_programs_send_people_to_is_there(self):
-        """process_bag says: see Troubleshooting in README.md."""
+        """process_bag says: see docs/troubleshooting.md."""
+        self.assertIn("see docs/troubleshooting.md", (SOURCE_DIR / "src/tools/offline/verdict.cpp").read_text())
         section = (SOURCE_DIR / "README.md").read_text().split("## Troubleshooting")[1].split("\n## ")[0]
         self.assertIn("(docs/troubleshooting.md)", section)

@@ -292,7 +292,7 @@ TEST(PairCount, TellsEachCauseByWhatShowsIt) {
   hasCause(times(10, Reason::kNoPlane), "the pictures show hardly any texture");
   hasCause(times(10, Reason::kNoMotion), "the cameras stand still");
   hasCause(times(10, Reason::kTransformMissing),
-           "most pairs are transform_missing: see Troubleshooting in README.md");
+           "most pairs are transform_missing: see docs/troubleshooting.md");
   std::vector<std::pair<Reason, std::string>> blinking;
   for (int i = 0; i < 10; ++i)
     blinking.push_back({i % 2 == 0 ? Reason::kUniformImage : Reason::kTooFewMatches, ""});

@@ -7,10 +7,10 @@
 
 namespace uav_landing {
 
-/// Wall-clock time of the parts of a stage for one pair, in order of execution (the paper's Table 1).
+/// Wall-clock time of a stage's parts for one pair, in order of execution (the paper's Table 1).
 class Timings {
  public:
-  /// Adds to the part of this name. milliseconds.
+  /// Adds milliseconds to the part of this name.
   void add(const char* part, double ms);
   void clear() { parts_.clear(); }
   double total() const;

@@ -25,16 +25,16 @@ struct CameraCalibration {
   bool operator==(const CameraCalibration& other) const;
   bool operator!=(const CameraCalibration& other) const { return !(*this == other); }
 
-  /// Size of the image this camera_info announces: ROI divided by binning.
+  /// Size of the image that this camera_info announces: ROI divided by binning.
   cv::Size imageSize() const;
 
-  /// The same camera in pixels of the image it delivers: K and P with ROI and binning taken in, as
-  /// image_geometry does it (c' = (c - offset) / binning, f' = f / binning), and no ROI or binning left.
+  /// The same camera in pixels of the image that it delivers. K and P contain ROI and binning as in
+  /// image_geometry (c' = (c - offset) / binning, f' = f / binning); no ROI or binning remains.
   CameraCalibration ofDeliveredImage() const;
 };
 
-/// The rectified pair: two pinhole cameras with common rows, axes parallel, the right one b to the right.
-/// Pixels are those of the delivered image (binning and ROI already applied).
+/// The rectified pair: two pinhole cameras with common rows and parallel axes, the right one at b to the
+/// right. Pixels are those of the delivered image (binning and ROI already applied).
 struct StereoRig {
   cv::Size size;          ///< of both rectified images
   double fx = 0, fy = 0;  ///< pixels
@@ -56,14 +56,14 @@ struct StereoRig {
   double fb() const { return fx * baseline; }
 };
 
-/// Checks one camera's calibration; the failure names the field ("K[0]: ...") and what was expected.
-/// Refuses zero or NaN entries where a number is needed, D of the wrong length, an unknown
-/// distortion_model, R that is not a rotation, a ROI outside the image.
+/// Checks one camera's calibration. The failure names the field ("K[0]: ...") and what was expected. It
+/// refuses zero or NaN where a number is needed, D of the wrong length, an unknown distortion_model, an R
+/// that is no rotation, and a ROI outside the image.
 Failure checkCalibration(const CameraCalibration& calibration);
 
-/// Rig of a calibrated pair, or what is wrong with it: both single calibrations, different sizes left and
-/// right, rows of the P matrices that do not match, a non-positive baseline (-P_right[3]/P_right[0]).
-/// Failure details start with "left" or "right" and name the field.
+/// Rig of a calibrated pair. It fails when a calibration is wrong by itself, when sizes differ, when the rows
+/// of the P matrices do not match, and when the baseline (-P_right[3]/P_right[0]) is not positive. Failure
+/// details start with "left" or "right" and name the field.
 Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCalibration& right);
 
 }  // namespace uav_landing

@@ -9,17 +9,14 @@ struct CameraPair {
   CameraCalibration left, right;
 };
 
-/// The cameras that the stages work with, of those that camera_info describes. They are the same but for two
-/// cases. Only R and P change then, so raw pictures, their masks, K, D and tf stay as they are.
-///
-/// A baseline that is a little aslant in the axes of P (as in the colour pictures of KITTI: 0.3 deg): both
-/// rectified cameras are turned by that angle, which makes their rows level.
-///
-/// upside_down: both rectified cameras are turned by 180 deg about their optical axes, and the right camera
-/// is the left one from then on. The rectified pictures are those of a pair that stands upright. Images,
-/// stamps and frame_ids have to be exchanged by the caller, too.
-///
-/// The failure is that of makeStereoRig(), and its left and right are the given ones.
+/// The cameras that the stages work with, from those that camera_info describes. They are the same except in
+/// two cases. Only R and P change then, so raw images, their masks, K, D and tf stay as they are.
+/// A baseline that is slightly slanted in the axes of P (as in the colour images of KITTI: 0.3 deg): both
+/// rectified cameras are turned by this angle, which makes their rows level.
+/// upside_down: both rectified cameras are turned by 180 deg about their optical axes, and left and right are
+/// exchanged. The rectified images are then those of an upright pair. The caller has to exchange images,
+/// stamps and frame_ids as well.
+/// The failure is that of makeStereoRig(), with left and right as given.
 Expected<CameraPair> workingPair(const CameraCalibration& left, const CameraCalibration& right,
                                  const RigParameters& parameters);
 

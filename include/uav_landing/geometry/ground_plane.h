@@ -9,9 +9,9 @@
 
 namespace uav_landing {
 
-/// The ground as seen from the rectified left camera: g = n / h with n the unit normal pointing down and h
-/// the height. A ground point X has g.X = 1; a ground pixel has the disparity d = f b g.r, linear in (u, v).
-/// Three numbers are height, pitch and roll at once.
+/// The ground as seen from the rectified left camera: g = n / h, with the unit normal n pointing down and the
+/// height h. A ground point X has g.X = 1. A ground pixel with the ray r has the disparity d = f b g.r,
+/// linear in (u, v). The three numbers contain height, pitch and roll.
 struct GroundPlane {
   Eigen::Vector3d g = Eigen::Vector3d::Constant(std::nan(""));           ///< 1/m
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::nan(""));  ///< of g, 1/m^2
@@ -29,18 +29,18 @@ struct GroundPlane {
 double pitchOf(const Eigen::Vector3d& normal);
 /// Roll = atan2(n_x, n_y): right side down is positive. Radians.
 double rollOf(const Eigen::Vector3d& normal);
-/// First-order variances of the two from the covariance of the normal. rad^2.
+/// First-order variances of pitch and roll from the covariance of the normal, rad^2.
 double pitchVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
 double rollVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
-/// Normal of a camera with this attitude: inverse of pitchOf and rollOf.
+/// Normal of a camera with this attitude, rad: inverse of pitchOf() and rollOf().
 Eigen::Vector3d normalFromPitchRoll(double pitch, double roll);
 /// Horizon l = K^-T n: pixels (u, v) with l.[u v 1] = 0 have disparity zero.
 Eigen::Vector3d horizonLine(const StereoRig& rig, const Eigen::Vector3d& normal);
 
-/// Adds the independent knowledge that the unit direction p lies in the ground plane (p.g = 0), as a
-/// vanishing point gives it, to a plane measured by stereo. Scalar Kalman update in Joseph form;
-/// p_covariance is that of p (rad^2, 3x3, rank 2). The test ratio (squared innovation over variance) is
-/// returned through nis; beyond max_nis the plane comes back unchanged.
+/// Fuses a plane measured by stereo with an independent unit direction p that lies in the ground plane (p.g =
+/// 0), as a vanishing point gives it. Scalar Kalman update in Joseph form. p_covariance: of p (rad^2, 3x3,
+/// rank 2). nis: receives the test ratio (squared innovation over variance). Beyond max_nis the plane is
+/// returned unchanged.
 GroundPlane fuseVanishingPoint(const GroundPlane& plane, const Eigen::Vector3d& p,
                                const Eigen::Matrix3d& p_covariance, double max_nis, double* nis);
 
@@ -51,21 +51,21 @@ struct GroundDirection {
 
   bool known() const { return direction.allFinite() && covariance.allFinite(); }
 };
-/// A unit normal of the ground known from elsewhere; NaN: not known.
+/// A unit normal of the ground from another source; NaN: not known.
 struct GroundNormal {
   Eigen::Vector3d n = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< rad^2
 
   bool known() const { return n.allFinite() && covariance.allFinite(); }
 };
-/// Mean of two independent ones, weighted by their covariances.
+/// Mean of two independent normals, weighted by their covariances.
 GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b);
-/// What a normal known from elsewhere says as two directions in the ground plane: forward (the optical axis
-/// above the ground) and to the left.
+/// A normal as two directions in the ground plane: forward (the optical axis above the ground) and left.
 std::array<GroundDirection, 2> levelDirections(const GroundNormal& ground);
 
-/// Adds a normal known independently of stereo, as an attitude sensor gives it, in the same way. nis: the
-/// larger test ratio of its two directions; beyond max_nis the plane comes back unchanged.
+/// Fuses a plane with a normal that is independent of stereo, as an attitude sensor gives it, in the same
+/// way. nis: receives the larger test ratio of its two directions. Beyond max_nis the plane is returned
+/// unchanged.
 GroundPlane fuseNormal(const GroundPlane& plane, const GroundNormal& ground, double max_nis, double* nis);
 
 /// Yaw of the camera: angle of the optical axis from the landing direction p about the up axis, left

@@ -8,28 +8,27 @@
 
 namespace uav_landing {
 
-// A camera_info can be complete and still not belong to the pictures: it is of another picture size, or its
-// baseline is in millimetres. Nothing in the images shows that: heights look right and are wrong by a factor.
-// So what is unlikely for a camera is refused, or warned about.
-//
+// A camera_info can be complete and still not belong to the images: it is for another image size, or its
+// baseline is in millimetres. No image shows that: heights look right and are wrong by a factor. So values
+// that are unlikely for a camera are refused, or warned about.
 // The offset of a principal point is |K[2] - width / 2| / width, and |K[5] - height / 2| / height, in pixels
-// of the full resolution: a ROI or binning that camera_info announces does not count. For a K that is s times
-// too large it is |s - 1| / 2. P is not asked: rectification may put its principal point anywhere.
+// of the full resolution, without ROI or binning. For a K that is s times too large it is |s - 1| / 2. P is
+// not tested, because rectification may put its principal point anywhere.
 
-/// Baselines between the cameras of an aircraft, m; others are warned about. scripts/calibrate has the same
+/// Baselines between the cameras of an aircraft, m; others give a warning. scripts/calibrate has the same
 /// limits (src/tools/calibration/checks.py), and a test compares them.
 constexpr double kShortestLikelyBaseline = 0.01, kLongestLikelyBaseline = 10.0;
 
 /// Refuses a camera that passed checkCalibration() when its principal point is too far off the middle. The
-/// failure names the field, as that of checkCalibration() does, and the parameter that lets it through.
+/// failure names the field, and the parameter that lets it through.
 Failure checkPrincipalPoint(const CameraCalibration& calibration, const RigParameters& limits);
 
 /// As makeStereoRig(left, right), and refuses what is beyond the limits.
 Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCalibration& right,
                                   const RigParameters& limits);
 
-/// What is unlikely about a pair that makeStereoRig() accepts with these limits: for each camera a principal
-/// point from half of its limit on, and a baseline that is not likely. Empty for a pair that is refused.
+/// Warnings about a pair that makeStereoRig() accepts with these limits: a principal point beyond half of its
+/// limit, and an unlikely baseline. Empty for a pair that is refused.
 std::vector<std::string> rigWarnings(const CameraCalibration& left, const CameraCalibration& right,
                                      const RigParameters& limits);
 

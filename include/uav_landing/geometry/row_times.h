@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// How one camera reads its raw pictures, as the driver delivers them. A raw row v of `rows` is exposed at
+/// How one camera reads its raw images, as the driver delivers them. A raw row v of `rows` is exposed at
 ///   t(v) = stamp + ((v + 1/2) / rows - stamp_row) time.
 struct Readout {
   double time = 0;         ///< s, from the first line to the last; negative: the last one comes first
@@ -18,27 +18,27 @@ struct Readout {
   RowDirection direction = RowDirection::kRows;
 };
 
-/// Of the left and the right camera that the stages work with (see workingPair()), as the parameters say. In
-/// a rig upside down the left one is the camera that is named right. A time that is not given is that of a
-/// global shutter.
+/// Readout of the left and the right camera that the stages work with (see workingPair()), by the parameters.
+/// In a rig upside down the left one is the camera that is named right. Without a given time it is a global
+/// shutter.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
 
 /// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
-/// to its raw row; in a rig upside down the first one is at the bottom. The default is a global shutter.
+/// to its raw row. In a rig upside down the first row is at the bottom. The default is a global shutter.
 class RowTimes {
  public:
   RowTimes() = default;
-  /// calibration: checked.
+  /// calibration: already checked.
   RowTimes(const CameraCalibration& calibration, const Readout& readout);
 
   /// Global shutter: nothing has to be carried to the stamp.
   bool atOnce() const { return time_ == 0; }
-  /// From the stamp to the exposure of a rectified pixel, s.
+  /// Time from the stamp to the exposure of a rectified pixel, s.
   double at(double u, double v) const { return atOnce() ? 0 : time_ * shareAt(u, v); }
-  /// (t0, tu, tv), the plane t0 + tu u + tv v that lies best through these times: s, s/px, s/px.
+  /// (t0, tu, tv) of the plane t0 + tu u + tv v that fits these times best: s, s/px, s/px.
   const Eigen::Vector3d& plane() const { return plane_; }
-  /// From the first line to the last, s; negative when the last one comes first.
+  /// Time from the first line to the last, s; negative when the last one comes first.
   double readoutTime() const { return time_; }
 
  private:
@@ -50,17 +50,16 @@ class RowTimes {
   Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
 };
 
-/// By how much the right camera's rows are exposed later than the left one's, s. size: of the rectified
-/// images. Where lenses and rectification alone make a difference, as in any rig, it is that of the middle;
-/// else the largest one.
+/// Delay of the right camera's rows after the left one's, s. size: of the rectified images. If only lenses
+/// and rectification make a difference, as in any rig, it is that in the middle; otherwise the largest one.
 double laterRows(const RowTimes& left, const RowTimes& right, const cv::Size& size);
 
-/// Refuses a readout time that is longer than the time between the pictures: it is given in other units, or
+/// Refuses a readout time that is longer than the time between the images. It is then in other units, or that
 /// of another mode of the sensor.
 class ReadoutCheck {
  public:
   explicit ReadoutCheck(const RowTimes& times, const RowTimes& right);
-  /// Pairs in the order of their stamps, s.
+  /// Call it for the pairs in the order of their stamps, s.
   Failure follow(double stamp);
   void reset() { stamps_.clear(); }
 

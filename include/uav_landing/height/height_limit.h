@@ -5,8 +5,9 @@
 
 namespace uav_landing {
 
-/// Why a height (m, m^2) is too uncertain to be valid: 3 sigma above max_height_error of it and
-/// min_height_error, or not above the ground. None where it is not.
+/// Tells when a height (m, m^2) is too uncertain to be valid: its 3 sigma exceed the larger of
+/// min_height_error and max_height_error times the height, or it is not above the ground. No failure
+/// otherwise.
 Failure tooUncertain(double height, double variance, const KalmanHeightParameters& parameters);
 
 }  // namespace uav_landing

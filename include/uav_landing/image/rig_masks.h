@@ -9,9 +9,9 @@
 
 namespace uav_landing {
 
-/// Which pixels of one camera's raw pictures may be used, as a person has drawn it.
+/// The usable pixels of one camera's raw images, as a person has drawn them.
 struct RawMask {
-  cv::Mat usable;         ///< mono8, nonzero: may be used; empty: all may
+  cv::Mat usable;         ///< mono8, nonzero: usable; empty: all are
   std::string parameter;  ///< that names the file: rig/left_mask
   std::string file;
 };
@@ -20,12 +20,13 @@ struct RigMasks {
   RawMask left, right;
 };
 
-/// Reads the files that the parameters name. Refuses one that is not there, is no image, has not one channel
-/// of 8 bit, or leaves less than a tenth of the picture. The failure names the parameter and the file. The
-/// masks are those of the working pair: see workingPair() for a rig that is mounted upside down.
+/// Reads the files that the parameters name. It refuses a file that does not exist, is no image, does not
+/// have one channel of 8 bits, or leaves less than a tenth of the image. The failure names the parameter and
+/// the file. The masks are those of the working pair: see workingPair() for a rig that is mounted upside
+/// down.
 Expected<RigMasks> loadRigMasks(const RigParameters& parameters);
 
-/// Refuses a mask that is not as large as the pictures that the camera delivers, with ROI and binning.
+/// Refuses a mask whose size is not that of the images that the camera delivers, with ROI and binning.
 Failure checkMaskSize(const RawMask& mask, const CameraCalibration& calibration);
 
 }  // namespace uav_landing

@@ -4,21 +4,21 @@
 
 namespace uav_landing {
 
-/// What the stamp of a pair says, or of one camera's image, against those before. One that came a little
-/// late, after the one behind it, is of no use any more, and what is known stays. Larger steps back are those
-/// of a clock that was set back (a bag that loops, a restarted camera). So are late ones alone, many in a
-/// row, or three in a row that come in order: then everything starts anew.
+/// Compares the stamp of a pair, or of one camera's image, with those before. A stamp that is slightly behind
+/// the newest one is late: it is of no use, and nothing changes. A larger step back means that the clock was
+/// set back (a bag that loops, a restarted camera). So do many late stamps in a row without others, or three
+/// in a row that come in order. Then everything starts anew.
 class StampOrder {
  public:
   enum class Arrival { kNext, kRepeated, kLate, kBackwards, kUnstamped };
 
-  /// max_late: s behind the newest stamp; 0: every step back is that of a clock.
+  /// max_late: s behind the newest stamp; 0: every step back means that the clock was set back.
   explicit StampOrder(double max_late);
 
-  /// stamp: ns; 0 is none. kRepeated, kLate and kUnstamped: to be left out. kBackwards: what waits and what
-  /// is remembered is to be forgotten first.
+  /// stamp: ns; 0 means that there is none. kRepeated, kLate and kUnstamped: do not use it. kBackwards: first
+  /// forget what waits and what is remembered.
   Arrival follow(int64_t stamp);
-  /// Whether such a pair, or image, is to be used.
+  /// Whether to use such a pair or image.
   static bool isUsed(Arrival arrival) { return arrival == Arrival::kNext || arrival == Arrival::kBackwards; }
   /// Stamps may start anywhere again.
   void reset();
@@ -29,7 +29,7 @@ class StampOrder {
   int64_t max_late_;       // ns
   int64_t newest_ = 0;     // ns; 0: none yet
   int late_ = 0;           // in a row
-  int64_t last_late_ = 0;  // ns, of those
+  int64_t last_late_ = 0;  // ns, of the late ones
   int in_order_ = 0;       // late ones in a row, each after the one before
 };
 

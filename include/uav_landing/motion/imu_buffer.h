@@ -12,30 +12,31 @@ namespace uav_landing {
 /// One message of an inertial sensor, in its own axes.
 struct ImuSample {
   double stamp = 0;  ///< s
-  /// Of the sensor in a world whose z axis points up (REP 103); its heading is not used.
+  /// Orientation of the sensor in a world whose z axis points up (REP 103). Its heading is not used.
   std::optional<Eigen::Quaterniond> orientation;
   std::optional<Eigen::Matrix3d> orientation_covariance;  ///< rad^2, about the sensor's axes; none: not known
   std::optional<Eigen::Vector3d> angular_velocity;        ///< rad/s
   std::optional<Eigen::Matrix3d> angular_velocity_covariance;  ///< rad^2/s^2; none: not known
 };
 
-/// The last minute of an inertial sensor, asked for attitude and rotation at the stamps of images.
+/// The last minute of an inertial sensor's messages. It gives attitude and rotation at the stamps of images.
 class ImuBuffer {
  public:
   explicit ImuBuffer(const ApproachAngleParameters& parameters) : parameters_(parameters) {}
 
-  /// A message that is a little late is put in its place, a repeated stamp left out. A stamp more than a
-  /// second back is a clock that was set back: what was before it is forgotten.
+  /// Adds a message. One that is slightly late is put in its place, and one with a repeated stamp is ignored.
+  /// A stamp more than a second back means that the clock was set back, so earlier messages are forgotten.
   void add(const ImuSample& sample);
   void clear() { samples_.clear(); }
   bool empty() const { return samples_.empty(); }
   double newest() const { return samples_.back().stamp; }  ///< s; not while empty
-  /// There is a message at or after an image of this stamp (imu_delay taken into account).
+  /// Whether there is a message at or after an image of this stamp (imu_delay taken into account).
   bool covers(double stamp) const;
 
-  /// Attitude at the image of this stamp, between its two neighbours in time or, for at most imu_max_gap,
-  /// ahead of the newest message; and the rotation since the image before, by the angular velocity or,
-  /// without one, by the attitudes. camera_from_imu: rotation to the rectified left camera's optical frame.
+  /// Attitude at the image of this stamp, and the rotation since the image before. The attitude is
+  /// interpolated between the neighbours in time, or carried on from the newest message for at most
+  /// imu_max_gap. The rotation follows from the angular velocity or, without one, from the attitudes.
+  /// camera_from_imu: rotation to the rectified left camera's optical frame.
   AttitudePrior at(double stamp, std::optional<double> before, const Eigen::Matrix3d& camera_from_imu) const;
 
  private:

@@ -9,21 +9,21 @@
 namespace uav_landing {
 
 // Pictures of what the stages found, for people. Pure functions: images are rectified mono8 of the rig's
-// size, the pictures are new BGR8 images. Results that were not found (NaN, empty) are left out.
+// size, and the pictures are new BGR8 images. Results that are missing (NaN, empty) are not drawn.
 
-/// Factor by which a picture of this width is enlarged: the parameter, or for 0 the smallest that makes it at
-/// least 640 pixels wide.
+/// Factor by which an image of this width is enlarged. It is the parameter, or for 0 the smallest that makes
+/// the picture at least 640 pixels wide.
 int overlayScale(int width, const OverlayParameters& parameters);
 
-/// The left image with lines (through the vanishing point bright, others dim), vanishing point, horizon of
-/// the stereo plane and of the fused ground normal, focus of expansion, matches coloured by disparity (those
-/// off the plane dim); below it a strip of instruments: height, sink rate, approach angle, attitude, status
-/// and reason. The picture proper is the top left (scale * size) part.
+/// The left image with lines (those through the vanishing point bright, others dim), vanishing point, horizon
+/// of the stereo plane and of the fused ground normal, focus of expansion, and matches coloured by disparity
+/// (those off the plane dim). Below it is a strip of instruments: height, sink rate, approach angle,
+/// attitude, status and reason. The image itself is the top left (scale * size) part.
 cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepthResult& stereo,
                     const ApproachAngleResult& approach, const LandingResult& landing,
                     const OverlayParameters& parameters);
 
-/// One view's lines alone (the paper's Fig. 4).
+/// The lines of one view (the paper's Fig. 4).
 cv::Mat drawLines(const cv::Mat& image, const ApproachAngleResult::View& view,
                   const OverlayParameters& parameters);
 

@@ -10,7 +10,7 @@ struct Attitude {
   double roll = 0, pitch = 0, yaw = 0;
 };
 
-/// Turns optical axes (x right, y down, z forward) into body axes (x forward, y left, z up), REP 103.
+/// Rotation from optical axes (x right, y down, z forward) to body axes (x forward, y left, z up), REP 103.
 Eigen::Matrix3d bodyFromOptical();
 
 /// R(runway <- optical) = Rz(yaw) Ry(-pitch) Rx(roll) R(body <- optical), with the runway frame x along the

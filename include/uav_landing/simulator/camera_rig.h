@@ -9,8 +9,8 @@
 
 namespace uav_landing {
 
-/// What one raw pixel sees, in the axes of the rectified left camera: direction (x, y, 1) of its centre, and
-/// how the direction changes from one pixel to the next along the row (u) and the column (v).
+/// The ray of one raw pixel, in the axes of the rectified left camera: direction (x, y, 1) of its centre, and
+/// the change of this direction to the next pixel along the row (u) and the column (v).
 struct PixelRay {
   float x, y;
   float xu, yu;
@@ -19,19 +19,19 @@ struct PixelRay {
 
 /// One camera of the simulated rig.
 struct SimulatedCamera {
-  CameraCalibration calibration;  ///< what camera_info says
-  double offset_x = 0;            ///< true centre to the right of the left camera's, m; rectified axes
-  std::vector<PixelRay> rays;     ///< true ones, row by row
+  CameraCalibration calibration;  ///< content of camera_info
+  double offset_x = 0;            ///< true centre, to the right of the left camera's, m; rectified axes
+  std::vector<PixelRay> rays;     ///< true rays, row by row
 };
 
-/// The two cameras with lenses, and the rectification of the pair (Bouguet's, by cv::stereoRectify) that
-/// gives R and P. Both rectified cameras have the same axes and the right one is offset_x along their x, but
-/// for the calibration error: the real right camera's.
+/// The two cameras with lenses, and the rectification of the pair (Bouguet's, by cv::stereoRectify), which
+/// gives R and P. Both rectified cameras have the same axes, and the right one is offset_x along their x.
+/// Only the real right camera differs from that, by the calibration error.
 struct CameraRig {
   SimulatedCamera left, right;
 };
 
-/// The rig of these parameters, or why there cannot be one: a lens that folds back within the image.
+/// The rig of these parameters. It fails when a lens folds back within the image.
 Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters);
 
 }  // namespace uav_landing

@@ -13,13 +13,13 @@ namespace uav_landing {
 Eigen::Matrix3d opticalFromImu();
 
 /// An inertial sensor that is fixed to the rig, message by message: attitude and angular velocity with
-/// constant and random errors. Its axes are forward, left and up of the rectified left camera, but for an
-/// error of its mounting that nobody knows of.
+/// constant and random errors. Its axes are forward, left and up of the rectified left camera, apart from an
+/// error of its mounting that nobody knows.
 class SimulatedImu {
  public:
   SimulatedImu(const SimulatedImuParameters& parameters, const Trajectory& trajectory, uint64_t seed);
 
-  /// Messages from the start to this many seconds after it, both included; 0 when there is no sensor.
+  /// Number of messages from the start to this many seconds after it, both included; 0 without a sensor.
   int count(double duration) const;
   /// Stamps are seconds since the start, late by the delay.
   ImuSample sample(int index) const;

@@ -6,13 +6,13 @@
 
 namespace uav_landing {
 
-// Every parameter of the simulator: name, default, range, unit and meaning, by the same visitor as
-// uav_landing/parameters/parameters.h. config/simulator/full_scale.yaml explains how they play together. The
+// Every parameter of the simulator: name, default, range, unit and meaning, for the same visitor as
+// uav_landing/parameters/parameters.h. config/simulator/full_scale.yaml explains how they work together. The
 // defaults are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before
 // gain and offset.
 
-/// What both cameras have in common (section image). A rolling shutter exposes its rows one after the other:
-/// the middle of row v of the raw picture at stamp + ((v + 0.5) / height - stamp_row) readout_time.
+/// Common parameters of both cameras (section image). A rolling shutter exposes its rows one after the other:
+/// the middle of row v of the raw image at stamp + ((v + 0.5) / height - stamp_row) readout_time.
 struct SimulatedImageParameters {
   enum class RowDirection { kRows, kColumns };
 
@@ -77,7 +77,7 @@ struct SimulatedCameraParameters {
   }
 };
 
-/// Where the right camera is, in the left camera's axes (x right, y down, z forward) (section rig).
+/// Position of the right camera in the left camera's axes (x right, y down, z forward) (section rig).
 struct SimulatedRigParameters {
   double x = 1.0, y = 0, z = 0;
   double rx_deg = 0, ry_deg = 0, rz_deg = 0;
@@ -109,8 +109,8 @@ struct SimulatedRigParameters {
   }
 };
 
-/// The runway and what is painted on it; marks are the same at both ends (section runway). A length, count or
-/// width of 0 leaves a mark out.
+/// The runway and its markings, which are the same at both ends (section runway). A marking with a length,
+/// count or width of 0 does not exist.
 struct SimulatedRunwayParameters {
   double length = 1500, width = 45;
   double displaced_threshold = 0;
@@ -157,7 +157,7 @@ struct SimulatedRunwayParameters {
   }
 };
 
-/// How bright and how textured everything is (section surface).
+/// Brightness and texture of all surfaces (section surface).
 struct SimulatedSurfaceParameters {
   double runway_brightness = 70, runway_contrast = 0.1, runway_grain = 0.02;
   double grass_brightness = 105, grass_contrast = 0.14, grass_grain = 0.03;
@@ -185,8 +185,9 @@ struct SimulatedSurfaceParameters {
   }
 };
 
-/// The ground's height along the runway, z(x): a straight slope, a parabola that leads over to another slope,
-/// and that slope; on it a hill. The same all across. 0 at the threshold (section profile).
+/// The ground's height along the runway, z(x): a straight slope, a parabola as the transition to another
+/// slope, and that slope, with a hill on it. It is the same all across, and 0 at the threshold (section
+/// profile).
 struct SimulatedProfileParameters {
   double slope_before_deg = 0, slope_after_deg = 0;
   double change_start = 0, change_length = 0;
@@ -264,8 +265,8 @@ struct SimulatedPathParameters {
   }
 };
 
-/// What disturbs the path and the attitude: each a sum of two sines with random phases, the one of period and
-/// the other 2.7 times as fast and 0.4 times as large (section wobble).
+/// Disturbances of the path and the attitude. Each is a sum of two sines with random phases: one with the
+/// period, and one that is 2.7 times as fast and 0.4 times as large (section wobble).
 struct SimulatedWobbleParameters {
   double roll_deg = 3, roll_period = 4;
   double pitch_deg = 0.7, pitch_period = 3;
@@ -302,7 +303,7 @@ struct SimulatedGustParameters {
 };
 
 /// Vibration of the whole rig about the left camera: one sine about each axis, with random phases (section
-/// vibration). The truth's attitude and the inertial sensor have it.
+/// vibration). The truth's attitude and the inertial sensor contain it.
 struct SimulatedVibrationParameters {
   double frequency = 50;
   double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
@@ -347,7 +348,7 @@ struct SimulatedImuParameters {
   }
 };
 
-/// What makes one run different from the next (section random).
+/// What makes runs differ from each other (section random).
 struct SimulatedRandomParameters {
   int seed = 1;
 
@@ -374,7 +375,7 @@ struct SimulatorParameters {
   SimulatedImuParameters imu;
   SimulatedRandomParameters random;
 
-  /// Pictures of this size for both cameras, px, with this focal length and the principal points in their
+  /// Images of this size for both cameras, px, with this focal length and the principal points in their
   /// middle.
   void setPictures(int width, int height, double f) {
     image.width = width;

@@ -2,11 +2,12 @@
 
 namespace uav_landing {
 
-// What lies around the runway, element by element. Each is a section of its own, and is left out by default.
-// Directions are those of the runway frame: x along the landing direction from the threshold, y left. A
-// direction of 0 is the landing direction, 90 is to the left. Elements that come later here lie on top.
+// The surroundings of the runway, element by element. Each is a section of its own, and does not exist by
+// default. Directions are in the runway frame: x along the landing direction from the threshold, y left. A
+// direction of 0 is the landing direction, 90 is to the left. Later elements lie on top of earlier ones.
 
-/// A patchwork of fields with borders and crop rows (section fields). A length or width of 0 leaves it out.
+/// A patchwork of fields with borders and crop rows (section fields). It does not exist with a length or
+/// width of 0.
 struct SimulatedFieldsParameters {
   double x = 0, y = 0, direction_deg = 0;
   double length = 0, width = 0;
@@ -35,8 +36,8 @@ struct SimulatedFieldsParameters {
   }
 };
 
-/// Water between two wavy banks (sections river and shore). Its near bank follows a straight line through
-/// (x, y), and the water lies to the left of that line. A width of 0 leaves it out.
+/// Water between two wavy banks (sections river and shore). Its near bank follows a straight line through (x,
+/// y), and the water lies to the left of that line. It does not exist with a width of 0.
 struct SimulatedWaterParameters {
   double x = 0, y = 0, direction_deg = 0;
   double width = 0;
@@ -60,8 +61,8 @@ struct SimulatedWaterParameters {
   }
 };
 
-/// A grid of streets; between them plots, most with a house (section town). A length or width of 0 leaves it
-/// out.
+/// A grid of streets with plots between them, most with a house (section town). It does not exist with a
+/// length or width of 0.
 struct SimulatedTownParameters {
   double x = 0, y = 0, direction_deg = 0;
   double length = 0, width = 0;
@@ -93,8 +94,8 @@ struct SimulatedTownParameters {
   }
 };
 
-/// Mown grass around the runway, over fields, water and town (section grass_strip). A side of 0 leaves it
-/// out.
+/// Mown grass around the runway, over fields, water and town (section grass_strip). It does not exist with a
+/// side of 0.
 struct SimulatedGrassStripParameters {
   double side = 0, end = 60;
 
@@ -105,7 +106,8 @@ struct SimulatedGrassStripParameters {
   }
 };
 
-/// A straight paved strip with lines: sections road and taxiway. A length or width of 0 leaves it out.
+/// A straight paved strip with lines (sections road and taxiway). It does not exist with a length or width of
+/// 0.
 struct SimulatedStripParameters {
   double x = 0, y = 0, direction_deg = 0;
   double length = 0, width = 0;
@@ -131,8 +133,8 @@ struct SimulatedStripParameters {
   }
 };
 
-/// A second runway with the first one's surface and markings, below the first one (section crossing_runway).
-/// A length or width of 0 leaves it out.
+/// A second runway with the surface and markings of the first one, below it (section crossing_runway). It
+/// does not exist with a length or width of 0.
 struct SimulatedCrossingParameters {
   double x = 500, y = 0, direction_deg = 60;
   double length = 0, width = 0;
@@ -147,7 +149,7 @@ struct SimulatedCrossingParameters {
   }
 };
 
-/// The aircraft's own nose and a post of its window, always at the same place of each camera's raw picture
+/// The aircraft's own nose and a post of its window, always at the same place of each camera's raw image
 /// (section own_frame).
 struct SimulatedOwnFrameParameters {
   double nose_height = 0, nose_width = 0.5;

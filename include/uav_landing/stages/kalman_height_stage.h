@@ -23,10 +23,10 @@ class KalmanHeightStage {
   KalmanHeightStage(KalmanHeightStage&&) noexcept;
   KalmanHeightStage& operator=(KalmanHeightStage&&) noexcept;
 
-  /// Results of the same pair. A stamp that does not increase, or that jumps ahead by more than
-  /// reset_timeout, resets the filter (reason time_jump), and so does a clock that was set in between.
+  /// stereo, approach: results of the same pair. The filter is reset (reason time_jump) by a stamp that does
+  /// not increase or that jumps ahead by more than reset_timeout, and by a clock that was set in between.
   LandingResult process(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
-  /// What to say when no pair came for max_age: status lost, nothing valid. stamp: of now, s.
+  /// Result when no pair came for max_age: status lost, nothing valid. stamp: of now, s.
   LandingResult timeout(double stamp);
   /// Forgets everything but the count of resets.
   void reset();

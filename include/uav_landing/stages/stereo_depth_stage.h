@@ -12,10 +12,10 @@ namespace uav_landing {
 
 class CornerMatcher;
 
-/// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane.
-/// Keeps the plane of the previous pair to predict where to search, by how much the right camera's rows are
-/// off (some twenty pairs), rows of the last images to know those that come again, and what of the left
-/// picture has not moved with the ground for a second.
+/// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane. It
+/// keeps the plane of the previous pair to predict where to search. It also keeps vertical disparities of
+/// some twenty pairs, rows of the last images to recognise repeated ones, and the part of the left image that
+/// does not move with the ground.
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
@@ -25,13 +25,13 @@ class StereoDepthStage {
   ~StereoDepthStage();
   StereoDepthStage(StereoDepthStage&&) noexcept;
 
-  /// left, right: rectified mono8 of the rig's size. skew: stamp of right minus left, s.
-  /// A stamp that does not increase starts the search anew.
+  /// left, right: rectified mono8 of the rig's size. skew: stamp of right minus left, s. A stamp that does
+  /// not increase starts the search anew.
   StereoDepthResult process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
   /// As newly made.
   void reset();
-  /// Share of the left picture that does not move with the ground, such as the aircraft's nose: the next
-  /// pair's corners leave it out.
+  /// Share of the left image that does not move with the ground, such as the aircraft's nose. The next pair
+  /// has no corners there.
   double ownFrame() const;
   const Timings& timings() const;
 

@@ -2,8 +2,8 @@
 
 namespace uav_landing {
 
-/// From so much time between two pairs on, s, the later one is seen for itself. What was found in the earlier
-/// one is too far off to lead on, and there is time to search within one pair.
+/// With so much time between two pairs (s), the later one is treated on its own. What the earlier one showed
+/// is too old to predict from, and there is time to search within one pair.
 constexpr double kRarePairs = 0.3;
 
 }  // namespace uav_landing

@@ -2,28 +2,29 @@
 
 namespace uav_landing {
 
-/// Whether what is followed from pair to pair moves on as the pairs before lead to expect, so that it is good
-/// enough a start as it is and needs no search. What a search would show, something that agrees better, is to
-/// be seen soon: every tenth time there is one nevertheless.
+/// Whether a quantity that is followed from pair to pair moves as predicted. Then the prediction is a good
+/// enough start and no search is needed. A search could find something that agrees better, and that must be
+/// noticed soon: so every tenth time a search is made nevertheless.
 class Steadiness {
  public:
-  /// steady_off: up to so many pixels between what was expected and what was found the next time needs no
-  /// search. most_off: up to so many what is found without one counts.
+  /// steady_off: when prediction and result differ by at most so many pixels, the next pair needs no search.
+  /// most_off: a result found without a search counts when it differs by at most so many pixels.
   Steadiness(double steady_off, double most_off) : steady_off_(steady_off), most_off_(most_off) {}
 
-  /// By up to this factor longer than the last time from pair to pair, what moves can be expected as well.
+  /// The prediction also holds when the time between pairs grows by at most this factor.
   static constexpr double kLongestRegular = 1.5;
 
-  /// Whether to go without a search this time. It is one without until searched().
+  /// Whether to go without a search this time. If a search is made after all, call searched().
   bool goesWithout() {
     if (!steady_ || without_ >= kMostWithout) return false;
     ++without_;
     return true;
   }
   void searched() { without_ = 0; }
-  /// share: of the corners, that agree with what was found without a search; off: pixels.
+  /// share: of the corners that agree with the result found without a search. off: largest difference from
+  /// the prediction, pixels.
   bool bearsOut(double share, double off) const { return share >= kLeastKept * share_ && off <= most_off_; }
-  /// What was found in the end, with a search or without.
+  /// The final result, with a search or without.
   void note(double share, double off) {
     if (without_ == 0) share_ = share;
     steady_ = share >= kLeastShare && off <= steady_off_;
@@ -31,15 +32,15 @@ class Steadiness {
   void lose() { steady_ = false; }
 
  private:
-  // With the majority nothing else has as many. And share of those that agreed after the last search, that
-  // must agree again: lines look alike wherever along them they are looked for, and what else there is would
-  // be lost.
+  // kLeastShare: with a majority of the corners, nothing else has as many. kLeastKept: as a share of the
+  // corners that agreed after the last search. Lines look alike all along them, so with a wrong result their
+  // corners still agree, and only the other corners are lost.
   static constexpr double kLeastShare = 0.5, kLeastKept = 0.9;
   static constexpr int kMostWithout = 9;
 
   double steady_off_, most_off_;
   bool steady_ = false;
-  double share_ = 0;  // of the corners, that agreed after the last search
+  double share_ = 0;  // of the corners that agreed after the last search
   int without_ = 0;   // times in a row
 };
 

@@ -13,7 +13,7 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
-/// A measured number as a reason shows it: four significant digits, the rest is noise.
+/// A measured number as reasons show it: four significant digits, as the rest is noise.
 inline std::string rounded(double value) {
   std::ostringstream out;
   out.precision(4);

@@ -5,8 +5,7 @@
 
 namespace uav_landing {
 
-/// Which of so many values remain when they are thinned to at most count, spread as the values are. To be
-/// asked for each, in their order.
+/// Chooses at most count of so many values, spread evenly over them. Ask it for each value, in their order.
 class ThinnedPlaces {
  public:
   ThinnedPlaces(size_t values, size_t count) : values_(values), count_(count) {}

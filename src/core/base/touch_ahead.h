@@ -5,12 +5,13 @@
 
 namespace uav_landing {
 
-/// Reads the surroundings of a place of a float image that are worked on soon, and forgets what it read.
-/// Windows of corners lie anywhere in images that are larger than the caches near the processor: read here,
-/// their rows are waited for all at once, while the work on another corner goes on; read by the work itself,
-/// one after the other. A prefetch instruction would not do: it comes to nothing where the address of the
-/// page is not at hand either, as is usual here. across, down: pixels to each side; what is outside the image
-/// is left out. A small image is near the processor as a whole, and left alone.
+/// Reads the surroundings of a place of a float image that is needed soon, so that they are in the cache.
+/// Windows of corners lie anywhere in images larger than the caches. When they are read here, the processor
+/// waits for all rows at once, while it works on another corner; otherwise it waits for one row after the
+/// other. A prefetch instruction does not help: it does nothing when the address of the page is not cached
+/// either, as is usual here.
+/// across, down: pixels on each side; those outside the image are skipped. A small image fits into the cache
+/// and is not touched.
 inline void touchWindow(const cv::Mat& image, double u, double v, int across, int down) {
   constexpr int kStep = 64 / sizeof(float);  // columns of a cache line
   constexpr size_t kSmall = 400000;          // bytes

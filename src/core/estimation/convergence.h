@@ -6,13 +6,13 @@
 
 namespace uav_landing {
 
-/// Ends iterations of which each leaves about the same share of what the one before left, as those of
-/// reweighted least squares do, when what is left is little beside what is known at all. A first step takes
-/// away a start that is far off at once, and tells nothing of how fast the weights settle: a fifth is what is
-/// left by each at least.
+/// Ends iterations when the remaining error is small compared with the uncertainty of the result. In
+/// reweighted least squares each step leaves about the same share of the error before it. The first step
+/// removes a bad start at once and does not show how fast the weights settle, so each step is assumed to
+/// leave at least a fifth.
 class Convergence {
  public:
-  /// step: the one just made, in standard deviations of what is sought.
+  /// step: the last one, in standard deviations of the result.
   bool reached(double step) {
     constexpr double kLittle = 0.05;
     constexpr double kFirstShare = 0.5, kLeastShare = 0.2, kLargestShare = 0.99;
@@ -20,7 +20,7 @@ class Convergence {
     last_ = step;
     return step * share / (1 - share) < kLittle;
   }
-  /// The same by the step itself and the information (inverse covariance) of what is sought.
+  /// The same by the step itself and the information (inverse covariance) of the result.
   template <int N>
   bool reached(const Eigen::Matrix<double, N, 1>& step, const Eigen::Matrix<double, N, N>& information) {
     return reached(std::sqrt(step.dot(information * step)));

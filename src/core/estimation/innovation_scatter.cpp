@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr std::size_t kPairs = 20, kFewest = 8;  // that are asked; fewer say nothing
+constexpr std::size_t kPairs = 20, kFewest = 8;  // pairs that are used; fewer than kFewest say nothing
 constexpr double kCertain = 1.645;               // normal quantile of 95 %, one-sided
 
 }  // namespace
@@ -22,7 +22,7 @@ double InnovationScatter::factor() const {
   const double count = static_cast<double>(ratios_.size());
   if (ratios_.size() < kFewest) return 1;
   const double mean = std::accumulate(ratios_.begin(), ratios_.end(), 0.0) / count;
-  // Each is a chi-square of one degree of freedom, with mean 1 and variance 2.
+  // Each ratio is a chi-square of one degree of freedom, with mean 1 and variance 2.
   return std::max(1.0, mean / (1 + kCertain * std::sqrt(2 / count)));
 }
 

@@ -5,18 +5,18 @@
 
 namespace uav_landing {
 
-/// How far what the last pairs measured scatters about its predictions, over what is claimed: the variance
-/// factor a posteriori of least squares. Claims that are wrong by a common factor, as where nobody knows how
-/// blur and noise work together, leave the estimate as good as it can be, but neither its variance nor what
-/// is computed from that.
+/// Scatter of the last measurements about their predictions, over what is claimed: the variance factor a
+/// posteriori of least squares. Claims may be wrong by a common factor, for example when nobody knows how
+/// blur and noise work together. The estimate is then still as good as it can be, but its variance is wrong,
+/// and so is everything computed from it.
 class InnovationScatter {
  public:
-  /// limit: squared normalised innovation as which every larger one counts: one wrong pair says nothing of
-  /// the others.
+  /// limit: largest squared normalised innovation; larger ones count as this one, because one wrong pair says
+  /// nothing of the others.
   explicit InnovationScatter(double limit) : limit_(limit) {}
   /// ratio: squared normalised innovation of one measurement.
   void add(double ratio);
-  /// By which variances are larger than claimed, as far as that is certain: 95 %. 1 where they may be right.
+  /// Factor by which variances exceed their claims with a certainty of 95 %. 1 when the claims may be right.
   double factor() const;
   void reset() { ratios_.clear(); }
 

@@ -4,8 +4,8 @@
 
 namespace uav_landing {
 
-/// A limit in standard deviations. It cannot be mixed up with one of squared ones, which a sum of squares or
-/// a Mahalanobis distance is compared with.
+/// A limit in standard deviations. The type keeps it apart from squared limits, with which sums of squares
+/// and Mahalanobis distances are compared.
 class Sigmas {
  public:
   constexpr explicit Sigmas(double count) : count_(count) {}
@@ -15,9 +15,9 @@ class Sigmas {
   bool admits(double difference, double variance) const {
     return difference * difference <= squared() * variance;
   }
-  /// Whether a squared normalised difference is.
+  /// The same for a squared normalised difference.
   constexpr bool admitsRatio(double ratio) const { return ratio <= squared(); }
-  /// The largest difference of this variance.
+  /// Largest admitted difference of this variance.
   double bound(double variance) const { return count_ * std::sqrt(variance); }
   constexpr double squared() const { return count_ * count_; }
 

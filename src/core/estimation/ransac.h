@@ -5,25 +5,25 @@
 
 namespace uav_landing {
 
-/// How long random samples are drawn. (Fischler, Bolles: Random sample consensus, CACM 24, 1981.)
+/// Limits of random sampling. (Fischler, Bolles: Random sample consensus, CACM 24, 1981.)
 struct RansacOptions {
-  int most = 80;         ///< candidates at most
-  int draws_each = 1;    ///< draws for a candidate at most, where some draws give none
+  int most = 80;         ///< largest number of candidates
+  int draws_each = 1;    ///< largest number of draws per candidate, as some draws give none
   int sample = 3;        ///< measurements of a sample
-  double of_draws = 1;   ///< share of the draws that are such samples
-  double missed = 1e-3;  ///< chance that no sample without outliers has been drawn
+  double of_draws = 1;   ///< share of the draws that can be samples without outliers
+  double missed = 1e-3;  ///< accepted chance that no sample without outliers was drawn
 };
 
-/// Counts draws and candidates, and ends when a sample without outliers must have been among them.
+/// Counts draws and candidates. It ends when a sample without outliers must have been drawn.
 class RansacBudget {
  public:
   explicit RansacBudget(const RansacOptions& options) : options_(options), needed_(options.most) {}
 
-  /// Whether another draw is worth its while. Before each draw.
+  /// Whether to draw again. Call it before each draw.
   bool goesOn() { return candidates_ < needed_ && draws_++ < options_.draws_each * options_.most; }
   /// A draw gave a candidate.
   void count() { ++candidates_; }
-  /// The best candidate has this share of the measurements on its side.
+  /// The best candidate has this share of the measurements as inliers.
   void found(double share) {
     double all_right = 1;
     for (int i = 0; i < options_.sample; ++i) all_right *= share;

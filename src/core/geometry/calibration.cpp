@@ -11,7 +11,7 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kMaxImageSide = 16384;  // keeps maps in fixed point and in memory
+constexpr int kMaxImageSide = 16384;  // keeps the maps within fixed point and memory
 constexpr double kRotationTolerance = 1e-3;
 constexpr double kFocalTolerance = 1e-5;  // relative; 0.01 px at the edge of a 1000 px image
 constexpr double kRowTolerance = 0.01;    // px
@@ -39,7 +39,7 @@ std::string element(const char* matrix, int index) {
   return std::string(matrix) + "[" + std::to_string(index) + "]";
 }
 
-/// The first three columns of K or P: focal lengths and principal point, no skew, last row 0 0 1.
+/// Checks the first three columns of K or P: focal lengths and principal point, no skew, last row 0 0 1.
 template <class Matrix>
 Failure checkPinhole(const char* name, const Matrix& m) {
   const int columns = static_cast<int>(m.cols());
@@ -120,12 +120,13 @@ Failure mismatch(const std::string& field, double value, double left) {
   return invalid("right " + field, value, text(left) + " as on the left");
 }
 
-/// Place of the origin of P in the axes of the camera: P = K [I | t], m.
+/// Place of the origin of P in the camera's axes, m: P = K [I | t].
 Eigen::Vector3d translation(const Eigen::Matrix<double, 3, 4>& P) {
   return {(P(0, 3) - P(0, 2) * P(2, 3)) / P(0, 0), (P(1, 3) - P(1, 2) * P(2, 3)) / P(1, 1), P(2, 3)};
 }
 
-/// Why the right camera is not beside the left one on its right. to_right: from the left one to it, m.
+/// Tells why the right camera is not beside the left one, on its right. to_right: from the left to the right
+/// camera, m.
 Failure checkPlaces(const CameraCalibration& left, const CameraCalibration& right,
                     const Eigen::Vector3d& to_right) {
   const auto &Pl = left.P, &Pr = right.P;
@@ -161,7 +162,7 @@ Failure checkPlaces(const CameraCalibration& left, const CameraCalibration& righ
 
 bool isAtOrigin(const CameraCalibration& c) { return c.P.col(3).isZero(0); }
 
-/// What makes the rows of the two rectified images differ.
+/// Tells why the rows of the two rectified images do not correspond.
 Failure checkPair(const CameraCalibration& left, const CameraCalibration& right) {
   const auto same = [](const char* field, int l, int r) {
     return l == r ? Failure{} : mismatch(field, r, l);

@@ -11,10 +11,11 @@
 namespace uav_landing {
 namespace {
 
-// Of the baseline. Less is as good as level and stays as it is; with more, another P was meant.
+// Shares of the baseline. Below kLevel the pair stays as it is, as it is as good as level. Above kAslant
+// another P was meant.
 constexpr double kLevel = 1e-3, kAslant = 0.02;
 
-/// From the left camera to the right one, in rectified axes, m.
+/// From the left to the right camera, in rectified axes, m.
 Eigen::Vector3d baselineOf(const CameraCalibration& left, const CameraCalibration& right) {
   const auto translation = [](const CameraCalibration& c) -> Eigen::Vector3d {
     return c.P.leftCols<3>().inverse() * c.P.col(3);
@@ -22,7 +23,7 @@ Eigen::Vector3d baselineOf(const CameraCalibration& left, const CameraCalibratio
   return translation(left) - translation(right);
 }
 
-/// The left camera at the origin, the right one beside it.
+/// Puts the left camera at the origin and the right one beside it.
 void place(double baseline, CameraPair& pair) {
   pair.left.P.col(3).setZero();
   pair.right.P.col(3) << -pair.right.P(0, 0) * baseline, 0, 0;
@@ -43,7 +44,7 @@ void levelRows(CameraPair& pair) {
   place(baseline.norm(), pair);
 }
 
-/// Turns the rectified camera about its optical axis. Its picture is then the old one turned by 180 deg.
+/// Turns the rectified camera about its optical axis. Its image then is the old one turned by 180 deg.
 void turnOver(CameraCalibration& camera) {
   const cv::Size size = camera.imageSize();
   const Eigen::Vector2d offset(camera.roi.x, camera.roi.y), last(size.width - 1, size.height - 1);

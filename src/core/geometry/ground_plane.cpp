@@ -61,7 +61,7 @@ std::array<GroundDirection, 2> levelDirections(const GroundNormal& ground) {
   const Eigen::Matrix3d& covariance = ground.covariance;
   const Eigen::Vector3d forward = (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized();
   const Eigen::Vector3d left = forward.cross(normal);
-  // Only how far they are tipped out of the plane counts.
+  // Only the error out of the plane counts.
   const Eigen::Matrix3d along = normal * normal.transpose();
   return {GroundDirection{forward, forward.dot(covariance * forward) * along},
           GroundDirection{left, left.dot(covariance * left) * along}};
@@ -93,7 +93,7 @@ GroundPlane fuseNormal(const GroundPlane& plane, const GroundNormal& ground, dou
 double yawOf(const Eigen::Vector3d& normal, const Eigen::Vector3d& landing_direction) {
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d& p = landing_direction;
-  // Sine and cosine of the angle between the parts of both that lie in the ground; up is -n.
+  // Sine and cosine of the angle between the parts of both vectors that lie in the ground; up is -n.
   return std::atan2(-normal.dot(p.cross(axis)), p.dot(axis) - normal.dot(p) * normal.dot(axis));
 }
 

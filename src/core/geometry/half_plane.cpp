@@ -14,7 +14,7 @@ void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& k
   }
   for (int v = 0; v < mask.rows; ++v) {
     const double rest = b * v + c;
-    // Kept are the columns first..last - 1.
+    // The columns first..last - 1 are kept.
     int first = 0, last = mask.cols;
     if (a > 0 && rest < 0) first = static_cast<int>(std::min(std::ceil(-rest / a), double(mask.cols)));
     if (a < 0 && rest + a * (mask.cols - 1) < 0)

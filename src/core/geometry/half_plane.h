@@ -5,13 +5,13 @@
 
 namespace uav_landing {
 
-/// The mask (mono8), but 0 wherever a u + b v + c < 0 at the pixel (u, v). kept: takes it; may be the mask.
-/// All of it is 0 when a coefficient is not finite.
+/// The mask (mono8) with 0 wherever a u + b v + c < 0 at the pixel (u, v). kept: receives it; may be the mask
+/// itself. It is all 0 when a coefficient is not finite.
 void keepHalfPlane(const cv::Mat& mask, double a, double b, double c, cv::Mat& kept);
 
-/// The mask without what lies above the horizon (K^-T n), or less than a hundredth of the picture's height
-/// below it: there the far end of everything on the ground merges with what stands behind it. K: 3x3 of the
-/// view. normal: of the ground, frame of the view. kept: of the mask's size.
+/// The mask with 0 above the horizon (K^-T n) and just below it, up to a hundredth of the image's height.
+/// There, the far ends of objects on the ground merge with what stands behind them. K: 3x3 of the view.
+/// normal: of the ground, frame of the view. kept: of the mask's size; receives the result.
 void keepBelowHorizon(const cv::Mat& mask, const Eigen::Matrix3d& K, const Eigen::Vector3d& normal,
                       cv::Mat& kept);
 

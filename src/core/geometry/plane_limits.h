@@ -4,7 +4,7 @@
 
 namespace uav_landing {
 
-/// What a ground plane must look like to be believed.
+/// Limits of a plausible ground plane.
 struct PlaneLimits {
   double max_roll = 0;   ///< rad
   double max_pitch = 0;  ///< rad
@@ -12,7 +12,7 @@ struct PlaneLimits {
   double tolerance = 1.0;  ///< pixels of disparity in the consensus step
 };
 
-/// True when the plane lies below the camera with pitch and roll inside the limits.
+/// True when the plane g (1/m) lies below the camera, with pitch and roll within the limits.
 bool isPlausibleGround(const Eigen::Vector3d& g, const PlaneLimits& limits);
 
 }  // namespace uav_landing

@@ -12,7 +12,7 @@ RawPlaces rawPlaces(const CameraCalibration& c, const Eigen::Matrix3d& projectio
   cv::eigen2cv(c.K, K);
   cv::eigen2cv(c.R, R);
   cv::eigen2cv(projection, P);
-  // A lens without distortion is one by any name; R and P still count.
+  // A lens without distortion needs no model, whatever its name. R and P still count.
   const cv::Mat D = isDistorted(c.D) ? cv::Mat(c.D, true) : cv::Mat();
   RawPlaces places;
   if (isFisheye(c.distortion_model, c.D))

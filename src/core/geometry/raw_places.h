@@ -7,11 +7,12 @@
 
 namespace uav_landing {
 
-/// Where in the raw picture the lens shows what the pixels of a rectified picture look at, px.
+/// Places in the raw image from which the pixels of a rectified image come, px.
 struct RawPlaces {
   cv::Mat x, y;  ///< CV_32FC1
 };
-/// c: of the delivered image, checked. projection, size: of the rectified picture, by P or at another scale.
+/// c: of the delivered image, already checked. projection, size: of the rectified image, by P or at another
+/// scale.
 RawPlaces rawPlaces(const CameraCalibration& c, const Eigen::Matrix3d& projection, cv::Size size);
 
 }  // namespace uav_landing

@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kWarnedShare = 0.5;  // of the largest offset
+constexpr double kWarnedShare = 0.5;  // share of the largest offset from which on it warns
 constexpr const char* kSizeQuestion = "is this the calibration of another picture size?";
 constexpr const char* kLeft = "left ";
 constexpr const char* kRight = "right ";
@@ -20,10 +20,10 @@ struct Coordinate {
   const char* side;
   const char* extent;
   double value;
-  int size;  // of the picture
+  int size;  // of the image
 
   double middle() const { return 0.5 * size; }
-  /// From the middle, as a share of the picture's size.
+  /// Distance from the middle, as a share of the image's size.
   double offset() const { return std::abs(value - middle()) / size; }
 };
 
@@ -45,7 +45,7 @@ Failure checkBaseline(const StereoRig& rig, const RigParameters& limits) {
               " If it is, raise rig/max_baseline"};
 }
 
-/// Of the coordinate that is farther off: both have one cause.
+/// Warns of the coordinate that is farther off, as both have one cause.
 void warnOfPrincipalPoint(const char* camera, const CameraCalibration& calibration,
                           const RigParameters& limits, std::vector<std::string>& warnings) {
   const auto [x, y] = principalPoint(calibration);

@@ -6,7 +6,7 @@
 
 namespace uav_landing {
 
-// Rotations by their vectors (axis times angle, rad), and directions by what is across them.
+// Rotations by their vectors (axis times angle, rad), and directions by their tangents.
 
 inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& w) {
   const double angle = w.norm();
@@ -19,7 +19,7 @@ inline Eigen::Vector3d rotationVector(const Eigen::Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
-/// Two unit vectors that span the plane across a unit vector.
+/// Two unit vectors that span the plane perpendicular to a unit vector.
 inline Eigen::Matrix<double, 3, 2> tangents(const Eigen::Vector3d& direction) {
   Eigen::Matrix<double, 3, 2> B;
   B.col(0) = direction.unitOrthogonal();

@@ -10,13 +10,13 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kStep = 16;  // px between the nodes of the grid: lenses bend rows slowly
-// Rows beside the picture, as a share of it, that pixels without a source may seem to come from.
+constexpr int kStep = 16;  // px between the nodes of the grid; coarse, as lenses bend rows slowly
+// Pixels without a source may seem to come from rows outside the image, up to this share of it.
 constexpr double kBeside = 0.1;
 
 double givenOr(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
-/// Of the camera that is named left.
+/// Readout of the camera that is named left.
 Readout namedLeft(const RigParameters& p) {
   return {givenOr(p.readout_time, 0), p.stamp_row, p.row_direction};
 }
@@ -48,7 +48,7 @@ RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout)
   columns_ = nodes.width;
   rows_ = nodes.height;
   const cv::Rect picture(cv::Point(), size);
-  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();  // where no node is seen, the plane is 0
+  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();  // if no node is seen, the plane is 0
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i) {
@@ -92,7 +92,7 @@ ReadoutCheck::ReadoutCheck(const RowTimes& times, const RowTimes& right)
     : longest_(std::max(std::abs(times.readoutTime()), std::abs(right.readoutTime()))) {}
 
 Failure ReadoutCheck::follow(double stamp) {
-  // Stamps of some drivers jitter by a tenth of the period, which the mean of several has less of.
+  // Stamps of some drivers jitter by a tenth of the period; the mean of several periods has less of it.
   constexpr size_t kFewestPeriods = 4, kMostPeriods = 20;
   constexpr double kRounding = 1.01;  // of stamps and of a measured readout time
   constexpr double kJitter = 0.42;    // three sigma of the two stamps at the ends, periods

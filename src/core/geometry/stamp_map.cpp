@@ -6,10 +6,10 @@
 namespace uav_landing {
 namespace {
 
-// A point's row changes by some hundredths of what its place does, so that each step leaves that share.
+// A point's row changes by some hundredths of the change of its place, and each step leaves this share.
 constexpr int kSteps = 3;
 
-// exp(a) x to second order: within a readout the camera turns by some degrees at most.
+// exp(a) x to second order, as the camera turns by at most a few degrees within a readout.
 Eigen::Vector3d turned(const Eigen::Vector3d& a, const Eigen::Vector3d& x) {
   const Eigen::Vector3d once = a.cross(x);
   return x + once + 0.5 * a.cross(once);
@@ -39,7 +39,7 @@ Eigen::Vector2d StampMap::project(const Eigen::Vector3d& point) const {
   return {fx_ * point.x() / point.z() + cx_, fy_ * point.y() / point.z() + cy_};
 }
 
-// At the stamp, of a ray so many seconds after it.
+// Place at the stamp of a ray that is seen so many seconds after it.
 Eigen::Vector2d StampMap::carried(const Eigen::Vector3d& r, double seconds, double inverse_depth) const {
   return project(turned(-seconds * motion_.w, r) + inverse_depth * seconds * motion_.v);
 }

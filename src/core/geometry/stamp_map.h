@@ -7,40 +7,39 @@
 
 namespace uav_landing {
 
-/// How the camera moves at the stamp of an image, in its own frame then. A scene at rest is at x(t) =
+/// Motion of the camera at the stamp of an image, in its own frame at that time. A scene at rest is at x(t) =
 /// exp(w t) (x - v t). Lengths are in units of the height at the stamp.
 struct RowMotion {
   Eigen::Vector3d w = Eigen::Vector3d::Zero();  ///< rad/s
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< 1/s
 };
 
-/// By how much the plane vector g (1/m) changes, 1/m/s.
+/// Rate of the plane vector g (1/m), 1/m/s.
 Eigen::Vector3d planeRate(const Eigen::Vector3d& g, const RowMotion& motion);
 
-/// Leads from a pixel of an image whose rows have times to where its point would be had all been exposed at
-/// the stamp, and back. Points are on the ground, or at an inverse depth (times the height) of their own.
-/// What lies above the horizon is at infinity. Without row times every place stays as it is.
-///
+/// Maps a pixel of an image with row times to its place if all rows had been exposed at the stamp, and back.
+/// Points are on the ground, or at an inverse depth (times the height) of their own. Pixels above the horizon
+/// are at infinity. Without row times every place stays as it is.
 /// A pixel's ray r at the time t of its row meets the ground at the inverse depth w = g(t).r, with
-///   g(t) = R n / (1 - n.v t),   R = exp(w t),
-/// and was, or will be, seen at the stamp in the direction R' r + w v t.
+///   g(t) = R n / (1 - n.v t),   R = exp(w t).
+/// At the stamp, the point is seen in the direction R' r + w v t.
 class StampMap {
  public:
-  /// Every place stays as it is.
+  /// A map that leaves every place as it is.
   StampMap() = default;
-  /// normal: of the ground, unit. K: of the rectified camera. times: outlive this.
+  /// normal: of the ground, unit vector. K: of the rectified camera. times: must outlive this object.
   StampMap(const Eigen::Matrix3d& K, const RowTimes& times, const RowMotion& motion,
            const Eigen::Vector3d& normal);
 
   bool changesNothing() const { return times_ == nullptr || times_->atOnce(); }
   Eigen::Vector2d toStamp(const Eigen::Vector2d& pixel) const;
   Eigen::Vector2d toStamp(const Eigen::Vector2d& pixel, double inverse_depth) const;
-  /// Where a point is in the image that is here at the stamp.
+  /// Place in the image of a point that is here at the stamp.
   Eigen::Vector2d toRow(const Eigen::Vector2d& at_stamp) const;
   Eigen::Vector2d toRow(const Eigen::Vector2d& at_stamp, double inverse_depth) const;
-  /// From the stamp to the row that sees a point of the frame at the stamp (in heights), s.
+  /// Time from the stamp to the row that sees a point of the frame at the stamp (in heights), s.
   double timeOf(const Eigen::Vector3d& point) const;
-  /// That point in the frame of the camera some seconds after the stamp, and a direction.
+  /// The same point in the frame of the camera some seconds after the stamp; the same for a direction.
   Eigen::Vector3d pointAfter(double seconds, const Eigen::Vector3d& point) const;
   Eigen::Vector3d directionAfter(double seconds, const Eigen::Vector3d& direction) const;
 

@@ -7,10 +7,10 @@
 namespace uav_landing {
 namespace {
 
-/// Change of a with b taken out, in -pi .. pi.
+/// a - b, in -pi .. pi.
 double angleDifference(double a, double b) { return std::remainder(a - b, 2 * M_PI); }
 
-/// First-order variance of yawOf, by central differences in both directions.
+/// First-order variance of yawOf(), by central differences in both directions.
 double yawVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
                    const Eigen::Vector3d& direction, const Eigen::Matrix3d& direction_covariance) {
   constexpr double kStep = 1e-5;

@@ -4,8 +4,8 @@
 
 namespace uav_landing {
 
-/// Fills pitch, roll, yaw and their variances. normal: of the ground, with covariance (rad^2).
-/// landing_direction: of the runway in the camera frame, with covariance; NaN leaves the yaw unknown.
+/// Fills pitch, roll, yaw and their variances. normal: of the ground, camera frame, covariance in rad^2.
+/// landing_direction: of the runway, camera frame, covariance in rad^2; NaN leaves the yaw unknown.
 void reportAttitude(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
                     const Eigen::Vector3d& landing_direction, const Eigen::Matrix3d& direction_covariance,
                     LandingResult& result);

@@ -15,11 +15,12 @@ namespace {
 
 constexpr double kMemory = 1.0;    // s
 constexpr double kPatience = 3.0;  // s, with normals that contradict
-// Pairs in a row that agree make a normal that others are measured by.
+// A normal that others are measured by needs so many agreeing pairs in a row.
 constexpr int kConfirmed = 3;
-// For how many pairs a normal that agrees is in doubt.
+// Pairs for which a normal that agrees stays in doubt.
 constexpr int kDoubtPairs = 4;
-// 1 sigma by which the ground's own normal changes from pair to pair, because another part of it is seen. rad
+// 1 sigma of the change of the ground's own normal from pair to pair, because another part of it is seen,
+// rad.
 constexpr double kUnevenness = 0.3 * M_PI / 180;
 
 /// Root of a covariance that may be negative by rounding.
@@ -35,7 +36,7 @@ double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 Eigen::Matrix2d symmetric(const Eigen::Matrix2d& m) { return 0.5 * (m + m.transpose()); }
 
-/// A pair's normal against an estimate, in the tangent plane of that.
+/// Difference of a pair's normal from an estimate, in the tangent plane of the estimate.
 struct Innovation {
   Eigen::Matrix<double, 3, 2> basis;
   Eigen::Matrix2d P, measured, S;  // covariances of the estimate, of the pair's normal, and their sum
@@ -54,13 +55,13 @@ struct Innovation {
   }
 };
 
-/// Of a normal when nobody knows how the camera turned in a time of T (s).
+/// Covariance of a normal when nobody knows how the camera turned during T (s).
 Eigen::Matrix3d unknownTurn(double T, const Eigen::Vector3d& normal) {
   return std::pow(aircraft::kTurnRate * T, 2) * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
 }
 
-/// Of a normal that turns as the step says, by the errors of its rotation. With one that claims to know less
-/// than a guess, any normal would agree.
+/// Covariance of a normal after a step, by the errors of its rotation. It is at most that of an unknown turn:
+/// with a step that claims to know less, any normal would agree.
 Eigen::Matrix3d turnCovariance(double T, const Eigen::Vector3d& normal,
                                const ApproachAngleResult::Motion& step) {
   const Eigen::Matrix3d by_rotation = crossMatrix(normal);
@@ -74,7 +75,7 @@ Eigen::Matrix3d turnCovariance(double T, const Eigen::Vector3d& normal,
   return solved.eigenvectors() * variances.asDiagonal() * solved.eigenvectors().transpose();
 }
 
-/// Memory fades with each of these.
+/// Turns the estimate by the step. The memory fades with each call.
 void rotate(double T, const Eigen::Matrix3d& R, const ApproachAngleResult::Motion& step,
             AttitudeFilter::Estimate& estimate) {
   estimate.normal = R * estimate.normal;
@@ -154,7 +155,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const Eigen::Matrix3d common_root = rootOf(common), of_pair = fresh * covariance;
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root, of_pair);
   Innovation innovation(*estimate_, normal, covariance);
-  bool denied = false;  // the turn that was in doubt
+  bool denied = false;  // whether the turn in doubt was wrong
   if (other_) {
     const Innovation without(*other_, normal, covariance);
     const bool agrees = kGate.admitsRatio(innovation.ratio), other_agrees = kGate.admitsRatio(without.ratio);
@@ -171,7 +172,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   estimate_->ratio = innovation.ratio;
   estimate_->agrees = kGate.admitsRatio(estimate_->ratio);
   if (!estimate_->agrees) {
-    // Two normals, and nothing yet that says which of them is the ground's; or the new one stays.
+    // Start anew: nothing yet tells which of the two normals is the ground's, or the new one has persisted.
     if (agreements_ < kConfirmed || stamp - agreed_ >= kPatience)
       return start(normal, covariance, common_root, of_pair);
     return *estimate_;
@@ -182,7 +183,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const bool doubtful = (guessed && !denied) || innovation.ratio > kDoubtful.squared();
   if (doubtful && !other_ && agreements_ >= kConfirmed) doubt(*estimate_, false);
   if (guessed) {
-    // A guess is good enough to contradict, but nothing to average with.
+    // A guessed turn is good enough to contradict a normal, but not to average with it.
     estimate_->normal = normal;
     estimate_->covariance = covariance;
     estimate_->common_root = common_root;
@@ -192,7 +193,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const Eigen::Matrix<double, 3, 2>& basis = innovation.basis;
   const Eigen::Matrix2d gain = innovation.P * innovation.S.inverse();
   estimate_->normal = (estimate_->normal + basis * (gain * innovation.difference)).normalized();
-  // Joseph's form: the short one loses its symmetry over hundreds of pairs, and then its sign.
+  // Joseph's form, because the short form loses its symmetry over hundreds of pairs, and then its sign.
   const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain;
   const auto joint = [&](const Eigen::Matrix2d& before, const Eigen::Matrix2d& measured) -> Eigen::Matrix3d {
     return basis * (kept * before * kept.transpose() + gain * measured * gain.transpose()) *
@@ -201,7 +202,7 @@ AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vecto
   const Eigen::Matrix2d average = symmetric(basis.transpose() * estimate_->average_covariance * basis);
   estimate_->covariance = joint(innovation.P, innovation.measured);
   estimate_->average_covariance = joint(average, fresh * innovation.measured);
-  // Roots and not covariances: what is common adds up with its sign.
+  // Roots instead of covariances, because common errors add up with their sign.
   estimate_->common_root =
       basis * (kept * basis.transpose() * estimate_->common_root + gain * basis.transpose() * common_root);
   return *estimate_;

@@ -9,50 +9,54 @@
 
 namespace uav_landing {
 
-/// Ground normal over the frames: the normals of single pairs, averaged along the rotation between them.
-///
-/// n' = R n with the step's rotation R, then a Kalman update with the pair's normal, in the tangent plane of
-/// n. Memory fades with one second, because the ground ahead is another one by then. Only what differs from
-/// pair to pair averages out; what is common to all (the rig's rotation) stays. A turned rig tilts the plane
-/// in proportion to the height: the mean of pairs that were higher is tilted more than the last one.
+/// Ground normal over time: the normals of single pairs, averaged along the rotation between them.
+/// Prediction: n' = R n with the step's rotation R. Then a Kalman update with the pair's normal, in the
+/// tangent plane of n. Memory fades with one second, because after that time other ground lies ahead.
+/// Averaging reduces only errors that differ from pair to pair; common errors (the rig's rotation) stay. A
+/// turned rig tilts the plane in proportion to the height, so earlier, higher pairs tilt the mean more than
+/// the last one.
 class AttitudeFilter {
  public:
-  static constexpr Sigmas kGate{5};               ///< of the two angles together
-  static constexpr Sigmas kDoubtful{3};           ///< the same, from which a normal that agrees is in doubt
-  static constexpr double kStampRounding = 1e-3;  ///< s, by which stamps of the same pairs may differ
+  static constexpr Sigmas kGate{5};               ///< of both angles together
+  static constexpr Sigmas kDoubtful{3};           ///< from this value on a normal that agrees is in doubt
+  static constexpr double kStampRounding = 1e-3;  ///< s, difference that stamps of the same pair may have
 
-  /// Whether the step tells how the camera turned in the last T seconds: one that spans another time does
+  /// Whether the step tells how the camera turned during the last T seconds. A step over another time does
   /// not.
   static bool tellsTurn(const ApproachAngleResult::Motion& step, double T);
 
   struct Estimate {
     Eigen::Vector3d normal;
-    Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without what is common to all pairs
-    Eigen::Matrix3d common_root = Eigen::Matrix3d::Zero();  ///< symmetric root of what is common to them
-    /// Of the average that the normal is, rad^2: that of fading memory is larger, as old pairs count less.
+    Eigen::Matrix3d covariance;  ///< rad^2, rank 2, without errors common to all pairs
+    Eigen::Matrix3d common_root = Eigen::Matrix3d::Zero();  ///< symmetric root of the common errors'
+                                                            ///< covariance
+    /// Covariance of the normal as the average that it is, rad^2. The other covariance is larger, because it
+    /// belongs to a memory that fades: old pairs count less.
     Eigen::Matrix3d average_covariance = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d commonCovariance() const { return common_root * common_root.transpose(); }
-    double ratio = kUnknown;  ///< squared normalised difference to the pairs before
-    bool agrees = true;       ///< the pair's normal is one that the pairs before and the rotation allow
+    double ratio = kUnknown;  ///< squared normalised difference from the pairs before
+    bool agrees = true;       ///< the pairs before and the rotation allow the pair's normal
   };
 
-  /// stamp: s. normal: unit, of this pair alone; covariance: rad^2, of what differs from pair to pair;
-  /// common: of what is the same in all but for its size; fresh: share of the covariance that is new in every
-  /// pair, the rest being among the common one. step: from the previous pair; without one the
-  /// filter starts anew, but not before the normal has been compared with those before by what a camera
-  /// turns. A normal that contradicts the ones before (another surface was taken for the ground) is left out
-  /// and agrees is false; when that goes on for three seconds, the filter starts anew from it, and at once as
-  /// long as fewer than three pairs in a row have agreed. Where a step turns by more than is usual, or a
-  /// normal is taken that only just agrees or that no step leads to, what would be without it is kept for
-  /// four pairs: when a normal contradicts the one and agrees with the other, that one is taken.
+  /// stamp: s. normal: unit vector, of this pair alone. covariance: rad^2, of errors that differ from pair to
+  /// pair. step: from the previous pair. common: covariance of errors that are the same in all pairs except
+  /// for their size. fresh: share of the covariance that is new in every pair; the rest is among the common
+  /// part.
+  /// Without a step the filter starts anew, but only after it has compared the normal with those before,
+  /// using the turn that an aircraft may make. A normal that contradicts those before (another surface was
+  /// taken for the ground) is not used, and agrees is false. After three seconds of contradictions the filter
+  /// starts anew from the last normal. It does so at once while fewer than three pairs in a row have agreed.
+  /// The filter keeps an alternative for four pairs in three cases: the step turns by more than usual, the
+  /// normal only just agrees, or no step leads to it. When a later normal contradicts the estimate and agrees
+  /// with the alternative, the alternative is taken.
   Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                   const ApproachAngleResult::Motion& step,
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero(), double fresh = 1);
-  /// A pair without a normal.
+  /// Call it for a pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);
-  /// The last step turned by more than is usual, and no normal has confirmed that, or one has denied it.
+  /// The last step turned by more than usual, and no normal has confirmed it, or one has denied it.
   bool doubtsTurn() const { return turn_doubted_; }
-  /// Nothing is in doubt.
+  /// No alternative is kept.
   bool settled() const { return !other_; }
   void reset();
 

@@ -12,7 +12,7 @@ CameraTwist cameraTwist(const ApproachAngleResult::Motion& step, double height, 
   Matrix6d by_step = Matrix6d::Zero();
   by_step.topRightCorner<3, 3>() = rate * Eigen::Matrix3d::Identity();
   by_step.bottomLeftCorner<3, 3>() = -1 / step.duration * Eigen::Matrix3d::Identity();
-  // Height and duration are common to all of what they scale.
+  // All lengths share the error of the height, and all values that of the duration.
   Vector6d lengths = twist;
   lengths.tail<3>().setZero();
   const Matrix6d covariance = by_step * step.covariance * by_step.transpose() +

@@ -6,16 +6,17 @@
 
 namespace uav_landing {
 
-/// How the left camera moves, in its optical frame now.
+/// Motion of the left camera, in its optical frame now.
 struct CameraTwist {
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);          ///< m/s
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Constant(kUnknown);  ///< rad/s
   Matrix6d covariance = Matrix6d::Constant(kUnknown);                      ///< velocity first
 };
 
-/// Mean over the step from the previous frame: v = (t/h) h / T, and the turn of the ground in the picture
-/// reversed. height, height_variance: above the plane that the step's lengths are measured in, m, m^2.
-/// duration_variance: relative, of the step's duration by wrong stamps. NaN when the step has no motion.
+/// Mean motion over the step from the previous pair: v = (t/h) h / T, and the reversed turn of the ground in
+/// the image. height, height_variance: above the plane that the step's lengths refer to, m, m^2.
+/// duration_variance: of the step's duration over its square, due to wrong stamps. NaN when the step has no
+/// motion.
 CameraTwist cameraTwist(const ApproachAngleResult::Motion& step, double height, double height_variance,
                         double duration_variance);
 

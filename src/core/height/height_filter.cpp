@@ -6,7 +6,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kBaseline = 3;  // column of what is common
+constexpr int kBaseline = 3;  // column of this cause in common_
 
 Eigen::RowVector4d stddevs(const CommonVariance& common) {
   return Eigen::RowVector4d(common.lasting, common.bend, common.width, common.baseline)
@@ -41,7 +41,7 @@ void HeightFilter::predict(double T) {
 }
 
 HeightFilter::Update HeightFilter::update(double height, double variance, const CommonVariance& common) {
-  // A height by a known width does not depend on the baseline, and one from the images does.
+  // A height by a known width does not depend on the baseline, but one from the images does.
   const double unequal = common_(0, kBaseline) - stddevs(common)[kBaseline];
   return fuse(Eigen::RowVector2d(1, 0), height, variance, common, unequal * unequal);
 }
@@ -62,7 +62,7 @@ HeightFilter::Update HeightFilter::fuse(const Eigen::RowVector2d& observation, d
   update.innovation = measured - observation * state_;
   update.innovation_variance = (observation * covariance_ * observation.transpose()).value() + variance;
   update.gate_variance = update.innovation_variance + baseline_variance;
-  // Written so that a NaN is refused too; what is infinite or has a negative variance would leave no state.
+  // Written so that NaN is refused, too. An infinite or negative variance would destroy the state.
   update.accepted = variance >= 0 && std::isfinite(common.total()) && std::isfinite(update.gate_variance) &&
                     update.innovation * update.innovation <= gate_ * gate_ * update.gate_variance;
   if (!update.accepted) return update;

@@ -18,10 +18,10 @@ double heightOverPoint(double y_c, double z_c, double theta) {
 
 AveragedHeight averageHeight(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                              double theta, double roll, bool only_on_plane) {
-  // Eq (5) is linear, so the heights of the camera's unit vectors are all that the points need.
+  // Eq (5) is linear, so the points need only the heights of the camera's unit vectors.
   const Eigen::Vector3d of_axes(heightOverPoint(0, std::sin(roll), theta),
                                 heightOverPoint(0, std::cos(roll), theta), heightOverPoint(1, 0, theta));
-  // Welford's recursion: keeps its accuracy where the scatter is small against the height.
+  // Welford's recursion stays accurate when the scatter is small against the height.
   double mean = 0, squares = 0;
   AveragedHeight averaged;
   for (const StereoDepthResult::Point& point : points) {

@@ -23,8 +23,9 @@ struct AveragedHeight {
   double variance = kUnknown;  ///< of the mean, from the scatter of the points
   int points = 0;
 };
-/// theta: angle of eqs (4), (5): minus pitch of the camera (or the approach angle, to the letter).
-/// roll: taken out of the points first; 0 for the paper. only_on_plane: skip points off the ground plane.
+/// theta: angle of eqs (4), (5), rad: minus the camera's pitch (or, to the letter of the paper, the approach
+/// angle). roll: removed from the points first, rad; 0 for the paper. only_on_plane: skip points off the
+/// ground plane.
 AveragedHeight averageHeight(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                              double theta, double roll, bool only_on_plane);
 

@@ -8,8 +8,8 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kKnownStddev = 0.002;  // of a known width
-constexpr double kSame = 0.005;         // of the width: beyond this (and 4 sigma) other edges are seen
+constexpr double kKnownStddev = 0.002;  // 1 sigma of a known width, as a share
+constexpr double kSame = 0.005;         // share of the width; beyond it (and 4 sigma) other edges are seen
 constexpr Sigmas kGate(4);
 constexpr int kAgreeing = 5;  // pairs in a row before a width is learned
 
@@ -37,7 +37,8 @@ bool WidthHeight::agree(const Width& a, const Width& b) {
 }
 
 void WidthHeight::merge(const Width& seen, Width& width) {
-  // Errors of pairs in a row are much the same: the width is as good as the best of them, not as their mean.
+  // Errors of consecutive pairs are much the same, so the width is as good as the best pair, not as their
+  // mean.
   const double gain = width.variance / (width.variance + seen.variance);
   width.mean += gain * (seen.mean - width.mean);
   width.variance = std::min(width.variance, seen.variance);

@@ -4,30 +4,30 @@
 
 namespace uav_landing {
 
-/// Height from the width of the runway: h = W / w with w the width seen in multiples of the height (between
-/// the outermost edges, from the ground's attitude and the picture alone). W is known, or learned from
-/// heights by stereo. A learned width has the errors of those heights: it carries on where stereo fails, but
-/// says nothing new where it does not.
+/// Height from the width of the runway: h = W / w. w is the seen width in multiples of the height. It is
+/// measured between the outermost edges, and needs only the ground's attitude and the image. W is known, or
+/// learned from heights by stereo. A learned width has the errors of those heights. It carries on when stereo
+/// fails, but adds nothing while stereo works.
 class WidthHeight {
  public:
   struct Estimate {
     double height = 0, variance = 0;  ///< m, m^2
-    double common = 0;  ///< the part of the variance that is the width's own: the same on all pairs
+    double common = 0;  ///< the part of the variance from the width itself, the same on all pairs
   };
 
   /// known_width: m, taken as exact to 0.2 %; 0: learned.
   explicit WidthHeight(double known_width);
 
-  /// Of one pair. ratio, variance: width over height as seen. Nothing before a width is known.
+  /// The height by one pair. ratio, variance: width over height as seen. Nothing while no width is known.
   std::optional<Estimate> height(double ratio, double variance) const;
-  /// Whether the edges seen are those that the width was learned from or is known of, rather than, for
-  /// instance, the other sides of the lines along the runway: by the height (m, m^2) that is expected without
-  /// this pair. Once they were others they remain so until they differ by no more than what is uncertain
-  /// besides the height, of which less and less is known while stereo is out. ratio and variance as height()
-  /// takes them.
+  /// Whether the edges seen are those whose width is known or was learned. They may be others, such as the
+  /// other sides of the lines along the runway. The test uses the height (m, m^2) that is expected without
+  /// this pair. Once other edges were seen, they remain others until the difference is within its uncertainty
+  /// without that of the height. The latter does not count, because it grows while stereo is out. ratio and
+  /// variance: as for height().
   bool isSame(double ratio, double variance, double height, double height_variance);
-  /// A pair with a height by stereo (m, m^2) that is believed. Other edges take the place of those before
-  /// when some pairs in a row saw them.
+  /// Learns from a pair with a believed height by stereo (m, m^2). Other edges replace the former ones when
+  /// some pairs in a row have seen them.
   void learn(double ratio, double variance, double height, double height_variance);
   /// Whether the width does not depend on stereo.
   bool independent() const { return known_; }
@@ -43,8 +43,9 @@ class WidthHeight {
 
   bool known_;
   double known_width_;
-  std::optional<Width> width_, other_;  // other_: seen by the last pairs in the place of the edges of width_
-  bool changed_ = false;                // the edges: were not those of width_, nor have they been since
+  std::optional<Width> width_, other_;  // other_: seen by the last pairs in place of the edges of width_
+  bool changed_ = false;                // other edges than those of width_ were seen, and those of width_
+                                        // have not been seen since
 };
 
 }  // namespace uav_landing

@@ -5,7 +5,7 @@
 namespace uav_landing {
 
 bool isClipped(const cv::Mat& image, const Eigen::Vector2d& centre, int radius) {
-  // Of 255, as paint's edges are smoothed as well.
+  // Limit of 255 levels. It is below white, because the edges of paint are smoothed as well.
   constexpr double kWhite = 240;
   const cv::Point middle(static_cast<int>(std::lround(centre.x())),
                          static_cast<int>(std::lround(centre.y())));

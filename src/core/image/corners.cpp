@@ -18,12 +18,12 @@ using Candidate = CornerCandidate;
 
 /// The local maxima of an image, by rows.
 struct Maxima {
-  std::vector<Candidate>& memory;  // the first count of them
+  std::vector<Candidate>& memory;  // the first count entries are used
   size_t count = 0;
   float strongest = 0;
 
-  /// Those of the marked pixels of a row that are allowed and have a response above 0. All are written, and
-  /// only the end tells which ones stay, as a processor cannot guess that.
+  /// Adds those of the marked pixels of a row that are allowed and have a response above 0. All are written
+  /// and the end tells which ones stay, because the processor cannot predict that branch.
   void addRow(const std::uint64_t* marks, const uchar* allowed, const float* responses, int columns,
               int row) {
     if (memory.size() < count + columns) memory.resize(2 * (count + columns));
@@ -43,7 +43,7 @@ struct Maxima {
   }
 };
 
-/// Of the Harris response inside the mask.
+/// Maxima of the Harris response inside the mask.
 Maxima findMaxima(const cv::Mat& image, const cv::Mat& mask, double harris_k,
                   std::vector<Candidate>& memory) {
   HarrisRows harris(image, harris_k);
@@ -56,8 +56,8 @@ Maxima findMaxima(const cv::Mat& image, const cv::Mat& mask, double harris_k,
   return maxima;
 }
 
-/// Candidates of at least a least response in classes of nearly the same one, the strongest first. The bits
-/// of positive numbers are in the order of these.
+/// Candidates of at least a minimum response, in classes of nearly equal responses, the strongest first. The
+/// bits of positive numbers have the same order as the numbers.
 class Classes {
  public:
   static constexpr int kCount = 2048;
@@ -83,7 +83,7 @@ class Classes {
     std::memcpy(&bits, &response, sizeof(bits));
     return bits;
   }
-  /// 64 for each halving of the response; the last one is of those that are too weak.
+  /// 64 classes for each halving of the response; the last class has those that are too weak.
   int classOf(const Candidate& candidate) const {
     constexpr std::uint32_t kLast = kCount - 1;
     const std::uint32_t number = (strongest_ - bitsOf(candidate.response)) >> 17;
@@ -96,7 +96,7 @@ class Classes {
   std::array<int, kCount + 2> ends_{};
 };
 
-/// What corners are accepted by: not too many in a square cell, and none near another.
+/// Accepts corners: not too many in a square cell, and none near another.
 class Cells {
  public:
   static constexpr int kMost = 4;  // corners in a cell
@@ -112,8 +112,8 @@ class Cells {
     drawNear(min_distance * min_distance);
   }
 
-  /// Leaves those candidates whose cell has room and that no corner is nearer to than the least distance, and
-  /// returns their end. All are written, as a processor cannot guess which ones stay.
+  /// Keeps the candidates whose cell has room and that are not too near a corner, and returns their end. All
+  /// are written, because the processor cannot predict which ones stay.
   Candidate* keepFree(Candidate* begin, Candidate* end) const {
     const int *columns = columns_.data(), *rows = rows_.data();
     const uchar *counts = counts_.data(), *taken = taken_.data() + static_cast<size_t>(reach_) * stride_;
@@ -131,7 +131,7 @@ class Cells {
     return kept;
   }
 
-  /// Accepts a candidate that is free, and returns how many its cell had before.
+  /// Accepts a candidate that is free, and returns how many corners its cell had before.
   int add(const Candidate& candidate) {
     const int size = 2 * reach_ + 1, shift = candidate.x % 8;
     const std::uint64_t* near = near_.data();
@@ -148,7 +148,8 @@ class Cells {
   }
 
  private:
-  // Pixels that are marked at once: of a word, less those that the first one may be behind a byte's begin.
+  // Pixels that are marked at once: those of a word, without those by which the first one may lie behind the
+  // start of a byte.
   static constexpr int kTogether = 56;
 
   void drawNear(double squared_distance) {
@@ -162,17 +163,17 @@ class Cells {
   }
 
   int reach_, stride_;
-  std::vector<int> columns_, rows_;  // of cells, of a pixel; rows: their first cells
+  std::vector<int> columns_, rows_;  // cell of a pixel's column and row; rows: the first cell of that row
   std::vector<uchar> counts_;        // corners of each cell
-  std::vector<std::uint64_t> near_;  // marks of what is too near to a corner, words below each other
-  std::vector<uchar> taken_;         // a bit for each pixel that is, with margins
+  std::vector<std::uint64_t> near_;  // marks of places too near a corner, words below each other
+  std::vector<uchar> taken_;         // one bit per pixel: too near a corner; with margins
 };
 
-/// Accepts those of a class's candidates that are free, strongest first and equals by rows, and adds each to
-/// those of its rank: what its cell had before.
+/// Accepts the free candidates of a class, strongest first, equal ones by rows. Each is added to the list of
+/// its rank, which is the number of corners that its cell had before.
 void accept(Candidate* begin, Candidate* end, Cells& cells,
             std::array<std::vector<Candidate>, Cells::kMost>& ranked) {
-  // Most are not free before already, which is sooner found than their order.
+  // Most are not free already. Finding that out is quicker than sorting them.
   end = cells.keepFree(begin, end);
   std::sort(begin, end, [](const Candidate& a, const Candidate& b) {
     if (a.response != b.response) return a.response > b.response;
@@ -192,7 +193,7 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
   const Maxima maxima = findMaxima(image(area), mask(area), harris_k, memory.maxima);
   const Classes classes(maxima, static_cast<float>(quality) * maxima.strongest, memory.sorted);
 
-  // Rank within cells first, so that strong markings do not take all corners, then by strength.
+  // Sorted by the rank within cells first, so that strong markings do not take all corners, then by strength.
   Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
   std::array<std::vector<Candidate>, Cells::kMost> ranked;
   for (int i = 0; i < Classes::kCount; ++i) accept(classes.begin(i), classes.end(i), cells, ranked);
@@ -212,7 +213,7 @@ std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, in
 }
 
 int cornerBudget(const cv::Size& image, int most, int pixels_per_corner) {
-  constexpr int kFewest = 20;  // as of the parameters for their count
+  constexpr int kFewest = 20;  // as for the parameter of the number of corners
   return std::min(most, std::max(kFewest, image.area() / pixels_per_corner));
 }
 

@@ -12,13 +12,13 @@ namespace {
 
 constexpr size_t kFirstPairs = 10;
 constexpr int kValues = 65536;
-constexpr double kTail = 0.001;          // of the values, on either side
-constexpr double kOutside = 0.01;        // of the values, from which on the range is too small
-constexpr double kSmallPart = 1.0 / 16;  // of the values that the bits have
-constexpr double kMargin = 0.25;         // of what is between the quantiles
-constexpr int kPairsToGrow = 5;          // in a row, outside of the range
+constexpr double kTail = 0.001;          // share of the values, on either side
+constexpr double kOutside = 0.01;        // share of the values; with more outside, the range is too small
+constexpr double kSmallPart = 1.0 / 16;  // share of the values that the bits can have
+constexpr double kMargin = 0.25;         // of the distance between the quantiles
+constexpr int kPairsToGrow = 5;          // consecutive pairs outside the range
 
-/// How often each value occurs.
+/// Number of pixels with each value.
 cv::Mat histogramOf(const cv::Mat& values) {
   const cv::Mat samples = values.reshape(1);
   const int channels[] = {0}, sizes[] = {kValues};
@@ -31,7 +31,7 @@ cv::Mat histogramOf(const cv::Mat& values) {
 
 double largestOf(int bits) { return std::ldexp(1.0, bits) - 1; }
 
-/// Share of the values above the range or below it, the larger one. values: one channel.
+/// Share of the values above the range or below it, whichever is larger. values: one channel.
 double outsideOf(const GreyRange& range, const cv::Mat& values) {
   const double all = static_cast<double>(values.total());
   return std::max(cv::countNonZero(values > range.white), cv::countNonZero(values < range.black)) / all;

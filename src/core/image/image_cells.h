@@ -7,8 +7,8 @@
 
 #include "uav_landing/geometry/calibration.h"
 
-/// Parts of the image in which errors are alike: residuals of a lens, or of surface that is not the plane,
-/// are the same there, and move together what is fitted to points all over the image.
+/// Cells of the image, parts in which errors are alike. Residuals of a lens, and of a surface that is not the
+/// plane, are the same there. They move together what is fitted to points all over the image.
 namespace uav_landing {
 
 constexpr int kCellsAcross = 4, kCellsDown = 3, kImageCells = kCellsAcross * kCellsDown;
@@ -20,10 +20,9 @@ inline int imageCell(const StereoRig& rig, double u, double v) {
   return part(v, rig.size.height, kCellsDown) * kCellsAcross + part(u, rig.size.width, kCellsAcross);
 }
 
-/// What neighbouring points share adds to the covariance of a fit that took them as independent: after the
-/// sandwich estimator with clusters (Liang, Zeger 1986), of which only the products of different points
-/// count. By chance they are negative as often as positive, which counts for nothing. Few parts and many
-/// unknowns make it too small.
+/// Addition to the covariance of a fit that took points as independent, although neighbours share errors. It
+/// follows the sandwich estimator with clusters (Liang, Zeger 1986), but only products of different points
+/// count. Sums that are negative by chance count as zero. With few cells and many unknowns it is too small.
 template <int N>
 class ClusterCovariance {
  public:
@@ -31,7 +30,7 @@ class ClusterCovariance {
   using Matrix = Eigen::Matrix<double, N, N>;
   ClusterCovariance() { sums_.fill(Vector::Zero()); }
 
-  /// influence: by how much the residual of one point moves what is fitted.
+  /// influence: change of the fitted values by the residual of one point.
   void add(int cell, const Vector& influence) {
     sums_[cell] += influence;
     own_ += influence * influence.transpose();

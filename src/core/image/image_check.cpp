@@ -9,10 +9,10 @@
 namespace uav_landing {
 namespace {
 
-// Standard deviation, in grey levels, below which an image holds nothing.
+// Smallest standard deviation, in grey levels, of an image that shows something.
 constexpr double kMinContrast = 1.5;
 
-/// Every so manyth row, without a copy.
+/// Every step-th row, without a copy.
 cv::Mat someRows(const cv::Mat& all, int step) {
   return cv::Mat((all.rows + step - 1) / step, all.cols, all.type(), all.data, step * all.step);
 }
@@ -25,7 +25,7 @@ struct Sums {
   double deviation() const { return squares - grey * mean(); }
 };
 
-/// Adds the pixels of one row where the mask is 255 and not 0.
+/// Adds those pixels of a row whose mask is not 0 (it is 255).
 void addRow(const uchar* row, const uchar* mask, int columns, Sums& sums) {
   std::uint32_t count = 0, grey = 0, squares = 0;
   for (int u = 0; u < columns; ++u) {
@@ -39,8 +39,8 @@ void addRow(const uchar* row, const uchar* mask, int columns, Sums& sums) {
   sums.squares += squares;
 }
 
-/// Whether the grey levels inside the mask have the least standard deviation; else their mean. More rows only
-/// add to the sum of squares, so that mostly the first ones tell.
+/// Whether the grey levels inside the mask have the smallest standard deviation; if not, mean is set. More
+/// rows only add to the sum of squares, so the first rows are mostly enough.
 bool hasContrast(const cv::Mat& image, const cv::Mat& mask, double& mean) {
   Sums sums;
   const double enough = kMinContrast * kMinContrast * static_cast<double>(image.total());

@@ -7,15 +7,15 @@
 
 namespace uav_landing {
 
-/// What makes a rectified pair useless: not mono8 of the rig's size (input_invalid), or one of them black,
-/// saturated or uniform inside its mask (uniform_image).
+/// Tells why a rectified pair cannot be used. input_invalid: an image is not mono8 of the rig's size.
+/// uniform_image: one of them is black, saturated or uniform inside its mask.
 Failure checkPair(const RigModel& model, const cv::Mat& left, const cv::Mat& right);
 
-/// Tells an image that is the one before, bit by bit: a camera or driver that hangs. Looks at every eighth
-/// row.
+/// Detects an image that equals the previous one bit by bit, as a frozen camera or driver gives it. It
+/// compares every eighth row.
 class RepeatedImage {
  public:
-  /// image: mono8. False for the first.
+  /// image: mono8. False for the first image.
   bool check(const cv::Mat& image);
   void reset() { before_.release(); }
 
@@ -23,10 +23,10 @@ class RepeatedImage {
   cv::Mat before_;
 };
 
-/// The mask without what a window of this margin (pixels) around a pixel would take from outside it.
+/// The mask without the pixels whose window of this margin (pixels) reaches outside the mask.
 cv::Mat erodeMask(const cv::Mat& mask, int margin);
 
-/// Whether the mask is set at the pixel nearest to a place; never beside the image.
+/// Whether the mask is set at the pixel nearest to a place; false outside the image.
 inline bool isSet(const cv::Mat& mask, double u, double v) {
   const int x = cvRound(u), y = cvRound(v);
   return x >= 0 && y >= 0 && x < mask.cols && y < mask.rows && mask.at<uchar>(y, x) != 0;

@@ -8,15 +8,18 @@ namespace {
 
 constexpr double kBetweenLooks = 0.33;  // s
 constexpr double kLongestGap = 1.0;     // s between pairs
-constexpr int kLooks = 3;               // in a row that make a cell the frame's: about a second
-// An edge's pixel changes by so many grey levels from one to the next. A cell needs some of them.
+constexpr int kLooks = 3;               // looks in a row after which a cell belongs to the frame: about a
+                                        // second
+// Change of grey level from pixel to pixel that makes an edge pixel, and the number of such pixels that a
+// cell needs.
 constexpr int kLeastSlope = 6, kLeastEdges = 6;
-// A pixel of an edge that stays changes by no more than this part of the slope: half a pixel.
+// An edge pixel has stayed when it changes by no more than this part of the slope: half a pixel.
 constexpr int kPartOfSlope = 2;
 // Grey levels by which the mean of a cell without edges may change.
 constexpr int kFlatChange = 2;
-// How many rows of cells, the own one and those above it, tell whether the ground moves; how many cells on
-// the ground they need, and which share of these has to move.
+// The ground moves when enough cells on it have moved, in the cell's own row and the rows above it. kRows:
+// number of these rows. kLeastGround: cells on the ground that they need. kMovingShare: share of these that
+// has to move.
 constexpr int kRows = 8, kLeastGround = 4;
 constexpr double kMovingShare = 0.75;
 
@@ -95,7 +98,7 @@ void LearnedFrame::count(int row) {
   for (int i = row * cells_.width; i < (row + 1) * cells_.width; ++i) {
     Cell& cell = all_[i];
     if (cell.own && cell.change != Change::kMoves && !cell.on_ground)
-      continue;  // nothing is tried in it any more
+      continue;  // no corner is looked for in it any more
     const bool stays = cell.change == Change::kStays && !cell.on_ground && ground_moves;
     cell.stays = stays ? cell.stays + 1 : 0;
     cell.fails = stays && cell.tried ? cell.fails + 1 : 0;

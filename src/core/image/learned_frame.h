@@ -6,43 +6,41 @@
 
 namespace uav_landing {
 
-/// Learns where the aircraft's own frame, such as its nose or a strut, is in one camera's picture. Corners of
-/// its edges are strong and never match, so they take the place of corners on the ground.
-///
-/// The picture is cut into cells, and each is compared with itself a moment ago. Cells with all of these
-/// belong to the frame, after several looks in a row:
+/// Learns where the aircraft's own frame, such as its nose or a strut, is in one camera's image. Corners of
+/// its edges are strong and never match, so they would take the place of corners on the ground.
+/// The image is cut into cells, and each is compared with itself a moment ago. Cells with all of these
+/// properties belong to the frame, after several looks in a row:
 /// - They have edges, and these have stayed in place to half a pixel.
 /// - Corners in them were looked for, and none was found on the ground; or they adjoin such cells.
 /// - The ground beside and above them, which moves less, has moved.
-///
-/// So a camera that stands still leaves nothing out. Nor does ground: its corners are found on it. Nor does
-/// what is near the horizon: the ground above it stays, too. A cell comes back when its content moves. A
-/// thing that flickers, such as a propeller, has no edges that stay and is not learned, nor is a surface
-/// without edges.
+/// So nothing is masked while the camera stands still. Ground is not masked, as its corners are found on it.
+/// Objects near the horizon are not masked, as the ground above them stays, too. A cell comes back when its
+/// content moves. Flickering things, such as a propeller, have no edges that stay and are not learned; nor is
+/// a surface without edges.
 class LearnedFrame {
  public:
   explicit LearnedFrame(const cv::Size& size);
 
-  /// image: rectified mono8. tried: corners that were looked for in the other image; on_ground: those of them
-  /// that were found on the ground's plane. stamp: s. One that is not after the last, or long after it,
-  /// begins anew.
+  /// image: rectified mono8. tried: corners that were looked for in the other image. on_ground: those of them
+  /// that were found on the ground plane. stamp: s. A stamp that is not after the last one, or long after it,
+  /// starts anew.
   void observe(double stamp, const cv::Mat& image, const std::vector<cv::Point>& tried,
                const std::vector<cv::Point>& on_ground);
   void reset();
 
   bool empty() const { return left_out_ == 0; }
-  /// Share of the picture that is the frame.
+  /// Share of the image that is frame.
   double share() const;
-  /// The mask, 0 where the frame is and so many pixels around it. Valid until the next call.
+  /// The mask with 0 on the frame and within margin pixels of it. Valid until the next call.
   cv::Mat leftOut(const cv::Mat& mask, int margin);
 
  private:
-  static constexpr int kSize = 8;  // of a cell, px
+  static constexpr int kSize = 8;  // px, side of a cell
   enum class Change { kUnknown, kFlat, kStays, kMoves };
   struct Cell {
     std::array<uchar, kSize * kSize> grey{};  // at the last look
     Change change = Change::kUnknown;         // since then
-    bool tried = false, on_ground = false;    // there was such a corner in it since then
+    bool tried = false, on_ground = false;    // such a corner was in it since then
     int stays = 0, fails = 0;                 // looks in a row
     bool own = false;
   };

@@ -4,9 +4,9 @@
 
 namespace uav_landing {
 
-/// The smallest rectangle that holds all pixels of a mono8 mask that are not 0, without a look at those that
-/// cannot make it larger. Empty when there are none. (cv::boundingRect looks at all of them, and that of
-/// OpenCV 4.6 misses columns of some parts of images.)
+/// The smallest rectangle that contains all pixels of a mono8 mask that are not 0; empty when there are none.
+/// It does not read pixels that cannot enlarge it, as cv::boundingRect does. In OpenCV 4.6, that function
+/// also misses columns of some parts of images.
 cv::Rect boundsOf(const cv::Mat& mask);
 
 }  // namespace uav_landing

@@ -14,7 +14,7 @@ FirstRows firstGroundRows(const StereoRig& rig, const Eigen::Vector3d& normal, c
   const auto rowAt = [&](double u) {
     return rig.cy - rig.fy * (normal.x() * (u - rig.cx) / rig.fx + normal.z()) / normal.y();
   };
-  // The highest place in both images.
+  // The highest row of the horizon in both images.
   const double horizon = std::min(rowAt(-offset), rowAt(rig.size.width + offset)) - slack * rows;
   const double row = std::clamp(horizon, 0.0, rows);
   const int factor = coarseFactor(rig.size);

@@ -24,7 +24,7 @@ bool PatchSearch::sample(const Eigen::Vector2d& centre, const Eigen::Matrix2d& w
   }
   area_.resize(wholeLanes(stride_ * rows) + kLanes);
   sampleParabolicWindow(other_, centre, warp, reach, stride_, area_.data());
-  // Less about the mean, so that floats are exact enough for the differences of sums.
+  // About the mean the values are small, so floats are exact enough for the differences of sums.
   subtract(static_cast<float>(template_.mean), area_.data(), static_cast<int>(area_.size()));
   return true;
 }

@@ -9,19 +9,19 @@
 
 namespace uav_landing {
 
-/// Gain and offset free correlation of one window with a neighbourhood of another image. The window's pixel
-/// at (dx, dy) from its centre is looked for at centre + warp (dx + i, dy + j) for all shifts -steps <= i, j
-/// <= steps.
+/// Correlation, blind to gain and offset, of one window with a neighbourhood of another image. The window's
+/// pixel at (dx, dy) from its centre is looked for at centre + warp (dx + i, dy + j), for all shifts -steps
+/// <= i, j <= steps.
 class PatchSearch {
  public:
-  /// Both images CV_32F; they must outlive the search.
+  /// Both images are CV_32F and must outlive the search.
   PatchSearch(const cv::Mat& reference, const cv::Mat& other, int radius);
 
   struct Best {
-    bool found = false;        ///< a peak inside the range (not on its border) with contrast on both sides
+    bool found = false;        ///< a peak inside the range (not at its border), with contrast on both sides
     Eigen::Vector2d position;  ///< in the other image, whole shifts
     double score = -1;         ///< correlation
-    double second = -1;        ///< best correlation more than two shifts away from it
+    double second = -1;        ///< best correlation more than two shifts away
   };
   Best run(int u, int v, const Eigen::Vector2d& centre, const Eigen::Matrix2d& warp, int steps);
 

@@ -7,12 +7,12 @@
 namespace uav_landing {
 namespace {
 
-// Gauss-Newton steps. Those of a window fall short by about the same share: how far one moves the place is
-// seen by the next, and each is made longer by that (secant method). Then few are needed, and what the last
-// one leaves has no direction of its own.
+// Gauss-Newton steps made longer by the secant method. All steps of a window fall short by about the same
+// share. The next step shows how far the last one moved the place, and corrects for the rest. So few steps
+// are needed, and the remaining error has no preferred direction.
 class SecantSteps {
  public:
-  // The step to make where Gauss-Newton wants this one.
+  // The step to make when Gauss-Newton proposes this one.
   Eigen::Vector2d next(const Eigen::Vector2d& wanted) {
     constexpr double kLongest = 1.0, kLeast = 0.4, kMost = 1.5;
     if (made_.squaredNorm() > 0)
@@ -23,8 +23,9 @@ class SecantSteps {
     ++count_;
     return made_;
   }
-  // The place is good to about 0.01 px, little beside what matches are known to: a single step leaves a tenth
-  // of itself in the median, up to a third and in any direction, a secant step much less.
+  // The place is then good to about 0.01 px, which is little beside the error of a match. A single step
+  // leaves a tenth of itself in the median and up to a third, in any direction. A secant step leaves much
+  // less.
   bool converged() const {
     constexpr double kShort = 0.02, kShortSingle = 0.07, kShortSecant = 0.1;
     const double length = wanted_.norm();
@@ -34,7 +35,7 @@ class SecantSteps {
 
  private:
   int count_ = 0;
-  // Of the distance, that a step moves; short ones, of many windows, all of it on the average.
+  // Share of the distance that a step moves. Short steps, over many windows, move all of it on average.
   double share_ = 1;
   Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
 };

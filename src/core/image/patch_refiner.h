@@ -8,7 +8,8 @@
 
 namespace uav_landing {
 
-/// By Gauss-Newton over (shift, gain, offset), with the reference's own gradient. own: of this very window.
+/// Refines the place of a window by Gauss-Newton over (shift, gain, offset), with the reference's own
+/// gradient. own: of this very window.
 PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius,
                             OwnTexture& own);
@@ -18,8 +19,8 @@ inline PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& othe
   return refinePatch(reference, other, u, v, position, warp, radius, own);
 }
 
-/// From a place on as refinePatch does it. first: what a look there found, when there was one already.
-/// distances: as for evidence(); without them only the covariance may be asked for.
+/// Refines from `position` on, as refinePatch() does. first: solution of a look at that position, if there
+/// was one; or null. distances: as for evidence(); without them only the covariance is available.
 PatchRefinement refineWindow(const ReferenceWindow& window, const cv::Mat& other,
                              const Eigen::Vector2d& position, const Eigen::Matrix2d& warp,
                              const GainShift* first, bool distances);

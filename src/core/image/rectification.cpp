@@ -14,27 +14,27 @@ namespace uav_landing {
 
 namespace {
 
-constexpr float kOutside = -2;  // a source coordinate of which no pixel is in the image
+constexpr float kOutside = -2;  // a source coordinate whose neighbouring pixels are all outside the image
 constexpr double kMaxRadius =
-    20.0;  // on the plane z = 1: 87 degrees off the axis, no lens of these models sees it
+    20.0;  // on the plane z = 1: 87 degrees off the axis, which no lens of these models sees
 
-/// Where the lens shows what is r off the axis, both on the plane z = 1; negative where that is nowhere.
-/// OpenCV's radial model of plumb_bob and rational_polynomial.
+/// Distance from the axis at which the lens shows a point that is r off the axis, both on the plane z = 1.
+/// Negative when it shows it nowhere. OpenCV's radial model of plumb_bob and rational_polynomial.
 double radialDistance(const std::vector<double>& D, double r) {
   const auto k = [&D](size_t i) { return i < D.size() ? D[i] : 0.0; };
   const double r2 = r * r, denominator = 1 + r2 * (k(5) + r2 * (k(6) + r2 * k(7)));
   return denominator > 0 ? r * (1 + r2 * (k(0) + r2 * (k(1) + r2 * k(4)))) / denominator : -1;
 }
 
-/// The same of a fisheye lens: an odd polynomial of the angle off the axis.
+/// The same for a fisheye lens: an odd polynomial of the angle off the axis.
 double fisheyeDistance(const std::vector<double>& D, double r) {
   const double angle = std::atan(r), a2 = angle * angle;
   return angle * (1 + a2 * (D[0] + a2 * (D[1] + a2 * (D[2] + a2 * D[3]))));
 }
 
-/// Radius, on the plane z = 1, at which the distance in the picture stops growing: beyond it the polynomial
-/// folds back into the picture and means nothing. Searched up to max_radius; infinity when it grows all the
-/// way.
+/// Radius, on the plane z = 1, at which the distance in the image stops growing. Beyond it the polynomial
+/// folds back into the image and means nothing. Searched up to max_radius; infinity when it never stops
+/// growing.
 double foldRadius(const CameraCalibration& c, double max_radius) {
   constexpr int kSteps = 10000;
   if (!isDistorted(c.D)) return std::numeric_limits<double>::infinity();
@@ -49,15 +49,15 @@ double foldRadius(const CameraCalibration& c, double max_radius) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// Distance from the axis, on the plane z = 1 of the raw camera, of what a rectified pixel looks at; false
-/// when that is behind the camera or nearly so.
+/// Distance from the axis, on the plane z = 1 of the raw camera, of the point that a rectified pixel looks
+/// at. False when this point is behind the camera or nearly so.
 bool seenRadius(const Eigen::Matrix3d& from_pixel, int u, int v, double& radius) {
   const Eigen::Vector3d ray = from_pixel * Eigen::Vector3d(u, v, 1);
   radius = std::hypot(ray.x(), ray.y()) / ray.z();
   return ray.z() > 0 && radius < kMaxRadius;
 }
 
-/// Moves out of the image what only seems to be in it: folded distortion, rays from behind, overflows.
+/// Moves pixels out of the image that only seem to be in it: folded distortion, rays from behind, overflows.
 void excludeUnreal(const CameraCalibration& c, cv::Mat& x, cv::Mat& y) {
   const Eigen::Matrix3d from_pixel = (c.P.leftCols<3>() * c.R).inverse();
   double max_radius = 0, radius = 0;
@@ -74,12 +74,12 @@ void excludeUnreal(const CameraCalibration& c, cv::Mat& x, cv::Mat& y) {
     }
 }
 
-/// Where each rectified pixel comes from, in 1/32 px, as cv::convertMaps makes it.
+/// Source of each rectified pixel, in 1/32 px, as cv::convertMaps makes it.
 struct SourceMaps {
   cv::Mat places, fractions;
 };
 
-/// c: of the delivered image, checked.
+/// c: of the delivered image, already checked.
 SourceMaps sourceMaps(const CameraCalibration& c) {
   RawPlaces raw = rawPlaces(c, c.P.leftCols<3>(), c.imageSize());
   excludeUnreal(c, raw.x, raw.y);
@@ -88,7 +88,7 @@ SourceMaps sourceMaps(const CameraCalibration& c) {
   return maps;
 }
 
-/// 255 where the interpolation weighs none but these pixels of the raw image (mono8, not 0).
+/// 255 where interpolation uses only these pixels of the raw image (mono8, not 0).
 cv::Mat sourceMask(const SourceMaps& maps, const cv::Mat& usable) {
   cv::Mat mask(maps.places.size(), CV_8UC1);
   for (int v = 0; v < mask.rows; ++v)
@@ -107,7 +107,7 @@ cv::Mat sourceMask(const SourceMaps& maps, const cv::Mat& usable) {
   return mask;
 }
 
-/// Whether the maps lead every pixel to itself, as those of an image that is rectified already.
+/// Whether the maps lead every pixel to itself, because the image is already rectified.
 bool isIdentity(const SourceMaps& maps) {
   for (int v = 0; v < maps.places.rows; ++v)
     for (int u = 0; u < maps.places.cols; ++u)

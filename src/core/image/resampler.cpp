@@ -11,8 +11,8 @@ namespace {
 
 static_assert(kBilinearOne == cv::INTER_TAB_SIZE, "as in cv::convertMaps()");
 
-/// Moves places, with their weights, so that there is a pixel to the right and below even where it has no
-/// weight.
+/// Moves places, with their weights, so that a pixel exists to the right and below even if its weight is
+/// zero.
 void keepInside(const cv::Mat& mask, cv::Size source, cv::Mat& places, cv::Mat& weights) {
   const auto clamped = [](int place, int fraction, int size) {
     return place + 1 < size ? std::make_pair(place, fraction) : std::make_pair(size - 2, kBilinearOne);
@@ -60,7 +60,7 @@ bool Resampler::findWindow(int u, int v, cv::Size source, SourceWindows& windows
   const cv::Vec2s* places = places_.ptr<cv::Vec2s>(v) + u;
   const std::uint16_t* weights = weights_.ptr<std::uint16_t>(v) + u;
   const uchar* mask = mask_.ptr<uchar>(v) + u;
-  // Pixels that the mask leaves out may come from anywhere.
+  // Pixels outside the mask may come from anywhere.
   int left = source.width - SourceWindows::kColumns, right = 0, top = source.height - SourceWindows::kRows,
       bottom = 0;
   for (int i = 0; i < SourceWindows::kHalf; ++i) {

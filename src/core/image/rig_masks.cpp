@@ -10,7 +10,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kLeastShare = 0.1;  // of the picture, that a mask has to leave
+constexpr double kLeastShare = 0.1;  // share of the image that a mask has to leave
 
 template <class... Parts>
 Failure refusal(const RawMask& mask, const Parts&... parts) {
@@ -19,7 +19,7 @@ Failure refusal(const RawMask& mask, const Parts&... parts) {
 
 std::string toText(cv::Size size) { return text(size.width, "x", size.height); }
 
-/// Empty when the file holds no image. OpenCV throws for one that it would not have room for.
+/// Empty when the file contains no image. OpenCV throws when an image is too large for the memory.
 cv::Mat readImage(const std::string& file) {
   try {
     return cv::imread(file, cv::IMREAD_UNCHANGED);

@@ -28,12 +28,12 @@ double WindowOverlap::factor() const {
   return 1 + sum / static_cast<double>(count_);
 }
 
-// Sum of the shares that the windows before have of this one.
+// Sum of the shares that earlier windows have of this one.
 float WindowOverlap::shared(size_t i) const {
   return sumOfShares(u_.data(), v_.data(), firstNear(i), i, {u_[i], v_[i], extents_[i]});
 }
 
-// All before it are too far above. Whole blocks, so that they end where the columns do.
+// First window that is not too far above this one. Whole blocks, so that they end where the columns do.
 size_t WindowOverlap::firstNear(size_t i) const {
   const auto end = lowest_.begin() + static_cast<std::ptrdiff_t>(i);
   const auto near = std::lower_bound(lowest_.begin(), end, v_[i] - extents_[i]);

@@ -5,18 +5,18 @@
 
 namespace uav_landing {
 
-/// Windows of an image that share pixels, and with them noise.
+/// Windows of an image that share pixels, and so share noise.
 class WindowOverlap {
  public:
-  /// count: windows that memory is taken for.
+  /// count: number of windows for which memory is taken.
   explicit WindowOverlap(size_t count);
 
-  /// u, v: the window's middle. extent: its width and height, pixels; 0 when it shares nothing. Windows from
-  /// the top of the image down, as corners mostly come, take the least time.
+  /// u, v: the window's middle. extent: its width and height, pixels; 0 when it shares nothing. Windows
+  /// ordered from the top of the image down, as corners mostly are, take the least time.
   void add(double u, double v, double extent);
 
-  /// By which the variance of what is fitted to windows is larger than if they shared no noise: the mean over
-  /// them of the shares that all windows have of one.
+  /// Factor on the variance of a fit to the windows, because they share noise. It is the mean, over the
+  /// windows, of the summed shares that all windows have of one.
   double factor() const;
 
  private:
@@ -25,7 +25,8 @@ class WindowOverlap {
 
   size_t count_ = 0;
   std::vector<float> u_, v_, extents_;  // filled up to whole lanes
-  std::vector<float> lowest_;           // of the windows up to each: those far above one are all at the front
+  std::vector<float> lowest_;           // largest v up to each window; windows far above a given one are all
+                                        // at the front
 };
 
 }  // namespace uav_landing

@@ -43,12 +43,13 @@ const char* stepOf(const TestDescription& described) {
 std::string integrityTestPage() {
   std::ostringstream out;
   out << "# Tests of integrity\n\n"
-         "What `kalman_height` tests on every pair, in this order in `LandingEstimate.tests`, in the "
-         "diagnostics and "
-         "in the CSV\ncolumn `failed_tests`. The squared normalised difference must not exceed the limit; "
-         "*chi-square* is what noise alone\nexceeds with probability `false_alarm_rate`. Steps are those of "
-         "the "
-         "[landing estimate](how_it_works.md); what the tests are worth\nis in [Integrity](integrity.md).\n\n"
+         "`kalman_height` makes these tests on every pair. `LandingEstimate.tests`, the diagnostics and the "
+         "CSV column\n"
+         "`failed_tests` have them in this order. A test fails when the squared normalised difference "
+         "exceeds the limit.\n"
+         "Noise alone exceeds *chi-square* with the probability `false_alarm_rate`. Steps are those of the\n"
+         "[landing estimate](kalman_height.md#the-steps-of-a-pair). [Integrity](integrity.md) says what the "
+         "tests are worth.\n\n"
          "| test | step | compares | unit | limit | when it fails |\n|---|---|---|---|---|---|\n";
   for (const TestDescription& described : kTestCatalogue)
     out << "| `" << described.name << "` | " << stepOf(described) << " | " << described.compares << " | "

@@ -34,58 +34,63 @@ struct TestLimit {
 // clang-format off
 #define UAV_LANDING_INTEGRITY_TESTS(TEST)                                                                              \
   TEST(kRepeatedImage, "repeated_image", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::fixed(0), "–",           \
-       "an image with the one before, bit by bit: sensors have noise, a frozen camera or driver has none",             \
-       "pair left out")                                                                                                \
+       "an image with the previous one, bit by bit: a real image has noise, so only a frozen camera or driver "        \
+       "repeats it",                                                                                                   \
+       "pair rejected")                                                                                                \
   TEST(kPhotometric, "photometric", TestStep::kPair, OnFailure::kReported, TestLimit::fixed(1), "1",                   \
-       "share of the image blocks that look alike left and right and lie on one plane (after direct refinement); on "  \
-       "real streets a tenth of them is enough, so that no share is a limit",                                          \
+       "share of the image blocks that look alike left and right and lie on one plane (after direct refinement). A "   \
+       "tenth is enough on real streets, so there is no limit",                                                        \
        "reported")                                                                                                     \
   TEST(kRowAgreement, "row_agreement", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::fixed(0.5), "1",           \
-       "share of the matches along the rows that are found again when they may move across the rows as well: at "      \
-       "least half; matches of scenes that are not the same mostly are not",                                           \
-       "pair left out")                                                                                                \
+       "share of the matches along the rows that are found again when they may leave the row: at least half. Matches " \
+       "of different scenes mostly are not",                                                                           \
+       "pair rejected")                                                                                                \
   TEST(kRigRotation, "rig_rotation", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::chiSquare(), "rad",          \
-       "pitch and roll of the right camera by the vertical disparities of the pair, with the two seconds before",      \
-       "pair left out")                                                                                                \
+       "pitch and roll of the right camera from the pair's vertical disparities, with those of the last two seconds",  \
+       "pair rejected")                                                                                                \
   TEST(kBaselineDirection, "baseline_direction", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::chiSquare(),     \
        "rad",                                                                                                          \
-       "direction from the left to the right camera by the vertical disparities of the pair, with the calibrated "     \
-       "one: images have that one which were taken at the same time (or with the skew that their stamps tell), "       \
-       "through lenses as calibrated",                                                                                 \
-       "pair left out")                                                                                                \
+       "direction from the left to the right camera from the pair's vertical disparities, with the calibrated one. "   \
+       "They agree if the images were taken at the same time (or with the skew that their stamps tell) and the "       \
+       "lenses are as calibrated",                                                                                     \
+       "pair rejected")                                                                                                \
   TEST(kStandstill, "standstill", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::chiSquare(), "m",               \
-       "way since the pair before with the least that the speed before allows, less `max_deceleration` (3 m/s²): a "   \
-       "picture that stands still while the aircraft cannot",                                                          \
-       "pair left out")                                                                                                \
+       "distance since the previous pair, with 30 % of the shortest distance that the speed before and "               \
+       "`max_deceleration` allow. Images that stand still faster than an aircraft can brake are those of a frozen "    \
+       "camera",                                                                                                       \
+       "pair rejected")                                                                                                \
   TEST(kVelocity, "velocity", TestStep::kPair, OnFailure::kAngleDoubted, TestLimit::chiSquare(), "m/s",                \
-       "way since the pair before, as a vector, with the velocity on those before that; random accelerations of "      \
-       "half a g, and while steps contradict what 1 g makes of it: an aircraft's way does not become a period of a "   \
-       "pattern longer, nor does it lead to the other camera or backwards",                                            \
-       "approach angle as uncertain as it changes by that; no velocity by this step")                                  \
-  TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()), "rad",      \
-       "ground normal of the pair, with the pairs before and the rotation since (5 σ); needs `average_attitude`",      \
-       "pair left out")                                                                                                \
+       "velocity of the frame step, with that of the steps before. The aircraft may accelerate by half a g at "        \
+       "random, and by 1 g as long as steps contradict. Finds steps that are one period of a pattern too long, lead "  \
+       "to the other camera, or backwards",                                                                            \
+       "approach angle as uncertain as this step changes it; no velocity by this step")                                \
+  TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()),   \
+       "rad",                                                                                                          \
+       "ground normal of the pair, with that of the pairs before, turned by the rotation since (5 σ); needs "          \
+       "`average_attitude`",                                                                                           \
+       "pair rejected")                                                                                                \
   TEST(kVanishingPoint, "vanishing_point", TestStep::kPair, OnFailure::kSourceLeftOut, TestLimit::chiSquare(), "rad",  \
-       "disparity of the stereo plane at the runway's vanishing point, which lies on the horizon and must have none",  \
-       "vanishing point left out (`vanishing_point_gate`)")                                                            \
+       "disparity of the stereo plane at the runway's vanishing point: zero, as that point lies on the horizon",       \
+       "vanishing point not used (`vanishing_point_gate`)")                                                            \
   TEST(kMotionNormal, "motion_normal", TestStep::kPair, OnFailure::kSourceLeftOut, TestLimit::chiSquare(), "rad",      \
-       "ground normal of the pair by stereo alone, with the one that the motion in the left image asks for",           \
-       "left out of the plane by its own gate; no vertical speed by the motion")                                       \
+       "ground normal of the pair by stereo alone, with the one that fits the motion in the left image",               \
+       "not used for the plane, by its own gate; no vertical speed by the motion")                                     \
   TEST(kImu, "imu", TestStep::kPair, OnFailure::kReported, TestLimit::chiSquare(), "rad",                              \
-       "ground normal of the pair by stereo alone, with the direction of gravity by the imu; the runway's slope is "   \
-       "in the variance",                                                                                              \
-       "reported (and left out of the height by its own gate)")                                                        \
-  TEST(kImageRegions, "image_regions", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::chiSquare(), "m",           \
-       "height of the pair with that from the points outside of the near, middle and far third, left and right half",  \
-       "pair left out")                                                                                                \
+       "ground normal of the pair by stereo alone, with the direction of gravity by the imu. The variance contains "   \
+       "the runway's slope",                                                                                           \
+       "reported (and not used for the height, by its own gate)")                                                      \
+  TEST(kImageRegions, "image_regions", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::chiSquare(), "m",          \
+       "height of the pair, with the height without the points of one region: near, middle or far third, left or "     \
+       "right half",                                                                                                   \
+       "pair rejected")                                                                                                \
   TEST(kRunwayWidth, "runway_width", TestStep::kPair, OnFailure::kReported, TestLimit::chiSquare(), "m",               \
-       "height by the runway's width (known or learned, of the edges that it was learned from) with that by stereo",   \
+       "height by the runway's width (known, or learned from the same edges), with the height by stereo",              \
        "reported")                                                                                                     \
   TEST(kInnovation, "innovation", TestStep::kTrack, OnFailure::kPairLeftOut, TestLimit::squaredGate(), "m",            \
-       "height of the pair with the filter's prediction: an outlier is beyond `gate`",                                 \
-       "pair left out")                                                                                                \
+       "height of the pair, with the filter's prediction. Beyond `gate` it is an outlier",                             \
+       "pair rejected")                                                                                                \
   TEST(kSinkRate, "sink_rate", TestStep::kMemory, OnFailure::kNoHeight, TestLimit::chiSquare(), "m",                   \
-       "published height with the one of 0.5 s to 1 s ago carried on by the motion, which needs no stereo",            \
+       "published height, with that of 0.5 s to 1 s ago carried on by the motion, which needs no stereo",              \
        "height not valid")
 // clang-format on
 

@@ -124,9 +124,10 @@ void HeightTrack::judge(double stamp, TrackVerdict& verdict) const {
   verdict.vertical_speed_variance =
       filter_.covariance()(1, 1) * (parameters_.use_motion ? 1 : varianceFactor());
   if (!verdict.confirmed) {
-    verdict.failure = {Reason::kNotYet, text(confirmations_, " of ", kConfirmations, " agreeing heights")};
+    verdict.failure = {Reason::kNotYet,
+                       text("agreeing heights so far: ", confirmations_, " of ", kConfirmations, " needed")};
   } else if (!(age <= parameters_.max_age)) {
-    verdict.failure = {Reason::kTimeout, text("no believable height for ", age, " s")};
+    verdict.failure = {Reason::kTimeout, text("no accepted height for ", age, " s")};
   } else {
     verdict.failure = tooUncertain(h, verdict.height_variance, parameters_);
   }

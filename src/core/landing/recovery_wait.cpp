@@ -23,8 +23,8 @@ Failure RecoveryWait::follow(double T, const PairVerdict& pair, const PairTests&
   const bool disputed = contradicted && !post.confirmed;
   recovery_.follow(std::min(T, max_age_), kind, post.outdated || disputed || sinks);
   if (!recovery_.pending()) return {};
-  return {Reason::kInconsistent, text("after contradictions nothing has contradicted for ",
-                                      rounded(recovery_.quiet()), " s only, ", needed_, " s needed")};
+  return {Reason::kInconsistent, text("recovering: the tests have passed for ", rounded(recovery_.quiet()),
+                                      " s, ", needed_, " s required")};
 }
 
 }  // namespace uav_landing

@@ -23,9 +23,9 @@ Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const He
   memory_.refresh(filter, agrees,
                   std::max(parameters_.alert_limit, parameters_.alert_limit_relative * scale));
   if (agrees) return {};
-  return {Reason::kInconsistent,
-          text(toString(IntegrityTest::kSinkRate), ": the height is off by ",
-               rounded(filter.state()[0] - expected->height), " m from the one before and the motion since")};
+  return {Reason::kInconsistent, text(toString(IntegrityTest::kSinkRate), ": the height differs by ",
+                                      rounded(filter.state()[0] - expected->height),
+                                      " m from the earlier height carried on by the motion")};
 }
 
 void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scale, const MotionDoubt& doubt,

@@ -4,10 +4,10 @@
 
 namespace uav_landing {
 
-/// What lines are refined in.
+/// The images in which lines are refined.
 struct EdgePicture {
   cv::Mat image, transposed;  ///< mono8; transposed has the image's columns as rows
-  cv::Mat ground;             ///< mono8, of the image: edges only where it is not 0
+  cv::Mat ground;             ///< mono8, as large as the image; edges count only where it is not 0
 };
 
 }  // namespace uav_landing

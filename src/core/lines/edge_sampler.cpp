@@ -18,7 +18,7 @@ EdgeSampler::EdgeSampler(const cv::Mat& pixels, const cv::Mat& ground, const Axi
       slope_(frame_.along_minor / frame_.along_major),
       first_(frame_.origin_minor - slope_ * frame_.origin_major),
       sign_(static_cast<short>(kind.sign * frame_.scale >= 0 ? 1 : -1)) {
-  constexpr double kNever = 256;  // no difference of grey levels
+  constexpr double kNever = 256;  // no difference of grey levels is as large
   least_ = static_cast<short>(std::ceil(std::min(kind.min_gradient / std::abs(frame_.scale), kNever)));
 }
 
@@ -26,7 +26,7 @@ bool EdgeSampler::findEdge(int station, StationEdge& edge) const {
   const Station sample = at(station);
   if (sample.grey == nullptr) return false;
   const auto twice = [&](int k) { return sign_ * sample.twiceGradient(k); };
-  constexpr int kEnd = 2;  // there it is no maximum, but goes on growing
+  constexpr int kEnd = 2;  // at the end it is no maximum, as the gradient goes on growing
   int k = -kEnd;
   for (int other = k + 1; other <= kEnd; ++other)
     if (twice(other) > twice(k)) k = other;
@@ -35,7 +35,7 @@ bool EdgeSampler::findEdge(int station, StationEdge& edge) const {
   return true;
 }
 
-/// Those from which enough pixels across the line are in the image.
+/// Those stations at which enough pixels across the line are in the image.
 Stations EdgeSampler::inside(Stations stations) const {
   const auto is_inside = [&](int i) {
     return isInside(stations.at(i), cvRound(first_ + slope_ * stations.at(i)));
@@ -56,7 +56,7 @@ void EdgeSampler::collect(int reach, double from, double to, int most, Peaks& pe
   setCentres(stations, first_, slope_, edges);
 
   constexpr int kAtOnce = EdgeColumns::kAtOnce;
-  static constexpr std::array<uchar, 2 * kAtOnce> kNothing = {};  // no edges
+  static constexpr std::array<uchar, 2 * kAtOnce> kNothing = {};  // pixels without edges
   std::array<const uchar*, EdgeColumns::kMost> pixels;
   const uchar *row = pixels_ + stations.first * step_, *ground = ground_ + stations.first * to_next_station_;
   const std::ptrdiff_t to_next_row = stations.step * step_, to_next = stations.step * to_next_station_,

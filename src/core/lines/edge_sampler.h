@@ -10,19 +10,20 @@
 
 namespace uav_landing::line_fit {
 
-/// The pixels across a line at a station, along the station's row or column. Looks at whole pixels only:
-/// interpolating between them biases the peak by up to 0.1 px.
+/// The pixels across a line at a station, along the station's row or column. Only whole pixels are read,
+/// because interpolation would bias the peak by up to 0.1 px.
 struct Station {
-  static constexpr int kRadius = 3;  ///< px to both sides at which there are gradients
+  static constexpr int kRadius = 3;  ///< px on each side at which there are gradients
 
   int centre;         ///< column or row of the pixel nearest to the line
-  const uchar* grey;  ///< that pixel among those across the line; null outside image and ground
+  const uchar* grey;  ///< this pixel among those across the line; null outside image and ground
 
   /// Twice the gradient along the row or column, k pixels from the line; |k| <= kRadius.
   int twiceGradient(int k) const { return grey[k + 1] - grey[k - 1]; }
 };
 
-/// A line's axes, and what gradients along rows or columns are across it: positive when brighter `across`.
+/// Axes of a line, and how gradients along rows or columns become gradients across the line, positive when
+/// brighter `across`.
 struct LineFrame : LineAxes {
   explicit LineFrame(const Axis& axis)
       : LineAxes{axis.origin[axis.major],      axis.origin[axis.minor], axis.along[axis.major],
@@ -36,7 +37,7 @@ struct EdgeKind {
   double min_gradient;
 };
 
-/// Looks along one line. Refers to the picture's pixels and to the axis.
+/// Looks along one line. It refers to the pixels of the picture and to the axis, which must outlive it.
 class EdgeSampler {
  public:
   EdgeSampler(const EdgePicture& picture, const Axis& axis, const EdgeKind& kind)
@@ -54,12 +55,12 @@ class EdgeSampler {
   /// The strongest gradient within a pixel of the line; false when there is none of this kind.
   bool findEdge(int station, StationEdge& edge) const;
 
-  /// The same within reach px (1 or 2), at so many rows or columns, or all, between two distances along the
-  /// line.
+  /// The same within reach px (1 or 2), between two distances along the line. It looks at no more than most
+  /// rows or columns, evenly spread.
   void collect(int reach, double from, double to, int most, Peaks& peaks) const;
 
  private:
-  /// pixels: with a row for each station.
+  /// pixels: one row per station.
   EdgeSampler(const cv::Mat& pixels, const cv::Mat& ground, const Axis& axis, const EdgeKind& kind);
 
   bool isInside(int station, int centre) const {
@@ -78,7 +79,7 @@ class EdgeSampler {
   LineFrame frame_;
   double slope_, first_;  // of the line: px across by station, and where it crosses station 0
   short least_;           // twice the weakest gradient along a row or column
-  short sign_;            // that such gradients have
+  short sign_;            // sign of such gradients
 };
 
 }  // namespace uav_landing::line_fit

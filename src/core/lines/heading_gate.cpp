@@ -8,12 +8,12 @@ namespace uav_landing {
 
 namespace {
 
-constexpr double kSlack = 5 * M_PI / 180;  // by which the direction of a rough line may be off
+constexpr double kSlack = 5 * M_PI / 180;  // error of the direction of a rough line
 constexpr double kWidest = 85 * M_PI / 180;
 
 }  // namespace
 
-// The direction of a line on the ground is that of (K^T l) x n.
+// A line l on the ground has the direction (K^T l) x n.
 HeadingGate::HeadingGate(const Eigen::Matrix3d& K, const Eigen::Vector3d& normal, double max_yaw)
     : ahead_(K * normal.cross(Eigen::Vector3d::UnitZ())),
       aside_(K * normal.cross(Eigen::Vector3d::UnitX())),

@@ -11,21 +11,21 @@ namespace uav_landing::line_fit {
 namespace {
 
 constexpr double kOffsetFloor = 0.03;  // px: pixel grid, fixed-point maps, lens model
-constexpr double kMinScale = 0.05;     // px, scale of the robust weights
+constexpr double kMinScale = 0.05;     // px, smallest scale of the robust weights
 constexpr float kConverged = 0.01F;    // px, a third of the floor
 
 using PaddedPeaks = PaddedValues<2 * kMaxStations>;
 
-/// Of values >= 0 with this mean, the upper one of two in the middle.
+/// Median of values >= 0 with this mean; of an even number the upper one in the middle.
 float median(PaddedPeaks& values, float mean) {
   constexpr float kNothing = 1e-30F;
   if (!(mean > kNothing)) return mean;
   values.pad();
-  constexpr float kUsual = 0.8F;  // of the mean: the median of the magnitudes of normal errors
+  constexpr float kUsual = 0.8F;  // median of the magnitudes of normal errors over their mean
   return orderStatistic(values, values.count / 2, kUsual * mean);
 }
 
-/// Between two lines, at the first and the last peak.
+/// Largest distance between two lines, at the first and the last peak.
 float largestDistance(const Fit& a, const Fit& b, const Peaks& p) {
   const auto at = [&](float along) {
     return std::abs(b.offset - a.offset + b.slope * (along - b.centre) - a.slope * (along - a.centre));
@@ -33,7 +33,7 @@ float largestDistance(const Fit& a, const Fit& b, const Peaks& p) {
   return std::max(at(p.along[0]), at(p.along[p.count - 1]));
 }
 
-/// By gradients over the one from which on they do not matter.
+/// Weights by gradient; beyond a certain gradient all weigh the same.
 void weighByGradient(Peaks& peaks, Values& weights) {
   peaks.pad();
   PaddedPeaks gradients;
@@ -43,7 +43,7 @@ void weighByGradient(Peaks& peaks, Values& weights) {
   weighByShare(peaks.gradient.data(), enough, peaks.count, weights.data());
 }
 
-/// Fit with weights by how far the peaks are off a line.
+/// Fit with weights by the distance of the peaks from a line.
 Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale) {
   PaddedPeaks off;
   off.count = peaks.count;
@@ -54,8 +54,8 @@ Fit reweighted(Peaks& peaks, const Values& base, const Fit& line, double& scale)
   return fitLine(peaks.samples());
 }
 
-/// Variance of one station's peak, with what neighbouring stations have in common (a ragged edge is ragged
-/// over more than one station): weighted scatter times (1 + rho) / (1 - rho), rho their correlation.
+/// Variance of the peak at one station. A ragged edge is ragged over several stations, so neighbours share
+/// errors. The weighted scatter is therefore multiplied by (1 + rho) / (1 - rho), with rho their correlation.
 double stationVariance(const Peaks& peaks, const Fit& fit) {
   const LineScatter scatter = scatterAbout(peaks.samples(), fit);
   const int used = peaks.used();

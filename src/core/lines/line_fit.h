@@ -9,23 +9,22 @@
 #include "kernels/samples/line_sums.h"
 #include "lines/line_segment.h"
 
-/// Straight lines through edges seen at single rows or columns of an image.
+/// Straight lines through edges that are seen at single rows or columns of an image.
 namespace uav_landing::line_fit {
 
-/// Rows or columns looked at, roughly; a longer line skips some.
+/// Rows or columns looked at, roughly; on a longer line some are skipped.
 constexpr int kMaxStations = 160;
 
-/// Where the edge is at one station: distances along and across the current line, px, and its gradient,
-/// grey/px.
+/// The edge at one station: distances along and across the current line, px, and its gradient, grey/px.
 using Peak = EdgePeak;
 
-/// A value of each peak; filled up to whole lanes.
+/// A value per peak, filled up to whole lanes.
 using Values = std::array<float, 2 * kMaxStations>;
 static_assert(2 * kMaxStations % kLanes == 0 && 2 * kMaxStations <= kMostLineSamples, "whole lanes");
 
 /// The peaks along a line and their weights.
 struct Peaks {
-  int stations = 0;  ///< that were looked at
+  int stations = 0;  ///< number that was looked at
   int count = 0;
   alignas(sizeof(Lanes)) Values along, across, gradient, weight;
 
@@ -35,12 +34,12 @@ struct Peaks {
     gradient[count] = static_cast<float>(peak.gradient);
     ++count;
   }
-  /// Fills what is known of them up to whole lanes.
+  /// Fills the values of the peaks up to whole lanes with zeros.
   void pad() {
     for (int i = count; i < wholeLanes(count); ++i) along[i] = across[i] = gradient[i] = 0;
   }
   LineSamples samples() const { return {along.data(), across.data(), weight.data(), count}; }
-  /// How many have a weight.
+  /// Number of peaks with a weight above zero.
   int used() const {
     int used = 0;
     for (int i = 0; i < count; ++i) used += weight[i] > 0 ? 1 : 0;
@@ -48,11 +47,12 @@ struct Peaks {
   }
 };
 
-/// Frame of a line: origin, direction along and (across) 90 degrees clockwise in the picture. Along points
-/// down, or to the right when the line is flat, so that stations are whole rows or columns in rising order.
+/// Frame of a line: origin, direction along, and direction across, 90 degrees clockwise in the image. `along`
+/// points down, or to the right when the line is flat, so that stations are whole rows or columns in rising
+/// order.
 struct Axis {
   Eigen::Vector2d origin, along, across;
-  int major, minor;  ///< image axis that the line runs along, and the other: 0 u, 1 v
+  int major, minor;  ///< image axis that the line runs along, and the other one: 0 u, 1 v
 
   Axis(const Eigen::Vector2d& point, const Eigen::Vector2d& direction)
       : origin(point), along(direction.normalized()) {
@@ -67,12 +67,12 @@ struct Axis {
 /// Weighted straight line across = offset + slope (along - centre).
 using Fit = LineFit;
 
-/// Iteratively reweighted: the peak's variance falls with the gradient squared, and Tukey's biweight
-/// removes stations at which something else was taken for the edge; their weight is 0 then. scale: robust
-/// 1 sigma of the peaks about the line, px. There must be a peak.
+/// Iteratively reweighted fit. The variance of a peak falls with the square of its gradient. Tukey's biweight
+/// gives the weight 0 to stations where something else was taken for the edge. scale: robust 1 sigma of the
+/// peaks about the line, px. There must be a peak.
 Fit fitRobustly(Peaks& peaks, double& scale);
 
-/// The same where the axis already is such a line, through fewer peaks: starts from that.
+/// The same when the axis already is a line through fewer of these peaks; the fit starts from it.
 Fit refit(Peaks& peaks, double& scale);
 
 /// The segment between the first and the last peak used. sign: +1 when it is brighter towards `across`.

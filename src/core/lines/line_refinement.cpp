@@ -14,13 +14,13 @@ using namespace line_fit;
 namespace {
 
 constexpr int kMinStations = 6;
-constexpr int kFewStations = 80;  // looked at in the first pass, roughly: fewer are led astray by heavy noise
-constexpr double kMinSupport = 0.6;  // share of stations that must show the edge
-constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; more is no straight edge
+constexpr int kFewStations = 80;  // stations of the first pass, roughly; fewer are led astray by heavy noise
+constexpr double kMinSupport = 0.6;  // share of the stations that must show the edge
+constexpr double kMaxScatter = 0.6;  // px, 1 sigma of the peaks; an edge with more is not straight
 constexpr int kGrowStep = 2;         // rows or columns
-constexpr int kMaxMisses = 2;        // steps without edge at which a growing line ends
+constexpr int kMaxMisses = 2;        // steps without an edge after which a line stops growing
 
-/// How far the edge goes on beyond `from`, in steps of this many rows or columns.
+/// Distance up to which the edge continues beyond `from`, in steps of this many rows or columns.
 double grow(const EdgeSampler& sampler, double from, int step) {
   const Axis& axis = sampler.axis();
   double end = from;
@@ -39,7 +39,7 @@ double grow(const EdgeSampler& sampler, double from, int step) {
   return end;
 }
 
-/// Sign of the edge: the one of which more gradient is found along the line.
+/// Sign of the edge: the one with more gradient along the line.
 int edgeSign(const EdgeSampler& sampler, double half) {
   const Axis& axis = sampler.axis();
   double sum = 0;

@@ -16,20 +16,21 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kMaxCandidates = 250;  // segments refined, those that may be along the runway and longest first
+constexpr int kMaxCandidates = 250;  // segments refined: first those that may be along the runway, then the
+                                     // longest
 constexpr int kMaxLines = 150;       // lines returned, longest first
 constexpr int kMaxHoughLines = 400;  // infinite lines of the standard transform, most votes first
 constexpr double kHoughAngle = CV_PI / 180;
-constexpr double kUnrefinedStddev = 0.5;  // px, of a Hough line's ends
-constexpr double kSobelScale = 8;         // of a 3x3 Sobel response over the gradient in grey/px
+constexpr double kUnrefinedStddev = 0.5;  // px, of the ends of a line that is not refined
+constexpr double kSobelScale = 8;         // 3x3 Sobel response over the gradient in grey/px
 constexpr double kSameEdge = 1.0;         // px between segments of one edge
 
 using Ends = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 
-/// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not,
-/// and leaving it out makes the Hough transform both faster and cleaner.
+/// Whether the gradient keeps direction and strength for several pixels along the edge. Texture does not;
+/// without it the Hough transform is both faster and cleaner.
 bool isStraightHere(const cv::Mat& dx, const cv::Mat& dy, int u, int v) {
-  constexpr int kSteps = 2;  // to each side
+  constexpr int kSteps = 2;  // on each side
   const float gx = dx.at<short>(v, u), gy = dy.at<short>(v, u);
   const float scale = kAlongEdge / std::max(std::abs(gx), std::abs(gy));
   int agreeing = 0;
@@ -60,8 +61,7 @@ cv::Mat straightEdges(const cv::Mat& image, const cv::Mat& ground,
   return edges;
 }
 
-/// Stretches of an infinite line (rho, theta) along which there are edge pixels within 1 px, with gaps up
-/// to max_gap px.
+/// Stretches of an infinite line (rho, theta) with edge pixels within 1 px and gaps of at most max_gap px.
 void cutLine(const cv::Mat& edges, float rho, float theta, double min_length, double max_gap,
              std::vector<RoughSegment>& segments) {
   const Eigen::Vector2d normal(std::cos(theta), std::sin(theta)), along(-normal.y(), normal.x());
@@ -114,7 +114,7 @@ std::vector<RoughSegment> houghSegments(const cv::Mat& edges, double min_length,
   return segments;
 }
 
-/// Also transposes the image; that is good until the next use of the scanner.
+/// Also transposes the image; the result is valid until the next use of the scanner.
 std::vector<RoughSegment> roughSegments(EdgePicture& picture, double min_length,
                                         const ApproachAngleParameters& parameters, SegmentScanner& scanner) {
   if (parameters.hough_method != HoughMethod::kScanLines) {
@@ -128,8 +128,7 @@ std::vector<RoughSegment> roughSegments(EdgePicture& picture, double min_length,
   return segments;
 }
 
-/// Longest first; equal lengths in the order of their coordinates, so that the result is one and the same
-/// on every machine.
+/// Longest first. Equal lengths are sorted by coordinates, so that every machine gives the same result.
 template <class T, class EndsOf>
 void keepLongest(std::vector<T>& items, size_t count, const EndsOf& ends) {
   const auto key = [&](const T& item) {
@@ -140,7 +139,7 @@ void keepLongest(std::vector<T>& items, size_t count, const EndsOf& ends) {
   if (items.size() > count) items.resize(count);
 }
 
-/// Whether both ends of a segment lie on this line, and part of it within its ends.
+/// Whether both ends of a segment lie on this line, and part of the segment within the line's ends.
 bool overlaps(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   if (std::abs(line.line.dot(a.homogeneous())) > kSameEdge ||
       std::abs(line.line.dot(b.homogeneous())) > kSameEdge)
@@ -150,8 +149,8 @@ bool overlaps(const LineSegment& line, const Eigen::Vector2d& a, const Eigen::Ve
   return std::max(p, q) >= 0 && std::min(p, q) <= line.length();
 }
 
-/// Adds a refined line, or lets the longer one stand when it is an edge already found. The other edge of a
-/// thin stripe is another line: its brighter side is the opposite one.
+/// Adds a refined line. If it is an edge already found, the longer of the two is kept. The other edge of a
+/// thin stripe is another line, because its brighter side is the opposite one.
 void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
   const auto same = std::find_if(lines.begin(), lines.end(), [&line](const LineSegment& other) {
     return other.line.head<2>().dot(line.line.head<2>()) > 0 &&
@@ -163,7 +162,7 @@ void addOrMerge(std::vector<LineSegment>& lines, const LineSegment& line) {
     *same = line;
 }
 
-/// Whether this rough segment is a piece of a line already found: saves refining it again.
+/// Whether this rough segment is a piece of a line already found, which saves refining it again.
 bool isKnown(const std::vector<LineSegment>& lines, const RoughSegment& segment) {
   return std::any_of(lines.begin(), lines.end(), [&](const LineSegment& line) {
     return line.line.head<2>().dot(segment.brighter) > 0 && overlaps(line, segment.a, segment.b);
@@ -177,7 +176,7 @@ LineSegment asFound(const RoughSegment& s) {
   return makeLineSegment(s.b, s.a, kUnrefinedStddev, angle_stddev);
 }
 
-/// A part of an image, and which lines in it are worth refining: null for all.
+/// A part of an image, and the test of which of its lines are worth refining; null: all.
 struct Part {
   EdgePicture picture;
   cv::Point origin;
@@ -189,7 +188,7 @@ struct Part {
   }
 };
 
-/// As long ones as are looked for in the whole image. Those that do not pass stay as they are.
+/// Refines the lines that pass and are as long as required. Those that do not pass stay as they are.
 std::vector<LineSegment> refined(std::vector<RoughSegment>& candidates, const Part& part, double min_length,
                                  double min_gradient) {
   std::vector<LineSegment> lines;
@@ -233,7 +232,7 @@ std::optional<Ends> clipped(const Ends& ends, const cv::Rect2d& inside) {
   return Ends(ends.first + from * along, ends.first + to * along);
 }
 
-/// In the image that the part is of: those that pass before the others, longest first.
+/// Lines in coordinates of the whole image: those that pass first, each group longest first.
 std::vector<LineSegment> ofWholeImage(std::vector<LineSegment> lines, const Part& part) {
   keepLongest(lines, lines.size(), [](const LineSegment& l) { return Ends(l.a, l.b); });
   std::stable_partition(lines.begin(), lines.end(),
@@ -247,12 +246,12 @@ std::vector<LineSegment> ofWholeImage(std::vector<LineSegment> lines, const Part
   return lines;
 }
 
-/// Weakest one of a line, grey/px.
+/// Weakest gradient of a line, grey/px.
 double minGradient(const ApproachAngleParameters& parameters) {
   return 0.5 * parameters.canny_low / kSobelScale;
 }
 
-/// What lines are looked for in; too small a part has none.
+/// The part of the image in which lines are looked for; none when it is too small.
 std::optional<Part> partWithLines(const cv::Mat& image, const cv::Mat& ground, const HeadingGate* gate) {
   constexpr int kSmallest = 8;
   const cv::Rect bounds = boundsOf(ground);
@@ -271,7 +270,7 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
   std::vector<RoughSegment> candidates = roughSegments(part->picture, min_length, parameters, memory.scanner);
   keepLongest(candidates, candidates.size(), [](const RoughSegment& s) { return Ends(s.a, s.b); });
   if (candidates.size() > kMaxCandidates) {
-    // Texture may have more lines across than are looked at.
+    // Texture may have more lines across the runway than the limit allows, so those that pass come first.
     std::stable_partition(candidates.begin(), candidates.end(),
                           [&](const RoughSegment& s) { return part->passes(s.a, s.b); });
     candidates.resize(kMaxCandidates);

@@ -12,17 +12,18 @@
 
 namespace uav_landing {
 
-/// Memory that lines are looked for in. The contents mean nothing.
+/// Memory that the search for lines works in. Its contents mean nothing.
 struct LineMemory {
   SegmentScanner scanner;
   ImageMemory transposed;
 };
 
-/// Lines of the ground (paper, section 2): straight edges followed from scan lines, or a Hough transform of
-/// the Canny edges (hough_method), each then fitted to the gradient along it. image: rectified mono8. ground:
-/// mono8, 255 where lines are looked for (already eroded). gate: only lines that pass it are fitted; the
-/// others come after them and stay as they were found, good to half a pixel. Null: all are fitted.
+/// Lines of the ground (paper, section 2). They are straight edges followed from scan lines, or found by a
+/// Hough transform of the Canny edges (hough_method). Then each is fitted to the gradient along it.
 /// Deterministic. Returns an empty list when there are none.
+/// image: rectified mono8. ground: mono8, 255 where lines are looked for (already eroded). gate: only lines
+/// that pass it are fitted. The others follow in the list, as they were found, good to half a pixel. Null:
+/// all lines are fitted.
 std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                                    const ApproachAngleParameters& parameters, const HeadingGate* gate,
                                    LineMemory& memory);
@@ -31,8 +32,8 @@ std::vector<LineSegment> findLines(const cv::Mat& image, const cv::Mat& ground,
                                    const ApproachAngleParameters& parameters,
                                    const HeadingGate* gate = nullptr);
 
-/// Those of these lines that are there and pass the gate, fitted to the gradient along them as above.
-/// expected: off by up to 2 px; they may reach beyond the image.
+/// Those of the expected lines that exist and pass the gate, fitted to the gradient as above. expected: off
+/// by up to 2 px; they may reach beyond the image.
 std::vector<LineSegment> findLinesNear(const cv::Mat& image, const cv::Mat& ground,
                                        const std::vector<RoughSegment>& expected,
                                        const ApproachAngleParameters& parameters, const HeadingGate& gate,

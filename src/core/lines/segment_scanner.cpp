@@ -17,10 +17,10 @@ namespace {
 
 constexpr double kScansPerLine = 3;  // scan lines that the shortest line along an image axis crosses
 constexpr double kMaxScatter = 0.6;  // px, RMS of the stations about the line; whole pixels scatter by 0.3
-constexpr double kMaxSlope = 1.1;    // px to the side a row; what is flatter belongs to the other axis
+constexpr double kMaxSlope = 1.1;    // px to the side per row; a flatter line belongs to the other axis
 constexpr double kLargestResponse = 4 * 255 * 2;  // across and along together
 
-/// Steep edges (nearer to the rows' normal than to the rows) of one image.
+/// The steep edges of an image: those whose normal is nearer to the rows than to the columns.
 class SteepEdges {
  public:
   SteepEdges(const cv::Mat& image, const EdgeMask& ground, const EdgeLimits& limits, ImageMemory& taken)
@@ -64,7 +64,8 @@ class SteepEdges {
  private:
   static int bit(int sign) { return sign > 0 ? 1 : 2; }
 
-  /// Whether the gradient keeps direction and strength for several pixels along the edge; texture does not.
+  /// Whether the gradient keeps direction and strength for several pixels along the edge; that of texture
+  /// does not.
   bool isStraightAt(int u, int v, int gu, int gv) const {
     const float slope = -static_cast<float>(gv) / static_cast<float>(gu);
     int missing = 0;
@@ -95,7 +96,7 @@ class SteepEdges {
     emit(u + line.at(edge.from), v + edge.from, u + line.at(edge.to), v + edge.to, sign);
   }
 
-  /// Keeps the scan rows from starting on this line again.
+  /// Marks this line, so that no scan row starts on it again.
   void take(int u, int v, int sign, const GrowingLine& line, int from, int to) {
     const int first = spacing_ / 2;
     for (int row = std::max(0, (v + from - first + spacing_ - 1) / spacing_); row < taken_.rows; ++row) {
@@ -113,7 +114,7 @@ class SteepEdges {
   const EdgeLimits& limits_;
   cv::Mat taken_;
   int spacing_;  // of the scan rows
-  int least_;    // Sobel response across an edge: it may lie at 45 degrees
+  int least_;    // Sobel response across an edge, which may lie at 45 degrees
   PixelRows rows_;
 };
 

@@ -9,21 +9,21 @@
 
 namespace uav_landing {
 
-/// What counts as an edge, and how long a straight one must be.
+/// Limits of an edge, and of the length of a straight one.
 struct EdgeLimits {
-  double low, high;   ///< weak edges, and those that a line starts from: |gu| + |gv| of 3x3 Sobel responses
+  double low, high;   ///< weak edges, and edges from which a line starts: |gu| + |gv| of 3x3 Sobel responses
   double min_length;  ///< px
-  double max_gap;     ///< px, inside a line
+  double max_gap;     ///< px, within a line
 };
 
-/// Finds straight edges without looking at every pixel: an edge as long as min_length crosses scan lines that
-/// lie a third of it apart, and is followed from there by a straight line fitted as it grows, one row (or
-/// column, when it is flat) after the other. Keeps its memory.
+/// Finds straight edges without looking at every pixel. An edge as long as min_length crosses scan lines that
+/// lie a third of this length apart. From there a straight line follows it, row by row (column by column when
+/// it is flat), and is fitted as it grows. Keeps its memory.
 class SegmentScanner {
  public:
-  /// image: mono8. ground: mono8, edges only where it is not 0.
+  /// image: mono8. ground: mono8; edges count only where it is not 0.
   std::vector<RoughSegment> find(const cv::Mat& image, const cv::Mat& ground, const EdgeLimits& limits);
-  /// The last image with its columns as rows, until the next one.
+  /// The last image with its columns as rows, until the next call of find().
   const cv::Mat& transposed() const { return transposed_; }
 
  private:

@@ -15,27 +15,27 @@ using namespace line_fit;
 
 namespace {
 
-constexpr int kReach = kFallReach;  // px to both sides of the line, where its other side is looked for
+constexpr int kReach = kFallReach;  // px on each side of the line in which its other side is looked for
 constexpr int kOffLine = 1;         // px by which the edge may be off its line
 constexpr int kStations = 40;       // rows or columns looked at, roughly
 constexpr int kMinStations = 6;
 constexpr double kApart = 4.0;       // px between sides that do not disturb each other, at blurs up to 1.3 px
-constexpr double kBlur = 0.8;        // px, 1 sigma: by how much it misplaces a side that cannot be mended
-constexpr double kMinShare = 0.4;    // gradient of the other side, of this one's
+constexpr double kBlur = 0.8;        // px, 1 sigma: error of a side that cannot be corrected
+constexpr double kMinShare = 0.4;    // gradient of the other side over that of this one
 constexpr double kMinSupport = 0.6;  // share of the stations that must show the other side
 constexpr double kMaxScatter = 0.6;  // px
 
-/// What is seen across the line at one station.
+/// The pixels across the line at one station.
 struct Profile {
-  static constexpr int kMargin = kFallMargin;  // pixels to each side
+  static constexpr int kMargin = kFallMargin;  // pixels on each side
 
-  const uchar* grey;    // of the middle, among the pixels across
+  const uchar* grey;    // at the middle, among the pixels across
   int station, centre;  // row and column of the middle, or the other way round
   int sign;
   std::array<uchar, 2 * kMargin + 1> column;  // for pixels that are not next to each other in the image
 
-  /// Twice the gradient along the row or column, k pixels from the middle, positive towards the line's
-  /// brighter side.
+  /// Twice the gradient along the row or column, k pixels from the middle, positive towards the brighter
+  /// side.
   int at(int k) const { return sign * (grey[k + 1] - grey[k - 1]); }
   /// Extremum at pixel k and its neighbours, px from the middle.
   double peak(int k) const {
@@ -47,7 +47,7 @@ struct Profile {
 /// Looks at the pixels across one line.
 class Profiles {
  public:
-  /// sign: of the gradient across the line that is its own.
+  /// sign: of the line's own gradient across it.
   Profiles(const cv::Mat& image, const cv::Mat& ground, const Axis& axis, int sign)
       : image_(image),
         ground_(ground),
@@ -58,7 +58,7 @@ class Profiles {
         neighbour_(axis.minor == 0 ? 1 : static_cast<std::ptrdiff_t>(image.step)),
         slope_(axis.along[axis.minor] / axis.along[axis.major]) {}
 
-  /// False where the line is not on the ground, or too near the border.
+  /// False when the line is not on the ground or too near the border.
   bool look(int station, Profile& profile) const {
     const int centre = cvRound(axis_.origin[axis_.minor] + slope_ * (station - axis_.origin[axis_.major]));
     constexpr int kMargin = Profile::kMargin;
@@ -78,14 +78,14 @@ class Profiles {
     profile.grey = &profile.column[kMargin];
     return true;
   }
-  /// Of a place this many pixels from the profile's middle: distances along and across the line.
+  /// Distances along and across the line of a place this many pixels from the profile's middle.
   Eigen::Vector2d place(const Profile& profile, double k) const {
     const double major = profile.station - axis_.origin[axis_.major];
     const double minor = profile.centre + k - axis_.origin[axis_.minor];
     return {axis_.along[axis_.major] * major + axis_.along[axis_.minor] * minor,
             axis_.across[axis_.major] * major + axis_.across[axis_.minor] * minor};
   }
-  /// Across the line, grey/px.
+  /// Gradient across the line, grey/px.
   double gradient(int twice) const { return 0.5 * twice / std::abs(axis_.across[axis_.minor]); }
 
  private:
@@ -96,10 +96,10 @@ class Profiles {
   double slope_;
 };
 
-/// The edge at one station and, to each side, the nearest edge of the other sign; pixels across the line.
+/// The edge at one station, and the nearest edge of the other sign on each side; pixels across the line.
 struct Station {
   double along, edge, gradient;
-  std::array<double, 2> other;  // position; unset: NaN
+  std::array<double, 2> other;  // position; NaN: none
   std::array<double, 2> other_gradient;
 };
 
@@ -112,7 +112,7 @@ std::optional<Station> stationOf(const Profiles& profiles, const Profile& profil
     return std::nullopt;
   const Eigen::Vector2d edge = profiles.place(profile, profile.peak(own));
   Station station{edge.x(), edge.y(), profiles.gradient(strength), {NAN, NAN}, {0, 0}};
-  // Where the gradient has minima.
+  // Places where the gradient has minima.
   const unsigned minima =
       markFalls(profile.grey, profile.sign, static_cast<int>(std::ceil(kMinShare * strength)));
   const unsigned before = minima & ((1U << (own + kReach)) - 1), after = minima >> (own + kReach + 1);
@@ -135,8 +135,8 @@ std::optional<LineSegment> fitted(const Axis& axis, const std::vector<Peak>& see
   return segmentOf(axis, peaks, fit, sign);
 }
 
-/// Which side the stripe is on; nothing when there is none that is narrow enough to disturb the edge.
-/// Between two neighbours at the same distance an edge is pushed both ways alike.
+/// The side on which the stripe is; nothing when no stripe is narrow enough to disturb the edge. Between two
+/// neighbours at the same distance an edge is pushed equally to both sides.
 std::optional<int> narrowSide(const std::vector<Station>& stations) {
   std::array<int, 2> close{};
   for (const Station& station : stations)
@@ -146,14 +146,14 @@ std::optional<int> narrowSide(const std::vector<Station>& stations) {
   return close[0] >= close[1] ? 0 : 1;
 }
 
-/// Of a line that reaches this far to both sides of its middle.
+/// Stations of a line that reaches half this way on each side of its middle.
 std::vector<Station> stationsAlong(const Profiles& profiles, const Axis& axis, double half) {
   std::vector<Station> stations;
   const int first = static_cast<int>(std::ceil(axis.point(-half)[axis.major]));
   const int last = static_cast<int>(std::floor(axis.point(half)[axis.major]));
   const int step = std::max(1, (last - first) / kStations);
   stations.reserve(2 * kStations);
-  // All are looked for first: so the memory they are in is waited for at the same time.
+  // All stations are looked up first, so that the waiting times for their memory overlap.
   std::array<Profile, 2 * kStations> seen;
   size_t count = 0;
   for (int at = first; at <= last; at += step) count += profiles.look(at, seen[count]) ? 1 : 0;

@@ -8,7 +8,7 @@ namespace uav_landing {
 
 namespace {
 
-/// Log of Chernoff's bound of the probability that random lines with these chances pass as tellingly.
+/// Log of Chernoff's bound of the probability that random lines with these chances give as much evidence.
 double logBound(const std::vector<double>& chances, double evidence) {
   double lowest = 0;
   for (double lambda = 0.1; lambda < 1.05; lambda += 0.1) {
@@ -27,8 +27,8 @@ double chanceOfPassing(const VanishingLines& lines, const VanishingCandidate& li
                       lines.perPixel(V));
 }
 
-// Pairs of lines that meet along the runway times the probability that the other lines pass through. Each
-// counts with -log of its own chance; those that say nothing are left out.
+// Number of pairs of lines that meet along the runway, times the probability that the other lines pass there
+// as well. Each line counts with -log of its own chance, except those that say nothing.
 double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& direction,
                             const std::vector<int>& used, double meetings) {
   const Eigen::Vector3d V = lines.K() * direction;
@@ -41,7 +41,7 @@ double expectedCoincidences(const VanishingLines& lines, const Eigen::Vector3d& 
   }
   if (passing_by.size() <= 2) return meetings;
   const double count = static_cast<double>(passing_by.size() + others.size());
-  // Two lines always meet: the two that say most do not count.
+  // Two lines always meet, so the two that say most do not count.
   std::sort(passing_by.begin(), passing_by.end(), std::greater<double>());
   passing_by.resize(passing_by.size() - 2);
   double evidence = 0;

@@ -14,11 +14,11 @@ namespace uav_landing {
 
 namespace {
 
-// Attempts end when this many pairs of lines that agree with the best direction must have been drawn, most
-// likely: not every one of them meets where it should.
+// Attempts end when most likely so many pairs have been drawn that agree with the best direction. One is not
+// enough, as not every such pair meets where it should.
 constexpr double kPairsOfBest = 20;
 
-/// The line as most attempts need it.
+/// Stores the line as most attempts need it.
 void add(const VanishingCandidate& line, double tolerance, LineColumns& columns) {
   columns.middle_u.push_back(line.middle.x());
   columns.middle_v.push_back(line.middle.y());
@@ -50,13 +50,13 @@ class Score {
     agreeing_.resize(lines.all().size());
   }
 
-  /// Evidence of the lines that pass through, each weighted by how well, less that of those that do not and
-  /// of those that could not be on the ground if this were its horizon. Lines that pass nearly everywhere do
-  /// not count, however many they are; of the pieces of one edge only the best does.
+  /// Evidence for a direction. Lines that pass through it count for it, by how well they pass. Lines that do
+  /// not pass, or that could not be on the ground if this were its horizon, count against it. Lines that pass
+  /// nearly everywhere do not count, however many they are. Of the pieces of one edge only the best counts.
   double of(const Eigen::Vector3d& direction) {
     length_ = 0;
     const Eigen::Vector3d V = lines_.K() * direction;
-    // As VanishingCandidate has it for one line.
+    // The formulas are those of VanishingCandidate.
     fitLines(columns_, V.x(), V.y(), V.z(), VanishingCandidate::kMaxHorizonSlope, lines_.count(),
              fit_.data());
     const double per_pixel = lines_.perPixel(V);
@@ -80,7 +80,7 @@ class Score {
   double halfLength() const { return length_; }
 
  private:
-  /// Numbers the edges that the lines are pieces of: lines that continue each other belong to one.
+  /// Numbers the edges. Lines that continue each other are pieces of one edge.
   void groupPieces() {
     constexpr double kSameEdge = 1.5;  // px
     const std::vector<VanishingCandidate>& lines = lines_.all();
@@ -98,7 +98,7 @@ class Score {
   }
 
   const VanishingLines& lines_;
-  std::vector<size_t> edge_;  // per line, the edge it is a piece of
+  std::vector<size_t> edge_;  // per line: the edge that it is a piece of
   LineColumns columns_;
   std::vector<double> turns_;       // angle on the ground by which a line may turn, over its distance from V
   std::vector<double> impossible_;  // evidence against V of a line above its horizon
@@ -107,7 +107,7 @@ class Score {
   double length_ = 0;
 };
 
-/// Draws lines, the longer the likelier.
+/// Draws lines; longer ones are more likely.
 class LineDraw {
  public:
   explicit LineDraw(const VanishingLines& lines) : cumulative_(lines.all().size()) {
@@ -117,12 +117,12 @@ class LineDraw {
   }
 
   int next() {
-    // The generator is the same everywhere; the standard library's distributions are not.
+    // The generator gives the same numbers everywhere; the standard library's distributions do not.
     const double place = (random_() + 0.5) / 4294967296.0 * cumulative_.back();
     return static_cast<int>(std::lower_bound(cumulative_.begin(), cumulative_.end(), place) -
                             cumulative_.begin());
   }
-  /// How many draws make kPairsOfBest pairs of lines that are half as long as this in all.
+  /// Number of draws that give kPairsOfBest pairs among lines that are together twice as long as half_length.
   double enough(double half_length) const {
     return kPairsOfBest * std::pow(cumulative_.back() / half_length, 2);
   }

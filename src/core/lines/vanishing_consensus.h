@@ -13,9 +13,9 @@ struct VanishingConsensus {
   double meetings;  ///< pairs of lines that meet along the runway, anywhere
 };
 
-/// RANSAC: the meeting point of the pair of lines on which most lines agree, each by how unlikely it is to
-/// pass there by chance. All pairs when they are few, otherwise random ones in proportion to length. Nothing
-/// when no two lines meet along the runway.
+/// RANSAC: the meeting point of two lines on which most lines agree. Each line counts by how unlikely it is
+/// to pass there by chance. All pairs are tried when they are few, else random ones in proportion to length.
+/// Nothing when no two lines meet along the runway.
 std::optional<VanishingConsensus> findConsensus(const VanishingLines& lines);
 
 }  // namespace uav_landing

@@ -15,7 +15,7 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kMaxStddev = 5 * kDegree;  // of a direction that is worth reporting
+constexpr double kMaxStddev = 5 * kDegree;  // largest 1 sigma of a direction that is reported
 constexpr double kCauchy = 2.385;           // 95 % as good as least squares when the errors are normal
 constexpr double kNoRobustness = 1e6;
 
@@ -24,7 +24,7 @@ constexpr double kNoRobustness = 1e6;
 double VanishingFit::robustStep(const LineIndices& used) {
   std::vector<double> misses = normalised(used);
   for (double& miss : misses) miss = std::abs(miss);
-  const double scale = std::max(1.0, robustStddev(misses));  // lines are not better than they say
+  const double scale = std::max(1.0, robustStddev(misses));  // lines are not better than they claim
   step(used, kCauchy * scale);
   return scale;
 }

@@ -16,18 +16,17 @@ class VanishingFit {
   VanishingFit(const VanishingLines& lines, const Eigen::Vector3d& start)
       : lines_(lines), direction_(start) {}
 
-  /// One Gauss-Newton step to the lines with these indices; those farther off than about this many times
-  /// their scatter count less (Cauchy). Returns the scatter before the step, 1 sigma in units of what the
-  /// lines claim and at least 1.
+  /// One Gauss-Newton step to the lines with these indices. Lines off by more than a few times their scatter
+  /// count less (Cauchy). Returns the scatter before the step, 1 sigma over what the lines claim, at least 1.
   double robustStep(const LineIndices& used);
-  /// The same, all count in full.
+  /// The same step with all lines counting in full.
   void plainStep(const LineIndices& used);
 
-  /// Unit; not finite when the lines are parallel.
+  /// Unit vector; not finite when the lines are parallel.
   const Eigen::Vector3d& direction() const { return direction_; }
-  /// Those of the lines that pass within this many sigma of their own errors.
+  /// Those of the lines that pass within this many sigmas of their own errors.
   LineIndices within(const LineIndices& used, double gate) const;
-  /// The point with its covariance, to which the last step was made; fails when it is uncertain.
+  /// The point with the covariance of the last step; fails when it is too uncertain.
   Expected<VanishingPoint> describe(const LineIndices& used) const;
 
  private:

@@ -12,7 +12,7 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kPriorTolerance = 5 * kDegree;  // of the direction from the ground known from elsewhere
+constexpr double kPriorTolerance = 5 * kDegree;  // of a direction against the ground known from elsewhere
 constexpr Sigmas kGate(4);                       // of a line's own errors
 constexpr double kStraightness = 1.0;            // px by which an edge may differ from a straight line
 

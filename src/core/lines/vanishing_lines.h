@@ -9,8 +9,8 @@
 
 namespace uav_landing {
 
-/// The lines of one view among which those along the runway are looked for, and what a direction must be for
-/// that. Refers to the parameters and to the normal, which must outlive it.
+/// The lines of one view among which those along the runway are looked for, and the limits of a direction for
+/// that. It refers to the parameters and to the normal, which must outlive it.
 class VanishingLines {
  public:
   /// prior_normal: of the ground, or null.
@@ -24,18 +24,18 @@ class VanishingLines {
   const ApproachAngleParameters& parameters() const { return parameters_; }
 
   bool alongRunway(const Eigen::Vector3d& direction) const;
-  /// Where two lines meet, as a direction towards +z; false when that is not along the runway.
+  /// Where two lines meet, as a direction towards +z; false when it is not along the runway.
   bool meeting(int i, int j, Eigen::Vector3d& direction) const;
 
-  /// Distance by which a line's ends may miss, px: as far as its own errors let it, but runways are not
-  /// perfectly straight.
+  /// Distance by which a line's ends may miss, px. It contains the line's own errors, and that runways are
+  /// not perfectly straight.
   double toleranceOf(const VanishingCandidate& line) const;
-  /// Indices of the lines that pass through a direction by that tolerance.
+  /// Indices of the lines that pass through a direction within this tolerance.
   std::vector<int> passing(const Eigen::Vector3d& direction) const;
 
-  /// Along the horizon a pixel is less of an angle the farther it is to the side. Over V.z.
+  /// Angle of a pixel along the horizon, over V.z. It is smaller farther to the side.
   double perPixel(const Eigen::Vector3d& V) const { return V.z() / (Kinv_ * V).squaredNorm(); }
-  /// Angle on the ground over that in the picture, rad / px.
+  /// Angle on the ground over angle in the image, rad / px.
   double perTurn(const VanishingCandidate& line) const;
 
  private:
@@ -43,7 +43,7 @@ class VanishingLines {
   Eigen::Matrix3d K_, Kinv_;
   const ApproachAngleParameters& parameters_;
   const Eigen::Vector3d* prior_normal_;
-  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit
+  Eigen::Vector2d horizon_;  // direction of the horizon in the image, unit vector
 };
 
 }  // namespace uav_landing

@@ -30,13 +30,13 @@ Expected<VanishingPoint> fuseViews(const VanishingPoint& left, const VanishingPo
   const Eigen::Matrix2d gain = Cl * Sinv;
   VanishingPoint mean;
   mean.direction = (left.direction + B * (gain * difference)).normalized();
-  // Views that differ by more than they claim have claimed too much.
+  // When views differ by more than they claim, their claims were too small.
   const Matrix32 T = tangents(mean.direction);
   const Eigen::Matrix2d covariance = std::max(1.0, nis / 2) * gain * Cr;
   const Eigen::Matrix2d turn = T.transpose() * B;
   mean.covariance = T * turn * covariance * turn.transpose() * T.transpose();
   mean.inlier_count = left.inlier_count + right.inlier_count;
-  // Both views see much the same lines: the margins do not add up, nor is the larger one the truer one.
+  // Both views see mostly the same lines. So the margins do not add up, and the larger one is not better.
   mean.runway_margin = 0.5 * (left.runway_margin + right.runway_margin);
   return mean;
 }
@@ -59,8 +59,8 @@ Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& 
 }
 
 GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev) {
-  // The horizon's direction w = (cos, -sin, 0) lies in the ground as p does, so n = p x w, and rollOf(n) is
-  // the roll exactly.
+  // The horizon's direction w = (cos, -sin, 0) lies in the ground, as p does. So n = p x w, and rollOf(n) is
+  // exactly the roll.
   const Eigen::Vector3d& p = point.direction;
   const Eigen::Vector3d w(std::cos(roll), -std::sin(roll), 0), dw(-std::sin(roll), -std::cos(roll), 0);
   const Eigen::Vector3d m = p.cross(w);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kMinSpread = 3 * kDegree;  // between the inlier lines in the image
-constexpr Sigmas kGate(4);                  // robust ones, of the lines that count in the end
-constexpr double kChance = 1;               // accepted number of such coincidences among random lines
+constexpr Sigmas kGate(4);                  // robust sigmas; lines within it count in the end
+constexpr double kChance = 1;               // largest accepted number of such coincidences among random lines
 
 template <class... Parts>
 Failure noVanishingPoint(const Parts&... parts) {
@@ -54,11 +54,11 @@ Failure check(const VanishingLines& lines, const Eigen::Vector3d& direction, con
     return noVanishingPoint("lines are parallel within ", std::round(10 * spread / kDegree) / 10,
                             " deg, less than ", kMinSpread / kDegree);
   if (lines.parameters().min_lines > 2 && coincidences > kChance)
-    return noVanishingPoint("as many lines meet by chance: ", used.size(), " of ", lines.count());
+    return noVanishingPoint("as many lines would meet by chance: ", used.size(), " of ", lines.count());
   return {};
 }
 
-/// The lines that pass through where RANSAC found most of them to meet, and where they do.
+/// The lines that pass through the direction of the consensus, and the point fitted to them.
 Expected<VanishingPoint> fitTo(const VanishingLines& lines, const VanishingConsensus& consensus) {
   VanishingFit fit(lines, consensus.direction);
   LineIndices used = lines.passing(fit.direction());

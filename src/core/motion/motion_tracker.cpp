@@ -115,7 +115,7 @@ std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
 
 void MotionTracker::skip(double stamp, const cv::Mat& left) {
   Result nothing;
-  nothing.window.failure = {Reason::kNotYet, "no motion to the frame before"};
+  nothing.window.failure = {Reason::kNotYet, "no frame step from the previous pair"};
   search_.interrupt();
   advance(takeFrame(stamp, left), nothing);
 }

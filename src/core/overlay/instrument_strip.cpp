@@ -26,7 +26,7 @@ std::string formatted(const char* format, double value) {
   return text.data();
 }
 
-/// With always as many decimals, so that a number that changes stays as wide; zero has no sign.
+/// With a fixed number of decimals, so that a changing number keeps its width; zero has no sign.
 std::string withDecimals(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
   const double unit = std::pow(10, -decimals);
@@ -34,7 +34,8 @@ std::string withDecimals(double value, int decimals) {
   return formatted(format.c_str(), std::round(value / unit) == 0 ? 0 : value);
 }
 
-/// "12.01 +-0.05 deg"; OpenCV's font has neither the sign nor the degree. No deviation is said to be zero.
+/// "12.01 +-0.05 deg", as OpenCV's font has neither the sign nor the degree. A deviation is never shown as
+/// zero.
 std::string withDeviation(double value, double variance, int decimals, const char* unit) {
   if (!std::isfinite(value)) return "-";
   const double deviation = std::max(std::sqrt(variance), std::pow(10, -decimals));
@@ -48,7 +49,7 @@ struct Instrument {
   int column;  ///< units
   std::string name, value;
   bool valid = true;
-  bool marked = false;  ///< says itself that it is not valid
+  bool marked = false;  ///< its own text says that it is not valid
 };
 
 std::array<Instrument, 6> instruments(const LandingResult& landing) {
@@ -93,7 +94,7 @@ std::string protectionLevel(const LandingResult& landing) {
          formatted("%.2f m", landing.height_alert_limit);
 }
 
-/// How many characters of the text fit into so many units, whole words if there are any.
+/// Number of characters that fit into so many units, in whole words if there are any.
 size_t fitting(const std::string& text, int room) {
   size_t count = text.size();
   while (count > 0 && textWidth(text.substr(0, count), kStatusFont) > room) --count;
@@ -102,7 +103,7 @@ size_t fitting(const std::string& text, int room) {
   return space == std::string::npos || space == 0 ? count : space;
 }
 
-/// Broken at a word, and cut at one if it is longer still. Smaller letters could not be read.
+/// Breaks the text at a word, and cuts it at a word if it is still longer. Smaller letters could not be read.
 std::array<std::string, 2> twoLines(const std::string& text, int first_room, int second_room) {
   const size_t first = fitting(text, first_room);
   std::string rest = text.substr(first);
@@ -113,7 +114,7 @@ std::array<std::string, 2> twoLines(const std::string& text, int first_room, int
   return {text.substr(0, first), rest};
 }
 
-/// Draws in units, whatever size the strip has.
+/// Draws in units, whatever the size of the strip.
 class Strip {
  public:
   explicit Strip(int width) : unit_(static_cast<double>(width) / kWidth) {

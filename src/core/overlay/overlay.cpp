@@ -13,9 +13,9 @@ namespace uav_landing {
 namespace {
 
 constexpr double kBrightness = 0.75;
-constexpr size_t kMostJoined = 60;  // matches joined by a line; more would hide the picture
+constexpr size_t kMostJoined = 60;  // matches joined by a line; more would hide the image
 
-/// Colour per point: disparity from 0 (blue, far) to the largest on the plane (red, near).
+/// Colour per point: disparity from 0 (blue, far) to the largest one on the plane (red, near).
 std::vector<cv::Scalar> disparityColours(const std::vector<StereoDepthResult::Point>& points) {
   double largest = 0;
   for (const auto& point : points) {
@@ -35,7 +35,7 @@ std::vector<cv::Scalar> disparityColours(const std::vector<StereoDepthResult::Po
 }
 
 void drawLines(Canvas& canvas, const std::vector<ApproachAngleResult::Line>& lines) {
-  for (const bool inliers : {false, true}) {  // the bright ones on top
+  for (const bool inliers : {false, true}) {  // inliers last, so that they are on top
     for (const auto& line : lines) {
       if (line.inlier == inliers)
         canvas.line(line.a, line.b, inliers ? colour::kLine : colour::kDim, inliers ? 2 : 1);

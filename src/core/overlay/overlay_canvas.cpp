@@ -8,7 +8,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kShift = 4;         // OpenCV draws at 1/16 pixel
-constexpr double kFarAway = 1e6;  // pixels; beyond, fixed-point coordinates would overflow
+constexpr double kFarAway = 1e6;  // pixels; beyond it fixed-point coordinates would overflow
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 }  // namespace

@@ -18,20 +18,20 @@ const cv::Scalar kLabel(170, 160, 150);
 const cv::Scalar kPanel(38, 30, 26);
 }  // namespace colour
 
-/// A picture that is drawn on in the pixels of the image it enlarges, anti-aliased and to sub-pixel.
+/// An enlarged image that is drawn on in the original's pixels, anti-aliased and to sub-pixel.
 class Canvas {
  public:
-  /// image: mono8 or BGR8, drawn darker by the factor so that marks stand out.
+  /// image: mono8 or BGR8; it is darkened by the factor brightness, so that marks stand out.
   Canvas(const cv::Mat& image, int scale, double brightness);
 
   void line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const cv::Scalar& colour, int thickness = 1);
-  /// The part of the homogeneous line l.[u v 1] = 0 that is on the picture.
+  /// Draws the part of the homogeneous line l.[u v 1] = 0 that is inside the image.
   void infiniteLine(const Eigen::Vector3d& l, const cv::Scalar& colour, int thickness = 1);
-  /// radius: picture pixels. Filled when thickness is negative.
+  /// radius: pixels of the enlarged image. Filled when thickness is negative.
   void circle(const Eigen::Vector2d& centre, double radius, const cv::Scalar& colour, int thickness = 1);
-  /// size: half the length of the arms, picture pixels.
+  /// size: half the length of the arms, pixels of the enlarged image.
   void cross(const Eigen::Vector2d& centre, double size, const cv::Scalar& colour, int thickness = 1);
-  /// Outlined text with its lower left corner beside the point, moved to stay on the picture.
+  /// Outlined text with its lower left corner beside the point, moved to stay inside the image.
   void label(const Eigen::Vector2d& at, const std::string& text, const cv::Scalar& colour);
 
   const cv::Mat& picture() const { return picture_; }
@@ -43,7 +43,7 @@ class Canvas {
   int scale_;
 };
 
-/// Width in pixels of a text; a text with its lower left corner at a place. font_scale as in OpenCV.
+/// Width of a text in pixels, and a text with its lower left corner at a place. font_scale: as in OpenCV.
 int textWidth(const std::string& text, double font_scale);
 void drawText(cv::Mat& picture, const cv::Point& at, const std::string& text, double font_scale,
               const cv::Scalar& colour);

@@ -192,7 +192,7 @@ class Search {
     if (!choice && needs_edges) return tl::make_unexpected(choice.error());
     if (!choice) {
       if (!found.point || isNearGround(*found.point)) return found.point;
-      return tl::make_unexpected(Failure{Reason::kNoVanishingPoint, "the lines meet off the ground"});
+      return tl::make_unexpected(Failure{Reason::kNoVanishingPoint, "the lines meet off the horizon"});
     }
     const bool agrees =
         found.point && angleBetween(found.point->direction, choice->best.direction) < kSameRunway;
@@ -200,7 +200,7 @@ class Search {
       return believed(withoutOthers(view, found, choice->best.members), *choice);
     if (choice->lead < kClear)
       return tl::make_unexpected(
-          Failure{Reason::kNoVanishingPoint, "lines meet, but not clearly those of a runway"});
+          Failure{Reason::kNoVanishingPoint, "lines meet in one point, but it is not clearly a runway's"});
     Expected<VanishingPoint> point =
         fitVanishingPoint(found.straight, view.K, parameters_, choice->best.members, normal());
     return believed(point, *choice);
@@ -222,8 +222,8 @@ class Search {
   Expected<VanishingPoint> believed(Expected<VanishingPoint> point, const RunwayChoice& choice) const {
     if (!point) return point;
     if (!isNearGround(*point) && choice.margin < kBeyondDoubt)
-      return tl::make_unexpected(Failure{Reason::kNoVanishingPoint,
-                                         "lines meet off the ground, and are not clearly those of a runway"});
+      return tl::make_unexpected(
+          Failure{Reason::kNoVanishingPoint, "lines meet off the horizon, and are not clearly a runway's"});
     point->runway_margin = choice.margin;
     return point;
   }

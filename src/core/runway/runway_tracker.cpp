@@ -104,8 +104,9 @@ ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& 
   const double seconds = advance(stamp);
   ApproachAngleResult::Runway result;
   if (!approach.n.allFinite() || !direction.combined) {
-    result.failure = approach.n.allFinite() ? direction.combined.error()
-                                            : Failure{Reason::kNoGroundNormal, "nothing to measure against"};
+    result.failure = approach.n.allFinite()
+                         ? direction.combined.error()
+                         : Failure{Reason::kNoGroundNormal, "the position over the runway needs it"};
     result.threshold_failure = result.failure;
     predict(nullptr, approach.step);
     missAll(seconds);

@@ -77,7 +77,7 @@ struct ApproachAngleStage::Implementation {
     }
     if (waitsForPlane(stamp, stereo)) {
       result.failure = {Reason::kNotYet,
-                        "lines and motion are looked for from the pair after the ground's plane on"};
+                        "waiting for the ground plane: lines and motion follow one pair later"};
       nothingKnown(result);
       skip(stamp, left, stereo);
       return result;
@@ -168,8 +168,8 @@ struct ApproachAngleStage::Implementation {
   }
 
   static RunwayDirection noDirection(ApproachAngleResult& result) {
-    result.left.failure = result.right.failure = {
-        Reason::kNotYet, "lines are looked for in the next pair, as the motion is searched for in this one"};
+    result.left.failure =
+        result.right.failure = {Reason::kNotYet, "searching for the motion: lines follow with the next pair"};
     return {};
   }
 

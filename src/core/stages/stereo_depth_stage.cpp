@@ -139,8 +139,7 @@ struct StereoDepthStage::Implementation {
   void waitForNextPair(StereoDepthResult& result) {
     StereoDepthResult waiting;
     waiting.stamp = result.stamp;
-    waiting.failure = {Reason::kNotYet,
-                       "a plane that was searched for, to be found in the next pair as well"};
+    waiting.failure = {Reason::kNotYet, "a new ground plane: the next pair has to confirm it"};
     waiting.corners = result.corners;
     waiting.points = std::move(result.points);
     for (StereoDepthResult::Point& point : waiting.points) point.on_plane = false;

@@ -8,7 +8,7 @@
 
 namespace uav_landing {
 
-/// Bytes that are read here and there.
+/// Bytes that can be read at any position.
 class BagBytes {
  public:
   virtual ~BagBytes() = default;
@@ -17,8 +17,8 @@ class BagBytes {
   virtual void copy(uint64_t from, size_t count, void* to) const = 0;
 };
 
-/// Those of a file. Reads as little of it as is asked for, but neighbours at once. Throws std::runtime_error
-/// when the file cannot be read.
+/// The bytes of a file. It reads only what is asked for, but neighbouring bytes together. Throws
+/// std::runtime_error when the file cannot be read.
 class FileBytes : public BagBytes {
  public:
   explicit FileBytes(const std::string& path);
@@ -39,7 +39,7 @@ class FileBytes : public BagBytes {
   mutable size_t window_size_ = 0;
 };
 
-/// Those of a chunk, decompressed.
+/// The bytes of a decompressed chunk.
 class ChunkBytes : public BagBytes {
  public:
   explicit ChunkBytes(std::string content) : content_(std::move(content)) {}

@@ -14,13 +14,14 @@ std::runtime_error otherSize(uint64_t found, uint32_t size) {
   return std::runtime_error(std::to_string(found) + " bytes of content, expected " + std::to_string(size));
 }
 
-/// Grows with what comes out: the size in the file may be anything, and bzip2 has no limit of compression.
+/// The memory grows with the output, because the size in the file may be anything and bzip2 has no limit of
+/// compression.
 std::string decompressBz2(std::string& compressed, uint32_t size) {
   bz_stream stream{};
   stream.next_in = compressed.data();
   stream.avail_in = static_cast<unsigned>(compressed.size());
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
-  const size_t most = size_t{size} + 1;  // one more shows that there is more
+  const size_t most = size_t{size} + 1;  // one more byte shows that there is more
   std::string content;
   size_t filled = 0;
   int status = BZ_OK;
@@ -42,7 +43,7 @@ std::string decompressBz2(std::string& compressed, uint32_t size) {
 }
 
 /// roslz4 copies each block into a buffer of the largest size that the frame's header allows, however long
-/// the block is. https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md
+/// the block is. So the blocks are checked first. https://github.com/lz4/lz4/blob/dev/doc/lz4_Frame_format.md
 void checkLz4Blocks(const std::string& frame) {
   constexpr size_t kHeader = 7, kDescription = 5;
   const std::runtime_error damaged("no intact lz4 data");
@@ -53,7 +54,7 @@ void checkLz4Blocks(const std::string& frame) {
   for (size_t at = kHeader; frame.size() - at >= sizeof(uint32_t);) {
     uint32_t block;
     std::memcpy(&block, frame.data() + at, sizeof block);
-    block &= 0x7fffffff;  // the highest bit says whether it is compressed
+    block &= 0x7fffffff;  // the highest bit tells whether it is compressed
     if (block == 0) return;
     if (block > largest) throw damaged;
     at += std::min<size_t>(sizeof block + block, frame.size() - at);
@@ -61,7 +62,7 @@ void checkLz4Blocks(const std::string& frame) {
 }
 
 std::string decompressLz4(std::string& compressed, uint32_t size) {
-  constexpr uint64_t kMostPerByte = 255;  // of the format
+  constexpr uint64_t kMostPerByte = 255;  // limit of the format
   checkLz4Blocks(compressed);
   if (size > kMostPerByte * compressed.size()) throw otherSize(kMostPerByte * compressed.size(), size);
   std::string content(size, '\0');

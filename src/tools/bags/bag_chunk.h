@@ -5,9 +5,9 @@
 
 namespace uav_landing {
 
-/// The content of a compressed chunk of a bag, which is size bytes. compression: "bz2" or "lz4". Throws
-/// std::exception when the chunk cannot be decompressed or is of another size; asks for no more memory than
-/// the compressed bytes can fill.
+/// Content of a compressed chunk of a bag. size: bytes after decompression. compression: "bz2" or "lz4".
+/// Throws std::exception when the chunk cannot be decompressed or has another size. It takes no more memory
+/// than the compressed bytes can fill.
 std::string decompressChunk(const std::string& compression, std::string compressed, uint32_t size);
 
 }  // namespace uav_landing

@@ -11,8 +11,8 @@
 
 namespace uav_landing {
 
-/// Bytes of a message, for roscpp to read from. Compares the length of each text and sequence with the bytes
-/// that are left before memory is taken for it, which roscpp does as the length says: up to gigabytes. Throws
+/// Bytes of a message, for roscpp to read from. roscpp takes as much memory as the length of a text or
+/// sequence says, up to gigabytes. So each length is first compared with the bytes that are left. Throws
 /// ros::serialization::StreamOverrunException.
 class MessageBytes : public ros::serialization::Stream {
  public:
@@ -44,7 +44,7 @@ class MessageBytes : public ros::serialization::Stream {
   }
 };
 
-/// The message, empty when it is of another type than T or of another version of it. Throws
+/// The message; null when it has another type than T or another version of it. Throws
 /// rosbag::BagFormatException when it is damaged.
 template <class T>
 boost::shared_ptr<T> readMessage(const rosbag::MessageInstance& message) {

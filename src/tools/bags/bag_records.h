@@ -9,7 +9,7 @@
 
 namespace uav_landing {
 
-/// Kinds of records, as the field "op" says.
+/// Kinds of records, by the field "op".
 enum class BagOperation : uint8_t {
   kDefinition = 0x01,  // of a topic; format 1.2
   kMessage = 0x02,
@@ -20,21 +20,22 @@ enum class BagOperation : uint8_t {
   kConnection = 0x07
 };
 
-/// A header's fields, values by names.
+/// The fields of a header: values by names.
 using BagFields = std::map<std::string, std::string>;
 
-/// Takes records of a bag from bytes, one after another. What does not fit into the bytes ends in a
-/// std::runtime_error that says where it is and what was expected.
+/// Reads the records of a bag from bytes, one after another. Something that does not fit into the bytes
+/// causes a std::runtime_error that says where it is and what was expected.
 class BagRecords {
  public:
-  /// place: what the positions are counted in, as text behind them; "" the file. bytes must outlive this.
+  /// place: text behind positions, which says what they are counted in; "": the file. bytes must outlive this
+  /// object.
   BagRecords(const BagBytes& bytes, uint64_t from, uint64_t to, std::string place);
 
   uint64_t at() const { return at_; }
 
-  /// The record's header: fields "name=value", each behind its length, all behind their length.
+  /// The record's header: fields "name=value", each after its length, all after their total length.
   BagFields header();
-  /// The header of a record of this kind; name: for people.
+  /// The header of a record of this kind. name: for people.
   BagFields header(BagOperation operation, const char* name);
 
   /// A number in the header that began there.
@@ -47,7 +48,7 @@ class BagRecords {
 
   /// The next four bytes. name: what they are, for people.
   uint32_t number(const char* name);
-  /// The next bytes of what began there.
+  /// The next bytes of the record that began there.
   std::string take(uint64_t count, uint64_t begin, const char* name);
   void skip(uint64_t count, uint64_t begin, const char* name);
 

@@ -16,10 +16,10 @@
 namespace uav_landing {
 namespace {
 
-// What rosbag can hold of a chunk is an int; its own chunks are of 768 kB and one message.
+// rosbag keeps the size of a chunk in an int. Its own chunks have 768 kB plus one message.
 constexpr uint32_t kLargestChunk = 1u << 30;  // bytes
 
-/// The walk along the way of rosbag::Bag::startReadingVersion200 and instantiateBuffer.
+/// Follows rosbag::Bag::startReadingVersion200 and instantiateBuffer.
 class Walk {
  public:
   explicit Walk(const std::string& path) : file_(path) {}
@@ -55,7 +55,7 @@ class Walk {
 
   BagRecords from(uint64_t at) const { return BagRecords(file_, at, file_.size(), ""); }
 
-  /// version: 200 for format 2.0, 0 when it is not a bag. As rosbag reads it.
+  /// version: 200 for format 2.0, 0 when it is no bag; read as rosbag does.
   size_t lengthOfFirstLine(int& version) const {
     constexpr size_t kLongest = 1023;
     char line[kLongest + 1] = {}, name[100];
@@ -89,7 +89,7 @@ class Walk {
     chunks_.push_back({at, connections.size()});
   }
 
-  /// The indexes behind the chunk: where its messages are.
+  /// The indexes behind the chunk, which tell where its messages are.
   void readIndexes(const ChunkInfo& chunk) {
     BagRecords records = from(chunk.at);
     records.header(BagOperation::kChunk, "a chunk");

@@ -11,7 +11,7 @@
 namespace uav_landing {
 namespace {
 
-/// Of a topic: when its messages were received, ns, and where they are.
+/// Messages of a topic: time of receipt, ns, and position.
 using Messages = std::vector<std::pair<uint64_t, uint64_t>>;
 
 BagRecords from(const BagBytes& bag, uint64_t at) { return BagRecords(bag, at, bag.size(), ""); }
@@ -27,13 +27,13 @@ void readIndex(BagRecords& list, std::map<std::string, Messages>& topics) {
   for (uint32_t i = 0; i < count; ++i) {
     const uint64_t seconds = list.number("a time"), time = seconds * 1000000000 + list.number("a time");
     const uint64_t low = list.number("a position"), high = list.number("a position");
-    // rosbag leaves out what has no time.
+    // rosbag ignores messages without a time.
     if (time != 0) messages.emplace_back(time, low | high << 32);
   }
   if (messages.empty()) list.damaged(begin, "the index of a topic without messages");
 }
 
-/// rosbag takes the definition of the topic from where its first message is, and what it has of a topic by
+/// rosbag reads the definition of a topic before its first message, and finds the data of a topic by its
 /// name.
 void checkDefinition(const BagBytes& bag, const std::string& topic, const Messages& messages) {
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };

@@ -6,8 +6,8 @@
 
 namespace uav_landing {
 
-/// As checkBagStructure, for a bag of format 1.2 (ROS until 2010, http://wiki.ros.org/Bags/Format/1.2), whose
-/// first record is there.
+/// The same as checkBagStructure() for a bag of format 1.2 (ROS until 2010,
+/// http://wiki.ros.org/Bags/Format/1.2). first_record: position of its first record.
 void checkOldBagStructure(const BagBytes& bag, uint64_t first_record);
 
 }  // namespace uav_landing

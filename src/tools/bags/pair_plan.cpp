@@ -12,11 +12,11 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kLargestSkewMs = 100;  // what max_skew can be
+constexpr double kLargestSkewMs = 100;  // largest possible max_skew
 constexpr size_t kLeftImage = 0, kLeftInfo = 1, kRightImage = 2, kRightInfo = 3;
 
 using Key = std::pair<int, int64_t>;      // epoch and stamp
-using Sorted = std::map<Key, size_t>;     // to the place in the list
+using Sorted = std::map<Key, size_t>;     // to the index in the list
 using Match = std::pair<size_t, size_t>;  // left and right image
 
 std::vector<int64_t> stampsOf(const std::vector<MessageStamp>& messages) {
@@ -25,7 +25,7 @@ std::vector<int64_t> stampsOf(const std::vector<MessageStamp>& messages) {
   return stamps;
 }
 
-/// Those that can be paired, each stamp once.
+/// The messages that can be paired, each stamp once.
 Sorted sortedBy(const std::vector<MessageStamp>& messages, const StampEpochs& epochs, bool one_epoch) {
   Sorted sorted;
   for (size_t i = 0; i < messages.size(); ++i)
@@ -34,7 +34,7 @@ Sorted sortedBy(const std::vector<MessageStamp>& messages, const StampEpochs& ep
   return sorted;
 }
 
-/// The nearest of the same epoch; end() where there is none.
+/// The nearest of the same epoch; end() when there is none.
 Sorted::const_iterator nearest(const Sorted& sorted, const Key& key) {
   const auto after = sorted.lower_bound(key);
   const bool next = after != sorted.end() && after->first.first == key.first;
@@ -58,15 +58,16 @@ std::vector<Match> matchImages(const Sorted& left, const Sorted& right, int64_t 
 /// The camera_infos of one camera, for its images.
 class Infos {
  public:
-  /// image_jumps: of the clock, as the images show it. Where these messages do not show the same, as those
-  /// that come seldom, they are of one epoch.
+  /// image_jumps: jumps of the clock that the images show. If the camera_infos show another number, because
+  /// they come seldom, they are treated as one epoch.
   Infos(const std::vector<MessageStamp>& messages, double max_late, int image_jumps) : messages_(messages) {
     const StampEpochs epochs = stampEpochs(stampsOf(messages), max_late);
     one_epoch_ = epochs.jumps != image_jumps;
     sorted_ = sortedBy(messages, epochs, one_epoch_);
   }
 
-  /// For an image; none where there is none at all. most: ns, between stamps that are taken for the same.
+  /// The camera_info of an image; none when there is none at all. most: ns, largest difference of equal
+  /// stamps.
   std::optional<size_t> of(int epoch, const MessageStamp& image, int64_t most, bool& held) const {
     const Key key{one_epoch_ ? 0 : epoch, image.stamp};
     const auto closest = nearest(sorted_, key);
@@ -159,7 +160,7 @@ PairPlan planPairs(const StereoStamps& messages, const std::array<std::string, 4
     plan.inputs[i] = countOf(topics[i], messages[i], epochs[i]);
   }
   plan.jumps = std::max(epochs[kLeftImage].jumps, epochs[kRightImage].jumps);
-  // Where one camera does not show that the clock was set back, stamps alone have to do.
+  // If one camera does not show that the clock was set back, only the stamps count.
   const bool one_epoch = epochs[kLeftImage].jumps != epochs[kRightImage].jumps;
   const Sorted left = sortedBy(messages[kLeftImage], epochs[kLeftImage], one_epoch);
   const Sorted right = sortedBy(messages[kRightImage], epochs[kRightImage], one_epoch);
@@ -212,7 +213,7 @@ std::string PairPlan::complaint() const {
     return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger, within "
            "max_skew, " +
            limit + "): " + apart;
-  std::ostringstream enough;  // with a fifth to spare
+  std::ostringstream enough;  // with a margin of a fifth
   enough << 1e-3 * std::min(std::ceil(1.2 * left.nearest_ms), kLargestSkewMs);
   return apart + ", more than max_skew, " + limit + ": raise max_skew in the config file, rectify: " +
          "{approximate_sync: true, max_skew: " + enough.str() + "}";

@@ -10,30 +10,32 @@
 
 namespace uav_landing {
 
-/// What pairing has to know of a message.
+/// What pairing needs to know of a message.
 struct MessageStamp {
   int64_t stamp;  ///< header.stamp, ns; 0: none
-  size_t place;   ///< among all messages of the recording
+  size_t place;   ///< index among all messages of the recording
 };
 
-/// Which messages of a recording belong together. Inputs are in this order: left image, left camera_info,
+/// The messages of a recording that belong together. Inputs are in this order: left image, left camera_info,
 /// right image, right camera_info.
 struct PairPlan {
   struct Pair {
-    std::array<size_t, 4> messages;  ///< place in the list of each input
-    size_t place;                    ///< of the image that comes first, among all messages
+    std::array<size_t, 4> messages;  ///< index in the list of each input
+    size_t place;                    ///< index of the image that comes first, among all messages
   };
   struct Input {
     std::string topic;
     size_t received = 0, paired = 0;
-    size_t unstamped = 0, repeated = 0, late = 0;  ///< of the messages, without a partner for that
-    size_t held = 0;  ///< camera_info: pairs that took another one than that of their stamp
-    /// ms, from a message without a partner to the other camera's nearest, the median; NaN: there is none
+    size_t unstamped = 0, repeated = 0, late = 0;  ///< messages without a partner for this reason
+    size_t held = 0;                               ///< camera_info: pairs that took one of another stamp
+    /// Median time from a message without a partner to the nearest one of the other camera, ms; NaN: there is
+    /// none.
     double nearest_ms = 0;
     int64_t first = 0, last = 0;  ///< stamps, ns
   };
 
-  std::vector<Pair> pairs;  ///< in the order of their stamps, after a clock was set back behind those before
+  std::vector<Pair> pairs;  ///< in the order of their stamps; after the clock was set back, behind the
+                            ///< earlier ones
   std::array<Input, 4> inputs;
   int jumps = 0;  ///< times that the clock was set back
   bool approximate = false;
@@ -41,17 +43,17 @@ struct PairPlan {
 
   /// Why there is no pair.
   std::string complaint() const;
-  /// What a person should know of messages without a partner, a line each.
+  /// What a person should know of messages without a partner, one line each.
   std::vector<std::string> notes() const;
-  /// More than half of the images of a camera are in no pair.
+  /// Whether more than half of a camera's images are in no pair.
   bool mostLeftOut() const;
 };
 
 using StereoStamps = std::array<std::vector<MessageStamp>, 4>;
 
-/// Pairs by header.stamp, whatever the order of the messages: equal stamps, or with approximate_sync those of
-/// two images that are each other's nearest, within max_skew. An image takes the camera_info of its own
-/// stamp, else the last one before it, else the first one.
+/// Pairs by header.stamp, whatever the order of the messages. Stamps are equal or, with approximate_sync,
+/// those of two images that are each other's nearest within max_skew. An image takes the camera_info of its
+/// own stamp, else the last one before it, else the first one.
 PairPlan planPairs(const StereoStamps& messages, const std::array<std::string, 4>& topics,
                    const RectifyParameters& parameters);
 

@@ -8,8 +8,8 @@ namespace uav_landing {
 namespace {
 
 constexpr int64_t kSecond = 1000000000;
-constexpr double kGap = 0.6;  // of the usual time between stamps: a stamp so far from all others fills a gap
-constexpr size_t kInOrder = 3;  // messages in order, among stamps that were there: those of a clock set back
+constexpr double kGap = 0.6;  // of the usual time between stamps; a stamp so far from all others fills a gap
+constexpr size_t kInOrder = 3;  // messages in order, among existing stamps: the clock was set back
 
 /// The usual time between two neighbours, ns.
 int64_t periodOf(const std::vector<int64_t>& stamps) {
@@ -51,7 +51,7 @@ class Follower {
   }
 
  private:
-  /// Begins an epoch where the clock was set back.
+  /// Begins an epoch when the clock was set back.
   void take(size_t i) {
     const int64_t stamp = stamps_[i], newest = *seen_.rbegin();
     if (stamp >= newest) {
@@ -74,7 +74,7 @@ class Follower {
     for (const size_t i : first) {
       epochs_.epoch[i] = epochs_.jumps;
       epochs_.late[i] = false;
-      if (i != first.back()) seen_.insert(stamps_[i]);  // the last one is on its way in
+      if (i != first.back()) seen_.insert(stamps_[i]);  // the last one is added by the caller
     }
     among_.clear();
   }
@@ -82,7 +82,7 @@ class Follower {
   const std::vector<int64_t>& stamps_;
   const int64_t max_late_, period_;
   std::set<int64_t> seen_;     // of this epoch
-  std::vector<size_t> among_;  // messages in a row, in order, among stamps that were there
+  std::vector<size_t> among_;  // consecutive messages, in order, among existing stamps
   StampEpochs epochs_;
 };
 

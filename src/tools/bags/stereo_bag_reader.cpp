@@ -41,7 +41,7 @@ std::map<std::string, std::string> topicsAndTypes(const std::vector<std::unique_
   return found;
 }
 
-/// header.stamp, ns: the header is the first field of all types that are paired.
+/// header.stamp, ns; the header is the first field of all types that are paired.
 int64_t stampOf(const rosbag::MessageInstance& message, std::vector<uint8_t>& buffer) {
   buffer.resize(message.size());
   ros::serialization::OStream copy(buffer.data(), static_cast<uint32_t>(buffer.size()));
@@ -59,7 +59,7 @@ int64_t stampOf(const rosbag::MessageInstance& message, std::vector<uint8_t>& bu
   return static_cast<int64_t>(stamp.toNSec());
 }
 
-/// Whether it is of our version of the type; else it cannot be read, and is as good as missing.
+/// Whether its version of the type is ours; another one cannot be read, and counts as missing.
 bool isRead(const rosbag::MessageInstance& message, size_t input) {
   return input % 2 == 0 ? message.isType<sensor_msgs::Image>() : message.isType<sensor_msgs::CameraInfo>();
 }
@@ -188,7 +188,7 @@ void StereoBagReader::read(const PairPlan& plan, const PairVisitor& visit,
     for (; next != imu_messages_.end() && next->place < place; ++next)
       if (const auto sample = readMessage<sensor_msgs::Imu>(next->message)) imu(*sample);
   };
-  // One that is held is read once, and is the same object for all its pairs.
+  // A camera_info that several pairs use is read once and is the same object for all.
   std::array<std::pair<std::size_t, sensor_msgs::CameraInfoConstPtr>, 2> infos;
   const auto info = [&](const PairPlan::Pair& pair, size_t input) {
     auto& [place, message] = infos[input / 2];

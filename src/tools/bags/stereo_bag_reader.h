@@ -19,46 +19,46 @@
 
 namespace uav_landing {
 
-/// Reads the image pairs of a recording and an inertial sensor. A recording is one bag, or the parts that a
-/// split one has. A first pass reads the stamps, the second one reads the images in the order of the pairs:
-/// the order in the bag does not matter, and no more than one pair is in memory.
+/// Reads the image pairs of a recording, and an inertial sensor. A recording is one bag, or the parts of a
+/// split one. A first pass reads the stamps; the second one reads the images in the order of the pairs. So
+/// the order in the bag does not matter, and only one pair is in memory.
 class StereoBagReader {
  public:
-  /// Throws std::runtime_error with a message for the user when a file cannot be opened as a bag.
-  /// camera: namespace of the cameras without a slash in front. imu: topic, may be missing in the bag; "":
+  /// Throws std::runtime_error with a message for the user when a file cannot be opened as a bag. camera:
+  /// namespace of the cameras without a slash in front. imu: topic, which may be missing in the bag; "":
   /// none. Topics that were recorded without a slash in front are found, too.
   StereoBagReader(const std::vector<std::string>& paths, const std::string& camera, const std::string& imu);
 
-  /// Which topic is missing or of another type, what the bag contains instead, and what takes that.
-  /// imu_needed: that of the inertial sensor must be there, too.
+  /// Which topic is missing or has another type, what the bag contains instead, and the command that can read
+  /// it. imu_needed: the topic of the inertial sensor must exist, too.
   Failure checkTopics(bool imu_needed) const;
-  /// There are messages of the inertial sensor.
+  /// Whether there are messages of the inertial sensor.
   bool hasImu() const;
-  /// Messages that plan() reads.
+  /// Number of messages that plan() reads.
   std::size_t messages() const;
   /// Left image, left camera_info, right image, right camera_info.
   const std::array<std::string, 4>& topics() const { return topics_; }
 
   /// Calls visit for every message of /tf_static.
   void readStaticTransforms(const std::function<void(const tf2_msgs::TFMessage&)>& visit) const;
-  /// Reads the stamps and pairs them; after each message calls progress(). Throws ros::Exception where the
+  /// Reads the stamps and pairs them; after each message it calls progress(). Throws ros::Exception when the
   /// file is damaged.
   PairPlan plan(const RectifyParameters& parameters, const std::function<void()>& progress);
 
   using PairVisitor = std::function<void(
       const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfoConstPtr& left_info,
       const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfoConstPtr& right_info)>;
-  /// Hands on the pairs of plan(), and between them the messages of the inertial sensor as they were
-  /// recorded. Throws as plan() does.
+  /// Passes on the pairs of plan(), and between them the messages of the inertial sensor in their recorded
+  /// order. Throws as plan() does.
   void read(const PairPlan& plan, const PairVisitor& pair,
             const std::function<void(const sensor_msgs::Imu&)>& imu) const;
 
  private:
   struct Placed {
     rosbag::MessageInstance message;
-    std::size_t place;  // among all messages
+    std::size_t place;  // index among all messages
   };
-  /// The names in the bags of a topic: with and without a slash in front.
+  /// The names of a topic in the bags: with and without a slash in front.
   std::vector<std::string> namesOf(const std::string& topic) const;
   std::vector<std::string> wanted() const;
 
@@ -66,7 +66,7 @@ class StereoBagReader {
   std::vector<std::unique_ptr<rosbag::Bag>> bags_;
   std::array<std::string, 4> topics_;
   std::string imu_;
-  std::array<std::vector<Placed>, 4> inputs_;  // since plan()
+  std::array<std::vector<Placed>, 4> inputs_;  // filled by plan()
   std::vector<Placed> imu_messages_;
 };
 

@@ -15,10 +15,11 @@ namespace {
 
 constexpr char kImuFrame[] = "imu_link";
 
-/// Truth is exact: variance 0 where there is a value.
+/// Truth is exact: variance 0 for a known value.
 double varianceOf(double value) { return std::isnan(value) ? kUnknown : 0.0; }
 
-/// The step's velocity: its direction is that of the focus of expansion, seen from the rectified left camera.
+/// Velocity of the step. Its direction is that of the focus of expansion, seen from the rectified left
+/// camera.
 Eigen::Vector3d velocityOf(const Truth& truth, const sensor_msgs::CameraInfo& left) {
   const Eigen::Vector3d ray((truth.foe.x() - left.P[2]) / left.P[0], (truth.foe.y() - left.P[6]) / left.P[5],
                             1.0);
@@ -106,7 +107,7 @@ void StereoBagWriter::writeImu(const ros::Time& stamp, const ImuSample& sample,
   if (!mounting_written_) writeMounting(stamp, left_from_imu);
   mounting_written_ = true;
   const auto store = [](const std::optional<Eigen::Matrix3d>& covariance, boost::array<double, 9>& out) {
-    // Zeros: not known.
+    // Zeros mean that the covariance is not known.
     const Eigen::Matrix3d known = covariance.value_or(Eigen::Matrix3d::Zero());
     for (int i = 0; i < 9; ++i) out[static_cast<size_t>(i)] = known(i / 3, i % 3);
   };
@@ -137,7 +138,7 @@ void StereoBagWriter::writeMounting(const ros::Time& stamp, const Eigen::Matrix3
   transform.header.frame_id = left_.header.frame_id;
   transform.child_frame_id = kImuFrame;
   tf2::convert(Eigen::Quaterniond(left_from_imu), transform.transform.rotation);
-  // Latched: who listens later is told, too.
+  // Latched, so that later listeners get it, too.
   const auto header = boost::make_shared<ros::M_string>();
   (*header)["latching"] = "1";
   (*header)["type"] = ros::message_traits::datatype(mounting);

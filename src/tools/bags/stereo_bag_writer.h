@@ -14,18 +14,18 @@
 
 namespace uav_landing {
 
-/// Truth of one frame as a message: what is known with variance 0, the rest NaN. The velocity is in the
-/// rectified left camera's optical frame; it is known when speed and focus of expansion are.
+/// Truth of one frame as a message: known values with variance 0, the rest NaN. The velocity is in the
+/// rectified left camera's optical frame. It is known when speed and focus of expansion are.
 LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& left, const ros::Time& stamp,
                              const std::string& left_frame);
 
 /// frame_id of a simulated or converted camera: slashes of the namespace become underscores.
 std::string opticalFrame(const std::string& camera, const std::string& side);
 
-/// Writes image pairs with their truth to a bag, the way a stereo camera driver would be recorded:
-/// /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate; if there is one, an inertial
-/// sensor on /imu/data. Everything goes to
-/// "<path>.active" first; finish() gives it its name, without it the file is removed.
+/// Writes image pairs with their truth to a bag, as if a stereo camera's driver was recorded:
+/// /CAMERA/{left,right}/{image_raw,camera_info}, /truth/landing_estimate, and an inertial sensor on
+/// /imu/data, if there is one. It writes to "<path>.active"; finish() renames this file, and without finish()
+/// it is removed.
 class StereoBagWriter {
  public:
   /// Opens the bag; throws rosbag::BagException when that is not possible. camera: namespace, without slashes
@@ -38,7 +38,7 @@ class StereoBagWriter {
 
   /// left, right: raw mono8.
   void write(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right, const Truth& truth);
-  /// A message of the inertial sensor on /imu/data; its mounting goes on /tf_static once. stamp: of the
+  /// Writes a message of the inertial sensor on /imu/data, and its mounting on /tf_static once. stamp: of the
   /// message. left_from_imu: rotation to the left camera's optical frame, as it is mounted.
   void writeImu(const ros::Time& stamp, const ImuSample& sample, const Eigen::Matrix3d& left_from_imu);
   void finish();

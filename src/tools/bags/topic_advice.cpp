@@ -20,7 +20,7 @@ bool has(const Topics& topics, const std::string& name, const char* type) {
   return topic != topics.end() && topic->second == type;
 }
 
-/// Namespaces, without the slash in front, in which all four topics are as they have to be.
+/// Namespaces, without the slash in front, in which all four topics have the right names and types.
 std::vector<std::string> cameras(const Topics& topics) {
   std::vector<std::string> names;
   for (const auto& [topic, type] : topics) {
@@ -34,7 +34,7 @@ std::vector<std::string> cameras(const Topics& topics) {
   return names;
 }
 
-/// What the name of the other camera's topic would be.
+/// Possible names of the other camera's topic.
 std::vector<std::string> counterparts(const std::string& left) {
   static const std::vector<Sides> words{{"left", "right"},      {"Left", "Right"},
                                         {"cam0", "cam1"},       {"cam_0", "cam_1"},
@@ -55,7 +55,7 @@ std::vector<std::string> counterparts(const std::string& left) {
   return names;
 }
 
-/// The topics of two cameras, by their names; else the only two that there are.
+/// The topics of two cameras, by their names; else the only two that exist.
 std::optional<Sides> imagePair(const std::vector<std::string>& images) {
   for (const std::string& left : images)
     for (const std::string& right : counterparts(left))
@@ -64,7 +64,7 @@ std::optional<Sides> imagePair(const std::vector<std::string>& images) {
   return std::nullopt;
 }
 
-/// camera_info beside an image topic, as convert_recording takes it.
+/// camera_info beside an image topic, as convert_recording uses it.
 std::string infoBeside(std::string topic) {
   const std::string compressed = "/compressed";
   if (topic.size() > compressed.size() &&
@@ -79,7 +79,7 @@ std::string outputFor(const std::string& bag) {
   return bag.substr(0, end) + "_stereo.bag";
 }
 
-/// An argument as a shell takes it.
+/// An argument quoted for a shell.
 std::string quoted(const std::string& text) {
   const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char letter) {
     return std::isalnum(letter) != 0 ||

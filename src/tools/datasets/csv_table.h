@@ -19,9 +19,9 @@ class CsvTable {
   /// Fails when the header has no such column.
   Failure require(const std::string& column) const;
 
-  /// The text of a field, "" when it is blank or the column is absent.
+  /// Text of a field; "" when it is blank or the column is missing.
   const std::string& text(size_t row, const std::string& column) const;
-  /// A finite number, NaN when the field is blank or the column is absent.
+  /// A finite number; NaN when the field is blank or the column is missing.
   Expected<double> number(size_t row, const std::string& column) const;
   /// A failure that begins with the place: "frames.csv, line 7, column height_m: what".
   Failure failure(size_t row, const std::string& column, const std::string& what) const;

@@ -22,8 +22,8 @@ constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
 
 Failure invalid(const std::string& detail) { return {Reason::kInputInvalid, detail}; }
 
-/// The sizes of the matrices in a YAML file: camera_calibration_parsers ends the program where they differ,
-/// and takes memory for any number of coefficients.
+/// Checks the sizes of the matrices in a YAML file. camera_calibration_parsers ends the program when they
+/// differ, and takes memory for any number of coefficients.
 Failure checkMatrices(const std::string& path) {
   constexpr int kMostCoefficients = 100;
   if (fs::path(path).extension() == ".ini") return {};
@@ -31,7 +31,7 @@ Failure checkMatrices(const std::string& path) {
   try {
     file = YAML::LoadFile(path);
   } catch (const YAML::Exception&) {
-    return {};  // the parser says what it cannot read
+    return {};  // the parser reports what it cannot read
   }
   if (!file.IsMap()) return {};
   const auto possible = [](int count) { return count >= 0 && count < kMostCoefficients; };
@@ -121,7 +121,7 @@ Expected<std::vector<DatasetFrame>> readFrames(const fs::path& folder) {
   return frames;
 }
 
-/// NAME.yaml, .yml or .ini, as ROS's parsers tell files by their names.
+/// NAME.yaml, .yml or .ini; ROS's parsers choose by the extension.
 std::string calibrationIn(const fs::path& folder, const std::string& name) {
   for (const char* extension : {".yml", ".ini"})
     if (fs::is_regular_file(folder / (name + extension)) && !fs::exists(folder / (name + ".yaml")))

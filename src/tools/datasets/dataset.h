@@ -13,8 +13,9 @@
 namespace uav_landing {
 
 /// A dataset folder: left/*.png, right/*.png (mono8), left.yaml, right.yaml (ROS camera calibration files)
-/// and frames.csv with the columns stamp_s, left, right and truth columns, blank or absent when unknown:
-/// height_m, approach_angle_deg, foe_u_px, foe_v_px, speed_m_s, pitch_deg, roll_deg, yaw_deg, x_m, y_m.
+/// and frames.csv. This has the columns stamp_s, left, right, and truth columns that are blank or missing
+/// when unknown: height_m, approach_angle_deg, foe_u_px, foe_v_px, speed_m_s, pitch_deg, roll_deg, yaw_deg,
+/// x_m, y_m.
 struct DatasetFrame {
   ros::Time stamp;
   std::string left, right;  ///< paths of the images

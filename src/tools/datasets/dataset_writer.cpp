@@ -19,7 +19,7 @@ Failure cannotWrite(const fs::path& path, const std::string& why = "") {
   return {Reason::kInputInvalid, path.string() + ": cannot be written" + (why.empty() ? "" : ": " + why)};
 }
 
-/// ",value" with 12 significant digits, "," when it is not known.
+/// ",value" with 12 significant digits; "," when it is unknown.
 std::string field(double value) {
   if (std::isnan(value)) return ",";
   char text[40];
@@ -30,7 +30,7 @@ std::string field(double value) {
 }  // namespace
 
 DatasetWriter::DatasetWriter(const std::string& folder) {
-  // Without a slash at the end, so that the temporary folder lies beside it.
+  // Without a slash at the end, so that the temporary folder is beside it.
   folder_ = fs::path(folder).has_filename() ? fs::path(folder) : fs::path(folder).parent_path();
   temporary_ = folder_.string() + ".active";
 }

@@ -13,8 +13,8 @@
 
 namespace uav_landing {
 
-/// Writes a dataset folder (see dataset.h), to "<folder>.active" first; finish() gives it its name, without
-/// it what was written is removed. A folder that has something in it is never written to.
+/// Writes a dataset folder (see dataset.h). It writes to "<folder>.active"; finish() renames it, and without
+/// finish() it is removed. It never writes to a folder that is not empty.
 class DatasetWriter {
  public:
   explicit DatasetWriter(const std::string& folder);

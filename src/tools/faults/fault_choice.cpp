@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-/// Paint belongs to flat ground and to pictures of one moment.
+/// Paint needs flat ground, and images that belong to the same moment.
 bool exclude(const Fault& a, const Fault& b) {
   const auto unpaintable = [](const Fault& fault) {
     SimulatorParameters changed;
@@ -44,7 +44,7 @@ FaultChoice::FaultChoice(const std::vector<std::string>& names, int drawn_pairs,
   if (!unknown.empty()) throw std::runtime_error("there is no fault " + *unknown.begin());
 }
 
-// "a+b", in the order of the places along the light's way.
+// "a+b", in the order of the places along the light's path.
 void FaultChoice::addPair(const std::string& names, bool simulated) {
   FaultCombination pair;
   for (const Fault& fault : allFaults())
@@ -59,7 +59,8 @@ std::vector<FaultCombination> FaultChoice::combinations(uint64_t seed) const {
   std::vector<FaultCombination> all = asked_pairs_;
   for (const Fault* fault : faults_) all.push_back({fault});
   cv::RNG random(seed * 77 + 5);
-  // Those that come in flight are drawn; what they are from the first pair on is flown alone or when asked.
+  // Only faults that begin in flight are drawn. Their variants from the first pair on are flown alone or on
+  // request.
   std::vector<const Fault*> drawn = faults_;
   drawn.erase(
       std::remove_if(drawn.begin(), drawn.end(), [](const Fault* fault) { return fault->from_first; }),

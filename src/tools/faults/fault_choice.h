@@ -7,22 +7,22 @@
 
 namespace uav_landing {
 
-/// Faults that come together, in the order of their places.
+/// Faults that occur together, in the order of their places.
 using FaultCombination = std::vector<const Fault*>;
 
-/// Names with + between.
+/// Names joined by +.
 std::string nameOf(const FaultCombination& faults);
 
-/// Whether it paints on a plane: on ground of another shape that would be a picture of that plane, and not of
-/// the ground that the height is above.
+/// Whether it paints on a plane. On ground of another shape the picture would be that of this plane, and not
+/// of the ground that the height refers to.
 bool paintsGround(const Fault* fault);
 
-/// Which faults are flown.
+/// Chooses the faults that are flown.
 class FaultChoice {
  public:
-  /// names: of faults, and pairs as a+b; without any all faults. drawn_pairs: of faults besides, for each
-  /// seed. Faults that need a scene only where it is simulated. Throws std::runtime_error for what names no
-  /// fault or pair.
+  /// names: of faults, and of pairs as a+b; without names all faults. drawn_pairs: number of random pairs in
+  /// addition, for each seed. Faults that need a scene are taken only when it is simulated. Throws
+  /// std::runtime_error for a name that is no fault or pair.
   FaultChoice(const std::vector<std::string>& names, int drawn_pairs, bool simulated);
   /// Each fault alone, the pairs asked for, and some pairs drawn by the seed.
   std::vector<FaultCombination> combinations(uint64_t seed) const;

@@ -21,7 +21,7 @@ void warp(cv::Mat& image, const Eigen::Matrix3d& H) {
   image = warped;
 }
 
-/// Grey level that a mirror-flat surface would show of the sky: a stripe pattern at infinity.
+/// Grey level of the sky in a perfectly flat surface: a pattern of stripes at infinity.
 double skyAt(const Eigen::Vector3d& direction) {
   const double azimuth = std::atan2(direction.y(), direction.x());
   const double elevation = std::asin(std::abs(direction.z()) / direction.norm());
@@ -106,7 +106,7 @@ void wet(cv::Mat& image, uint64_t seed) {
     const int radius = random.uniform(image.cols / 50, image.cols / 16);
     const cv::Point at(random.uniform(radius, image.cols - radius),
                        random.uniform(image.rows / 3, image.rows - radius));
-    // A drop is a lens: it shows its surroundings upside down.
+    // A drop is a lens, so it shows its surroundings upside down.
     const cv::Rect box(at.x - radius, at.y - radius, 2 * radius, 2 * radius);
     if ((box & cv::Rect(cv::Point(), image.size())) != box) continue;
     cv::Mat flipped, mask(box.size(), CV_8U, cv::Scalar(0));

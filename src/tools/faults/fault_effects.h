@@ -2,16 +2,16 @@
 
 #include "faults/faults.h"
 
-// What single faults do to a pair (see faults.cpp for their names).
+// Effects of single faults on a pair (faults.cpp has their names).
 namespace uav_landing {
 
-/// Turns the right camera: rotation vector in its own optical axes, rad.
+/// Turns the right camera. w: rotation vector in its own optical axes, rad.
 void turnCamera(cv::Mat& image, const CameraCalibration& camera, const Eigen::Vector3d& w);
-/// Enlarges a picture about its principal point.
+/// Enlarges an image about its principal point.
 void zoomCamera(cv::Mat& image, const CameraCalibration& camera, double factor);
 void changeExposure(cv::Mat& image, double gain, double offset);
 void blur(cv::Mat& image, double sigma);
-/// Water on a lens: what is left of the picture, its veil, and the sensor's noise.
+/// Water on a lens: a rest of the image, a veil, and the sensor's noise.
 void fogLens(cv::Mat& image, cv::RNG& random);
 void smear(cv::Mat& image, int pixels);
 void addNoise(cv::Mat& image, double sigma, cv::RNG& random);
@@ -24,12 +24,12 @@ void band(cv::Mat& image, double phase);
 /// Haze that grows with the distance of the ground.
 void night(cv::Mat& image, uint64_t seed);
 
-/// Gives every pixel that sees the ground another grey level: paint(x, y, grey) with x, y on the ground in
+/// Gives every pixel that sees the ground another grey level: paint(x, y, grey), with x, y on the ground in
 /// the runway frame, m.
 using GroundPaint = std::function<double(double x, double y, double grey)>;
 void paintGround(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose,
                  const GroundPaint& paint);
-/// Replaces the ground beyond near_x by what a mirror there shows of the sky.
+/// Replaces the ground beyond near_x by the reflection of the sky in a mirror.
 void mirrorSky(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose, double near_x,
                double far_x);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStart = 100;  // stamp of the first pair, s
 
-/// in_flight: first frame with the faults that come in flight.
+/// in_flight: first frame with the faults that begin in flight.
 Delivery deliver(FaultRun& run, const FaultCombination& faults, int in_flight, int frame) {
   const Flight::Frame& source = run.flight.frames[static_cast<size_t>(frame)];
   Delivery pair{source.time, source.left.clone(), source.right.clone(), true};
@@ -46,9 +46,10 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
   for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
     const Delivery pair = deliver(run, faults, in_flight, frame);
     const double now = flight.frames[static_cast<size_t>(frame)].time;
-    // Nothing is published without a pair: what was said last is as old as max_age at most, then it is lost.
+    // Without a pair nothing is published. The last estimate gets as old as max_age at most, and is then
+    // lost.
     if (!pair.delivered) continue;
-    // As where images are paired.
+    // Stamps are sorted out as where images are paired.
     if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
     const bool exchanged = parameters.rig.upside_down;
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, exchanged ? pair.right : pair.left,

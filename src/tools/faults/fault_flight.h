@@ -8,10 +8,11 @@
 
 namespace uav_landing {
 
-/// After each pair that counts: what was said, the pair's time on the flight, whether the fault was there.
+/// Called after each pair that counts, with the time, the result, the pair's time on the flight, and whether
+/// the fault was there.
 using FaultObserver = std::function<void(double time, const LandingResult&, double pair_time, bool faulted)>;
 
-/// Takes a flight with faults through the chain. in_flight: first frame with the faults that come in flight.
+/// Takes a flight with faults through the chain. in_flight: first frame with the faults that begin in flight.
 /// onset: frame from which on faults are scored. seed: of what faults draw. observe: may be empty.
 FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, int in_flight, int onset,
                          uint64_t seed, const Parameters& parameters, const FaultObserver& observe);

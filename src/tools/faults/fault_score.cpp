@@ -13,9 +13,10 @@ double bound(double variance, double tolerated) { return std::max(kSigmas * std:
 
 }  // namespace
 
-// An angle has no protection level. A normal error is larger than so many standard deviations once in 1.7
-// million frames: in no campaign of a hundred thousand. What is less than a monitor of a glide path may leave
-// unnoticed, a tenth of its 3 degrees (ICAO Annex 10, volume I, 3.1.5.7), misleads nobody.
+// An angle has no protection level. Its bound is a number of standard deviations that a normal error exceeds
+// once in 1.7 million frames; no campaign has a hundred thousand. A smaller error is not misleading when the
+// monitor of a glide path may leave it unnoticed: a tenth of its 3 degrees (ICAO Annex 10, volume I,
+// 3.1.5.7).
 double FaultScore::angleBound(double variance) { return bound(variance, 0.3 * kDegree); }
 
 // Half a degree moves an aircraft by a metre in the last hundred.
@@ -76,7 +77,7 @@ void FaultScore::takeAngle(const LandingResult& landing, double true_angle, bool
   worst_angle_ratio = std::max(worst_angle_ratio, ratio);
 }
 
-// A yaw that is not known is not finite.
+// An unknown yaw is not finite.
 void FaultScore::takeYaw(const LandingResult& landing, double true_yaw, bool is_faulted) {
   if (!std::isfinite(true_yaw) || !std::isfinite(landing.yaw)) return;
   // The shorter way round.

@@ -16,7 +16,7 @@ Fault spoils(const char* name, Place place, const char* meaning, Spoil spoil) {
   return {name, meaning, place, std::move(spoil), {}, {}, {}, false, false};
 }
 
-/// A fault of both cameras' pictures, or of the left one only.
+/// A fault of both cameras' images, or of the left one only.
 Fault both(const char* name, Place place, const char* meaning,
            std::function<void(FaultRun&, int, cv::Mat&)> effect) {
   return spoils(name, place, meaning, [effect](FaultRun& run, int frame, Delivery& pair) {
@@ -282,7 +282,7 @@ void addRig(std::vector<Fault>& all) {
                            }));
 }
 
-/// Some of those that come in flight once more, there from the first pair on.
+/// Adds variants of some faults that are there from the first pair on.
 void addFromFirst(std::vector<Fault>& all) {
   for (const char* name : {"swapped", "unsynchronised", "bent_pitch_0.2", "bent_yaw_0.2", "bent_roll_0.2",
                            "bent_yaw_1", "focal_right"}) {

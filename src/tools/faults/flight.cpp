@@ -13,8 +13,8 @@
 namespace uav_landing {
 namespace {
 
-/// Time from which on the ground below was in view before, by a whole matching window: what it is like before
-/// that changes no pixel that a run begins with.
+/// Time from which on the ground below was in view before, by a whole matching window. A change before that
+/// time changes no pixel at the start of a run.
 double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
   constexpr int kMargin = 8;  // px
   const Flight::Frame& first = flight.frames.front();
@@ -56,8 +56,8 @@ SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const Groun
 SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
                                const SceneryKind* scenery) {
   cv::RNG random(seed * 0x9E3779B97F4A7C15ULL + 1);
-  // At the end of the run. From higher up most healthy frames would not be certain enough to be valid, so
-  // that a fault has nothing to mislead.
+  // Height at the end of the run. From higher up most healthy frames would be too uncertain to be valid, so a
+  // fault could not mislead.
   const double lowest = scenery == nullptr ? 3 : 8;
   const double height = lowest * std::pow(4.0, random.uniform(0.0, 1.0));
   SimulatorParameters p = drawSnippet(seed * 1000003, height, frames, parameters);

@@ -24,7 +24,7 @@ struct Flight {
     CameraPose pose;  ///< of the rectified left camera; only when simulated
   };
   CameraCalibration left, right;
-  const CameraRig* rig = nullptr;  ///< null when not simulated: then nothing can be painted on the ground
+  const CameraRig* rig = nullptr;  ///< null when not simulated; then nothing can be painted on the ground
   std::vector<Frame> frames;
   double settled = 1.0;  ///< s at the start that do not count
 };
@@ -38,18 +38,18 @@ struct SimulatedFlight {
   Flight flight;
 };
 
-/// A rig and heights that a small image can do: 320 x 240 with a baseline of 2 m, as good as 640 x 480 with 1
-/// m. scenery: around the runway, or null; over it the flight is higher, where more of it is in view.
+/// A rig and heights for a small image: 320 x 240 with a baseline of 2 m is as good as 640 x 480 with 1 m.
+/// scenery: around the runway, or null. Over scenery the flight is higher, so that more of it is in view.
 SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
                                const SceneryKind* scenery = nullptr);
-/// Null where the scene is in the aircraft's way.
+/// Null when the scene is in the aircraft's way.
 std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn);
-/// Of a dataset folder; throws std::runtime_error with what cannot be read.
+/// The flight of a dataset folder. Throws std::runtime_error with what cannot be read.
 Flight readFlight(const std::string& folder);
-/// So many frames of it, from this one on.
+/// A number of its frames, from `first` on.
 Flight cutFlight(const Flight& whole, int first, int frames);
-/// The true height, approach angle, yaw and speed at any time between the frames, two at least: stamps and
-/// pictures may be those of others.
+/// True height, approach angle, yaw and speed at any time between the frames, of which there must be two.
+/// Stamps and images may belong to different times.
 double trueHeight(const Flight& flight, double time);
 double trueAngle(const Flight& flight, double time);
 double trueYaw(const Flight& flight, double time);

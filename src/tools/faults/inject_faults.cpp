@@ -1,5 +1,5 @@
-// Flies simulated approaches or a dataset through the chain with one or two faults from a random moment on,
-// and counts what was available, what was misleading and how long until it was noticed.
+// Flies simulated approaches or a dataset through the chain, with one or two faults from a random moment on.
+// It counts what was available, what was misleading, and how long it took to notice.
 
 #include <algorithm>
 #include <fstream>
@@ -76,7 +76,8 @@ class Campaign {
   }
 
  private:
-  /// Late enough for the chain to have settled, early enough to see what becomes of it after a restart.
+  /// Start of the faults: late enough for the chain to have settled, early enough to see what happens after a
+  /// restart.
   struct Chance {
     Chance(const FaultCombination& faults, uint64_t seed, int frames) : hash(seed) {
       for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);
@@ -84,7 +85,7 @@ class Campaign {
       in_flight = random.uniform(frames * 5 / 20, frames * 7 / 20);
     }
     uint64_t hash;
-    int in_flight;  ///< first frame with the faults that come in flight
+    int in_flight;  ///< first frame with the faults that begin in flight
   };
 
   /// Returns a name for the changed scene; empty when nothing changes it.
@@ -131,7 +132,7 @@ class Campaign {
     std::string name = options_.dataset;
     while (!name.empty() && name.back() == '/') name.pop_back();
     name = name.substr(name.find_last_of('/') + 1);
-    // Without a fault the whole of it: pieces would have frames in common.
+    // Without a fault the whole recording is flown, as pieces would have frames in common.
     for (const FaultCombination& faults : choice_.combinations(seed))
       flyOne(faults == healthy ? recorded : part, name, faults, seed);
   }
@@ -165,7 +166,7 @@ class Campaign {
     row.number(score.healthy_angle_misleading);
     row.number(score.faulted_yaw_known).number(score.yaw_misleading).number(score.worst_yaw_ratio);
     row.number(score.healthy_yaw_known).number(score.healthy_yaw_misleading);
-    file_ << std::endl;  // what is there already can be looked at
+    file_ << std::endl;  // flushed, so that finished rows can be looked at
   }
 
   void trace(const std::string& from, double time, const LandingResult& said, const Flight& flight,

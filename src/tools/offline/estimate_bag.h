@@ -9,8 +9,8 @@
 
 namespace uav_landing {
 
-/// The messages that the nodelets would publish, under the same topics, at the stamps of the images. Pairs
-/// with an unusable image have none, as the nodelets drop them.
+/// Writes the messages that the nodelets would publish, on the same topics, at the stamps of the images.
+/// Pairs with an unusable image have none, because the nodelets drop them.
 class EstimateBag : public PairSink {
  public:
   explicit EstimateBag(const std::string& path);

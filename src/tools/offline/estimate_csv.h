@@ -8,8 +8,8 @@
 
 namespace uav_landing {
 
-/// The estimates as a CSV file, one row per pair, blank where not known. Stamps have 9 decimals, other
-/// numbers 12 significant digits; degrees.
+/// Writes the estimates as a CSV file, one row per pair, blank when unknown. Stamps have 9 decimals, other
+/// numbers 12 significant digits; angles are in degrees.
 class EstimateCsv : public PairSink {
  public:
   explicit EstimateCsv(const std::string& path);

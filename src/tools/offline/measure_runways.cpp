@@ -1,5 +1,5 @@
-// Looks for the runway in single photographs whose vanishing point is known, and counts how often it is found
-// and wrong.
+// Looks for the runway in single photographs whose vanishing point is known. It counts how often the runway
+// is found, and how often the result is wrong.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -26,7 +26,7 @@ using namespace uav_landing;
 
 constexpr double kDegree = M_PI / 180;
 constexpr double kWrong = 1 * kDegree;
-const double kClear = -std::log(kLargestDoubt);  // least margin of a direction that is claimed
+const double kClear = -std::log(kLargestDoubt);  // smallest margin of a direction that is claimed
 
 struct Options {
   std::string folder;
@@ -77,12 +77,12 @@ Expected<Photograph> read(const std::string& folder, const CsvTable& table, size
   return photo;
 }
 
-/// Of a camera without roll.
+/// Normal of a camera without roll.
 Eigen::Vector3d levelNormal(const Eigen::Vector3d& direction) {
   return direction.cross(Eigen::Vector3d::UnitX()).normalized();
 }
 
-/// The direction of the runway on ground with this normal, if one is claimed.
+/// Direction of the runway on ground with this normal, if one is claimed.
 std::optional<Eigen::Vector3d> onGround(const Photograph& photo, const Eigen::Vector3d& normal,
                                         double stddev) {
   const ApproachAngleParameters parameters;

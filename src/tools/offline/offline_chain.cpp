@@ -10,7 +10,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr std::size_t kRowsLookedAt = 5;  // of so many pairs, one
+constexpr std::size_t kRowsLookedAt = 5;  // one in so many pairs is looked at
 
 }  // namespace
 
@@ -60,7 +60,7 @@ void OfflineChain::finish() { release(true); }
 
 void OfflineChain::release(bool all) {
   constexpr double kPatience = 0.5;  // s of the images
-  constexpr size_t kMost = 100;      // pairs, however close their stamps
+  constexpr size_t kMost = 100;      // pairs, however close their stamps are
   while (!waiting_.empty()) {
     const ros::Time stamp = waiting_.front().left->header.stamp;
     const double waited = secondsBetween(stamp, waiting_.back().left->header.stamp);
@@ -85,7 +85,7 @@ void OfflineChain::process(const Waiting& pair) {
   if (imu_ && imu.failure && !imu.hasRotation()) complainOfImu("imu: " + imu.failure.message());
   const Failure problem = run(pair.left, pair.right, skew, imu);
   if (!problem) {
-    // As the nodelets' log: a rig that is mounted wrongly gives nothing on any pair.
+    // Logged as by the nodelets, because a rig that is mounted wrongly gives no result on any pair.
     const Failure& mounting = output_->stereo.failure;
     if (mounting.reason == Reason::kInputInvalid || mounting.reason == Reason::kNegativeDisparity)
       sayOnce(mounting, stamp);

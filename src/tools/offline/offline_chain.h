@@ -20,18 +20,18 @@
 
 namespace uav_landing {
 
-/// Runs the chain on image pairs as they come, for the sinks. Builds it from the first camera_infos, and anew
-/// when they change.
+/// Runs the chain on image pairs as they come, for the sinks. It is built from the first camera_infos, and
+/// again when they change.
 class OfflineChain {
  public:
   /// camera: namespace, for messages. with_imu: messages of an inertial sensor will come, and pairs wait for
-  /// them. complain: takes what the user should know, once per problem.
+  /// them. complain: receives what the user should know, once per problem.
   OfflineChain(const Parameters& parameters, const std::string& camera, bool with_imu,
                std::vector<std::unique_ptr<PairSink>>& sinks,
                std::function<void(const std::string&)> complain);
 
-  /// A pair waits for the imu message after it, as in the nodelets. Left and right are exchanged here where
-  /// the rig is mounted upside down.
+  /// Takes a pair. It waits for the imu message after it, as in the nodelets. Left and right are exchanged
+  /// here when the rig is mounted upside down.
   void process(const sensor_msgs::ImageConstPtr& left, const sensor_msgs::CameraInfoConstPtr& left_info,
                const sensor_msgs::ImageConstPtr& right, const sensor_msgs::CameraInfoConstPtr& right_info);
   void addTransforms(const tf2_msgs::TFMessage& static_transforms);
@@ -42,7 +42,7 @@ class OfflineChain {
 
   std::size_t pairs() const { return pairs_; }
   std::size_t unusable() const { return unusable_; }
-  /// Pairs that were left out because they repeat the pictures of the one before.
+  /// Pairs that were skipped because they repeat the images of the previous one.
   uint64_t repetitions() const { return pictures_.repetitions(); }
   const Failure& firstProblem() const { return first_problem_; }
 
@@ -70,7 +70,7 @@ class OfflineChain {
   CameraPair working_;
   PairGreyRange range_;
   std::optional<Pipeline> pipeline_;
-  std::optional<ImuInput> imu_;  // none: not to be used
+  std::optional<ImuInput> imu_;  // none: not used
   std::deque<Waiting> waiting_;
   PictureWatch pictures_;
   std::string last_imu_complaint_;

@@ -7,13 +7,13 @@
 
 namespace uav_landing {
 
-/// How many pairs were valid, and why the others were not: "161 pairs, 158 valid: not_yet 3", the most
-/// frequent reason first. A line before it has the tests that failed.
+/// Counts how many pairs were valid, and why the others were not: "161 pairs, 158 valid: not_yet 3", the most
+/// frequent reason first. A line before it lists the tests that failed.
 class PairCount : public PairSink {
  public:
   explicit PairCount(std::ostream& out) : out_(out) {}
   void take(const ProcessedPair& pair) override { tally_.add(pair); }
-  /// Prints the lines, and the verdict, where there is one.
+  /// Prints the lines, and the verdict, if there is one.
   void finish() override;
 
  private:

@@ -1,4 +1,5 @@
-// The whole chain offline: reads the image pairs of a bag, writes estimates, messages, timing and pictures.
+// The whole chain offline: reads the image pairs of a bag, and writes estimates, messages, timing and
+// pictures.
 
 #include <algorithm>
 #include <exception>
@@ -26,7 +27,7 @@ struct Options {
   bool imu_needed = false;
 };
 
-/// What goes wrong on the way, to stderr; a stream of ever new problems is cut short.
+/// Problems on the way, written to stderr. A stream of ever new problems is cut short.
 class Complaints {
  public:
   explicit Complaints(const CLI::App& app) : program_(app.get_name()) {}
@@ -54,7 +55,7 @@ std::vector<std::unique_ptr<PairSink>> makeSinks(const Options& options, const P
   return sinks;
 }
 
-/// The part of a split recording that follows, where it lies beside this one and was not given.
+/// The next part of a split recording, if it lies beside this one and was not given.
 std::string nextPart(const std::vector<std::string>& inputs) {
   static const std::regex part("(.*_)([0-9]{1,6})\\.bag");
   std::smatch match;

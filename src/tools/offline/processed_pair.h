@@ -8,12 +8,12 @@
 
 namespace uav_landing {
 
-/// One image pair of a bag and what the chain made of it.
+/// One image pair of a bag and the chain's results.
 struct ProcessedPair {
   ros::Time stamp;         ///< of the left image
   std::string left_frame;  ///< frame_id of the left image
   double skew;             ///< right minus left stamp, s
-  /// Set when an image could not be used: then only output.landing means something (nothing is valid).
+  /// Set when an image could not be used. Then only output.landing has a meaning (nothing is valid).
   Failure unusable;
   const StereoRig& rig;
   const Pipeline::Output& output;

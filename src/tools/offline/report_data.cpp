@@ -84,7 +84,7 @@ void ReportData::writePictures(const ProcessedPair& pair, const cv::Mat& overlay
 }
 
 void ReportData::finish() {
-  // The columns are known only now: rows end where their last known column was.
+  // The columns are known only now, because rows end with the last column that they knew.
   rows_file_.close();
   std::ifstream rows(rows_.temporary());
   std::ofstream table(table_.temporary());

@@ -11,13 +11,13 @@
 
 namespace uav_landing {
 
-/// What `evaluate --report` needs besides the estimates, in one folder: timing.csv (stamp_s and, for each
-/// part of the stages, the time it took, ms; overlay is the time to draw the picture) and pictures of five
-/// frames spread over the bag: lines_left_N.png, lines_right_N.png (the paper's Figure 4), matches_N.png
+/// Writes what `evaluate --report` needs besides the estimates, in one folder. timing.csv has stamp_s and,
+/// for each part of the stages, its time in ms; overlay is the time to draw the picture. Pictures of five
+/// frames are spread over the bag: lines_left_N.png, lines_right_N.png (the paper's Figure 4), matches_N.png
 /// (Figure 5), overlay_N.png.
 class ReportData : public PairSink {
  public:
-  /// Makes the folder. pairs: how many are expected, to choose the frames.
+  /// Makes the folder. pairs: expected number, to choose the frames.
   ReportData(const std::string& folder, std::size_t pairs, const OverlayParameters& overlay);
   void take(const ProcessedPair& pair) override;
   void finish() override;

@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// Distribution of times in bounded memory: mean, worst and total are exact, quantiles to 1 %.
+/// Distribution of times in limited memory. Mean, worst and total are exact, quantiles to 1 %.
 class TimeStatistics {
  public:
   void add(double ms);
@@ -27,12 +27,12 @@ class TimeStatistics {
   double total_ = 0, worst_ = 0;
 };
 
-/// The paper's Table 1: time per part of the stages and in all.
+/// The paper's Table 1: time per part of the stages and in total.
 class TimingTable : public PairSink {
  public:
   explicit TimingTable(std::ostream& out) : out_(out) {}
   void take(const ProcessedPair& pair) override;
-  /// Prints the table, what takes longest first.
+  /// Prints the table, the longest time first.
   void finish() override;
 
  private:
@@ -40,7 +40,7 @@ class TimingTable : public PairSink {
   void print(const std::string& name, const TimeStatistics& times);
 
   std::ostream& out_;
-  std::vector<std::pair<std::string, TimeStatistics>> parts_;  ///< as they came, until finish()
+  std::vector<std::pair<std::string, TimeStatistics>> parts_;  ///< in order of appearance, until finish()
   TimeStatistics all_;
 };
 

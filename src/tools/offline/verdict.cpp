@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr std::size_t kFewPairs = 10;  // tell nothing of a recording
+constexpr std::size_t kFewPairs = 10;  // fewer tell nothing of a recording
 
 std::size_t countOf(const std::map<std::string, std::size_t>& counts, const std::string& name) {
   const auto found = counts.find(name);
@@ -34,7 +34,7 @@ std::string causeOf(const PairTally& tally) {
     return "left and right images are swapped, or the calibration was made with them swapped: give each "
            "camera its own topic (convert_recording bag … --left … --right …)";
   const double repeating = share.test(IntegrityTest::kRepeatedImage);
-  // One camera alone that repeats its pictures hangs; both at once may as well see nothing that moves.
+  // If one camera alone repeats its images, it is frozen. If both do, they may just see nothing that moves.
   if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
     return "the pictures of both cameras come again, bit by bit: the cameras stand still and have no noise "
            "(a simulator), or the driver sends no new pictures";
@@ -91,7 +91,7 @@ std::string verdictOf(const PairTally& tally) {
   if (!cause.empty()) return cause;
   const auto most = std::max_element(tally.reasons.begin(), tally.reasons.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  return "most pairs are " + most->first + ": see Troubleshooting in README.md";
+  return "most pairs are " + most->first + ": see docs/troubleshooting.md";
 }
 
 }  // namespace uav_landing

@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// One row per scored frame of a campaign: what was drawn, the truth, the estimates and their claimed
+/// Writes one row per scored frame of a campaign: what was drawn, the truth, the estimates and their claimed
 /// standard deviations. The file gets its name when it is complete.
 class CampaignCsv {
  public:

@@ -6,8 +6,8 @@
 
 namespace uav_landing {
 
-/// Seeds that differ by 1 become seeds that have nothing in common (the finaliser of SplitMix64, Steele et
-/// al. 2014): cv::RNG's first numbers after similar seeds are similar.
+/// Makes seeds that differ by 1 completely different (the finaliser of SplitMix64, Steele et al. 2014),
+/// because cv::RNG's first numbers after similar seeds are similar.
 inline uint64_t hashed(uint64_t seed) {
   seed += 0x9E3779B97F4A7C15ULL;
   seed = (seed ^ (seed >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -15,12 +15,12 @@ inline uint64_t hashed(uint64_t seed) {
   return seed ^ (seed >> 31);
 }
 
-/// cv::RNG and not <random>: the same numbers with every standard library.
+/// Uses cv::RNG instead of <random>, to get the same numbers with every standard library.
 class Draw {
  public:
   explicit Draw(uint64_t seed) : random_(hashed(seed)) {}
   double uniform(double from, double to) { return random_.uniform(from, to); }
-  /// A size for which factors count: as often between 1 and 2 as between 2 and 4.
+  /// A size for which factors count: equally often between 1 and 2 as between 2 and 4.
   double scale(double from, double to) { return from * std::exp(uniform(0, std::log(to / from))); }
   double normal(double stddev) { return random_.gaussian(stddev); }
   bool chance(double probability) { return uniform(0, 1) < probability; }

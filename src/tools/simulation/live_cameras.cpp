@@ -17,9 +17,9 @@ namespace {
 const ros::Duration kTick(0.01);  // of the clock
 constexpr uint32_t kQueue = 10;
 constexpr double kPatience = 600;           // s, until somebody subscribes
-constexpr double kConnectionPatience = 20;  // s, until all that subscribe are connected
+constexpr double kConnectionPatience = 20;  // s, until all subscribers are connected
 
-/// How many nodes the master knows to subscribe each topic; nothing when it does not answer.
+/// Number of nodes that subscribe each topic, according to the master; empty when it does not answer.
 std::map<std::string, uint32_t> countSubscribers() {
   std::map<std::string, uint32_t> counts;
   XmlRpc::XmlRpcValue request, response, state;

@@ -11,22 +11,22 @@
 
 namespace uav_landing {
 
-/// Publishes image pairs as the driver of two triggered cameras does, and the clock that their stamps are of:
+/// Publishes image pairs as the driver of two triggered cameras does, and the clock of their stamps:
 /// /CAMERA/{left,right}/{image_raw,camera_info}, /truth/landing_estimate, /clock. Sets /use_sim_time. Needs
-/// ros::init() and a master. The clock never runs ahead of the pictures: when they come late, time passes
-/// more slowly.
+/// ros::init() and a master. The clock never runs ahead of the images: when they come late, time passes more
+/// slowly.
 class LiveCameras {
  public:
-  /// speed: seconds of the clock in a second, at most.
+  /// speed: largest number of seconds of the clock per second.
   LiveCameras(const std::string& camera, const sensor_msgs::CameraInfo& left,
               const sensor_msgs::CameraInfo& right, double speed);
 
-  /// Until both cameras have a subscriber, and all that the master knows to subscribe one of the topics are
-  /// connected, so that nobody misses the first pairs; for those twenty seconds at most, as one may have
-  /// died. The clock stands at start. False when ROS was shut down; throws when nobody subscribes for ten
-  /// minutes.
+  /// Waits until both cameras have a subscriber and all subscribers known to the master are connected, so
+  /// that nobody misses the first pairs. For the latter it waits at most twenty seconds, because a subscriber
+  /// may have died. The clock stands at start. False when ROS was shut down; throws when nobody subscribes
+  /// for ten minutes.
   bool waitForSubscribers(const ros::Time& start);
-  /// Puts the clock forward.
+  /// Sets the clock.
   void setClock(const ros::Time& now);
   /// Lets the clock run to the stamp and publishes the pair: raw mono8. False when ROS was shut down.
   bool publish(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right, const Truth& truth);

@@ -1,5 +1,5 @@
 // Compares the errors of the stereo plane with the Cramer-Rao bound, over noise levels and heights, in
-// simulated pairs. Writes a CSV: one row for each noise and height.
+// simulated pairs. Writes a CSV: one row per noise level and height.
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -41,7 +41,7 @@ Triple variances(const GroundPlane& plane) {
   return {plane.heightVariance(), pitchVariance(n, covariance), rollVariance(n, covariance)};
 }
 
-/// A pair of pictures of the same ground without noise, grey levels as 32-bit floats, and the true plane.
+/// A pair of images of the same ground without noise, grey levels as 32-bit floats, and the true plane.
 struct Scenery {
   StereoRig rig;
   RigModel model;
@@ -86,17 +86,17 @@ Expected<Scenery> render(const SimulatorParameters& parameters) {
 
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-/// What a patch of the left image says of the plane, gain and offset.
+/// Information of a patch of the left image on the plane, gain and offset.
 struct Patch {
-  // Fisher's, at noise of 1 grey level, the texture's gradients known.
+  // Fisher's information, at noise of 1 grey level, if the texture's gradients are known.
   Matrix5d information = Matrix5d::Zero();
-  // Of its frequencies: power spectral density, and that times the squared frequency along u.
+  // Its spectrum: power spectral density, and this times the squared frequency along u.
   std::vector<double> power, slope;
 };
 
 constexpr int kPatch = 16;  // pixels
 
-/// Periodogram of a patch (Hann window, without its mean): white noise has its variance at all frequencies.
+/// Periodogram of a patch (Hann window, without its mean). White noise has its variance at all frequencies.
 void addSpectrum(const cv::Mat& image, int u, int v, Patch& patch) {
   cv::Mat window, part = image(cv::Rect(u, v, kPatch, kPatch)).clone(), spectrum;
   cv::createHanningWindow(window, cv::Size(kPatch, kPatch), CV_32F);
@@ -113,9 +113,9 @@ void addSpectrum(const cv::Mat& image, int u, int v, Patch& patch) {
   }
 }
 
-/// What the pixels of a patch say that are ground and that both images see. Left and right are two noisy
-/// views of one unknown texture: their difference has twice the variance of each (more exactly, the right one
-/// samples it 1 - a times as densely, with the disparity changing by a for each column).
+/// Information of those pixels of a patch that are ground and in both images. Left and right are two noisy
+/// views of one unknown texture, so their difference has twice the variance of each. (More exactly, the right
+/// one samples it 1 - a times as densely, if the disparity changes by a per column.)
 Matrix5d informationOf(const Scenery& scenery, int left, int top) {
   const StereoRig& rig = scenery.rig;
   const cv::Mat& image = scenery.left;
@@ -151,9 +151,9 @@ std::vector<Patch> groundPatches(const Scenery& scenery) {
   return patches;
 }
 
-/// Share of the information that is left when the texture has to be told from the noise as well: two noisy
-/// views of a texture of power S agree at a frequency as if there were S / (S + N) of it in each, and what is
-/// left of S / 2N is S^2 / (N (2 S + N)) (the delay between two receivers: Knapp, Carter, 1976).
+/// Share of the information that is left when the texture is unknown as well. At a frequency with the power
+/// S, two noisy views agree as if there were S / (S + N) of the texture in each. Of S / 2N, S^2 / (N (2 S +
+/// N)) is left (the delay between two receivers: Knapp, Carter, 1976).
 double shareOfUnknownTexture(const Patch& patch, double noise) {
   double known = 0, unknown = 0;
   for (size_t i = 0; i < patch.power.size(); ++i) {
@@ -163,8 +163,8 @@ double shareOfUnknownTexture(const Patch& patch, double noise) {
   return known > 0 ? unknown / known : 0;
 }
 
-/// The least covariances of g that an unbiased estimator could have: who knows the texture's gradients, and
-/// who has the two images only. Gain and offset between the images are unknown.
+/// Smallest covariances of g that an unbiased estimator can have: with known gradients of the texture, and
+/// with the two images only. Gain and offset between the images are unknown.
 struct Bounds {
   Eigen::Matrix3d known, unknown;
 };
@@ -181,7 +181,7 @@ Bounds boundsAt(const std::vector<Patch>& patches, double noise) {
   return {ofPlane(known), ofPlane(unknown)};
 }
 
-/// Sums over the pairs of one noise and height.
+/// Sums over the pairs of one noise level and height.
 struct Sums {
   int pairs = 0, failed = 0;
   Triple bound = Triple::Zero(), unknown = Triple::Zero(), claimed = Triple::Zero();

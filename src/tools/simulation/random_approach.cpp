@@ -89,7 +89,7 @@ void drawWobble(Draw& draw, SimulatedWobbleParameters& wobble) {
   wobble.heave_period = draw.scale(2.5, 8);
 }
 
-/// Everything but where the path begins and how long it is.
+/// Everything but the start of the path and its length.
 SimulatorParameters drawFlight(Draw& draw) {
   SimulatorParameters p;
   p.random.seed = draw.seed();
@@ -108,7 +108,7 @@ SimulatorParameters drawFlight(Draw& draw) {
   return p;
 }
 
-/// Puts the aircraft on its glide to a point beyond the threshold, this high.
+/// Puts the aircraft on its glide to a point beyond the threshold, at this height.
 void place(double height, double touchdown, double y, SimulatedPathParameters& path) {
   path.start_height = height;
   path.start_x = touchdown - height / std::tan(path.glide_angle_deg * kDegree);
@@ -119,7 +119,7 @@ void place(double height, double touchdown, double y, SimulatedPathParameters& p
 
 CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_length) {
   CalibrationPrior prior;
-  // The simulator's ground is flat here: a baseline error stands for what the height may be wrong by in all.
+  // The simulator's ground is flat here, so an error of the baseline stands for all errors of the height.
   prior.baseline = parameters.kalman_height.height_model_error;
   prior.rx = prior.ry = prior.rz = parameters.stereo_depth.disparity_bias_stddev / focal_length;
   prior.lens_rows = parameters.stereo_depth.row_bias_stddev;
@@ -141,7 +141,7 @@ SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const 
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   const double y = draw.uniform(-0.35, 0.35) * p.runway.width;
   place(height + sink * p.path.duration, draw.uniform(0, 400), y, p.path);
-  Draw lens(hashed(seed));  // of its own, so that everything else is the same with it
+  Draw lens(hashed(seed));  // separate, so that everything else is the same with it
   drawLens(lens, prior, p.rig);
   if (imu) drawImu(draw, prior, p.imu);
   return p;
@@ -172,7 +172,7 @@ SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters, bo
   constexpr double kStart = 60;  // m
   const double sink = p.path.speed * std::sin(p.path.glide_angle_deg * kDegree);
   p.path.flare_duration = 3;
-  // In the flare it loses a little more than half of what it would lose without, and ends in a level flight.
+  // In the flare it descends a little more than half as far as without it, and ends in level flight.
   p.path.flare_height = 0.6 * p.path.flare_duration * sink + draw.uniform(1.5, 4);
   p.path.flare_angle_deg = draw.uniform(0.3, 1.0);
   p.path.flare_pitch_deg = draw.uniform(0, 3);
@@ -180,7 +180,7 @@ SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters, bo
     p.gust.speed = draw.uniform(-2, 2);
     p.gust.duration = draw.uniform(1, 2.5);
     p.gust.start = draw.uniform(0.2, 0.8) * (kStart - p.path.flare_height) / sink;
-    // The gust leaves the aircraft lower by this: it flares at the same true height.
+    // The gust leaves the aircraft lower by this amount, so that it flares at the same true height.
     p.path.flare_height += 0.5 * p.gust.speed * p.gust.duration;
   }
   p.path.duration = (kStart - p.path.flare_height) / sink + p.path.flare_duration;

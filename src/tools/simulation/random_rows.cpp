@@ -4,7 +4,7 @@
 namespace uav_landing {
 
 void drawRollingShutter(uint64_t seed, SimulatorParameters& flight) {
-  Draw draw(hashed(~hashed(seed)));  // of its own, so that everything else is the same with it
+  Draw draw(hashed(~hashed(seed)));  // separate, so that everything else is the same with it
   SimulatedImageParameters& image = flight.image;
   image.readout_time = draw.scale(0.005, 0.04);
   if (draw.chance(0.2)) image.readout_time *= -1;

@@ -49,7 +49,7 @@ void drawWater(Draw& draw, SimulatedWaterParameters& water) {
   water.beach_brightness = draw.uniform(100, 190);
 }
 
-/// As often to the left as to the right, and between these distances.
+/// Equally often on the left and on the right, between these distances.
 double drawBothSides(Draw& draw, double from, double to) {
   const double side = draw.chance(0.5) ? 1 : -1;
   return side * draw.uniform(from, to);
@@ -94,7 +94,7 @@ void drawElements(Draw& draw, const Shares& share, SimulatorParameters& flight) 
   p.river.direction_deg = -draw.uniform(30, 150);
   if (draw.chance(share.river)) p.river.width = draw.uniform(8, 60);
   drawWater(draw, p.shore);
-  // Its water lies to the left of it, away from the runway.
+  // Its water lies on its left, away from the runway.
   p.shore.y = drawBothSides(draw, half + 60, half + 300);
   p.shore.direction_deg = (p.shore.y > 0 ? 0 : 180) + draw.uniform(-15, 15);
   if (p.shore.direction_deg > 180) p.shore.direction_deg -= 360;
@@ -130,7 +130,7 @@ void drawHill(Draw& draw, SimulatorParameters& flight) {
   profile.hill_height = std::min(draw.uniform(3, 15), 0.5 * above);
 }
 
-/// Leaves what belongs to such a landscape.
+/// Keeps the elements that belong to such a landscape.
 void keepElements(SceneryKind kind, SimulatedSceneryParameters& all) {
   SimulatedSceneryParameters kept;
   kept.grass_strip = all.grass_strip;
@@ -163,7 +163,7 @@ void drawScenery(uint64_t seed, SimulatorParameters& flight) {
 }
 
 void drawScenery(SceneryKind kind, uint64_t seed, SimulatorParameters& flight) {
-  Draw draw(hashed(~seed));  // of its own, so that everything else is the same with it
+  Draw draw(hashed(~seed));  // separate, so that everything else is the same with it
   const bool random = kind == SceneryKind::kRandom;
   drawElements(draw, random ? Shares() : Shares::certain(), flight);
   if (!random) keepElements(kind, flight.scenery);

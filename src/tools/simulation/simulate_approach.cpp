@@ -1,4 +1,4 @@
-// Renders an approach with ground truth into a bag and, if wanted, into a dataset folder; or publishes it.
+// Renders an approach with ground truth into a bag and, on request, into a dataset folder; or publishes it.
 
 #include <cmath>
 #include <iostream>
@@ -27,14 +27,14 @@ struct Options {
   std::optional<double> duration;
 };
 
-/// Stamp of a frame; the first is 100 s, because a stamp of 0 means that there is none.
+/// Stamp of a frame. The first one is 100 s, because a stamp of 0 means that there is none.
 ros::Time stampOf(double time) {
   ros::Time stamp;
   return stamp.fromNSec(100000000000ULL + static_cast<uint64_t>(std::llround(time * 1e9)));
 }
 
-/// Publishes all frames as running cameras do, once or until ROS is shut down. A new round begins a
-/// minute of the clock later, so that it is another approach.
+/// Publishes all frames as running cameras do, once or until ROS is shut down. A new round begins a minute
+/// later by the clock, so that it is another approach.
 void fly(const ApproachSimulator& simulator, LiveCameras& cameras, bool loop) {
   if (!cameras.waitForSubscribers(stampOf(0))) return;
   double start = 0;

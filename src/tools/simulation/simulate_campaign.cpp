@@ -31,12 +31,12 @@ T orThrow(Expected<T>&& value, uint64_t seed) {
   throw std::runtime_error("seed " + std::to_string(seed) + ": " + value.error().message());
 }
 
-/// Runs one flight at several noise levels: what the cameras see is rendered once. visit(sample, frame's
+/// Runs one flight at several noise levels; the view of the cameras is rendered once. visit(sample, frame's
 /// truth, output) is called for every frame and noise level.
 template <class Visitor>
 void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vector<double>& noise,
          CampaignCsv::Sample sample, Visitor&& visit) {
-  // A flight of a few frames shows what comes after the search.
+  // A flight of a few frames should show what comes after the search.
   parameters.stereo_depth.search_at_once = parameters.approach_angle.search_at_once = true;
   parameters.rig.readout_time = drawn.image.readout_time;
   parameters.rig.stamp_row = drawn.image.stamp_row;
@@ -60,13 +60,13 @@ void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vec
       const ApproachSimulator::Frame frame = simulator.expose(light, noise[i]);
       sample.noise = noise[i];
       sample.time = frame.time;
-      // Stamps of 0 mean that there is none.
+      // A stamp of 0 would mean that there is none.
       visit(sample, frame.truth, pipelines[i].process(100 + frame.time, frame.left, frame.right, 0, prior));
     }
   }
 }
 
-/// Draws what is asked for besides the flight.
+/// Draws the options that come on top of the flight.
 void drawMore(const Options& options, uint64_t seed, SimulatorParameters& drawn) {
   if (options.scenery) drawScenery(seed, drawn);
   if (options.rolling_shutter) drawRollingShutter(seed, drawn);

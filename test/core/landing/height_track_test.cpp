@@ -53,8 +53,8 @@ TEST(HeightTrack, SearchesUntilThereIsAHeight) {
 
 TEST(HeightTrack, AHeightIsBelievedOnceThreeInARowAgree) {
   Pairs pairs;
-  EXPECT_EQ(pairs.see(10).failure.message(), "not_yet: 1 of 3 agreeing heights");
-  EXPECT_EQ(pairs.see(10).failure.message(), "not_yet: 2 of 3 agreeing heights");
+  EXPECT_EQ(pairs.see(10).failure.message(), "not_yet: agreeing heights so far: 1 of 3 needed");
+  EXPECT_EQ(pairs.see(10).failure.message(), "not_yet: agreeing heights so far: 2 of 3 needed");
   const TrackVerdict third = pairs.see(10);
   EXPECT_EQ(third.status, Status::kTracking);
   EXPECT_TRUE(third.height_valid && third.confirmed);

@@ -97,7 +97,7 @@ TEST(RecoveryWait, SaysForHowLongNothingHasContradicted) {
   pairs.contradictTooLong();
   for (int i = 0; i < 3; ++i) pairs.agree();
   EXPECT_EQ(pairs.agree().message(),
-            "inconsistent: after contradictions nothing has contradicted for 0.4 s only, 1 s needed");
+            "inconsistent: recovering: the tests have passed for 0.4 s, 1 s required");
 }
 
 TEST(RecoveryWait, AContradictionBeginsTheSecondAnew) {

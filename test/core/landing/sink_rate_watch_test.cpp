@@ -73,8 +73,9 @@ TEST(SinkRateWatch, ComparesWithAHeightOfHalfASecondAgo) {
 TEST(SinkRateWatch, AHeightThatLeapsWithoutTheMotionIsNotValid) {
   Flight flight;
   flight.settle();
-  EXPECT_EQ(flight.fly(11, 0).message(),
-            "inconsistent: sink_rate: the height is off by 1 m from the one before and the motion since");
+  EXPECT_EQ(
+      flight.fly(11, 0).message(),
+      "inconsistent: sink_rate: the height differs by 1 m from the earlier height carried on by the motion");
   EXPECT_EQ(test::failedOf(flight.tests), "sink_rate");
   EXPECT_FALSE(flight.fly(10, 0)) << "the height remembered is the right one";
 }

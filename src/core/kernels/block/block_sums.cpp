@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight;
 
-// What the rows of a block are interpolated from: of each row the first value lies begin (0 to 2) behind the
-// second pixel, each further one a step behind the last. Floats, made for all rows before any is
-// interpolated. Neighbouring places must be in neighbouring pixels, but for one place from which on they are
-// one further.
+// Pixels from which the rows of a block are interpolated. In each row the first value lies begin (0 to 2)
+// behind the second pixel, and each further one a step behind the last. They are floats, made for all rows
+// before any is interpolated. Neighbouring places must lie in neighbouring pixels, except for one place from
+// which on they are one further.
 class RowPixels {
  public:
   static bool possible(float step) { return std::abs(step - 1) * (kWidth - 1) < 0.99f; }
@@ -52,7 +52,7 @@ class RowPixels {
     }
   }
 
-  // Of row y the values from the k-th kLanes on.
+  // The k-th kLanes values of row y.
   [[gnu::always_inline]] inline void interpolate(int y, int k, Lanes& values) const {
     const float* p = &pixel_[y][k * kLanes];
     Lanes t;
@@ -69,7 +69,7 @@ class RowPixels {
   static constexpr int kParts = kWidth / kLanes;
   std::array<std::array<float, kRead>, kHeight> pixel_;
   std::array<std::array<float, kHeight>, kParts> begin_;
-  std::array<std::array<int, kHeight>, kParts> none_further_;  // whether of these values
+  std::array<std::array<int, kHeight>, kParts> none_further_;  // whether none of these values is one further
   float drift_;
 };
 
@@ -83,8 +83,8 @@ inline void sampleRow(const uchar* row, float x, float step, BlockRow& value) {
   }
 }
 
-// The sums of the columns. values: function (row, k, Lanes&) of the values from the k-th kLanes on. Counted
-// from the grey level reference, so that floats are exact enough for the differences of sums.
+// Sums over the columns. values: function (row, k, Lanes&) of the k-th kLanes values. Values are counted from
+// the grey level reference, so that floats are exact enough for differences of sums.
 struct ColumnSums {
   BlockRow r, squares, greys, slopes;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kBlockPixels;
 
-// The grey levels of a block with two more pixels to all sides.
+// The grey levels of a block with two more pixels on all sides.
 class Surroundings {
  public:
   [[gnu::always_inline]] inline void read(const cv::Mat& image, int u, int v) {
@@ -24,10 +24,10 @@ class Surroundings {
     }
   }
 
-  // Of the block's pixels from (x, y) on.
+  // The block's pixels from (x, y) on.
   [[gnu::always_inline]] inline void greys(int x, int y, Lanes& out) const { load(at(x, y), out); }
 
-  // The difference of the pixels to the right and to the left.
+  // Difference between the pixels to the right and to the left.
   [[gnu::always_inline]] inline void difference(int x, int y, Lanes& out) const {
     Lanes before, after;
     load(at(x - 1, y), before);
@@ -35,7 +35,7 @@ class Surroundings {
     out = after - before;
   }
 
-  // Of fourth order: the difference of two neighbours would see too little of a sharp edge.
+  // Derivative of fourth order, because the difference of two neighbours sees too little of a sharp edge.
   [[gnu::always_inline]] inline void derivative(int x, int y, int dx, int dy, Lanes& out) const {
     Lanes before2, before, after, after2;
     const float* place = at(x, y);
@@ -81,9 +81,9 @@ class Surroundings {
 }  // namespace
 
 UAV_LANDING_MULTIVERSION int slopeEnergy(const uchar* first, std::ptrdiff_t stride) {
-  std::array<short, kPixels + 2 * kWidth> differences;  // of neighbours, also of the rows above and below
-  std::array<short, kPixels> slopes;    // one after the other: the compiler knows instructions for that
-  std::array<short, kWidth> columns{};  // sums of eight of up to 4 * 255
+  std::array<short, kPixels + 2 * kWidth> differences;  // of neighbours, also for the rows above and below
+  std::array<short, kPixels> slopes;    // one after the other, as the compiler knows instructions for that
+  std::array<short, kWidth> columns{};  // sums of eight values of up to 4 * 255
   const uchar* row = first - stride;
   for (int y = 0; y < kHeight + 2; ++y, row += stride)
     for (int x = 0; x < kWidth; ++x)
@@ -105,7 +105,7 @@ UAV_LANDING_MULTIVERSION void measureTexture(const cv::Mat& image, int u, int v,
   BlockRow grey_sum, slope_sum;
   findSlopes(pixels, texture.slope.data(), grey_sum, slope_sum);
   const float grey_mean = sumOf(grey_sum) / kPixels, slope_mean = sumOf(slope_sum) / kPixels;
-  // Of the columns.
+  // Sums of the columns.
   BlockRow grey_squares, squares, products, downs, down_greys, down_slopes, along_greys, along_slopes;
   for (int x = 0; x < kWidth; x += kLanes) {
     Lanes gg{}, ss{}, gs{}, ss_y{}, dg{}, ds{}, ag{}, as{};

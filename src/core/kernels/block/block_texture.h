@@ -10,16 +10,16 @@ namespace uav_landing {
 
 constexpr int kBlockPixels = kBlockWidth * kBlockHeight;
 
-/// How many times a derivative Sobel's 3 x 3 kernel is.
+/// Factor of Sobel's 3 x 3 kernel over a derivative.
 constexpr float kSobelScale = 8.f;
 
-/// Sum of the squares of a block's derivatives along the row, by Sobel's kernel and not scaled, less their
-/// mean. first: the block's first pixel, of a mono8 image; stride: from row to row. There must be a pixel to
-/// all sides of the block.
+/// Sum of the squares of a block's derivatives along the row minus their mean, by Sobel's kernel, not scaled.
+/// first: the block's first pixel, of a mono8 image. stride: from row to row. One pixel on all sides of the
+/// block must exist.
 int slopeEnergy(const uchar* first, std::ptrdiff_t stride);
 
-/// Grey levels of a block and its slopes, the derivatives along the row by Sobel's kernel, each without its
-/// mean, and sums over the pixels of their products.
+/// Grey levels of a block and its slopes, which are the derivatives along the row by Sobel's kernel, each
+/// without its mean. Then sums over the pixels of their products.
 struct BlockTexture {
   float grey_energy, slope_energy, both;  ///< grey^2, slope^2, grey slope
   float moment_u, moment_v;               ///< slope^2 times the column and the row, from the first pixel on
@@ -28,7 +28,7 @@ struct BlockTexture {
   std::array<float, kBlockPixels> grey, slope;  ///< row by row
 };
 
-/// Of the block whose first pixel is (u, v), in a mono8 image with two more pixels to all sides of it.
+/// Measures the block whose first pixel is (u, v), in a mono8 image with two more pixels on all sides of it.
 void measureTexture(const cv::Mat& image, int u, int v, BlockTexture& texture);
 
 }  // namespace uav_landing

@@ -6,7 +6,7 @@
 namespace uav_landing {
 namespace {
 
-// Of fourth order: the difference of two neighbours sees too little of fine texture.
+// Derivative of fourth order, because the difference of two neighbours sees too little of fine texture.
 [[gnu::always_inline]] inline void derivative(const float* at, std::ptrdiff_t step, Lanes& out) {
   Lanes before2, before, after, after2;
   load(at - 2 * step, before2);

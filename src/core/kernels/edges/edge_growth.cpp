@@ -9,13 +9,13 @@ namespace uav_landing {
 
 namespace {
 
-constexpr int kFirstLook = 3;         // stations to each side after which texture is mostly told
-constexpr int kDense = 8;             // stations to each side after which every other row will do
+constexpr int kFirstLook = 3;         // stations on each side after which texture mostly shows
+constexpr int kDense = 8;             // stations on each side after which every second row is enough
 constexpr double kSameEdge = 1.25;    // px from the line
-constexpr int kLeft = 3, kRight = 4;  // pixels that are loaded with the middle one
+constexpr int kLeft = 3, kRight = 4;  // pixels loaded together with the middle one
 
 /// Column of the strongest brightness step of this sign along a row, within a pixel of a place; -1 when it is
-/// weaker than this.
+/// weaker than least.
 [[gnu::always_inline]] inline int strongestStep(const PixelRows& pixels, int row, int middle, int sign,
                                                 int least) {
   if (middle < kLeft || middle + kRight >= pixels.columns) return -1;
@@ -24,8 +24,8 @@ constexpr int kLeft = 3, kRight = 4;  // pixels that are loaded with the middle 
   const cv::v_int16x8 sums = cv::v_reinterpret_as_s16(here + here + cv::v_load_expand(pixel - pixels.step) +
                                                       cv::v_load_expand(pixel + pixels.step));
   const cv::v_int16x8 steps = cv::v_rotate_right<2>(sums) - sums;  // i: across pixel middle - 2 + i
-  // Of steps that are as strong the one in the middle, then the one before: that is in the lowest bits, of
-  // which the lower two are the place from middle - 1.
+  // Among equal steps the middle one wins, then the one before. This order is in the lowest bits; the lower
+  // two of them are the place from middle - 1.
   constexpr short kBase = 8, kPlace = 3, kBefore = 4 + 0, kMiddle = 4 + 1, kAfter = 2;
   const cv::v_int16x8 coded = cv::v_mul_wrap(steps, cv::v_setall_s16(static_cast<short>(kBase * sign))) +
                               cv::v_int16x8(0, kBefore, kMiddle, kAfter, 0, 0, 0, 0);
@@ -34,7 +34,7 @@ constexpr int kLeft = 3, kRight = 4;  // pixels that are loaded with the middle 
   return strongest < kBase * least ? -1 : middle - 1 + (strongest & kPlace);
 }
 
-/// Stations to one side of the seed.
+/// Stations on one side of the seed.
 struct Side {
   int step, most;  ///< most: to the image's border
   int end = 0, misses = 0;
@@ -62,8 +62,8 @@ UAV_LANDING_MULTIVERSION GrownEdge growEdge(const PixelRows& image, const EdgeMa
       if (!side.open) continue;
       const int station = side.step * distance, v = seed.v + station;
       ++looked;
-      // The line as it was one fit ago mostly leads to the same pixel. So that is looked at while the fit is
-      // still waited for.
+      // The line of one fit ago mostly leads to the same pixel, so that pixel is read while the fit is still
+      // computed.
       const double expected = u + now.at(station);
       const int middle = static_cast<int>(expected + 0.5);
       const int guess = static_cast<int>(u + before.at(station) + 0.5);

@@ -12,7 +12,8 @@ struct Straight {
   double at(double v) const { return offset + slope * v; }
 };
 
-/// Straight line u = u0 + slope v through the stations seen so far, by least squares; v from the start.
+/// Straight line u = u0 + slope v through the stations seen so far, by least squares; v is counted from the
+/// start.
 class GrowingLine {
  public:
   explicit GrowingLine(double slope) : first_slope_(slope), straight_{0, slope} {}
@@ -25,11 +26,11 @@ class GrowingLine {
     svu_ += v * u;
     suu_ += u * u;
   }
-  /// To what has been added.
+  /// Fits the line to the stations added.
   void fit() {
-    constexpr double kSlopePrior = 10;  // stations that the slope expected is worth
+    constexpr double kSlopePrior = 10;  // number of stations that the expected slope is worth
     const double svv = svv_ + kSlopePrior, svu = svu_ + kSlopePrior * first_slope_;
-    // One division for both: the next stations wait for it.
+    // One division for both, because the next stations wait for it.
     const double determinant = n_ * svv - sv_ * sv_, inverse = 1 / (n_ * determinant);
     straight_.slope = (n_ * svu - sv_ * su_) * (n_ * inverse);
     straight_.offset = (su_ - straight_.slope * sv_) * (determinant * inverse);
@@ -51,7 +52,7 @@ class GrowingLine {
   Straight straight_;
 };
 
-/// Where edges may be, in an image or in a transposed one.
+/// Pixels where edges may be, in an image or in a transposed one.
 class EdgeMask {
  public:
   EdgeMask(const cv::Mat& mask, bool transposed)
@@ -66,14 +67,14 @@ class EdgeMask {
   std::ptrdiff_t along_row_, to_next_row_;
 };
 
-/// Of a mono8 image.
+/// Pixels of a mono8 image.
 struct PixelRows {
   const uchar* first;
   std::ptrdiff_t step;
   int columns, rows;
 };
 
-/// Pixel that a line grows from, the sign of the gradient along its row, and the slope expected, columns a
+/// Pixel that a line grows from, the sign of the gradient along its row, and the expected slope, columns per
 /// row.
 struct Seed {
   int u, v, sign;
@@ -82,10 +83,10 @@ struct Seed {
 
 struct GrowthLimits {
   int least;       ///< Sobel response across an edge
-  double max_gap;  ///< px, inside a line
+  double max_gap;  ///< px, within a line
 };
 
-/// A line, and its ends and stations: rows from the seed's.
+/// A line, its ends and its stations; these are rows counted from the seed's.
 struct GrownEdge {
   GrowingLine line;
   int from, to;

@@ -15,10 +15,10 @@ constexpr int kRadius = 3;                      // px from the centre up to whic
 static_assert(kAtOnce == EdgeColumns::kAtOnce && EdgeColumns::kMost % kAtOnce == 0 && kAtOnce % kLanes == 0,
               "whole groups");
 
-// Column k of eight rows of eight pixels each: pixel k of all of them, from the offset on.
+// Pixels k of eight rows, in column k, from the offset on.
 [[gnu::always_inline]] inline void loadColumns(const uchar* const* rows, int offset,
                                                std::array<cv::v_int16x8, kAtOnce>& columns) {
-  // Interleaving the upper half of the rows with the lower one three times turns rows into columns.
+  // Interleaving the upper half of the rows with the lower half three times turns rows into columns.
   std::array<cv::v_uint8x16, kAtOnce> row;
   std::array<cv::v_uint8x16, kAtOnce / 2> two, four, eight;
   for (int i = 0; i < kAtOnce; ++i) row[i] = cv::v_load_low(rows[i] + offset);
@@ -34,7 +34,7 @@ static_assert(kAtOnce == EdgeColumns::kAtOnce && EdgeColumns::kMost % kAtOnce ==
   }
 }
 
-// Twice the gradients about pixels at eight stations, of each from one end to the other.
+// Twice the gradients about pixels at eight stations, from one end of each to the other.
 template <size_t kGradients>
 [[gnu::always_inline]] inline void loadGradients(const uchar* const* pixels,
                                                  std::array<cv::v_int16x8, kGradients>& gradients) {
@@ -58,14 +58,14 @@ template <int kReach>
   static_assert(kGradients < kBase && kEnd <= kRadius, "the place fits below");
   std::array<cv::v_int16x8, kGradients> gradients, coded;
   loadGradients(pixels, gradients);
-  // Of two that are as strong the first: how far it is from the last is in the lowest bits.
+  // Among equal gradients the first one wins: its distance from the last one is in the lowest bits.
   const cv::v_int16x8 signs = cv::v_setall_s16(sign), factor = cv::v_setall_s16(kBase * sign);
   for (int k = 0; k < kGradients; ++k)
     coded[k] =
         cv::v_mul_wrap(gradients[k], factor) + cv::v_setall_s16(static_cast<short>(kGradients - 1 - k));
   cv::v_int16x8 strongest = coded[0];
   for (int k = 1; k < kGradients; ++k) strongest = cv::v_max(strongest, coded[k]);
-  // At an end it is no maximum, but goes on growing.
+  // At an end it is no maximum, because the gradient goes on growing.
   cv::v_int16x8 before = cv::v_setzero_s16(), after = before, found = before;
   for (int k = 1; k + 1 < kGradients; ++k) {
     const cv::v_int16x8 here = strongest == coded[k];
@@ -92,7 +92,7 @@ UAV_LANDING_MULTIVERSION void findEdgesWithin(const uchar* const* pixels, int st
 
 UAV_LANDING_MULTIVERSION void setCentres(const Stations& stations, double first, double slope,
                                          EdgeColumns& edges) {
-  // Adding and subtracting a number so large that there is no room for a fraction rounds as cvRound() does.
+  // Adding and subtracting a number without room for a fraction rounds as cvRound() does.
   constexpr double kRounding = 6755399441055744.0;  // 1.5 * 2^52
   const Stations at = stations;
   for (int i = 0; i < wholeLanes(at.count); ++i)

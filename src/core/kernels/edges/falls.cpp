@@ -6,7 +6,7 @@ namespace uav_landing {
 
 unsigned markFalls(const uchar* middle, int sign, int least) {
   constexpr int kAtOnce = cv::v_uint8x16::nlanes;
-  // Bytes will do: where pixels get brighter there is 0.
+  // Unsigned bytes are enough: where pixels get brighter the result is 0.
   const auto fall = [&](int k) { return cv::v_load(middle + k - sign) - cv::v_load(middle + k + sign); };
   const cv::v_uint8x16 lowest = cv::v_setall_u8(static_cast<uchar>(least));
   unsigned found = 0;

@@ -15,13 +15,13 @@ namespace {
 
 constexpr int kTogether = 256;  // pixels whose sources are gathered before they are mixed
 
-/// Where in the source's memory a row of places, (x, y) each, is.
+/// Offsets in the source's memory of a row of places, each (x, y).
 UAV_LANDING_MULTIVERSION void findOffsets(const short* __restrict places, int count, int step,
                                           int* __restrict offsets) {
   for (int u = 0; u < count; ++u) offsets[u] = places[2 * u + 1] * step + places[2 * u];
 }
 
-/// The two pixels from each offset on, the first in the lower byte.
+/// The two pixels from each offset on, the first one in the lower byte.
 void gather(const uchar* source, const int* offsets, int count, std::uint16_t* pairs) {
   for (int u = 0; u < count; ++u) std::memcpy(pairs + u, source + offsets[u], sizeof(*pairs));
 }
@@ -71,9 +71,9 @@ void blendRow(const cv::Mat& image, const PlacedRow& row, uchar* out) {
 #ifdef UAV_LANDING_HAS_SHUFFLE
 bool canBlendWindows() { return __builtin_cpu_supports("avx2") != 0; }
 
-// The same sums as in blend(), sixteen pixels at a time: a shuffle, which compilers do not find by
+// The same sums as in blend(), sixteen pixels at a time. A shuffle, which compilers do not find by
 // themselves, picks the sources of each half from the rows of its window. It gives 0 for bytes with the
-// highest bit (kNextRow) set, so each pixel takes the rows that are its own.
+// highest bit (kNextRow) set, so each pixel takes its own rows.
 __attribute__((target("avx2"))) void blendWindows(const cv::Mat& image, const SourceWindows* windows,
                                                   int count, const uchar* mask, uchar* out) {
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(image.step);
@@ -92,7 +92,7 @@ __attribute__((target("avx2"))) void blendWindows(const cv::Mat& image, const So
     const __m256i next = _mm256_xor_si256(here, other_row);
     const __m256i upper = _mm256_or_si256(_mm256_shuffle_epi8(row0, here), _mm256_shuffle_epi8(row1, next));
     const __m256i lower = _mm256_or_si256(_mm256_shuffle_epi8(row1, here), _mm256_shuffle_epi8(row2, next));
-    // The weight of the right pixel in the upper byte, what is left of one in the lower.
+    // The weight of the right pixel in the upper byte, one minus this weight in the lower.
     const __m256i across = _mm256_add_epi16(_mm256_mullo_epi16(words(window.right), right_less_left), one);
     const __m256i a = _mm256_maddubs_epi16(upper, across), b = _mm256_maddubs_epi16(lower, across);
     const __m256i below = words(window.below), above = _mm256_sub_epi16(one, below);

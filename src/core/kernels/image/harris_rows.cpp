@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-/// Three rows of an image, one above the other.
+/// Three rows of an image, one below the other.
 template <class Pixel>
 struct Rows {
   const Pixel *above, *middle, *below;
@@ -47,7 +47,7 @@ UAV_LANDING_MULTIVERSION void addRows(const Rows<float>& rows, int count, float*
   for (int i = 0; i < count; ++i) sum[i] = rows.above[i] + rows.middle[i] + rows.below[i];
 }
 
-/// From the three products' sums over the three rows.
+/// Response from the sums of the three products over the three rows.
 UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const float* yy, int columns, float k,
                                       float* __restrict response) {
   UAV_LANDING_UNROLL

@@ -6,19 +6,21 @@
 
 namespace uav_landing {
 
-/// Harris response of an image row by row, in single precision: sums over 3x3 of the products of 3x3 Sobel
-/// gradients; and its local maxima. Keeps the last rows only, so that all of it stays in the cache.
+/// Harris response of an image row by row, in single precision, and its local maxima. The response is made of
+/// sums over 3x3 of products of 3x3 Sobel gradients. Only the last rows are kept, so that all of it stays in
+/// the cache.
 class HarrisRows {
  public:
-  /// image: mono8 or float, at least 5 columns wide; must outlive this.
+  /// image: mono8 or float, at least 5 columns wide; must outlive this object.
   HarrisRows(const cv::Mat& image, double k);
 
-  /// Computes the response of row v (2 <= v < rows - 2), 0 in the two outermost columns; rows must be asked
-  /// for in turn, from 2 on.
+  /// Computes the response of row v (2 <= v < rows - 2); it is 0 in the two outermost columns. Rows must be
+  /// computed in order, from 2 on.
   void compute(int v);
   const float* response(int v) { return responseRow(v); }
-  /// A bit for each pixel of row v, the lowest one of a block first: set at local maxima of those not in the
-  /// two outermost columns. Row v + 1 must be the one computed last. Of equal neighbours the last one counts.
+  /// One bit per pixel of row v, set at local maxima outside the two outermost columns. The lowest bit is the
+  /// first pixel of a block. Row v + 1 must be the one computed last. Of equal neighbours the last one
+  /// counts.
   const std::uint64_t* maxima(int v);
   static constexpr int kBlock = 64;
 

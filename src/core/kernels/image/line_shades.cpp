@@ -42,7 +42,7 @@ UAV_LANDING_MULTIVERSION int countFrom(float light, const KnownGreys& known) {
     load(&known.greys.values[c], grey);
     counts -= grey >= light;
   }
-  int count = known.count - kLineSamples;  // less the infinite ones
+  int count = known.count - kLineSamples;  // minus the infinite ones
   for (int i = 0; i < kLanes; ++i) count += counts[i];
   return count;
 }

@@ -7,24 +7,24 @@
 
 namespace uav_landing {
 
-/// What is known of the greys of a line, and infinity for the rest.
+/// The known greys of a line; unknown ones are infinity.
 struct KnownGreys {
   PaddedValues<kLineSamples> greys;
-  int count = 0;      ///< of the known ones
+  int count = 0;      ///< of known greys
   float darkest = 0;  ///< infinity when there are none
 };
 
-/// Greys that are no numbers are not known.
+/// Collects the greys that are known, which are those that are numbers.
 void takeKnown(const LineGreys& line, KnownGreys& known);
 
-/// How many of the known greys are so light or lighter.
+/// Number of known greys that are at least this light.
 int countFrom(float light, const KnownGreys& known);
 
-/// Of a sample that is neither dark (-1) nor light (1), and of one whose grey is not known.
+/// Shade of a sample that is neither dark (-1) nor light (1), and of one whose grey is unknown.
 constexpr int kBetweenShade = 0, kUnknownShade = 2;
 using LineShades = std::array<int, kLineSamples>;
 
-/// Sets -1 for greys in the darkest 35 hundredths of the way from dark to light, or darker, and 1 for the
+/// Sets -1 for the darkest 35 hundredths of the range from dark to light and anything darker, and 1 for the
 /// lightest ones in the same way.
 void findShades(const KnownGreys& known, float dark, float light, LineShades& shades);
 

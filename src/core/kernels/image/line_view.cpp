@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Where a picture shows points of a line; columns of -infinity behind the camera.
+// Places of a line's points in an image; columns are -infinity behind the camera.
 UAV_LANDING_MULTIVERSION void project(const LineView& line, const LinePlaces& y, LinePlaces& u,
                                       LinePlaces& v) {
   const double x0 = line.origin.x(), y0 = line.origin.y(), z0 = line.origin.z();
@@ -28,15 +28,15 @@ UAV_LANDING_MULTIVERSION void project(const LineView& line, const LinePlaces& y,
   }
 }
 
-// What greys at some places are interpolated from.
+// The pixels from which the greys at some places are interpolated.
 struct Pixels {
-  std::array<int, kLineSamples> in_image, in_mask;       // where the one to the upper left is; any outside
-  std::array<float, kLineSamples> right, below;          // how far the place is from there, px
-  std::array<int, kLineSamples> inside;                  // 1 where they are all in the picture
+  std::array<int, kLineSamples> in_image, in_mask;       // index of the upper left pixel; any outside
+  std::array<float, kLineSamples> right, below;          // distance of the place from this pixel, px
+  std::array<int, kLineSamples> inside;                  // 1 when all of its pixels are inside the image
   std::array<std::uint16_t, kLineSamples> upper, lower;  // the left one in the lower byte
 };
 
-// Beside the camera places are farther out than an int can say.
+// Limits places first, as beside the camera they are too large for an int.
 UAV_LANDING_MULTIVERSION void findPixels(const LinePlaces& u, const LinePlaces& v, const cv::Mat& image,
                                          const cv::Mat& mask, Pixels& pixels) {
   const double right_end = image.cols - 1, lower_end = image.rows - 1;
@@ -64,7 +64,7 @@ void loadPixels(const cv::Mat& image, const cv::Mat& mask, Pixels& pixels) {
   }
 }
 
-// Returns how many there are.
+// Returns the number of known greys.
 UAV_LANDING_MULTIVERSION int interpolate(const Pixels& pixels, LineGreys& greys) {
   int count = 0;
   for (int c = 0; c < kLineSamples; ++c) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSpan = 32;  // columns that mostly come from the same rows
 
-// The same with the largest place that has what it is interpolated from.
+// The same with the lowest place that can be interpolated.
 struct BoundedRow {
   double first, slope, lowest;
 

@@ -27,8 +27,8 @@ const Kernel& kernel() {
   return kernel;
 }
 
-/// One row of the result from three of the image. columns: mixed vertically, with a place before the first
-/// and one behind the last.
+/// One row of the result from three of the image. columns: memory for the vertically mixed row, with one
+/// place before the first and one behind the last.
 UAV_LANDING_MULTIVERSION void smoothRow(const float* above, const float* row, const float* below, int size,
                                         Kernel kernel, float* __restrict columns, float* __restrict out) {
   UAV_LANDING_UNROLL
@@ -41,7 +41,8 @@ UAV_LANDING_MULTIVERSION void smoothRow(const float* above, const float* row, co
     out[u] = kernel.middle * columns[u + 1] + kernel.side * (columns[u] + columns[u + 2]);
 }
 
-/// Smooths some rows of an image that is made row by row: makeRow(v, out). Keeps the last three only.
+/// Smooths some rows of an image that is made row by row by makeRow(v, out). Only the last three rows are
+/// kept.
 template <class MakeRow>
 void smoothRows(const MakeRow& makeRow, const cv::Range& rows, cv::Mat& smoothed) {
   const int count = smoothed.rows, size = smoothed.cols;
@@ -67,7 +68,7 @@ UAV_LANDING_MULTIVERSION void toFloats(const uchar* row, int size, float* out) {
   for (; u < size; ++u) out[u] = row[u];
 }
 
-/// Means over two by two pixels. Each two neighbours are read as one number, of either order of bytes.
+/// Means over two by two pixels. Two neighbours are read as one number, which works for either byte order.
 UAV_LANDING_MULTIVERSION void meanOfFour(const uchar* upper, const uchar* lower, int size, float scale,
                                          float* __restrict out) {
   for (int u = 0; u < size; ++u) {
@@ -91,7 +92,7 @@ void meanOfMore(const std::uint16_t* sums, int size, int factor, float scale, fl
   }
 }
 
-/// A row of the means over blocks. sums: memory for the columns of the image.
+/// A row of means over blocks. sums: memory for the columns of the image.
 void reduceRow(const cv::Mat& image, int factor, int row, std::vector<std::uint16_t>& sums, float* out,
                int size) {
   const float scale = 1.F / static_cast<float>(factor * factor);

@@ -8,8 +8,8 @@
 
 namespace uav_landing {
 
-// 16 x 16 pixels at a time: interleaving the upper half of the rows with the
-// lower one four times turns rows into columns.
+// 16 x 16 pixels at a time. Interleaving the upper half of the rows with the lower half four times turns rows
+// into columns.
 UAV_LANDING_MULTIVERSION void transpose(const cv::Mat& image, cv::Mat& transposed) {
   constexpr int kBlock = 16;
   const int rows = image.rows, columns = image.cols;

@@ -4,11 +4,11 @@
 
 namespace uav_landing {
 
-/// Piecewise parabolic interpolation at t (0 to 1) between b and c, with a before and d behind them: the mean
-/// of the parabola through the first three and the one through the last three (Erup, Gardner, Harris 1993,
-/// alpha = 1/4). For matches it matters less how sharp the values are than where they seem to be: those of
-/// Catmull-Rom, the two parabolas weighted by how near they are, show texture of four pixels a period up to
-/// 0.045 px too near a whole pixel, and matches are pulled away from there. Here it is 0.004 px.
+/// Piecewise parabolic interpolation at t (0 to 1) between b and c, with a before and d behind them. It is
+/// the mean of the parabola through the first three values and the one through the last three (Erup, Gardner,
+/// Harris 1993, alpha = 1/4). Matches need values at the right place more than sharp ones. Catmull-Rom
+/// weights the two parabolas by how near they are; texture of four pixels per period then seems up to 0.045
+/// px too near a whole pixel, which pushes matches away from there. Here this error is 0.004 px.
 inline float parabolicBetween(float a, float b, float c, float d, float t) {
   const float bend = 0.25f * ((a - b) - (c - d));
   return b + t * ((c - b) - (1.f - t) * bend);
@@ -21,8 +21,9 @@ inline float parabolicBetween(float a, float b, float c, float d, float t) {
   out = b + t * ((c - b) - (1.f - t) * bend);
 }
 
-/// The same for eight places, each between the second and the third of five neighbours, or the third and the
-/// fourth where t, counted from the second, is 1 to 2. from: where the neighbours of all places begin.
+/// The same for eight places, each with five neighbours. t is counted from the second neighbour: below 1 the
+/// place is between the second and the third, from 1 to 2 between the third and the fourth. from: first
+/// neighbour of all places.
 [[gnu::always_inline]] inline void parabolicBetween(const float* const (&from)[5], const Lanes& t,
                                                     Lanes& out) {
   Lanes p0, p1, p2, p3, p4;
@@ -35,7 +36,7 @@ inline float parabolicBetween(float a, float b, float c, float d, float t) {
   parabolicBetween(next ? p1 : p0, next ? p2 : p1, next ? p3 : p2, next ? p4 : p3, next ? t - 1 : t, out);
 }
 
-/// The same where every t is below 1, so that four neighbours do.
+/// The same when every t is below 1, so that four neighbours are enough.
 [[gnu::always_inline]] inline void parabolicBetween(const float* const (&from)[4], const Lanes& t,
                                                     Lanes& out) {
   Lanes p0, p1, p2, p3;
@@ -46,7 +47,7 @@ inline float parabolicBetween(float a, float b, float c, float d, float t) {
   parabolicBetween(p0, p1, p2, p3, t, out);
 }
 
-/// Its weights of the four samples around the fraction t between the middle two.
+/// Weights of the four samples around the fraction t between the middle two.
 inline void parabolicWeights(float t, float* weights) {
   const float outer = 0.25f * t * (t - 1.f);
   weights[0] = outer;

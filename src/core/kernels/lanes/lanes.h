@@ -5,9 +5,9 @@
 
 namespace uav_landing {
 
-/// Eight floats that are worked on at once: one AVX register, or two of SSE or NEON. For sums over windows,
-/// which compilers do not vectorise by themselves, as that changes the order. Handed over by reference only:
-/// by value the registers would depend on the processor that a function is compiled for.
+/// Eight floats for one instruction: one AVX register, or two of SSE or NEON. They serve sums over windows,
+/// which compilers do not vectorise by themselves, as that changes the order. Pass them by reference only: by
+/// value the registers would depend on the processor that a function is compiled for.
 using Lanes = float __attribute__((vector_size(32)));
 constexpr int kLanes = 8;
 
@@ -18,13 +18,13 @@ constexpr int kLanes = 8;
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
-/// As many whole numbers; comparisons of lanes give -1 where they hold, and 0.
+/// As many whole numbers. Comparisons of lanes give -1 where they hold, else 0.
 using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
 
 [[gnu::always_inline]] inline void store(const IntLanes& from, int* to) {
   std::memcpy(to, &from, sizeof(IntLanes));
 }
-/// Towards zero.
+/// Rounds towards zero.
 [[gnu::always_inline]] inline void truncate(const Lanes& from, IntLanes& to) {
   to = __builtin_convertvector(from, IntLanes);
 }
@@ -32,8 +32,8 @@ using IntLanes = int __attribute__((vector_size(sizeof(Lanes))));
   to = __builtin_convertvector(from, Lanes);
 }
 
-/// Eight whole numbers as floats. Element by element: the compiler makes one instruction of that, but not of
-/// loops or conversions of vectors.
+/// Eight whole numbers as floats. It is written element by element, because the compiler then finds one
+/// instruction; with loops or conversions of vectors it does not.
 template <typename Number>
 [[gnu::always_inline]] inline void convert(const Number* from, Lanes& to) {
   to = __builtin_convertvector(
@@ -52,7 +52,7 @@ template <typename Number>
   return (halves[0] + halves[2]) + (halves[1] + halves[3]);
 }
 
-/// Four doubles, likewise.
+/// The same for four doubles.
 using DoubleLanes = double __attribute__((vector_size(32)));
 constexpr int kDoubleLanes = 4;
 

@@ -11,8 +11,9 @@ namespace uav_landing {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kFew = 2;     // values in a range that are looked at one by one
-constexpr int kSlow = 3;    // limits in turn that leave most of a range, before a value of it is looked at
+constexpr int kFew = 2;  // values in a range that are looked at one by one
+constexpr int kSlow =
+    3;  // consecutive limits that leave most of a range; then the smallest value is looked at
 constexpr int kTries = 10;  // limits after the samples
 
 [[gnu::always_inline]] inline int sumOf(const IntLanes& n) {
@@ -43,7 +44,7 @@ constexpr int kTries = 10;  // limits after the samples
   return sumOf(up_to);
 }
 
-/// The smallest of the values that are larger than a limit, or as large.
+/// The smallest value that is not below a limit.
 [[gnu::always_inline]] inline float smallestFrom(const float* values, int count, float limit) {
   const Lanes limits = Lanes{} + limit, infinity = Lanes{} + kInfinity;
   Lanes smallest = infinity;
@@ -59,7 +60,7 @@ constexpr int kTries = 10;  // limits after the samples
   return result;
 }
 
-/// The largest of the values that are smaller than a limit, which some are.
+/// The largest value below a limit; there must be one.
 [[gnu::always_inline]] inline float largestBelow(const float* values, int count, float limit) {
   const Lanes limits = Lanes{} + limit, lowest = Lanes{} - kInfinity;
   Lanes largest = lowest;
@@ -80,7 +81,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 [[gnu::always_inline]] inline size_t countBelow(const double* values, size_t count, double limit) {
   using LongLanes = long long __attribute__((vector_size(32)));
   const DoubleLanes limits = DoubleLanes{} + limit;
-  LongLanes first{}, second{};  // of their own, so that one need not wait for the other
+  LongLanes first{}, second{};  // separate counters, so that one addition need not wait for the other
   size_t i = 0;
   UAV_LANDING_UNROLL
   for (; i + 2 * kDoubleLanes <= count; i += 2 * kDoubleLanes) {
@@ -96,7 +97,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
   return below;
 }
 
-/// The smallest of the values that are larger than a limit, or as large.
+/// The smallest value that is not below a limit.
 [[gnu::always_inline]] inline double smallestFrom(const double* values, size_t count, double limit) {
   const DoubleLanes limits = DoubleLanes{} + limit, far = DoubleLanes{} + kFar;
   DoubleLanes smallest = far;
@@ -113,14 +114,13 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
   return result;
 }
 
-/// A range of values, [low, high), that holds the one looked for, and how many values are smaller than
-/// either.
+/// The range [low, high) that contains the value looked for, and the numbers of values below each end.
 struct Range {
   double low = -kFar, high = kFar;
   size_t below_low = 0, below_high;
 };
 
-/// The value itself once it is found, else NaN and a range of few values or of values that do not differ.
+/// The value itself if it is found, else NaN and a range of few values or of equal values.
 UAV_LANDING_MULTIVERSION double narrow(const double* values, size_t count, size_t rank, Range& range) {
   constexpr int kSamples = 16;
   std::array<double, kSamples> samples;
@@ -170,7 +170,7 @@ double orderStatistic(const double* values, size_t count, size_t rank) {
 }
 
 UAV_LANDING_MULTIVERSION float orderStatistic(const float* values, int count, int rank, float guess) {
-  // What is looked for is in [low, high): below_low values are smaller than low, below_high than high.
+  // The value is in [low, high): below_low values are smaller than low, below_high than high.
   float low = 0, high = kInfinity, limit = guess;
   int below_low = 0, below_high = count, slow = 0;
   for (;;) {
@@ -181,7 +181,7 @@ UAV_LANDING_MULTIVERSION float orderStatistic(const float* values, int count, in
       if (below == rank + 1) return largestBelow(values, count, limit);
       (below < rank ? low : high) = limit;
       (below < rank ? below_low : below_high) = below;
-      // Many values may be the same, or far from the others.
+      // Many values may be equal, or far from the others.
       slow = 4 * (below_high - below_low) > 3 * inside ? slow + 1 : 0;
     } else {
       const float next = smallestFrom(values, count, low);

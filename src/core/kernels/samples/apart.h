@@ -12,9 +12,9 @@ struct NumberColumns {
   int count;
 };
 
-/// Sets 1 for numbers whose squared difference from one of them is larger than limit times the variance of
-/// the difference, and 0 for the others. That variance is the sum of both, and by_change times the square of
-/// how far their derivatives are apart.
+/// Sets 1 for numbers that are apart from one of them, else 0. Apart means that the squared difference
+/// exceeds limit times its variance. That variance is the sum of both variances, plus by_change times the
+/// squared distance of their derivatives.
 void markApart(const NumberColumns& numbers, std::ptrdiff_t one, float limit, float by_change, uchar* apart);
 
 }  // namespace uav_landing

@@ -9,16 +9,16 @@ namespace uav_landing {
 struct LineColumns {
   std::vector<double> middle_u, middle_v;  ///< of the piece
   std::vector<double> along_u, along_v;    ///< unit vector along it
-  std::vector<double> across_u, across_v;  ///< and across
-  std::vector<double> top_u, top_v;        ///< the end of smaller v
+  std::vector<double> across_u, across_v;  ///< unit vector across it
+  std::vector<double> top_u, top_v;        ///< the end with the smaller v
   std::vector<double> half2;               ///< half its length, squared
-  std::vector<double> reach;               ///< from the middle, within which a point is too near
+  std::vector<double> reach;               ///< distance from the middle within which a point is too near
   std::vector<double> tolerance2;          ///< squared distance
 
   void reserve(size_t count);
 };
 
-/// Instead of a fit, which is 1 at most.
+/// Stands for a line above the horizon, as a fit is 1 at most.
 constexpr double kTopAbove = 2;
 
 /// How well each of the first count lines passes through the homogeneous point (x, y, z).

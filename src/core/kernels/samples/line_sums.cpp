@@ -11,7 +11,7 @@ namespace uav_landing {
 
 namespace {
 
-/// The sum of lanes and of what is left over, fewer than lanes, in the order of Eigen's sums.
+/// Sum of the lanes and of a remainder of fewer than kLanes values, in the order of Eigen's sums.
 [[gnu::always_inline]] inline float total(const Lanes& lanes, const Lanes& rest, int left) {
   constexpr int kHalf = kLanes / 2;
   std::array<float, kHalf> half;
@@ -23,7 +23,7 @@ namespace {
   return sum;
 }
 
-/// Sums over samples. terms: function (i, std::array<Lanes, kSums>&) of what is added from sample i on.
+/// Sums over samples. terms: function (i, std::array<Lanes, kSums>&) that gives the terms from sample i on.
 template <int kSums, class Terms>
 [[gnu::always_inline]] inline std::array<float, kSums> addUp(int count, const Terms& terms) {
   std::array<Lanes, kSums> sums{}, term{};
@@ -109,7 +109,7 @@ UAV_LANDING_MULTIVERSION float meanOf(const float* values, int count) {
 }
 
 LineScatter scatterAbout(const LineSamples& samples, const LineFit& line) {
-  // With something of no weight before the first sample and after the last.
+  // With values of no weight before the first sample and after the last.
   alignas(sizeof(Lanes)) std::array<float, kMostLineSamples + 2 * kLanes> weight, off;
   for (int i = 0; i < samples.count; ++i)
     off[kLanes + i] = samples.across[i] - line.offset - line.slope * (samples.along[i] - line.centre);
@@ -118,7 +118,7 @@ LineScatter scatterAbout(const LineSamples& samples, const LineFit& line) {
   std::fill_n(weight.begin() + kLanes + samples.count, kLanes, 0.0F);
   std::fill_n(off.begin() + kLanes + samples.count, kLanes, 0.0F);
   LineScatter scatter{0, 0, 0};
-  // In the samples' order, so that the sums do not depend on how many are worked on at once.
+  // In the samples' order, so that the sums do not depend on how many are added at once.
   const auto add = [](const cv::v_float64x2& terms, double& sum) {
     alignas(sizeof(terms)) std::array<double, cv::v_float64x2::nlanes> term;
     cv::v_store_aligned(term.data(), terms);

@@ -10,7 +10,7 @@ VoteColumns::VoteColumns(size_t count)
 
 namespace {
 
-// What samples on a line of lanes say of a plane.
+// Votes of one group of lanes for a plane.
 struct Voter {
   double x_slope, y_slope, constant, unit, far, least, offset;
   DoubleLanes below, above;
@@ -33,7 +33,7 @@ struct Voter {
     load(&columns.y[i], y);
     expected = x_slope * x + y_slope * y + constant;
   }
-  // nearest and largest: what the values of a sample have over the one that is expected.
+  // nearest and largest: excess of a sample's values over the expected one.
   [[gnu::always_inline]] void add(const VoteColumns& columns, size_t i, const DoubleLanes& expected,
                                   const DoubleLanes& nearest, const DoubleLanes& largest) {
     const DoubleLanes none{};

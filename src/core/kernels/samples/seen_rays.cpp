@@ -8,12 +8,13 @@
 namespace uav_landing {
 namespace {
 
-// Nearer than this, in units of what is seen, nothing is in front of the view.
+// Smallest depth in front of the view, in units of the scene.
 constexpr double kLeastDepth = 1e-6;
 
 using Mask = decltype(DoubleLanes{} > DoubleLanes{});
 
-// Where four rays are seen: inverse depth, the point in the other view, its pixel. seen: in front of it.
+// Four rays as seen: inverse depth, the point in the other view, its pixel. seen: the point is in front of
+// the view.
 struct Seen {
   DoubleLanes rx, ry, w, x, y, z, u, v;
   Mask on_plane, seen;
@@ -38,8 +39,8 @@ struct Seen {
   out.v = s.fy * out.y / out.z + s.cy;
 }
 
-// A row of the Jacobian by (rotation, t, n), where the projection's derivatives by the point are a by its
-// component `axis` (0 or 1) and c by the third.
+// A row of the Jacobian by (rotation, t, n). The projection's derivatives by the point are a by its component
+// `axis` (0 or 1), and c by the third one.
 template <int axis>
 [[gnu::always_inline]] inline void derive(const RayView& s, const Seen& at, const DoubleLanes& a,
                                           const DoubleLanes& c, const DoubleLanes& by_depth,
@@ -61,7 +62,7 @@ template <int axis>
   row[8] = at.on_plane ? by_depth : none;
 }
 
-// Adds a pixel and its derivatives, times a matrix of four matches, to theirs.
+// Adds a pixel and its derivatives, times a matrix of four matches, to the sums here.
 struct MatchRows {
   DoubleLanes u{}, v{}, depth_u{}, depth_v{}, first[9]{}, second[9]{};
 };
@@ -82,8 +83,8 @@ struct MatchRows {
   }
 }
 
-// What was matched is not the corner alone: its neighbours to the right and below count by how the place
-// found follows from the warp, the corner itself by what is left. seen: the corner is in front.
+// The match is not of the corner alone. Its neighbours to the right and below count by the derivative of the
+// place by the warp; the corner itself has the rest. seen: the corner is in front of the view.
 [[gnu::always_inline]] inline void combine(const RayView& s, const double* in, size_t padded, MatchRows& rows,
                                            Mask& seen) {
   const DoubleLanes none{}, one = none + 1;
@@ -211,7 +212,7 @@ UAV_LANDING_MULTIVERSION void linearise(const RayView& view, const double* input
     load(in + kRayXX * padded, xx);
     load(in + kRayXY * padded, xy);
     load(in + kRayYY * padded, yy);
-    load(in + kRayDepthStddev * padded, depth_stddev);  // none on the plane
+    load(in + kRayDepthStddev * padded, depth_stddev);  // zero on the plane
     const DoubleLanes du = rows.depth_u * depth_stddev, dv = rows.depth_v * depth_stddev;
     xx += du * du;
     xy += du * dv;

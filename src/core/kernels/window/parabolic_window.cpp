@@ -11,14 +11,13 @@ namespace {
 
 constexpr int kMostColumns = 56, kMostRows = 31;
 constexpr int kBefore = 4;  // values before the first column of a row
-// Of windows' rows, by default, filled up to whole lanes: known to the compiler, which then needs no loops
-// for a row.
+// Default width of windows' rows in whole lanes. With it, the compiler needs no loop for a row.
 constexpr int kUsual = 2 * kLanes;
-// Of lines, with some more than there are, so that whole registers can be filled.
+// Largest number of lines, filled up so that whole registers can be used.
 constexpr int kMostLines = (kMostRows + kLanes - 1) / kLanes * kLanes;
 
-// Lines of places that are nearly along the rows, by the pixels' columns that they cross: between them along
-// the columns first, all columns at a time, and then along the line.
+// Lines of places that are nearly along the rows, and where they cross the columns of pixels. The image is
+// interpolated first along the columns, at all crossings of a line, and then along the line.
 struct Crossings {
   // Column and row of the image where they begin; the row above is read, too.
   alignas(32) std::array<int, kMostLines> first, top;
@@ -26,10 +25,10 @@ struct Crossings {
   alignas(32) std::array<float, kMostLines> start;  // columns from the first one to the first place
 };
 
-// Such lines, one for each row of a window.
+// Such lines, one per row of a window.
 struct NearRows {
-  Eigen::Vector2d begin, by_row;  // first place of the first row, and what it moves by from row to row
-  double step, slope, rise;       // columns between places, rows by column and over all columns
+  Eigen::Vector2d begin, by_row;  // first place of the first row, and its change from row to row
+  double step, slope, rise;       // columns between places; rows per column and over all columns
   int columns;
 
   NearRows(const Eigen::Vector2d& at, const Eigen::Matrix2d& warp, int radius, int stride)
@@ -57,7 +56,7 @@ struct NearRows {
     }
   }
 
-  // Whether a line has all it needs inside the image and crosses at most two of its rows.
+  // Whether all pixels that a line needs are inside the image, and it crosses at most two rows.
   bool fits(const cv::Mat& image, int row) const {
     const double x = begin.x() + by_row.x() * row, left = begin.y() + by_row.y() * row - 2 * std::abs(slope);
     return x >= 1 && x + columns <= image.cols && left + std::min(rise, 0.0) >= 1 &&
@@ -65,7 +64,7 @@ struct NearRows {
   }
 };
 
-// The image at the crossings of a line, from the pixels on that are above the first one.
+// The image at the crossings of a line. p: first pixel in the row above.
 [[gnu::always_inline]] inline void interpolateDown(const float* p, std::ptrdiff_t stride, float down,
                                                    float slope, int columns, float* out) {
   const bool between_two_rows = down + std::max(slope, 0.f) * static_cast<float>(columns) < 0.999f;
@@ -84,12 +83,12 @@ struct NearRows {
   }
 }
 
-// Whether of kLanes places by this step each is in the next column or, from one of them on, in the one after
-// that or still the same.
+// Whether kLanes consecutive places lie in consecutive columns, except that from one of them on they may be
+// one column further or still in the same one.
 bool inNeighbouringColumns(double step) { return std::abs(step - 1) * (kLanes - 1) < 0.99; }
 
-// Values at start, start + step, ... of such places, row by row: where kLanes of them begin is found for all
-// rows together.
+// Values at start, start + step, ..., for such places, row by row. The first place of each group of kLanes is
+// found for all rows together.
 class AlongRows {
  public:
   // start: of each row, columns. rows: of the arrays, filled up to whole lanes.
@@ -112,7 +111,7 @@ class AlongRows {
     }
   }
 
-  // row: the j-th, where columns are counted from.
+  // row: the j-th one, from the column that places are counted from.
   [[gnu::always_inline]] inline void interpolate(const float* row, int j, int count,
                                                  float* __restrict out) const {
     for (int i = 0; i < count; i += kLanes) {
@@ -134,17 +133,17 @@ class AlongRows {
   std::array<Begin, kMostColumns / kLanes> begins_;
 };
 
-// Places in rows of the image, each in a column after the one before: row j from start + j by_row on.
+// Places in rows of the image, each in a column after the one before. Row j begins at start + j by_row.
 struct PlaceRows {
   double start, by_row,
-      drift;  // drift: columns that the last place is ahead of the one so much after the first
+      drift;  // drift: columns by which the last place is ahead of consecutive columns
 
   bool inside(const cv::Mat& image, int rows, int count) const {
     const double last = start + by_row * (rows - 1);
     return std::min(start, last) + std::min(drift, 0.0) >= 1 &&
            std::max(start, last) + std::max(drift, 0.0) + count + 3 < image.cols;
   }
-  // Columns from which the places' are counted, and the first place from there.
+  // Columns from which the places are counted, and the first place from there.
   [[gnu::always_inline]] inline void find(int rows, std::array<int, kMostLines>& columns,
                                           std::array<float, kMostLines>& starts) const {
     const double first_place = start, step = by_row, back = std::min(drift, 0.0);
@@ -186,8 +185,8 @@ struct LineValues {
   float* row(int j) { return &values[j * kMostColumns + kBefore]; }
 };
 
-// The image at all crossings. All rows before any is read again: what was just written piece by piece is not
-// yet there to be read.
+// The image at all crossings. All rows are written before any is read again, because values written in pieces
+// are not available at once.
 [[gnu::always_inline]] inline void interpolateDown(const cv::Mat& image, const Crossings& lines, float slope,
                                                    int rows, int columns, LineValues& values) {
   const std::ptrdiff_t stride = rowStride(image);

@@ -12,7 +12,7 @@
 namespace uav_landing {
 
 /// Weights of the four samples around a place for piecewise parabolic interpolation, tabulated by 1/256 of a
-/// pixel: what that rounds away, 0.002 px, is far below the noise of any match.
+/// pixel. The rounding, 0.002 px, is far below the noise of any match.
 class ParabolicTable {
  public:
   static constexpr int kBits = 8;
@@ -20,13 +20,14 @@ class ParabolicTable {
     static const ParabolicTable table;
     return table;
   }
-  /// Weights at a fraction given in 1/65536 of a pixel.
+  /// Weights at a fraction in 1/65536 of a pixel.
   const float* at(std::int32_t fraction) const {
     constexpr int kShift = kFixedBits - kBits;
     return weights_[(fraction + (1 << (kShift - 1))) >> kShift].data();
   }
 
-  /// Positions are fixed-point numbers with this many bits behind the point: exact to add up, fast to split.
+  /// Positions are fixed-point numbers with this many bits behind the point: they add up exactly and split
+  /// fast.
   static constexpr int kFixedBits = 16;
   static std::int32_t fixed(double x) { return cvRound(x * (1 << kFixedBits)); }
   static constexpr std::int32_t kFractionMask = (1 << kFixedBits) - 1;
@@ -39,8 +40,9 @@ class ParabolicTable {
   alignas(16) std::array<std::array<float, 4>, (1 << kBits) + 1> weights_;
 };
 
-/// Values along one line of a float image, from (x, y) by (step_x, step_y) a value, in fixed-point pixels:
-/// four at a time, count rounded up to that. Needs one pixel around all places and two behind them.
+/// Values along one line of a float image, from (x, y) on, with the step (step_x, step_y), in fixed-point
+/// pixels. Four at a time; count is rounded up to a multiple of four. Needs one pixel around all places and
+/// two behind them.
 inline void sampleParabolicLine(const cv::Mat& image, std::int32_t x, std::int32_t y, std::int32_t step_x,
                                 std::int32_t step_y, int count, float* out) {
   using cv::v_float32x4;
@@ -81,15 +83,15 @@ inline void sampleParabolicRow(const float* row, std::int32_t x, std::int32_t st
   }
 }
 
-/// Values of a float image at at + warp (dx, dy): rows dy = -radius to radius, stride (a multiple of four)
-/// values from dx = -radius on in each, and up to eight of no meaning behind the last. Needs two pixels
-/// around all places and three behind them.
+/// Values of a float image at at + warp (dx, dy). Rows dy go from -radius to radius, each with stride (a
+/// multiple of four) values from dx = -radius on. Up to eight meaningless values follow the last. Needs two
+/// pixels around all places and three behind them.
 void sampleParabolicWindow(const cv::Mat& image, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
                            int radius, int stride, float* out);
 
-/// Values along the rows from v on of a float image: of row j from start + j by_row, by step, stride (a
-/// multiple of four) in each, and up to eight of no meaning behind the last. Needs a column before all places
-/// and two behind.
+/// Values along the rows of a float image, from row v on. Row j has stride (a multiple of four) values from
+/// start + j by_row on, with this step. Up to eight meaningless values follow the last. Needs one column
+/// before all places and two behind.
 void sampleParabolicRows(const cv::Mat& image, int v, double start, double by_row, double step, int rows,
                          int stride, float* out);
 

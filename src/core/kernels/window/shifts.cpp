@@ -9,12 +9,13 @@
 namespace uav_landing {
 namespace {
 
-// What the scores of kLanes neighbouring shifts are made of: products with the window, sums and squares.
+// Sums from which the scores of kLanes neighbouring shifts follow: products with the window, values and
+// squares.
 struct ShiftSums {
   alignas(32) std::array<float, kLanes> cross, sums, squares;
 };
 
-// area: values of the other image, whose first pixel is the first shift's.
+// area: values of the other image, whose first pixel belongs to the first shift.
 [[gnu::always_inline]] inline void addRowsAny(const float* area, int size, int stride, int rows,
                                               ShiftRows::Sums* sums) {
   for (int j = 0; j < rows; ++j, area += stride) {
@@ -30,13 +31,13 @@ struct ShiftSums {
   }
 }
 
-// window: without its mean. rows: of the area.
+// window: without its mean. rows: sums over the area's rows.
 [[gnu::always_inline]] inline void addUpAny(const float* window, const float* area,
                                             const ShiftRows::Sums* rows, int size, int stride,
                                             ShiftSums& shifts) {
   Lanes cross{}, sums{}, squares{};
   for (int j = 0; j < size; ++j, area += stride) {
-    Lanes row_cross{}, row_sums, row_squares;  // of their own, so that rows need not wait for each other
+    Lanes row_cross{}, row_sums, row_squares;  // separate sums, so that rows need not wait for each other
     for (int i = 0; i < size; ++i) {
       Lanes values;
       load(area + i, values);

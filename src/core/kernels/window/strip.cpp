@@ -14,16 +14,16 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kUsualStride = 24;  // the compiler then needs no loop for a row
+constexpr int kUsualStride = 24;  // with it the compiler needs no loop for a row
 
-// Rows of places of which each is in the column after that of the one before or, from one of them on, in the
-// one after that or still the same: row j at start + j by_row, and on by step.
+// Rows of places in consecutive columns, except that from one place on they may be one column further or
+// still in the same one. Row j begins at start + j by_row and goes on by step.
 struct PlaceRows {
   double start, by_row, step;
   int count;
 
   double at(int row) const { return start + by_row * row; }
-  // Where the columns are counted from.
+  // Column from which places are counted.
   double least(double place) const { return std::min(place, place + (step - 1) * (count - 1)); }
   bool possible() const { return std::abs(step - 1) * (count - 1) < 0.99; }
   bool inside(int row, int columns) const {
@@ -31,11 +31,11 @@ struct PlaceRows {
   }
 };
 
-// A row's values, less the mean, at count places: the first this far behind the row's first pixel, and each
-// one column and the drift behind the one before.
+// Values of a row minus the mean, at count places. start: distance of the first place behind the row's first
+// pixel. Each later place is one column plus the drift behind the one before.
 [[gnu::always_inline]] inline void interpolateRow(const float* row, float start, float drift, int count,
                                                   float mean, float* out) {
-  // Up to this no place is in the next column but one, whatever is lost in rounding.
+  // Up to this value no place is beyond the next column, whatever rounding does.
   constexpr float kSurelyBefore = 0.999F;
   const bool before = start < kSurelyBefore && start + drift * static_cast<float>(count) < kSurelyBefore;
   Lanes behind;
@@ -57,8 +57,8 @@ struct PlaceRows {
   }
 }
 
-// Where the places of rows begin: columns before the first ones, and how far these are behind them. All rows
-// at once, filled up to whole lanes.
+// Starts of the rows: columns before the first places, and the distances of these from there. All rows at
+// once, filled up to whole lanes.
 struct RowStarts {
   static constexpr int kMost = 2 * kLargestWindowRadius + kLanes;
 
@@ -75,7 +75,7 @@ struct RowStarts {
   }
 };
 
-// Values at the places in the image's rows from v on, less the mean, by linear interpolation.
+// Values at the places in the image's rows from v on, minus the mean, by linear interpolation.
 UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const PlaceRows& places, int rows,
                                           float mean, float* out) {
   const float drift = static_cast<float>(places.step - 1);
@@ -93,7 +93,7 @@ UAV_LANDING_MULTIVERSION void interpolate(const cv::Mat& image, int v, const Pla
   }
 }
 
-// Sums and sums of squares of the columns of a strip of rows. stride: of whole lanes.
+// Sums and sums of squares of the columns of a strip of rows. stride: in whole lanes.
 [[gnu::always_inline]] inline void addColumnsOfAny(const float* strip, int rows, int stride, float* sums,
                                                    float* squares) {
   for (int i = 0; i < stride; i += kLanes) {
@@ -120,18 +120,19 @@ UAV_LANDING_MULTIVERSION void addColumns(const float* strip, int rows, int strid
   }
 }
 
-// What the scores at kLanes neighbouring positions of a strip are made of.
+// Sums from which the scores at kLanes neighbouring positions of a strip follow.
 struct PositionSums {
   alignas(32) std::array<float, kLanes> cross, sums, squares;
 };
 
-// Products of a square window with what is below it, and sums of the strip's columns and squares there.
+// Products of a square window with the strip at its positions, and sums of the strip's columns and squares
+// there.
 [[gnu::always_inline]] inline void addUpAny(const float* window, const float* strip, const float* column_sums,
                                             const float* column_squares, int size, int stride,
                                             PositionSums& block) {
   Lanes cross{}, sums{}, squares{};
   for (int j = 0; j < size; ++j, strip += stride) {
-    Lanes row{};  // sums of their own, so that rows need not wait for each other
+    Lanes row{};  // separate sums, so that rows need not wait for each other
     for (int i = 0; i < size; ++i) {
       Lanes values;
       load(strip + i, values);
@@ -161,8 +162,8 @@ UAV_LANDING_MULTIVERSION void addUp(const float* window, const float* strip, con
   }
 }
 
-// Correlations of a window of this energy with what the sums are of. Nowhere without contrast, nor outside
-// the image, where the sums are no numbers.
+// Correlations of a window of this energy with the strip, from the sums. None without contrast, nor outside
+// the image, where the sums are NaN.
 void correlate(const PositionSums& block, double count, double energy, float* scores) {
   using Pair = cv::v_float64x2;
   const Pair counts = cv::v_setall_f64(count), energies = cv::v_setall_f64(energy);
@@ -191,7 +192,7 @@ void compare(const PositionSums& block, double energy, float* scores) {
   }
 }
 
-// Adds up what the scores are made of, and hands on each block of them with the place of its first one.
+// Computes the sums for the scores, and passes each block of them on with its first position.
 template <class Score>
 void scoreBlocks(const CentredWindow& window, const float* strip, int stride, int count,
                  StripColumns& columns, const Score& score) {

@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-// The last lanes of a row end where it does.
+// The last lanes of a row end with the row.
 [[gnu::always_inline]] inline void copyRowsAny(const float* image, std::ptrdiff_t stride, int size,
                                                float* out) {
   for (int y = 0; y < size; ++y, image += stride, out += size) {

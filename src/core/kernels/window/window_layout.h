@@ -7,22 +7,22 @@
 #include "kernels/lanes/lanes.h"
 #include "uav_landing/parameters/window_radius.h"
 
-/// How windows lie in memory while they are matched: rows filled up to a multiple of four, and all of it to
-/// one of kLanes.
+/// Memory layout of windows while they are matched: rows filled up to a multiple of four, and the whole
+/// window to a multiple of kLanes.
 namespace uav_landing {
 
-/// From row to row of a float image. cv::Mat::step1() is a call.
+/// Floats from row to row of a float image. cv::Mat::step1() would be a function call.
 inline std::ptrdiff_t rowStride(const cv::Mat& image) {
   return static_cast<std::ptrdiff_t>(image.step[0] / sizeof(float));
 }
 
-/// From row to row of a window.
+/// Floats from row to row of a window.
 constexpr int windowStride(int radius) { return (2 * radius + 1 + 3) / 4 * 4; }
 
 /// Rows and columns of a window of the default radius.
 constexpr int kUsualWindowSize = 2 * kUsualWindowRadius + 1;
 
-/// Of the largest window; the last row's lanes may be written beyond it.
+/// Memory of the largest window. The last row's lanes may be written beyond its end.
 using WindowValues =
     std::array<float, windowStride(kLargestWindowRadius) * (2 * kLargestWindowRadius + 1) + kLanes>;
 
@@ -33,7 +33,7 @@ using WindowValues =
   for (int i = size * stride; i < wholeLanes(size * stride); ++i) window[i] = value;
 }
 
-/// Sets what fills up rows and whole lanes. The usual size is known to the compiler.
+/// Sets the values that fill up rows and whole lanes. The usual size is known to the compiler.
 [[gnu::always_inline]] inline void fillUp(int radius, float value, float* window) {
   if (radius == kUsualWindowRadius) {
     fillUpRows(kUsualWindowRadius, value, window);

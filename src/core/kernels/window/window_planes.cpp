@@ -15,7 +15,7 @@ struct WindowRow {
   WindowRow from(int i) const { return {a + i, x + i, y + i}; }
 };
 
-// row: of the image from the window's first column on; by stride to the next one.
+// row: of the image, from the window's first column on. stride: to the next row.
 [[gnu::always_inline]] inline void loadLanes(const float* row, std::ptrdiff_t stride, float middle,
                                              const WindowRow& out) {
   Lanes value, before, after, above, below;
@@ -44,13 +44,13 @@ struct WindowRow {
   const float middle = row[radius * stride + radius];
   const Lanes none{};
   for (int j = 0; j < size; ++j, row += stride) {
-    // The last lanes of a row end where it does, so that nothing outside the image is read.
+    // The last lanes of a row end with the row, so that nothing outside the image is read.
     for (int i = 0; size >= kLanes && i < size; i += kLanes) {
       const int first = std::min(i, size - kLanes);
       loadLanes(row + first, stride, middle, out.from(first));
     }
     for (int i = 0; size < kLanes && i < size; ++i) loadOne(row + i, stride, middle, out.from(i));
-    // What fills the row up; where the next one begins, that comes after.
+    // Fills up the row. The next row may overwrite the end of this, as it is written later.
     const WindowRow end = out.from(size);
     for (float* plane : {end.a, end.x, end.y}) store(none, plane);
     out = out.from(out_stride);
@@ -67,7 +67,7 @@ UAV_LANDING_MULTIVERSION void loadWindow(const cv::Mat& image, int u, int v, int
   }
 }
 
-// Distances from the centre of a window's places, laid out as the window.
+// Distances of a window's places from its centre, laid out as the window.
 struct Distances {
   alignas(sizeof(Lanes)) WindowValues across, down;
 
@@ -89,7 +89,7 @@ const Distances& distancesOf(int radius) {
   return all[radius];
 }
 
-// The gradient's products with a distance.
+// Products of the gradient with a distance.
 struct MomentLanes {
   Lanes x{}, y{}, xx{}, xy{}, yy{};
 
@@ -108,7 +108,7 @@ struct MomentLanes {
   }
 };
 
-// What the gradient sees of a window that grows, times a distance.
+// The gradient's response to a window that grows, times a distance.
 struct GrowthLanes {
   Lanes s_across{}, s_down{}, x_across{}, x_down{}, y_across{}, y_down{};
 
@@ -179,7 +179,7 @@ UAV_LANDING_MULTIVERSION WindowPlanes::DistanceSums WindowPlanes::distanceSums()
 UAV_LANDING_MULTIVERSION WindowPlanes::OtherSums WindowPlanes::multiply(WindowValues& other) const {
   const float middle = middle_;
   const int count = filled();
-  fillUp(radius_, middle, other.data());  // what does not count
+  fillUp(radius_, middle, other.data());  // values that do not count
   Lanes b1{}, bb{}, ba{}, bx{}, by{};
   UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {

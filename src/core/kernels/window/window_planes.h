@@ -7,7 +7,7 @@
 
 namespace uav_landing {
 
-/// A square window of an image, less the grey level in its middle, with its gradient; filled up by zeros
+/// A square window of an image minus the grey level in its middle, with its gradient, filled up with zeros
 /// (window_layout.h).
 class WindowPlanes {
  public:
@@ -15,25 +15,25 @@ class WindowPlanes {
   struct OwnSums {
     double a, x, y, aa, ax, ay, xx, xy, yy;
   };
-  /// Sums of the products of the gradient with itself and with the distance from the window's centre.
+  /// Sums of products of the gradient with itself and with the distance from the window's centre.
   struct MomentSums {
     double x, y, xx, xy, yy;
   };
-  /// Sums of s = x across + y down, what the gradient sees of a window that grows, times its distance from
-  /// the centre (across, down): alone, and by the gradient.
+  /// Sums for a window that grows: s = x across + y down is the gradient's response to growth. They are of s
+  /// times the distance from the centre (across, down), alone and times the gradient.
   struct GrowthSums {
     double s_across, s_down, x_across, x_down, y_across, y_down;
   };
   struct DistanceSums {
-    std::array<MomentSums, 2> moments;  ///< by the distance across and by the one down
+    std::array<MomentSums, 2> moments;  ///< times the distance across, and times the one down
     GrowthSums growth;
   };
-  /// Sums over a window b of another image, and of its products.
+  /// Sums over a window b of another image, and of its products with this one.
   struct OtherSums {
     double b, bb, ba, bx, by;
   };
 
-  /// u, v: of the middle; the window and a pixel around it must be inside the image.
+  /// u, v: middle of the window. The window and one pixel around it must be inside the image.
   WindowPlanes(const cv::Mat& image, int u, int v, int radius);
 
   int radius() const { return radius_; }
@@ -44,7 +44,8 @@ class WindowPlanes {
 
   OwnSums sums() const;
   DistanceSums distanceSums() const;
-  /// other: rows of the other window, with room for all of this one's; what fills them up does not matter.
+  /// other: rows of the other window, with room for all of this one's. Values that fill them up do not
+  /// matter.
   OtherSums multiply(WindowValues& other) const;
 
  private:

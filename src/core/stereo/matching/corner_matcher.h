@@ -9,21 +9,21 @@
 
 namespace uav_landing {
 
-/// Finds corners of the left image and their places in the right one, at full size. Everything behind it
-/// takes its matches as they are: the plane, its covariance, the corners that are followed over time.
+/// Finds corners of the left image and their places in the right one, at full size. All later steps take
+/// these matches as they are: the plane, its covariance, and the corners that are followed over time.
 class CornerMatcher {
  public:
   virtual ~CornerMatcher() = default;
 
-  /// At most count corners on the ground of the plane g (1/m), well spread.
+  /// At most count corners on the ground plane g (1/m), well spread over the image.
   virtual std::vector<cv::Point> detect(const StereoLevel& level, const Eigen::Vector3d& g, int count) = 0;
-  /// Disparities of those that are found near the one that g predicts, in pixels, each with the standard
-  /// deviation that it has: the plane's covariance is made of these.
+  /// Disparities, in pixels, of the corners that are found near the disparity predicted by g. Each comes with
+  /// its own standard deviation, from which the plane's covariance is made.
   virtual RowMatches match(const StereoLevel& level, const std::vector<cv::Point>& corners,
                            const Eigen::Vector3d& g) = 0;
 };
 
-/// Harris corners, matched along their rows (findGroundCorners(), matchCorners()).
+/// Harris corners, matched along their rows by findGroundCorners() and matchCorners().
 std::unique_ptr<CornerMatcher> makeRowMatcher(const StereoDepthParameters& parameters);
 
 }  // namespace uav_landing

@@ -16,14 +16,14 @@
 namespace uav_landing {
 namespace {
 
-// Columns to both sides that are scored in the full-size pass, where the plane is known to about a pixel.
+// Columns scored on both sides in the full-size pass, where the plane is known to about a pixel.
 constexpr int kFineSteps = 3;
-// Error of a match that is common to neighbouring windows or not seen in its residuals, pixels.
+// Error of a match in pixels that neighbouring windows share or that residuals do not show.
 constexpr double kStddevFloor = 0.03;
-// 1 sigma of a match that is only as good as a parabola through three scores, pixels.
+// 1 sigma in pixels of a match that comes from a parabola through three scores only.
 constexpr double kParabolaStddev = 0.15;
 
-// Matches one corner within steps of the predicted place.
+// Matches one corner within some steps of its predicted place.
 class CornerMatcher {
  public:
   CornerMatcher(const StereoLevel& level, const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
@@ -37,18 +37,18 @@ class CornerMatcher {
         forward_warp_(parameters.warp_window ? shift_.forward() : RowWarp{}),
         backward_warp_(parameters.warp_window ? shift_.backward() : RowWarp{}) {}
 
-  // Touches the right mask where the match of a corner is expected.
+  // Touches the right mask at the predicted place, so that it is in the cache when it is needed.
   void touch(int u, int v) const { touchPixel(level_.right_mask, u - shift_.at(u, v), v); }
 
-  // Column in the right image and its stddev; not converged when there is no trustworthy match. across:
-  // whether to find where it is when its row may move, besides.
+  // Column in the right image and its stddev. Not converged when no match can be trusted. across: also find
+  // the place when the row may move.
   RowRefinement match(int u, int v, bool across) {
     const double predicted = u - shift_.at(u, v);
     if (!forward_.run(u, v, predicted, steps_, forward_warp_)) return {};
     double second = 0;
     const RowCandidate best = forward_.best(&second);
     if (best.score < parameters_.min_zncc || second > parameters_.uniqueness * best.score) return {};
-    // A peak at the end of the range is not known to be a peak.
+    // At the end of the range nothing shows whether the score falls again, so this may be no peak.
     if (std::abs(best.position - predicted) > (steps_ - 0.5) * forward_warp_.scale) return {};
     if (!isSet(level_.right_mask, best.position, v) || !agreesBackward(u, v, best.position)) return {};
     return subpixel(u, v, best.position, across);
@@ -86,12 +86,12 @@ class CornerMatcher {
   RowWarp forward_warp_, backward_warp_;
 };
 
-// Where a plane is seen by both cameras: half planes a u + b v + c >= 0.
+// The part of the image in which both cameras see the plane: half planes a u + b v + c >= 0.
 struct GroundLimits {
   std::array<Eigen::Vector3d, 3> sides;
 
   GroundLimits(const StereoLevel& level, const Eigen::Vector3d& g) {
-    // Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+    // Ground with a smaller disparity (pixels) is too near the horizon to tell the height.
     constexpr double kLeastDisparity = 0.3;
     const ShiftModel shift(level.rig, g);
     sides[0] = {shift.a, shift.b, shift.c - level.rig.principalOffset() - kLeastDisparity};
@@ -142,7 +142,7 @@ RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& 
   RowMatches matches;
   matches.samples.reserve(corners.size());
   matches.across.reserve(corners.size());
-  // All at once, as each is in another line of the cache.
+  // All at once, because each lies in another cache line and the processor can then load them together.
   for (const cv::Point& corner : corners) matcher.touch(corner.x, corner.y);
   ThinnedPlaces chosen(corners.size(), reach.most_across);
   for (size_t i = 0; i < corners.size(); ++i) {

@@ -13,44 +13,45 @@
 
 namespace uav_landing {
 
-/// Memory that corners on the ground are looked for in.
+/// Memory that the search for corners on the ground works in. Its contents mean nothing.
 struct GroundCornerMemory {
   CornerMemory corners;
   ImageMemory ground;
 };
 
-/// Harris corners of the left image below the horizon of the plane g (1/m), where it predicts a disparity.
+/// Harris corners of the left image below the horizon of the plane g (1/m), where g predicts a disparity.
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters, GroundCornerMemory& memory);
 /// The same with memory of its own.
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
                                          const StereoDepthParameters& parameters);
 
-/// Those of the corners that are so on another plane.
+/// Those of the corners that lie on the ground of another plane g (1/m).
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
                                        const Eigen::Vector3d& g);
 
 /// Corners that were found along their rows, in the order in which they were looked for.
 struct RowMatches {
   std::vector<DisparitySample> samples;
-  /// For each sample, where it is when its row may move as well; none where that was not looked for, as
-  /// vertical disparities are measured by some of the corners only.
+  /// Place of each sample when its row may move as well. It is empty for most samples, as vertical
+  /// disparities need only some of the corners.
   std::vector<std::optional<RowRefinement::Across>> across;
 };
 
-/// Vertical disparities are measured by so many corners, spread as these are: enough, as the filter behind
-/// averages over frames.
+/// Number of corners that measure vertical disparities, spread as all corners are. They are enough because a
+/// filter averages over the pairs.
 constexpr size_t kCornersAcross = 240;
 
-/// Matches corners along their rows around the disparity that g predicts: gain and offset free
-/// correlation (or SSD), uniqueness, left-right check, sub-pixel. One disparity a sample.
+/// Matches corners along their rows around the disparity that g (1/m) predicts. It uses correlation that is
+/// blind to gain and offset (or SSD), a uniqueness test, a left-right check and a sub-pixel fit. One
+/// disparity per sample.
 RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
                         const Eigen::Vector3d& g, const StereoDepthParameters& parameters);
 
 /// How far from the predicted place a corner is looked for.
 struct CornerReach {
-  int steps = 0;           ///< columns that are scored to both sides
-  size_t most_across = 0;  ///< corners that are looked for across their rows, too, spread as the corners are
+  int steps = 0;           ///< columns scored on each side
+  size_t most_across = 0;  ///< corners that may also leave their rows, at most; spread as all corners are
 };
 /// The same within this reach.
 RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,

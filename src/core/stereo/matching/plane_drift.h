@@ -9,8 +9,8 @@
 
 namespace uav_landing {
 
-/// The plane that a row sees is g carried to the time of that row: d(u, v) = f b (g + rate t(u, v)).r. The
-/// default is a pair whose rows are all exposed at the stamp.
+/// Change of the ground plane while a rolling shutter reads the rows. A row sees g carried to the time of
+/// that row: d(u, v) = f b (g + rate t(u, v)).r. By default all rows are exposed at the stamp.
 struct PlaneDrift {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();  ///< of g, 1/m/s
   const RowTimes* times = nullptr;                 ///< of the left image
@@ -18,11 +18,12 @@ struct PlaneDrift {
   bool isStill() const { return times == nullptr || times->atOnce(); }
 };
 
-/// Takes from the disparities what the drift adds, so that they are those at the stamp.
+/// Subtracts the drift from the disparities, so that they are those at the stamp.
 void carryToStamp(const StereoRig& rig, const PlaneDrift& drift, std::vector<DisparitySample>& samples);
 
-/// How a plane that was fitted to samples carried to the stamp follows the rate they were carried with: dg =
-/// A d(rate), in seconds. agrees: those that are on the plane.
+/// Derivative A of the fitted plane by the drift's rate, in seconds: dg = A d(rate). The plane was fitted to
+/// samples that carryToStamp() had corrected by that rate. agrees: 1 for samples on the plane. Zero for a
+/// global shutter.
 Eigen::Matrix3d planeByRate(const StereoRig& rig, const PlaneDrift& drift,
                             const std::vector<DisparitySample>& samples, const std::vector<char>& agrees);
 

@@ -18,7 +18,7 @@ bool RowSearch::run(int u, int v, double centre, int steps, const RowWarp& warp)
   steps_ = steps;
   centre_ = centre;
   scale_ = warp.scale;
-  // Positions are scored in whole blocks; those beyond the last one mean nothing.
+  // Positions are scored in whole blocks; scores beyond the last position mean nothing.
   const int padded = wholeLanes(count), stride = wholeLanes(padded + size - 1);
   strip_.resize(static_cast<size_t>(stride) * size);
   sampleStrip(other_, v - radius_,

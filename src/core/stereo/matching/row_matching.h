@@ -10,24 +10,24 @@
 
 namespace uav_landing {
 
-/// A place along the row that fits.
+/// A place along the row where the window fits.
 struct RowCandidate {
   double position = 0;  ///< column in the other image
   double score = 0;     ///< correlation, 1 at best
 };
 
-/// Similarities of one window along a row of the other image.
+/// Similarity of one window to places along a row of the other image.
 class RowSearch {
  public:
-  /// Both images CV_32F with as many rows; they must outlive the search.
+  /// Both images are CV_32F, have the same number of rows, and must outlive the search.
   RowSearch(const cv::Mat& reference, const cv::Mat& other, int radius, MatchingCost cost);
 
   /// Scores the positions centre + k scale, k = -steps..steps, for the window around (u, v). False when the
   /// window leaves the reference image or has no contrast.
   bool run(int u, int v, double centre, int steps, const RowWarp& warp);
 
-  /// Best peak of the last run. Its score is -1 when there is none. The second best peak that is more than
-  /// two steps away goes to second_score.
+  /// Best peak of the last run, with a score of -1 when there is none. second_score gets the score of the
+  /// second best peak that is more than two steps away.
   RowCandidate best(double* second_score) const;
   /// All local maxima of at least min_score, best first, at most count.
   std::vector<RowCandidate> peaks(double min_score, int count) const;

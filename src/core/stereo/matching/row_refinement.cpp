@@ -8,8 +8,8 @@
 namespace uav_landing {
 namespace {
 
-// A window's sums about the means: its own and those with a window of the other image. g: change along the
-// row, to the right.
+// Sums over a window about the means: of the window itself, and with a window of the other image. g: change
+// of grey along the row, to the right.
 struct RowSums {
   double aa, ag, gg, bb, ab, bg;
 
@@ -22,7 +22,7 @@ struct RowSums {
         bg(-(other.bx - own.gradient_mean.x() * other.b)) {}
 };
 
-// Of a = gain b + shift g + offset, by least squares; shift in pixels of the reference.
+// Least squares solution of a = gain b + shift g + offset. The shift is in pixels of the reference.
 struct RowStep {
   bool solved = false;
   double gain = 0, shift = 0;
@@ -38,7 +38,7 @@ struct RowStep {
   }
 };
 
-// Where the window is when rows may move as well: followed from where it was looked at along the row.
+// Place of the window when rows may move as well, followed from the place found along the row.
 RowRefinement::Across across(const ReferenceWindow& window, const cv::Mat& other,
                              const WindowPlanes::OtherSums& sums, const Eigen::Vector2d& looked_at,
                              const RowWarp& warp) {
@@ -63,9 +63,10 @@ RowRefinement::Across::Across(const PatchRefinement& refined) {
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
                              const RowWarp& warp, int radius, bool across_too) {
   constexpr int kIterations = 8;
-  // A step leaves about a tenth of itself: little beside what matches are known to.
+  // A step leaves about a tenth of itself, which is little beside the error of a match.
   constexpr double kConverged = 0.05, kMaxDrift = 1.5;
-  // The images are smoothed, so neighbouring residuals are not independent; share of independent ones.
+  // The images are smoothed, so neighbouring residuals depend on each other. This share counts as
+  // independent.
   constexpr double kIndependent = 0.25;
   RowRefinement result;
   if (u < radius + 1 || v < radius + 1 || u + radius + 1 >= reference.cols ||

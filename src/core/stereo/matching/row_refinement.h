@@ -15,7 +15,7 @@ struct RowRefinement {
   double stddev = 0;  ///< 1 sigma of the position from residuals and gradient, pixels
   double score = 0;   ///< correlation after refinement
 
-  /// Where it is when it may move across the row as well, within two pixels of where it was seen along it.
+  /// Place when the window may also leave its row, within two pixels of the place along the row.
   struct Across {
     Across() = default;
     explicit Across(const PatchRefinement& refined);
@@ -27,9 +27,9 @@ struct RowRefinement {
   } across;
 };
 
-/// Of the window around (u, v) of the reference, from this column of the other image on. Both images CV_32F
-/// of the same size. Not converged where the window leaves an image, has no contrast along the row, or is not
-/// found within 1.5 px. across_too: whether to find `across`, too.
+/// Refines the window around (u, v) of the reference, from column `position` of the other image on. Both
+/// images are CV_32F of the same size. Not converged when the window leaves an image, has no contrast along
+/// the row, or moves by more than 1.5 px. across_too: fill `across`, too.
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
                              const RowWarp& warp, int radius, bool across_too = false);
 

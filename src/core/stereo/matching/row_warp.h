@@ -4,8 +4,8 @@
 
 namespace uav_landing {
 
-/// How a small window of the reference image appears in the other one: the pixel at (dx, dy) from the
-/// window's centre lies at column position + scale dx + shear dy of the row dy from the same row.
+/// How a small window of the reference image appears in the other image. The pixel at (dx, dy) from the
+/// window's centre lies in the same row, at column position + scale dx + shear dy.
 /// A plane with disparity a u + b v + c gives scale 1 - a and shear -b from left to right.
 struct RowWarp {
   double scale = 1.0;

@@ -6,8 +6,9 @@
 
 namespace uav_landing {
 
-/// Column shift u_l - u_r = a u + b v + c between the images of a rig, of the plane vector g (1/m). Rows
-/// stay. Where rows have times the plane's drift comes on top, by the plane through these times.
+/// Column shift u_l - u_r = a u + b v + c between the images of a rig, for the plane vector g (1/m). Rows
+/// stay. With a rolling shutter the plane's drift is added, with the row times approximated by a plane over
+/// the image.
 class ShiftModel {
  public:
   double a, b, c;
@@ -25,7 +26,7 @@ class ShiftModel {
     const double plane = a * u + b * v + c;
     return still_ ? plane : plane + drift(u, v);
   }
-  /// The model without drift that is the same around a pixel, to first order.
+  /// A model without drift that equals this one around a pixel, to first order.
   ShiftModel around(double u, double v) const {
     if (still_) return *this;
     ShiftModel tangent = *this;
@@ -47,7 +48,7 @@ class ShiftModel {
   }
 
   bool still_ = true;
-  // Of 1, u, v: pixels by second, and seconds.
+  // Coefficients of 1, u, v: drift in pixels per second, and row times in seconds.
   Eigen::Vector3d rate_ = Eigen::Vector3d::Zero(), times_ = Eigen::Vector3d::Zero();
 };
 

@@ -18,7 +18,7 @@ StereoLevel reduceLevel(const RigModel& model, int factor, int margin) {
   level.rig.cy = toCoarse(model.rig.cy, factor);
   level.rig.cx_right = toCoarse(model.rig.cx_right, factor);
   const auto reduce = [&](const cv::Mat& mask) {
-    // What is left over on the right and below is in none.
+    // Pixels that do not fill a whole reduced pixel, on the right and below, are dropped.
     const cv::Size size = mask.size() / factor;
     cv::Mat reduced;
     cv::resize(mask(cv::Rect(cv::Point(), size * factor)), reduced, size, 0, 0, cv::INTER_AREA);
@@ -41,7 +41,7 @@ StereoLevel swapped(const StereoLevel& level) {
 StereoLevel turnedOver(const StereoLevel& level) {
   constexpr int kBothAxes = -1;
   StereoLevel other = swapped(level);
-  // cv::flip() does not work in place, and the images are those of the other level, too.
+  // cv::flip() does not work in place, and both levels share these images.
   for (cv::Mat* image : {&other.left, &other.right, &other.left_mask, &other.right_mask}) {
     cv::Mat turned;
     cv::flip(*image, turned, kBothAxes);

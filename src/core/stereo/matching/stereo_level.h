@@ -7,7 +7,7 @@
 
 namespace uav_landing {
 
-/// Both rectified images at one resolution with the rig and masks that belong to it.
+/// Both rectified images at one resolution, with the rig and the masks at that resolution.
 struct StereoLevel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;  ///< mono8, already eroded by the matching window
@@ -15,14 +15,14 @@ struct StereoLevel {
   PlaneDrift drift = {};          ///< of the ground; at full resolution only
 };
 
-/// Rig and masks at a resolution reduced by an integer factor; the masks are eroded by margin pixels there.
+/// Rig and masks at a resolution reduced by an integer factor. The masks are eroded by margin pixels there.
 StereoLevel reduceLevel(const RigModel& model, int factor, int margin);
 
-/// The same pair with left and right exchanged (to tell a swapped rig from a featureless one).
+/// The same pair with left and right exchanged. It tells a swapped rig from images without features.
 StereoLevel swapped(const StereoLevel& level);
 
-/// The same pair as cameras would see it that are turned by 180 deg about their axes: turned pictures, left
-/// and right exchanged (to tell a rig that is mounted upside down).
+/// The same pair as seen by cameras that are turned by 180 deg about their axes: images turned, left and
+/// right exchanged. It shows whether a rig is mounted upside down.
 StereoLevel turnedOver(const StereoLevel& level);
 
 }  // namespace uav_landing

@@ -10,10 +10,10 @@ namespace {
 
 // Pixels that are interpolated at once.
 constexpr int kTogether = 4;
-// Right pixels over left ones, below which the ground is seen too much from the side.
+// Smallest ratio of right to left pixels. Below it the ground is seen too much from the side.
 constexpr double kLeastDensity = 0.2;
 
-/// The longest run of pixels that are set. Distorted pictures may have nothing in the middle of a row.
+/// The longest run of set pixels. A distorted image may have none in the middle of a row.
 cv::Range setColumns(const cv::Mat& mask, int v) {
   const uchar* row = mask.ptr<uchar>(v);
   cv::Range longest(0, 0);
@@ -32,13 +32,13 @@ std::vector<cv::Range> setColumns(const cv::Mat& mask) {
   return columns;
 }
 
-/// Whole columns between two places, of 0 to cols.
+/// Whole columns between two places, within 0 to cols.
 cv::Range between(double begin, double end, int cols) {
   return {static_cast<int>(std::ceil(std::clamp<double>(begin, 0, cols))),
           static_cast<int>(std::floor(std::clamp<double>(end, 0, cols)))};
 }
 
-/// As many of them as can be interpolated together.
+/// As many of these columns as can be interpolated together.
 cv::Range whole(int begin, int end) {
   return end - begin < kTogether ? cv::Range(0, 0)
                                  : cv::Range(end - (end - begin) / kTogether * kTogether, end);
@@ -46,7 +46,7 @@ cv::Range whole(int begin, int end) {
 
 void fillUp(const cv::Range& known, cv::Mat& image, int row) {
   float* values = image.ptr<float>(row);
-  if (known.empty()) {  // between others that are not
+  if (known.empty()) {  // between rows that are known
     if (row > 0) std::copy(image.ptr<float>(row - 1), image.ptr<float>(row - 1) + image.cols, values);
     return;
   }
@@ -63,7 +63,7 @@ AlignedRows::AlignedRows(const cv::Mat& left_mask, const cv::Mat& right_mask)
       left_memory_(cv::Mat::zeros(size_, CV_32F)),
       right_memory_(cv::Mat::zeros(size_, CV_32F)) {}
 
-// The highest row that may be ground, at either side.
+// The highest row that may be ground, at the left or right edge.
 int AlignedRows::findFirstRow(const ShiftModel& shift, double least) const {
   const auto horizon = [&](double u) { return (least - shift.c - shift.a * u) / shift.b; };
   const double highest = shift.b > 0 ? std::min(horizon(0), horizon(size_.width - 1)) : 0;
@@ -72,7 +72,7 @@ int AlignedRows::findFirstRow(const ShiftModel& shift, double least) const {
 
 cv::Range AlignedRows::seenColumns(const ShiftModel& model, double least, int v) const {
   const ShiftModel shift = model.around(0.5 * size_.width, v);
-  // Pixels that interpolation reads beside a place, and by which a later model may be off this one.
+  // Pixels that interpolation reads beside a place, and by which a later model may differ from this one.
   constexpr int kAround = 5;
   const cv::Range &left = left_columns_[v], &right = right_columns_[v];
   const double density = 1 - shift.a, down = shift.b * v + shift.c;
@@ -106,12 +106,13 @@ void AlignedRows::begin(const cv::Mat& left, const ShiftModel& shift, double lea
   for (int row = 0; row < count; ++row) fillUp(seen_[row], left_, row);
 }
 
-// Of those that both cameras see: all, unless the model is far from the first one.
+// Those of the columns seen by both cameras that can be read. These are all, unless the model is far from the
+// first one.
 cv::Range AlignedRows::readableColumns(const ShiftModel& shift, int row, int cols) const {
   const cv::Range& seen = seen_[row];
   const double density = 1 - shift.a, down = shift.b * (first_row_ + row) + shift.c;
   if (seen.empty() || !(density > kLeastDensity)) return {0, 0};
-  // One pixel before a place and two behind it.
+  // Interpolation reads one pixel before a place and two behind it.
   const cv::Range inside = between((1 + down) / density, (cols - 3 + down) / density, size_.width);
   return whole(std::max(seen.start, inside.start), std::min(seen.end, inside.end));
 }

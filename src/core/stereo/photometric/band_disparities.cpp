@@ -9,10 +9,10 @@
 namespace uav_landing {
 namespace {
 
-// Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+// Ground with a smaller disparity (pixels) is too near the horizon to tell the height.
 constexpr double kLeastDisparity = 0.3;
-// Blocks in a row that speak together, until they know the shift to this (1 sigma, pixels), and those that
-// know it to less than that say nothing.
+// Blocks of a row are joined, at most so many, until they know the shift to kKnown (1 sigma, pixels). Groups
+// that know it less well than kLeastKnown are dropped.
 constexpr int kTogether = 8;
 constexpr double kKnown = 0.25, kLeastKnown = 1.0;
 
@@ -27,7 +27,7 @@ BandDisparities::BandDisparities(const StereoLevel& level)
       right_(rig_.size) {}
 
 bool BandDisparities::isSeen(int column, int line) const {
-  constexpr int kAround = 4;  // pixels beside what is filled up
+  constexpr int kAround = 4;  // pixels beside those that are filled up
   const int u = kGridColumn + column * kBlockWidth, v = grid_.first_row + line * kBlockHeight;
   for (int row = v; row < v + kBlockHeight; ++row) {
     const cv::Range& seen = rows_.seen(row);
@@ -41,7 +41,7 @@ void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, cons
   grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
   const int height = std::max(0, rows_.left().rows - 2 * kGridRow);
   grid_.lines = height / kBlockHeight;
-  // The lowest rows, which say most, are in a block.
+  // The lowest rows tell most, so the grid is placed such that a block contains them.
   grid_.first_row = kGridRow + height % kBlockHeight / 2 * 2;
   grid_.seen.clear();
   for (int line = 0; line < grid_.lines; ++line)
@@ -49,7 +49,8 @@ void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, cons
   if (!grid_.seen.empty()) left_.split(rows_.left());
 }
 
-// By how much a row that is off moves what fine texture shows, its derivatives tell too little of.
+// When rows are not level, the images are straightened: derivatives tell too little about the effect on fine
+// texture.
 void BandDisparities::takeRight(const cv::Mat& right, const RigRotation& rows) {
   right.convertTo(grey_, CV_32F);
   level_ = grey_;
@@ -72,14 +73,14 @@ void BandDisparities::measure(const Eigen::Vector3d& g, const PlaneDrift& drift)
 
 void BandDisparities::weigh() {
   constexpr int kCoarsest = TextureBands::kBands - 1;
-  // Rectification takes some of the noise off the finest band; pictures of different things differ in all.
+  // Rectification reduces noise in the finest band only, but images of different things differ in all bands.
   constexpr double kMostCoarse = 4 * TextureBands::kWhiteCoarsest;
   evidence_.assign(grid_.seen.size(), {});
   scores_.clear();
   differ_by_noise_ = false;
   std::array<double, TextureBands::kBands> residuals;
   std::optional<double> gain;
-  // The coarsest, which has the least noise, knows the gain best.
+  // The coarsest band has the least noise, so it knows the gain best.
   for (int band = kCoarsest; band >= 0; --band) {
     addUp(left_[band], right_[band], TextureBands::factor(band), grid_, sums_);
     if (!gain) gain = gainOf(sums_);
@@ -94,7 +95,7 @@ void BandDisparities::weigh() {
 
 void BandDisparities::tellLine(int line, const ShiftModel& shift) {
   const double v = rows_.firstRow() + grid_.first_row + (line + 0.5) * kBlockHeight - 0.5;
-  std::array<Group, 2> groups;  // of those that do not look alike, and of those that do
+  std::array<Group, 2> groups;  // of blocks that do not look alike, and of those that do
   for (int column = 0; column < grid_.columns; ++column) {
     const BandEvidence& block = evidence_[grid_.at(column, line)];
     const bool last = (column + 1) % kTogether == 0 || column + 1 == grid_.columns;

@@ -12,33 +12,33 @@
 
 namespace uav_landing {
 
-/// Disparities of the ground where its texture is hardly more than noise. Such texture is faint in other
-/// frequencies than a painted line beside it: the aligned images are taken apart into bands, and each block
-/// counts in each band by the signal it has there.
+/// Disparities of ground whose texture is hardly more than noise. Such texture is faint in other frequencies
+/// than a painted line beside it. So the aligned images are split into bands, and each block counts in each
+/// band by the signal that it has there.
 class BandDisparities {
  public:
   /// level: of the whole images; its masks are eroded by at least two pixels.
   explicit BandDisparities(const StereoLevel& level);
 
-  /// Takes the left image (mono8) below the horizon of the plane g, 1/m.
+  /// Takes the left image (mono8) below the horizon of the plane g, 1/m. drift: of the plane while rows are
+  /// exposed.
   void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
-  /// Takes the right image (mono8) of the same pair. rows: rotation that the vertical disparities of the
-  /// images have.
+  /// Takes the right image (mono8) of the same pair. rows: rotation that its vertical disparities have.
   void takeRight(const cv::Mat& right, const RigRotation& rows);
-  /// Compares the left image with the right one warped by the plane g.
+  /// Compares the left image with the right one warped by the plane g, 1/m.
   void measure(const Eigen::Vector3d& g, const PlaneDrift& drift = {});
 
-  /// Whether what the images differed by was noise in the last measurement. Else they do not show the same,
+  /// Whether the images differed by noise only in the last measurement. Otherwise they show different things,
   /// and there are no disparities.
   bool differByNoise() const { return differ_by_noise_; }
-  /// Of the last measurement, for some blocks of a row each.
+  /// Disparities of the last measurement, each from some blocks of a row.
   const std::vector<BlockDisparity>& disparities() const { return disparities_; }
 
  private:
   bool isSeen(int column, int line) const;
   void weigh();
   void tellLine(int line, const ShiftModel& shift);
-  /// Blocks of a row that speak together.
+  /// Blocks of a row that are joined.
   struct Group {
     BandEvidence sum;
     double place = 0;  // column times information
@@ -53,7 +53,7 @@ class BandDisparities {
   BlockGrid grid_;
   TextureBands left_, right_;
   std::vector<BandSums> sums_, around_;  // of one band
-  std::vector<BandScore> scores_;        // of the last one
+  std::vector<BandScore> scores_;        // of the band before
   std::vector<BandEvidence> evidence_;
   std::vector<BlockDisparity> disparities_;
   bool differ_by_noise_ = false;

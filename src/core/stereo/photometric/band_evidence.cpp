@@ -10,24 +10,24 @@ namespace {
 
 // Median of the square of a normal number.
 constexpr double kMedianSquare = 0.4549;
-// Variance that rounding to whole grey levels in two images has in the coarsest band.
+// Variance in the coarsest band from rounding to whole grey levels in two images.
 constexpr double kLeastNoise = 0.001;
-// Squared correlation, noise taken off, below which a block does not show what the other image has there.
+// Squared correlation without noise. A block below it does not show what the other image has there.
 constexpr double kLeastCorrelation = 0.75;
 
 double scoreOf(const BandSums& sums, double gain) { return sums.slope_right - gain * sums.slope_left; }
 
-/// Variance of the right image's pixels beside the left one's.
+/// Variance of the difference between the right image's pixels and the left one's.
 double residualOf(const BandSums& sums, double gain) {
   const double energy = sums.right - 2 * gain * sums.products + gain * gain * sums.left;
   return std::max(energy / sums.count, kLeastNoise);
 }
 
-/// What is known of the signal of a block, and of the noise of its score.
+/// The signal of a block, and the noise of its score.
 struct BlockSignal {
-  double response = 0;  // right image's change by a shift of a pixel, times the slopes
+  double response = 0;  // change of the right image by a shift of a pixel, times the slopes
   double variance = 0;  // of the score
-  double chance = 0;    // by how much response times the measured one is larger than times the true one
+  double chance = 0;    // excess of response times measured signal over response times true signal
 };
 
 BlockSignal signalOf(const BandSums& own, const BandSums& around, double gain, const BandNoise& noise,
@@ -42,12 +42,13 @@ BlockSignal signalOf(const BandSums& own, const BandSums& around, double gain, c
   BlockSignal signal;
   signal.response = std::max(0.0, usual + kept * off);
   signal.variance = noise.colour * slopes * residual;
-  // By its derivative (Stein 1981).
+  // The excess follows from the derivative of the estimator (Stein 1981).
   signal.chance = scatter * (share + (square > 1 ? (1 - share) * (1 + 1 / square) : 0));
   return signal;
 }
 
-/// Share of the responses that is there: weights that owe something to chance have too much of it.
+/// Share of the responses that is real. Weights and responses share some chance, which makes the sums too
+/// large.
 double trueShare(const BlockGrid& grid, const std::vector<BandSums>& sums,
                  const std::vector<BandSums>& around, double gain, const BandNoise& noise,
                  const TextureBands::Noise& white) {
@@ -86,7 +87,7 @@ std::optional<double> gainOf(const std::vector<BandSums>& sums) {
 
 BandNoise noiseOf(const BlockGrid& grid, const std::vector<BandSums>& around, double gain) {
   std::vector<double> residuals, ratios;
-  // Where the picture is clipped there is no noise either.
+  // Where the image is clipped there is no noise.
   const auto counts = [&](size_t i) { return grid.seen[i] && around[i].slopes > 0; };
   for (size_t i = 0; i < around.size(); ++i)
     if (counts(i)) residuals.push_back(residualOf(around[i], gain));

@@ -5,7 +5,7 @@
 namespace uav_landing {
 namespace {
 
-/// From derivatives by pixels of a reduced image to those of the whole ones.
+/// From derivatives by pixels of a reduced image to those by pixels of the whole images.
 void scaleSlopes(int factor, BandSums& sums) {
   const float one = 1.F / static_cast<float>(factor), two = one * one;
   sums.slope_left *= one;

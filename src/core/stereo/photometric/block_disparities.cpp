@@ -3,7 +3,7 @@
 namespace uav_landing {
 namespace {
 
-// Blocks compared: about 100 thousand pixels, which hold nearly all that an image says.
+// Blocks compared: about 100 thousand pixels, which contain nearly all the information of an image.
 constexpr int kBlocks = 800;
 
 }  // namespace

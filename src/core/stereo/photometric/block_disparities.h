@@ -15,16 +15,17 @@ class BlockDisparities {
   /// level: of the whole images; its masks are eroded by at least two pixels.
   explicit BlockDisparities(const StereoLevel& level);
 
-  /// Takes blocks of the left image (mono8) below the horizon of the plane g, 1/m.
+  /// Takes blocks of the left image (mono8) below the horizon of the plane g, 1/m. drift: of the plane while
+  /// rows are exposed.
   void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
-  /// Compares them with the right image (mono8) warped by the plane g. rows: rotation that the vertical
+  /// Compares them with the right image (mono8) warped by the plane g, 1/m. rows: rotation that the vertical
   /// disparities of the images have.
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
                const PlaneDrift& drift = {});
 
-  /// Of the last measurement.
+  /// Disparities of the last measurement.
   const std::vector<BlockDisparity>& disparities() const { return disparities_; }
-  /// Share of their blocks that do so beyond doubt, each alone or a few together.
+  /// Share of the blocks that tell it beyond doubt, each alone or a few together.
   double certainShare() const;
 
  private:

@@ -6,15 +6,15 @@ namespace uav_landing {
 
 BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& model,
                            const Eigen::Vector3d& w) {
-  // Comparisons are first order in the shift: farther than this (pixels) it means nothing.
+  // Comparisons are first order in the shift, so a larger one (pixels) means nothing.
   constexpr double kLargestShift = 1.5;
-  // The right pixel that the warp puts on u belongs to the left pixel u + shift. Said of u itself, as a place
-  // that has the error of the shift in it would pull the plane.
+  // The warp puts a right pixel on u; it belongs to the left pixel u + shift. The disparity is stated for u
+  // itself, because a place that contains the error of the shift would pull the plane.
   const ShiftModel shift = model.around(match.u, match.v);
   const double density = 1 - shift.a;  // of right pixels over left ones
   const double place = shift.at(match.u, match.v);
   const double disparity = place + match.shift * density - rig.principalOffset();
-  // A row that is off shows ground that is nearer or farther, whatever is on it, and edges aslant.
+  // A row that is off shows ground that is nearer or farther, and moves slanted edges.
   const double by_row = -(shift.b + density * match.lean);
   const Eigen::RowVector3d leak = by_row * verticalDisparityByRotation(rig, match.u - place, match.v);
   return {{match.u, match.v, density * match.stddev, disparity - leak.dot(w)},

@@ -7,16 +7,16 @@
 
 namespace uav_landing {
 
-/// What one block that shows more than noise, or several together, say of the disparity.
+/// Disparity from one block that shows more than noise, or from several together.
 struct BlockDisparity {
   DisparitySample sample;   ///< pixels
-  Eigen::RowVector3d leak;  ///< the disparity's derivative by the rows' rotation, pixels per rad
-  int blocks;               ///< that say so
-  bool alike;               ///< whether the right image shows them: of others the disparity means nothing
+  Eigen::RowVector3d leak;  ///< derivative of the disparity by the rows' rotation, pixels per rad
+  int blocks;               ///< number of blocks in it
+  bool alike;               ///< whether the right image shows them; else the disparity means nothing
 };
 
-/// Of a shift between the left image and the right one that is warped by the model. w: rotation that the
-/// vertical disparities of the images have, rad.
+/// Disparity that follows from a shift between the left image and the right one, which is warped by the
+/// model. w: rotation that the vertical disparities of the images have, rad.
 BlockDisparity disparityOf(const ShiftMatch& match, const StereoRig& rig, const ShiftModel& model,
                            const Eigen::Vector3d& w);
 

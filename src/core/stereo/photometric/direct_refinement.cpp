@@ -14,53 +14,51 @@
 namespace uav_landing {
 namespace {
 
-// Gauss-Newton steps at most, and the change of the largest disparity that ends them, in pixels or as a share
-// of it, whichever is larger. A step leaves about a tenth of itself, so that such a share moves the height by
-// 5e-5 of itself; in noise, where less is sure, the share does not count.
+// Limits of the Gauss-Newton iteration. It ends when the largest disparity changes by less than kConverged
+// pixels or kConvergedShare of itself, whichever is larger. A step leaves about a tenth of itself, so this
+// share moves the height by 5e-5 of itself. In noise less is certain, so the share does not count there.
 constexpr int kSteps = 10, kBriefSteps = 2;
 constexpr double kConverged = 0.01, kConvergedShare = 5e-4;
-// By how much disparities of the first plane may be off, pixels.
+// Error of the first plane's disparities, pixels.
 constexpr double kStartStddev = 0.3;
-// Share of the blocks that must be on the plane. Blocks are compared where the plane says, nowhere else:
-// where much of the picture stands on the ground, those that are on the plane by chance would have too much
-// to say.
+// Share of the blocks that must be on the plane. Blocks are compared only where the plane predicts them. If
+// much of the image stands on the ground, the blocks that agree by chance would decide too much.
 constexpr double kLeastShare = 0.5;
 
-// What edges say of the rows is no better than this, 1 sigma, pixels: in the middle of the image, and at a
-// focal length beside it what is linear in the column. Edges of the same markings are wrong together, and
-// over simulated approaches what they said was off by several of the sigmas that independent ones would have.
-// Of yaw they say hardly anything: it moves rows only where they are away from both middle lines of the
-// image.
+// Smallest 1 sigma of the rows by edges, pixels: in the middle of the image, and for the part linear in the
+// column at a focal length beside it. Edges of the same markings are wrong together: over simulated
+// approaches they were off by several sigmas of independent errors. They hardly tell the yaw, which moves
+// rows only away from both middle lines of the image.
 constexpr double kEdgesStddev = 0.004, kEdgesSlopeStddev = 0.008, kEdgesYawStddev = 0.2;
 
-/// What rows may be off by besides what matches claim of the rotation, 1 sigma: where much of the texture is
-/// noise windows keep a little to where they are looked for. By simulated approaches, as what is needed for
-/// the claims to be true.
+/// Covariance of the rows: what matches claim, plus an error that they do not see, 1 sigma. Where much of the
+/// texture is noise, windows stay a little near the place where they are looked for. The sizes make the
+/// claims true over simulated approaches.
 Eigen::Matrix3d priorOf(const RigRotation& rows, bool noisy) {
   const double unseen = noisy ? 0.1 : 0.04;
   return rows.covariance + unseen * unseen * rows.w * rows.w.transpose();
 }
 
-/// What counts of the information (1/rad^2) that edges have of the rows, as a factor on its left: their
-/// covariance plus what they are wrong by together.
+/// Factor from the left on the edges' information of the rows (1/rad^2), which makes their common errors
+/// count.
 Eigen::Matrix3d believedShare(const Eigen::Matrix3d& information, double fy) {
   const Eigen::Array3d stddevs(kEdgesStddev, kEdgesYawStddev, kEdgesSlopeStddev);
   const Eigen::Matrix3d together = (stddevs / fy).square().matrix().asDiagonal();
   return (Eigen::Matrix3d::Identity() + information * together).inverse();
 }
 
-/// What edges say of the rows, of the last twenty pairs or so together: each pair's noise is its own, and
-/// the rig's rotation is not.
+/// Evidence of edges about the rows, over about the last twenty pairs. Each pair has its own noise, but the
+/// rotation of the rig stays.
 class RowsByEdges {
  public:
-  /// information: of a pair, 1/rad^2; right: that times the rotation, from about.
+  /// information: of a pair, 1/rad^2. right: information times the rotation, counted from about.
   void add(const Eigen::Matrix3d& information, const Eigen::Vector3d& right, const Eigen::Vector3d& about) {
-    constexpr double kKept = 0.95;  // of a pair's weight when the next comes
+    constexpr double kKept = 0.95;  // a pair's weight falls by this factor with each later pair
     if (!information.allFinite() || !right.allFinite() || !about.allFinite()) return;
     sums_.information = kKept * before_.information + information;
     sums_.right = kKept * before_.right + right + information * about;
   }
-  /// A pair, of which there may be nothing to add.
+  /// Begins a pair, which may add nothing.
   void begin() { before_ = sums_; }
   void forgetLast() { sums_ = before_; }
   const Eigen::Matrix3d& information() const { return sums_.information; }
@@ -81,7 +79,7 @@ struct DirectRefinement::Implementation {
   StereoRig rig;
   PairDisparities disparities;
   std::vector<DisparitySample> samples;  // of the disparities found, with true stddevs
-  double common_variance = 0;            // of an error that all of them have, pixels^2
+  double common_variance = 0;            // of an error that all samples share, pixels^2
   int agreeing = 0;                      // blocks that look alike and are on the plane
   RowsByEdges edges;
   PlaneColumns memory;
@@ -95,7 +93,7 @@ struct DirectRefinement::Implementation {
     common_variance = makeStddevsTrue(rig, g, disparities.haveCommonErrors() ? 1 : 0, samples);
   }
 
-  // The plane of what the last comparison found. rough: the first plane, g, may be off by kStartStddev.
+  // Fits the plane to the last comparison. rough: the first plane, g, may be off by kStartStddev.
   Expected<PlaneFit> fitFound(const Eigen::Vector3d& g, const PlaneDrift& drift, const PlaneLimits& limits,
                               double bias_stddev, bool rough) {
     agreeing = 0;
@@ -111,7 +109,7 @@ struct DirectRefinement::Implementation {
     return fit;
   }
 
-  // Blocks and not samples: a share of them must not depend on how many speak together.
+  // Counts blocks, not samples, because a share must not depend on how many blocks are joined.
   int blocksOn(const PlaneFit& fit) const {
     int blocks = 0;
     for (size_t i = 0; i < samples.size(); ++i)
@@ -119,9 +117,9 @@ struct DirectRefinement::Implementation {
     return blocks;
   }
 
-  // What edges aslant say of the rows: those that lean to opposite sides would be on planes of their own. A
-  // step of the least squares problem of plane and rows together, the rows known by their prior, and by the
-  // edges of the pairs before. about: rotation that samples have been freed of, of the images as they were.
+  // Solves for plane and rows together. Slanted edges tell the rows: with wrong rows, those that lean to
+  // opposite sides would lie on different planes. The rows have a prior and the edges of the pairs before.
+  // about: rotation that was removed from the samples, counted from the images as they came.
   void solveWithRows(const Eigen::Matrix3d& prior, const Eigen::Vector3d& about, double bias_stddev,
                      PlaneFit& fit) {
     Eigen::Matrix3d by_plane = Eigen::Matrix3d::Zero(), mixed = by_plane, by_rows = by_plane;
@@ -139,7 +137,7 @@ struct DirectRefinement::Implementation {
       rows_right += leak * residual;
     }
     const Eigen::Matrix3d plane_by_rows = by_plane.inverse() * mixed;
-    // Residuals that are larger than claimed, or alike, tell the rows the worse, as they tell the plane.
+    // When residuals are larger than claimed, or alike, they tell the rows less well, too.
     Eigen::Matrix3d own = fit.plane.covariance;
     own(2, 2) -= biasVariance(rig, bias_stddev);
     const double inflation = std::max(1.0, (by_plane * own).trace() / 3);
@@ -155,8 +153,8 @@ struct DirectRefinement::Implementation {
     fit.plane.covariance += fit.row_covariance;
   }
 
-  // Of the weighted fit's covariance, by what the samples' variances are made of; the mean of its three
-  // directions.
+  // Share of the weighted fit's covariance that comes from the samples' common variance, as the mean of its
+  // three directions.
   double lastingShare(const PlaneFit& fit) const {
     constexpr double kLeast = 1e-3;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), lasting = information;
@@ -179,7 +177,7 @@ struct DirectRefinement::Implementation {
                                   " blocks are on the plane: too few to tell which are ground"};
   }
 
-  // Largest disparity at the bottom of the image, where they are largest, of a plane or of a change of it.
+  // Largest disparity of a plane, or of a change of it. It lies at the bottom of the image.
   double largestDisparity(const Eigen::Vector3d& g) const {
     const double bottom = rig.size.height - 1, right = rig.size.width - 1;
     return rig.fb() * std::max(std::abs(g.dot(rig.ray(0, bottom))), std::abs(g.dot(rig.ray(right, bottom))));
@@ -211,7 +209,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
     if (step + 1 == last || (!rough && change < least)) {
       fit->lasting_share = own.lastingShare(*fit);
       own.solveWithRows(priorOf(start.rows, noisy()), start.levelled_by + start.rows.w, bias_stddev, *fit);
-      // What has not settled is known no better than it moves.
+      // While it has not converged, the plane is known no better than it still moves.
       if (change > least) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
     }

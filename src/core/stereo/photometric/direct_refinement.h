@@ -12,50 +12,49 @@ namespace uav_landing {
 
 /// What is known of a pair before its images are aligned.
 struct RefinementStart {
-  Eigen::Vector3d plane;  ///< good to a fraction of a pixel of disparity, 1/m, at the stamp
-  /// Rotation that the vertical disparities of the images have: along a row, slanted edges seem moved by
-  /// them.
+  Eigen::Vector3d plane;  ///< at the stamp, 1/m; good to a fraction of a pixel of disparity
+  /// Rotation that the vertical disparities of the images have. They make slanted edges seem to move along a
+  /// row.
   RigRotation rows;
-  /// What the right image has been freed of before, rad, so that edges of pairs that were levelled otherwise
-  /// count as well.
+  /// Rotation that was removed from the right image before, rad. With it, edges of pairs that were levelled
+  /// differently count as well.
   Eigen::Vector3d levelled_by = Eigen::Vector3d::Zero();
   PlaneDrift drift = {};  ///< of the plane while rows are exposed
-  /// Something else took this pair's time: the second step is the last one, and what has not settled by then
-  /// is claimed.
+  /// True when something else took this pair's time. The second step is then the last one, and the covariance
+  /// contains what has not converged.
   bool brief = false;
 };
 
-/// Direct photometric refinement of the ground plane: aligns the left image with the right one warped by the
-/// plane's homography (along the rows only, as the images are rectified), over the blocks of ground that have
-/// most horizontal gradient. Gauss-Newton, inverse compositional; a gain and an offset of each block are
-/// projected out. A block's normal equations say by how much the plane's disparity is off there; the plane is
-/// the weighted least squares solution over the blocks, and what stands on the ground loses its weight. Where
-/// gradients are mostly noise all of the ground's texture is looked at instead, band by band. Edges aslant
-/// tell how far rows are off beside what is known of them, and plane and rows are solved for together.
+/// Direct photometric refinement of the ground plane. It aligns the left image with the right one, warped by
+/// the plane's homography (along the rows only, as the images are rectified). It uses the blocks of ground
+/// with most horizontal gradient, by Gauss-Newton, inverse compositional; a gain and an offset of each block
+/// are projected out.
+/// The normal equations of a block tell how far the plane's disparity is off there. The plane is the weighted
+/// least squares solution over the blocks, and objects on the ground lose their weight. Where gradients are
+/// mostly noise, all of the ground's texture is used instead, band by band. Slanted edges tell how far rows
+/// are off beyond what is known of them, so plane and rows are solved for together.
 class DirectRefinement {
  public:
-  /// margin: pixels that stay away from the edges of the model's masks, at least 4.
+  /// margin: pixels to stay away from the edges of the model's masks, at least 4.
   DirectRefinement(const RigModel& model, int margin);
   ~DirectRefinement();
   DirectRefinement(DirectRefinement&&) noexcept;
 
-  /// left, right: rectified mono8. limits.tolerance: by how much blocks of ground may be off the plane,
-  /// pixels. bias_stddev: as for refinePlane, pixels. Fails when the images show too little, or when most of
-  /// what they show is not on one plane.
+  /// left, right: rectified mono8. limits.tolerance: largest distance of a ground block from the plane,
+  /// pixels. bias_stddev: as for refinePlane(), pixels. Fails when the images show too little, or when most
+  /// of the blocks are not on one plane.
   Expected<PlaneFit> refine(const cv::Mat& left, const cv::Mat& right, const RefinementStart& start,
                             const PlaneLimits& limits, double bias_stddev);
-  /// What the last pair's edges said of the rows does not count for the next ones, as of a plane that is not
-  /// taken.
+  /// Drops the evidence of the last pair's edges about the rows, for example because its plane is not used.
   void forgetLast();
   /// Forgets the edges of the pairs before.
   void reset();
-  /// Share of the blocks with anything to see that look alike in both images and are on one plane, in the
-  /// last refinement; NaN when it had fewer than 20 such blocks.
+  /// Share of the informative blocks of the last refinement that look alike in both images and are on one
+  /// plane. NaN with fewer than 20 such blocks.
   double agreement() const;
   /// Whether texture was hardly more than noise in the last refinement.
   bool noisy() const;
-  /// What the last refinement was fitted to: one disparity for each block, or for several of faint texture,
-  /// at the stamp.
+  /// The samples of the last refinement, at the stamp: one disparity per block, or per group of faint blocks.
   const std::vector<DisparitySample>& samples() const;
 
  private:
@@ -63,12 +62,12 @@ class DirectRefinement {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Whether two planes from the same pair are the same within their covariances. Errors common to both make
-/// this lenient, which is meant: it is to find a refinement that went astray.
+/// Whether two planes from the same pair agree within their covariances. Errors common to both make this test
+/// lenient. That is intended: it only has to find a refinement that went astray.
 bool samePlane(const GroundPlane& a, const GroundPlane& b);
 
-/// Makes a plane as uncertain as another one of the same pair that contradicts it: one of the two is wrong by
-/// what is between them, and nothing tells which.
+/// Makes a plane as uncertain as its difference from a contradicting plane of the same pair. One of the two
+/// is wrong, and nothing tells which.
 void doubt(GroundPlane& plane, const GroundPlane& contradicting);
 
 }  // namespace uav_landing

@@ -3,7 +3,7 @@
 namespace uav_landing {
 namespace {
 
-// Share of the blocks that are beyond doubt where the images are clear.
+// When images are clear, at least this share of the blocks is beyond doubt.
 constexpr double kMostlyCertain = 0.5;
 
 }  // namespace

@@ -7,29 +7,30 @@
 
 namespace uav_landing {
 
-/// Disparities of the ground from a pair's images: by the blocks that show most, or, where most of these are
-/// hardly more than noise, by all of the ground's texture, faint as it is.
+/// Disparities of the ground from a pair's images. They come from the blocks that show most. When most of
+/// these are hardly more than noise, they come from all of the ground's faint texture.
 class PairDisparities {
  public:
-  /// margin: pixels that stay away from the edges of the model's masks, at least 4.
+  /// margin: pixels to stay away from the edges of the model's masks, at least 4.
   PairDisparities(const RigModel& model, int margin);
 
-  /// Takes a pair (mono8) and compares blocks of it with the right image warped by the plane g, 1/m. rows:
+  /// Takes a pair (mono8) and compares its blocks with the right image warped by the plane g, 1/m. rows:
   /// rotation that the vertical disparities of the images have. drift: of the plane while rows are exposed.
   void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
              const PlaneDrift& drift = {});
-  /// Compares the same pair once more, on another plane. right, rows: as for begin. Only this looks at faint
-  /// texture, as a first comparison does well enough without.
+  /// Compares the same pair again, on another plane. right, rows: as for begin(). Only this call uses faint
+  /// texture, because a first comparison does not need it.
   void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
                const PlaneDrift& drift = {});
 
-  /// Of the last comparison, those that the right image shows.
+  /// Disparities of the last comparison, of blocks that the right image shows.
   const std::vector<BlockDisparity>& found() const { return found_; }
-  /// Blocks that show more than noise, also those that the right image does not show.
+  /// Number of blocks that show more than noise, whether the right image shows them or not.
   int informative() const { return informative_; }
-  /// Whether neighbours have errors in common, so that they scatter less than they are wrong.
+  /// Whether neighbours share errors. They then scatter less than they are wrong.
   bool haveCommonErrors() const { return by_bands_; }
-  /// Whether blocks are hardly more than noise in this pair, so that measure() may show more than begin().
+  /// Whether the blocks of this pair are hardly more than noise, so that measure() may show more than
+  /// begin().
   bool areFaint() const { return faint_; }
 
  private:

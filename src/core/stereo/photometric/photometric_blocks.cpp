@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::kHeight;
 constexpr int kMargin = PhotometricBlocks::kMargin;
-// Ground nearer the horizon than this disparity (pixels) says nothing about the height.
+// Ground with a smaller disparity (pixels) is too near the horizon to tell the height.
 constexpr double kLeastDisparity = 0.3;
-// Squares of grey levels in a block below which it shows nothing.
+// A block with a smaller sum of squared grey levels shows nothing.
 constexpr float kLeastEnergy = 0.25f * PhotometricBlocks::kPixels;
 
 }  // namespace
@@ -34,7 +34,7 @@ bool PhotometricBlocks::usable(const StereoRig& rig, const ShiftModel& shift, in
 
 void PhotometricBlocks::findCandidates(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift) {
   candidates_.clear();
-  // The highest row that may be ground, at either side.
+  // The highest row that may be ground, at the left or right edge.
   const double limit = kLeastDisparity + rig.principalOffset();
   const auto horizon = [&](double u) { return (limit - shift.c - shift.a * u) / shift.b; };
   const double highest = shift.b > 0 ? std::min(horizon(0), horizon(left.cols - 1)) : 0;
@@ -57,10 +57,10 @@ double PhotometricBlocks::usualEnergy() const {
   return medianOf(energies) / (kSobelScale * kSobelScale);
 }
 
-// The strongest block of each cell of a coarse grid, so that every part of the ground has a say, and then the
-// strongest of all.
+// First the strongest block in each cell of a coarse grid, so that every part of the ground takes part; then
+// the strongest of all.
 void PhotometricBlocks::pick(int count) {
-  constexpr int kCell = 4;  // blocks to each side of a cell
+  constexpr int kCell = 4;  // blocks along each side of a cell
   if (static_cast<int>(candidates_.size()) <= count) {
     for (Candidate& candidate : candidates_) candidate.chosen = true;
     return;

@@ -12,28 +12,28 @@
 
 namespace uav_landing {
 
-/// Small blocks of the left image that are compared, grey level by grey level, with the right image warped by
-/// a plane. Each tells by how much the warp is off along its rows. Blind to a gain and an offset of its own
-/// in each block, so to those of the cameras and to vignetting: what of the derivative by the shift looks
-/// like a gain or an offset is taken out. Inverse compositional (Baker, Matthews 2004): derivatives are of
-/// the left image, made once, and the shift found is put before the warp. Noise of the right image and of
-/// the left one's derivatives are independent, so that interpolation does not pull towards whole pixels.
+/// Small blocks of the left image that are compared by grey levels with the right image, which is warped by a
+/// plane. Each block tells how far the warp is off along its rows. It is blind to gain and offset, and so to
+/// vignetting: the parts of the derivative that look like a gain or an offset are taken out.
+/// The method is inverse compositional (Baker, Matthews 2004): derivatives are those of the left image,
+/// computed once, and the shift found is put before the warp. The noise of the right image is independent of
+/// that of the left one's derivatives, so interpolation does not pull towards whole pixels.
 class PhotometricBlocks {
  public:
   static constexpr int kWidth = kBlockWidth, kHeight = kBlockHeight, kPixels = kBlockPixels;
-  static constexpr int kTogether = 8;  ///< blocks in a row that may speak together
+  static constexpr int kTogether = 8;  ///< blocks in a row that may be joined
   static constexpr int kMargin = 2;  ///< pixels to the left and right that interpolation and derivatives read
 
   /// Masks of the rectified images (mono8), eroded by at least two pixels.
   PhotometricBlocks(cv::Mat left_mask, cv::Mat right_mask);
 
-  /// Takes the blocks of most horizontal gradient, some from everywhere, among those that lie below the
-  /// horizon of the shift model and whose places in the right image have picture. left: mono8.
+  /// Takes the blocks with most horizontal gradient, some from everywhere. They lie below the horizon of the
+  /// shift model, and their places in the right image are inside its mask. left: mono8.
   void choose(const cv::Mat& left, const StereoRig& rig, const ShiftModel& shift, int count);
 
   using Match = ShiftMatch;
-  /// Compares the blocks with the right image (mono8) warped by the model: first order in the shift. Blocks
-  /// with hardly more than noise are taken together with others in their row.
+  /// Compares the blocks with the right image (mono8) warped by the model, to first order in the shift.
+  /// Blocks with hardly more than noise are joined with others of their row.
   void compare(const cv::Mat& right, const ShiftModel& shift, std::vector<Match>& matches);
 
  private:
@@ -46,16 +46,16 @@ class PhotometricBlocks {
     int u, v;                  // first pixel
     float centre_u, centre_v;  // where its gradients are
   };
-  // What the warped right image r has in common with a block.
+  // Products of a block with the warped right image r.
   struct Products {
     const Block* block;
     double grey, slope;  // sums of grey r, slope r
-    double variance;     // of r's grey levels beside the best gain and offset
-    /// The same beside this gain and the best offset.
+    double variance;     // of r's grey levels about the best gain and offset
+    /// The same about this gain and the best offset.
     double varianceAt(double gain) const;
   };
-  // Of the right image over the left one; variance of the noise in one image, and of residuals that are only
-  // noise.
+  // Gain of the right image over the left one; variance of the noise in one image, and of residuals that are
+  // noise only.
   struct Photometry {
     double gain, noise, residual;
   };
@@ -66,14 +66,14 @@ class PhotometricBlocks {
   static bool makeBlock(const cv::Mat& left, const Candidate& candidate, Block& block);
   void multiply(const cv::Mat& right, const ShiftModel& model);
   std::optional<Photometry> photometry() const;
-  // None where the left image shows nothing but noise.
+  // None when the left image shows only noise.
   std::optional<ShiftEvidence> evidenceOf(const Products& products, const Photometry& photometry) const;
-  // variance: of the right image's grey levels beside gain, offset and shift.
+  // variance: of the right image's grey levels about gain, offset and shift.
   static bool looksAlike(const Products& products, const Photometry& photometry, double variance);
 
   cv::Mat left_mask_, right_mask_;
   int first_row_ = 0;
-  double usual_energy_ = 0;  // of the candidates, the median: sum of slope^2, with its noise
+  double usual_energy_ = 0;  // median over the candidates of the sum of slope^2, noise included
   std::vector<Candidate> candidates_;
   std::vector<Block> blocks_;
   std::vector<Products> products_;

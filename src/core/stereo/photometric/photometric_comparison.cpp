@@ -13,27 +13,26 @@ constexpr int kWidth = PhotometricBlocks::kWidth, kHeight = PhotometricBlocks::k
 constexpr int kPixels = PhotometricBlocks::kPixels, kMargin = PhotometricBlocks::kMargin;
 // Variance of a derivative by Sobel's kernel over that of the noise.
 constexpr double kSlopeNoise = 0.1875;
-// Variance of the noise in the right image after interpolation over that before (0.64 of it is left half-way
-// between two pixels).
+// Variance of the right image's noise after interpolation over that before. Half-way between two pixels, 0.64
+// of it is left.
 constexpr double kInterpolated = 0.76;
-// The variance that a block of nothing but noise may show, over the lower quartile: three sigma of
-// chi-square.
+// Largest variance of a block of noise over the lower quartile: three sigma of chi-square.
 constexpr double kNoiseScatter = 1.45;
-// Squared correlation, noise taken off, below which a block does not show what the other image has there.
+// Squared correlation without noise. A block below it does not show what the other image has there.
 constexpr double kLeastCorrelation = 0.75;
-// Share of a block's grey levels that must be more than noise.
+// Share of a block's grey levels that must exceed noise.
 constexpr double kLeastShareOfGrey = 0.25;
-// Least gain of the right image over the left one.
+// Smallest gain of the right image over the left one.
 constexpr double kLeastGain = 0.2;
-// Variance of rounding to whole grey levels in two images.
+// Variance from rounding to whole grey levels in two images.
 constexpr double kLeastVariance = 1.0 / 6.0;
 
-// The lower quartile of the variances that blocks of noise show, over their mean (chi-square).
+// Lower quartile of the variances of noise blocks over their mean (chi-square).
 constexpr double kQuartile = 0.915;
-// Sum of the products of Sobel's kernel, as a derivative, and the one of fourth order; variance per pixel of
-// the products of what they make of noise with a variance of 1, summed over a block.
+// kProductNoise: sum of the products of Sobel's kernel, as a derivative, and the one of fourth order.
+// kProductScatter: variance per pixel of their products for noise with a variance of 1, summed over a block.
 constexpr double kProductNoise = 1.0 / 3, kProductScatter = 0.505;
-// Of the usual signal over the noise: less cannot be told from none.
+// Smallest usual signal over the noise; less cannot be told from none.
 constexpr double kLeastUsual = 0.05;
 
 double lowerQuartileOf(const std::vector<double>& values) {
@@ -72,17 +71,16 @@ std::optional<PhotometricBlocks::Photometry> PhotometricBlocks::photometry() con
   std::vector<double> variances(products_.size());
   Photometry found{1, 0, 0};
   for (int round = 0; round < kRounds; ++round) {
-    // Blocks have their own gains while the common one is not known. That of a block of nothing but noise is
-    // about none, so its residuals lack the left image's noise: alone they would make the noise half as large
-    // as it is.
+    // In the first round the common gain is unknown, so each block has its own. A block of noise has a gain
+    // of about zero, so its residuals lack the left image's noise. By these alone, the noise would seem half
+    // as large as it is.
     std::transform(products_.begin(), products_.end(), variances.begin(), [&](const Products& products) {
       return round == 0 ? products.variance : products.varianceAt(found.gain);
     });
-    // Blocks that are not on the plane leave large residuals, so those of the best fitting ones tell the
-    // noise.
+    // Blocks off the plane leave large residuals, so the best fitting blocks tell the noise.
     found.residual = lowerQuartileOf(variances);
     found.noise = found.residual / kQuartile / (found.gain * found.gain + kInterpolated);
-    // The noise of the left image makes its squares larger than what both images have in common.
+    // The noise of the left image makes its squares larger than the part common to both images.
     double in_common = 0, squares = 0;
     for (const Products& products : products_) {
       in_common += products.grey;
@@ -100,7 +98,7 @@ std::optional<ShiftEvidence> PhotometricBlocks::evidenceOf(const Products& produ
   const double noise = photometry.noise * kPixels, slope_noise = noise * kSlopeNoise;
   const double common = block.grey_energy - noise;
   if (common < kLeastShareOfGrey * block.grey_energy) return std::nullopt;
-  // The derivative less what of it looks like a gain: slope - mixed grey.
+  // The derivative without its part that looks like a gain: slope - mixed grey.
   const double mixed = block.both / common;
   ShiftEvidence evidence;
   evidence.blocks = 1;
@@ -121,7 +119,7 @@ std::optional<ShiftEvidence> PhotometricBlocks::evidenceOf(const Products& produ
 
 bool PhotometricBlocks::looksAlike(const Products& products, const Photometry& photometry, double variance) {
   const double energy = products.block->grey_energy, share = 1 - photometry.noise * kPixels / energy;
-  // What the right image has beside noise: the part that is like the block, and the rest.
+  // What the right image has besides noise: the part that is like the block, and the rest.
   const double alike = products.grey * products.grey / energy * share;
   const double other = kPixels * std::max(0.0, variance - kNoiseScatter * photometry.residual);
   return alike >= kLeastCorrelation * (alike + other);

@@ -8,14 +8,14 @@
 namespace uav_landing {
 namespace {
 
-// By how much rectification may have made the noise of neighbouring pixels alike, as a factor on stddevs.
+// Largest factor on stddevs, as rectification makes the noise of neighbouring pixels alike.
 constexpr double kLargestFactor = 2.0;
-// No error that samples have in common is larger, pixels.
+// Largest error that samples may have in common, pixels.
 constexpr double kLargestCommon = 1.5;
-// The quietest samples are one of so many, and at least this many where that is less than half.
+// The quietest samples are one in kQuietestShare. They are at least kQuietest, if that is less than half.
 constexpr size_t kQuietestShare = 10, kQuietest = 20;
-// Of the variance by the median of squared normal errors, the standard deviation: this times the variance
-// over the root of their number, 1 / (2 x density of chi-square at its median) over that median.
+// Standard deviation of a variance that is estimated by the median of squared normal errors. It is this times
+// the variance over the root of their number: 1 / (2 x density of chi-square at its median) over that median.
 constexpr double kMedianScatter = 2.33;
 
 }  // namespace
@@ -35,13 +35,13 @@ double makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double le
   const double factor = std::clamp(robustStddev(ratios), least_factor, kLargestFactor);
   const size_t count = std::min(std::max(samples.size() / kQuietestShare, kQuietest), samples.size() / 2);
   const double quiet = orderStatistic(stddevs.data(), stddevs.size(), count);
-  // The variance without which half of the quietest samples were off by more than normal errors are.
+  // The variance with which half of the quietest samples agree, beyond that of their noise.
   for (size_t i = 0; i < samples.size(); ++i) {
     if (stddevs[i] >= quiet) continue;
     const double off = kPerMedian * (residuals[i] - offset), noise = factor * stddevs[i];
     missing.push_back(off * off - noise * noise);
   }
-  // Of few samples, noise alone makes it scatter: one sigma of that is not taken for an error.
+  // With few samples noise alone makes it scatter, so one sigma of this scatter is not taken for an error.
   const double by_chance = kMedianScatter / std::sqrt(count) * std::pow(factor * quiet, 2);
   const double common =
       missing.empty() ? 0 : std::clamp(medianOf(missing) - by_chance, 0.0, kLargestCommon * kLargestCommon);

@@ -26,9 +26,9 @@ void ShiftEvidence::add(const ShiftEvidence& other) {
 
 bool ShiftEvidence::isCertain() const { return signal > kCertain * std::sqrt(signal_variance); }
 
-// A signal is positive, and strong ones are rare but not unheard of (density 1 / (usual + signal)^2, its
-// logarithm taken as linear near what was measured). Among many blocks with next to nothing to see, noise
-// makes some look as if they had; believed, they would be weighted, and claim to know, as much as that.
+// The prior: a signal is positive, and strong ones are rare but possible (density 1 / (usual + signal)^2, its
+// logarithm linear near the measurement). Among many blocks with next to nothing to see, noise makes some
+// look strong. Without the prior these would get too much weight and claim to know too much.
 double ShiftEvidence::likelySignal() const {
   const double stddev = std::sqrt(signal_variance);
   const double most_likely = signal - 2 * signal_variance / (usual + std::max(signal, 0.0));

@@ -5,7 +5,7 @@
 namespace uav_landing {
 namespace {
 
-// Share of the derivatives that must be more than noise.
+// Share of the derivatives that must exceed noise.
 constexpr double kLeastShare = 0.1;
 
 }  // namespace

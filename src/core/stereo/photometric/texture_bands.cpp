@@ -8,7 +8,7 @@ namespace {
 
 // Standard deviations of the Gaussians, pixels of the image.
 constexpr double kSmooth = 1.0, kSmoother = 2.5, kSmoothest = 6.4;
-// Variance of a place within the two pixels that are one of the reduced image.
+// Variance of a place within the two pixels that become one of the reduced image.
 constexpr double kReducing = 0.25;
 
 /// From one standard deviation to another, in pixels of the reduced image.
@@ -16,7 +16,7 @@ double reducedSigma(double from_variance, double to) { return 0.5 * std::sqrt(to
 
 void blur(const cv::Mat& image, double sigma, cv::Mat& out) {
   const int size = 2 * static_cast<int>(std::lround(3 * sigma)) + 1;
-  // Rows of the same memory beside the image's are none of it.
+  // Rows beside the image in the same memory do not belong to it.
   cv::GaussianBlur(image, out, {size, size}, sigma, sigma, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
 }
 

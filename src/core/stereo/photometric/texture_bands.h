@@ -5,22 +5,22 @@
 
 namespace uav_landing {
 
-/// An image taken apart by how fine its texture is: differences of Gaussians (Burt, Adelson 1983), with
-/// standard deviations of 0, 1, 2.5 and 6.4 pixels. What is left out has a gain and an offset in it rather
+/// An image split by how fine its texture is: differences of Gaussians (Burt, Adelson 1983) with standard
+/// deviations of 0, 1, 2.5 and 6.4 pixels. The coarser rest is dropped, as it contains gain and offset rather
 /// than texture.
 class TextureBands {
  public:
   static constexpr int kBands = 3;
-  /// Pixels of the image to each side that are one of the band.
+  /// Pixels of the image, along each side, that make one of the band.
   static constexpr int factor(int band) { return band == 0 ? 1 : 2; }
-  /// What white noise does to the sums over blocks of 16 by 8 pixels (BandSums).
+  /// Effect of white noise on the sums over blocks of 16 by 8 pixels (BandSums).
   struct Noise {
-    /// Variance of a signal, both images noise: this times slopes and the variance of the other's band.
+    /// Factor of a signal's variance when both images are noise: times slopes and the variance of the other's
+    /// band.
     double signal;
     /// Correlation of the scores with those of the next coarser band.
     double alike_coarser;
-    /// The residual that blocks with their neighbours may have by chance (three sigma), over the lower
-    /// quartile.
+    /// Largest residual by chance (three sigma) of blocks with their neighbours, over the lower quartile.
     double most;
   };
   static constexpr Noise noise(int band) {
@@ -36,7 +36,7 @@ class TextureBands {
   const cv::Mat& operator[](int band) const { return bands_[band].image; }
 
  private:
-  /// Part of an image that is kept for its memory.
+  /// Part of an image whose memory is kept.
   struct Rows {
     explicit Rows(const cv::Size& largest) : memory(cv::Mat::zeros(largest, CV_32F)) {}
     void setCount(int count) { image = memory.rowRange(0, count); }

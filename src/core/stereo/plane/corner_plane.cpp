@@ -16,7 +16,7 @@ Eigen::Vector3d rowOf(const StereoRig& rig, const DisparitySample& sample) {
   return rig.fb() * rig.ray(sample.u, sample.v);
 }
 
-// Of the plane by independent errors of the samples that agree.
+// Covariance of the plane if the errors of the agreeing samples were independent.
 Eigen::Matrix3d independentCovariance(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                                       const PlaneFit& fit) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -28,7 +28,7 @@ Eigen::Matrix3d independentCovariance(const StereoRig& rig, const std::vector<Di
   return information.inverse();
 }
 
-// By which the noise's variance is larger as windows share pixels.
+// Factor on the noise's variance, because overlapping windows share pixels.
 double overlapFactor(const std::vector<DisparitySample>& samples, const PlaneFit& fit, int window) {
   WindowOverlap windows(samples.size());
   for (size_t i = 0; i < samples.size(); ++i)

@@ -8,22 +8,22 @@
 
 namespace uav_landing {
 
-/// What the corners of a pair say.
+/// The corners of a pair with their matches and their plane.
 struct MatchedCorners {
-  std::vector<cv::Point> corners;  ///< that were looked for
+  std::vector<cv::Point> corners;  ///< all that were looked for
   RowMatches matches;
-  PlaneFit fit;  ///< the plane of most of them, where there is one
+  PlaneFit fit;  ///< the plane that most of them agree on, if there is one
 };
 
-/// The plane that most disparities of corners agree on, fitted to these. corners: that were looked for.
-/// expected: the plane that they were looked for by. bias_stddev: as for refinePlane. Fails when there are
-/// too few, or no plane.
+/// Finds the plane that most disparities agree on, and fits it to these. corners: number that was looked for.
+/// expected: the plane that predicted their places, 1/m. bias_stddev: as for refinePlane(), pixels. Fails
+/// when there are too few matches, or when they have no common plane.
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
                               const Eigen::Vector3d& expected, const PlaneLimits& limits, double bias_stddev);
 
-/// What the covariance of that plane leaves out, 1/m^2: noise of pixels that several windows are of, and
-/// errors that are alike in a part of the image (image_cells.h), in the directions in which they move the
-/// plane. window: width and height of the corners' windows, pixels.
+/// The part that the covariance of that plane leaves out, 1/m^2. It contains the noise of pixels that several
+/// windows share. It also contains errors that are alike in a part of the image (image_cells.h). window:
+/// width and height of the corners' windows, pixels. bias_stddev: as for fitCorners().
 Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,
                                  double bias_stddev);
 

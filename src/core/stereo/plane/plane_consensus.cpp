@@ -16,17 +16,18 @@
 namespace uav_landing {
 namespace {
 
-// Share of a full vote that a sample below the plane takes away: ground does not allow it.
+// Share of a full vote that a sample below the plane costs, as nothing lies below the ground.
 constexpr double kBelowPenalty = 0.5;
-// The same for a sample above it: it may stand on the ground, but ground that everything floats over is none.
+// The same for a sample above the plane. It may stand on the ground, but a plane below everything is not the
+// ground.
 constexpr double kAbovePenalty = 0.1;
-// Votes that a roll of ten degrees takes away (with its square): an aircraft that lands is nearly level, and
-// planes through walls and slopes are not.
+// Votes that a roll of ten degrees costs; the cost grows with its square. An aircraft that lands is nearly
+// level, but planes through walls and slopes are not.
 constexpr double kRollPenalty = 1.0;
-// Least disparity of the plane at a sample that counts: nearer the horizon everything agrees.
+// Smallest disparity of the plane at a sample that counts, in pixels. Nearer the horizon all samples agree.
 constexpr double kMinDisparity = 1.0;
 
-// Places of the samples, those with the most disparities first.
+// Indices of the samples, those with the most disparities first.
 std::vector<size_t> orderOf(const std::vector<DisparitySample>& samples) {
   std::vector<size_t> order(samples.size());
   std::iota(order.begin(), order.end(), 0);
@@ -35,8 +36,8 @@ std::vector<size_t> orderOf(const std::vector<DisparitySample>& samples) {
   return order;
 }
 
-// What a search for the plane has of the samples. In the columns x and y are derivatives of the disparity by
-// the plane vector; by its third component it is fb.
+// The samples as columns for voting. x and y are the derivatives of the disparity by the first two components
+// of the plane vector. The derivative by the third is fb.
 struct Voters {
   const StereoRig& rig;
   const std::vector<DisparitySample>& samples;
@@ -56,8 +57,7 @@ struct Voters {
     }
   }
 
-  // A sample whose place in the right image is outside of it says nothing against the plane, whatever it
-  // matched instead.
+  // When the plane puts a sample outside the right image, its match says nothing against the plane.
   Votes votesFor(const Eigen::Vector3d& g, double tolerance) const {
     const double tens = rollOf(g) * 18.0 / M_PI;
     const LinearValue plane{g.x(), g.y(), g.z() * rig.fb()};
@@ -67,7 +67,7 @@ struct Voters {
     return votes;
   }
 
-  // Disparities that a sample may have, on average.
+  // Mean number of disparities that a sample may have.
   double choices() const {
     double all = static_cast<double>(samples.size());
     for (const DisparitySample& sample : samples) all += static_cast<double>(sample.others.size());
@@ -83,10 +83,11 @@ struct Voters {
   }
 };
 
-// Uniform integer below n: std distributions differ between standard libraries, this does not.
+// Uniform integer below n. Standard distributions differ between libraries, this does not.
 size_t below(std::mt19937& random, size_t n) { return random() % n; }
 
-// Least squares over what agrees with a new best plane (locally optimised RANSAC: Chum, Matas, Kittler 2003).
+// Least squares over the samples that agree with a new best plane (locally optimised RANSAC: Chum, Matas,
+// Kittler 2003).
 void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
@@ -113,7 +114,7 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
   }
 }
 
-// One of the disparities of one of the samples.
+// One of the disparities of one of the samples, drawn at random.
 struct Draw {
   Eigen::Vector3d ray;
   double disparity;
@@ -125,7 +126,7 @@ struct Draw {
   }
 };
 
-// Plane through three samples; not plausible (zero) when they are nearly in line.
+// Plane through three samples. It is zero, which is not plausible, when they are nearly in line.
 Eigen::Vector3d throughThree(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                              std::mt19937& random) {
   const Draw a(rig, samples, random), b(rig, samples, random), c(rig, samples, random);
@@ -136,8 +137,8 @@ Eigen::Vector3d throughThree(const StereoRig& rig, const std::vector<DisparitySa
          (volume * rig.fb());
 }
 
-// Plane through two samples with a drawn roll, small ones more often: where little of the image is ground,
-// two that lie on it are found far sooner than three.
+// Plane through two samples and a random roll, mostly a small one. When little of the image is ground, two
+// samples on it are found much sooner than three.
 Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySample>& samples, double max_roll,
                            std::mt19937& random) {
   const Draw a(rig, samples, random), b(rig, samples, random);
@@ -151,8 +152,8 @@ Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySamp
 
 bool isWithin(const Eigen::Vector2d& range, double value) { return value >= range.x() && value <= range.y(); }
 
-// Draws pairs out of samples that may have many disparities each, mostly of the wrong slope: so many that a
-// draw has to be cheap.
+// Draws planes through two samples. A sample may have many disparities, mostly wrong ones, so many draws are
+// needed and each has to be cheap.
 class PairDraws {
  public:
   PairDraws(const StereoRig& rig, const std::vector<DisparitySample>& samples, double max_roll)
@@ -166,7 +167,7 @@ class PairDraws {
     first_.push_back(disparities_.size());
   }
 
-  // Plane through two of them with a drawn roll.
+  // Plane through two samples and a random roll.
   Eigen::Vector3d next() {
     const size_t a = below(rays_.size()), b = below(rays_.size());
     const double triangular = static_cast<double>(below(1001) + below(1001)) / 1000.0 - 1.0;
@@ -195,8 +196,9 @@ class PairDraws {
 
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                     const PlaneLimits& limits, const ConsensusOptions& options) {
-  constexpr double kBeyondDoubt = 0.8;  // of the votes if all samples were exactly on the plane
-  constexpr double kRightRoll = 0.2;    // share of the rolls drawn with which a pair on the plane gives it
+  constexpr double kBeyondDoubt = 0.8;  // share of the votes that all samples would give
+  constexpr double kRightRoll = 0.2;    // share of the random rolls with which two samples on the plane give
+                                        // the plane
   Consensus best;
   if (samples.size() < 3) return best;
   const Voters voters{rig, samples};
@@ -208,7 +210,7 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     draws.sample = 2;
     draws.of_draws = kRightRoll;
   } else {
-    draws.of_draws = 0.5;  // every other one is a triple
+    draws.of_draws = 0.5;  // every second draw takes three samples
   }
   RansacBudget budget(draws);
   const double right_choice = 1 / voters.choices();
@@ -217,7 +219,7 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     if (best.found && votes.net() <= best.score) return;
     best = {g, votes.agreeing, votes.net(), true};
     improve(voters, limits, best);
-    // Penalties only take away: a better plane has at least the votes that are left of this one's.
+    // Penalties only reduce the score, so a better plane has at least as many votes as this score.
     if (options.until_sure) budget.found(right_choice * best.score / all);
   };
   if (options.expected && isPlausibleGround(*options.expected, limits)) {
@@ -228,7 +230,7 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
     PairDraws pairs(rig, samples, limits.max_roll);
     while (budget.goesOn()) {
       const Eigen::Vector3d g = pairs.next();
-      // The slope first: most planes that are drawn have another one.
+      // The slope is tested first, because it rules out most planes.
       if (!isWithin(*options.slope_range, rig.fb() * g.y() / rig.fy)) continue;
       if (!isPlausibleGround(g, limits)) continue;
       budget.count();

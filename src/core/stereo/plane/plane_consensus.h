@@ -10,32 +10,32 @@
 
 namespace uav_landing {
 
-/// A plane and who agrees with it.
+/// A plane and the number of samples that agree with it.
 struct Consensus {
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   double support = 0;  ///< about the number of agreeing samples
-  double score = 0;    ///< support less the penalties: what planes are ranked by
+  double score = 0;    ///< support less penalties; ranks the planes
   bool found = false;
 };
 
 /// How a consensus is looked for.
 struct ConsensusOptions {
   int iterations = 0;  ///< plausible planes drawn, at most
-  /// Ends when a better plane would have been drawn already.
+  /// Ends early when a better plane would most likely have been drawn already.
   bool until_sure = false;
-  /// Bounds on the change of disparity per row of the planes drawn. The least squares that follow may leave
-  /// them. Most planes that are drawn have another one, so they are drawn through pairs, which is quick.
+  /// Bounds of the change of disparity per row, for the planes drawn. The least squares that follow may leave
+  /// them. Most planes are out of bounds, so each is drawn through two samples, which is quick.
   std::optional<Eigen::Vector2d> slope_range{};
-  /// A plane that is tried first. Nothing is drawn when four fifths of the votes are for what it is improved
-  /// to, as a quite different one would have less.
+  /// A plane that is tried first and improved. If it gets four fifths of the votes, nothing is drawn: a
+  /// different plane would have fewer.
   std::optional<Eigen::Vector3d> expected{};
-  /// Draws for each plausible plane, at most. Implausible ones cost next to nothing.
+  /// Draws per plausible plane, at most. Implausible planes cost next to nothing.
   int draws_each = 20;
 };
 
 /// Plane by consensus (MSAC over triples and pairs; fixed seed): the plausible plane with the most support. A
-/// pixel that matches nearer than the plane stands above the ground and costs nothing; one that matches
-/// farther would lie below it, which ground does not allow, and counts against the plane.
+/// sample that matches nearer than the plane stands above the ground and costs little. A sample that matches
+/// farther would lie below the ground, which is impossible, so it counts against the plane.
 Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                     const PlaneLimits& limits, const ConsensusOptions& options);
 

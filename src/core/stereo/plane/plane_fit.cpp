@@ -22,8 +22,8 @@ struct NormalEquations {
   int count = 0;
 };
 
-// The least squares problem. x and y are derivatives of a disparity by the plane vector; by its third
-// component it is fb. Uses the memory of the columns.
+// The least squares problem, in the memory of the columns. x and y are the derivatives of a disparity by the
+// first two components of the plane vector. The derivative by the third is fb.
 class PlaneProblem {
  public:
   PlaneProblem(const StereoRig& rig, const std::vector<DisparitySample>& samples, PlaneColumns& columns)
@@ -41,12 +41,11 @@ class PlaneProblem {
   // Derivatives of a sample's disparity by the plane vector.
   Eigen::Vector3d row(size_t i) const { return {columns_.x[i], columns_.y[i], fb_}; }
 
-  // The disparities that a plane gives.
+  // Computes the disparities that a plane predicts.
   void expect(const Eigen::Vector3d& g) { expectValues({g.x(), g.y(), g.z() * fb_}, columns_); }
 
   // Robust size of the residuals as a multiple of the claimed stddevs, at least 1, over samples near the
-  // plane. What stands on the ground makes residuals positive only, so the negative ones alone tell the size
-  // of the ground's own.
+  // plane. Only negative residuals are used, because objects on the ground make residuals positive.
   double residualScale(double tolerance) {
     const NearbyCount nearby = measureBelow(2 * tolerance, kPerMedian, columns_);
     if (nearby.small > nearby.all / 2 || nearby.all == 0) return 1;  // the median is among the small ones
@@ -54,7 +53,7 @@ class PlaneProblem {
         1.0, kPerMedian * orderStatistic(columns_.ratio.data(), columns_.ratio.size(), nearby.all / 2));
   }
 
-  // One reweighting step: Tukey weights of the residuals over scale times each sample's own stddev.
+  // One reweighting step. Tukey's weights depend on the residual over scale times the sample's own stddev.
   NormalEquations accumulate(double scale) {
     constexpr double kEnd = TukeyEnd::kDisparity;
     const PlaneSums s = addUpTukey(1 / (kEnd * kEnd * scale * scale), columns_);
@@ -68,7 +67,7 @@ class PlaneProblem {
     return sums;
   }
 
-  // Which samples had a weight.
+  // 1 for samples with a weight above zero.
   std::vector<char> agreeing() const {
     std::vector<char> agrees(count_);
     for (size_t i = 0; i < count_; ++i) agrees[i] = columns_.weight[i] > 0;
@@ -81,10 +80,10 @@ class PlaneProblem {
   double fb_;
 };
 
-// How much larger the covariance is than independent errors would make it. Surfaces are not planes, and their
-// undulations, like errors of texture, are common to neighbouring points: scores are summed over patches of
-// the image first (cluster-robust covariance: Liang, Zeger 1986). information: normal matrix already divided
-// by the squared scale of the residuals.
+// Factor by which the covariance exceeds that of independent errors. Surfaces are not planes: neighbouring
+// points share undulations and errors of texture. So the scores are first summed over cells of the image
+// (cluster-robust covariance: Liang, Zeger 1986). information: normal matrix, already divided by the squared
+// scale of the residuals.
 double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>& samples,
                         const PlaneProblem& problem, const Eigen::Vector3d& g,
                         const std::vector<char>& agrees, double scale, const Eigen::Matrix3d& information) {

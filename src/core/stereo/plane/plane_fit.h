@@ -11,18 +11,18 @@
 
 namespace uav_landing {
 
-/// Weighted least squares with redescending (Tukey) weights around a first plane: points above the ground
-/// do not pull it. start: among most of the points; the weights see nothing that is off by more than four
-/// times what it claims. Covariance from the normal matrix, scaled by the residuals where these are larger
-/// than the claimed stddevs, and by how much they are alike in neighbouring points. agrees: per sample, 1
-/// when on the plane. bias_stddev: error common to all disparities, pixels; it does not average out and is
-/// added to the covariance. memory: to work in, of any fit before.
+/// Weighted least squares with redescending (Tukey) weights around a first plane, so points above the ground
+/// do not pull. start: a plane near most points, as samples that are off by more than four times their stddev
+/// have no weight. The covariance comes from the normal matrix. It is scaled by the residuals when these
+/// exceed the claimed stddevs, and by how alike they are in neighbouring points. agrees: per sample, 1 when
+/// on the plane. bias_stddev: error common to all disparities, pixels. It does not average out, so it is
+/// added to the covariance. memory: to work in, from any earlier fit.
 struct PlaneFit {
   GroundPlane plane;
   std::vector<char> agrees;
   int count = 0;
-  Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();  ///< share of vertical disparities, 1/m^2
-  double lasting_share = 0;    ///< of the covariance without bias and rows, what is no noise of the images
+  Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();  ///< part from vertical disparities, 1/m^2
+  double lasting_share = 0;    ///< of the covariance without bias and rows: what is not noise of the images
   double residual_stddev = 0;  ///< pixels, robust
 };
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,

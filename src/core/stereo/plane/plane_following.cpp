@@ -10,12 +10,12 @@
 namespace uav_landing {
 namespace {
 
-// Where a plane is followed, corners are looked for within the search radius of the predicted place.
+// When a plane is followed, corners are looked for within the search radius of the predicted place.
 CornerReach trackingReach(const StereoDepthParameters& parameters) {
   return {static_cast<int>(std::ceil(parameters.search_radius)), 0};
 }
 
-// So many of the corners of the full size, from all of the image, where they are at a level reduced by this
+// At most so many of the full-size corners, from all of the image, at their places in a level reduced by
 // factor.
 std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
                               size_t most) {
@@ -45,10 +45,11 @@ Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
 Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
                              const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
                              const PlaneLimits& limits) {
-  // Enough for a plane good to half a pixel at full size; the search there reaches farther.
+  // Enough for a plane that is good to half a pixel at full size; the search there reaches farther.
   constexpr size_t kScouts = 64;
   constexpr int kIterations = 150;
-  // Votes of all scouts, those without a match included: with the majority on a plane no other has as many.
+  // Share of the votes of all scouts, with or without a match. When the majority is on a plane, no other has
+  // as many.
   constexpr double kLeastShare = 0.5;
   const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
   const std::vector<DisparitySample> samples =

@@ -11,13 +11,14 @@
 
 namespace uav_landing {
 
-/// Plane near a predicted one: matches within search_radius, then consensus. Not found when too few agree.
+/// Plane near a predicted one (1/m): matches within search_radius, then consensus. Not found when too few
+/// agree.
 Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
                      const StereoDepthParameters& parameters, const PlaneLimits& limits,
                      GroundCornerMemory& memory);
 
-/// The same by a few of the corners found at full size, this factor larger than the level. Not found unless
-/// most of them agree.
+/// The same by a few scouts among the corners, which were found at full size. factor: full size over the
+/// level's size. Not found unless most of the scouts agree.
 Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
                              const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
                              const PlaneLimits& limits);

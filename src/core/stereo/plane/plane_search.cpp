@@ -15,14 +15,15 @@ namespace uav_landing {
 namespace {
 
 constexpr size_t kCoarseCorners = 500, kWideCorners = 256;
-// A part of them tells whether images are swapped, where the plane ahead is clear.
+// One corner in so many is enough to tell whether images are swapped, when the plane ahead is clear.
 constexpr size_t kSample = 4;
-// In how many searches that find nothing one is also tried with left and right swapped, and turned over.
+// One search in so many failing ones is repeated with left and right swapped, and with the cameras turned
+// over.
 constexpr int kSwapCheckInterval = 10;
-// What takes as long as scoring so many places: to take the images and find corners, a choice between planes,
-// and a consensus, alone and by its samples.
+// Costs, in places that could be scored in the same time: to take the images and find corners, to choose
+// between planes, and a consensus by itself and per sample.
 constexpr double kBeginCost = 50e3, kChoiceCost = 40e3, kConsensusCost = 2e3, kSampleCost = 15;
-// Below so many columns of the coarse level half of it shows too little.
+// With fewer columns in the coarse level, half of that level shows too little.
 constexpr int kEnoughColumns = 240;
 
 }  // namespace
@@ -37,9 +38,9 @@ PlaneSearch::PlaneSearch(const RigModel& model, int factor, const StereoDepthPar
 }
 
 double PlaneSearch::budgetOf(const cv::Size& size, bool alone) {
-  // Measured: with lines and motion searched besides, a pair then takes two to three times as long as one
-  // whose plane is followed. The coarse level has about one size: small pictures leave little time for it,
-  // and in large ones the pair in which the search ends has much to match.
+  // Measured values. When lines and motion are searched as well, a pair then takes two to three times as long
+  // as one whose plane is followed. The coarse level has about the same size for all images. Small images
+  // leave little time for it, and with large ones the pair that ends the search has much to match.
   constexpr double kAtVga = 240e3, kVga = 640.0 * 480.0, kBelow = 0.84, kAbove = 0.4;
   constexpr double kAloneAtVga = 900e3, kAloneAbove = 0.25, kLeast = 75e3;
   const double ratio = size.area() / kVga;
@@ -173,8 +174,8 @@ PlaneSearch::State PlaneSearch::decide() {
   return end(State::kNotFound);
 }
 
-// Of the planes with nearly as many votes as the first, that on which the corners look most alike: a bar off
-// there are about as many.
+// Chooses among the planes with nearly as many votes as the first one. Where texture repeats, a plane that is
+// one period off has about as many votes, so the plane wins on which the corners look most alike.
 std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& leaders, const Tiers& tiers) {
   constexpr double kRivalShare = 0.8;
   std::stable_sort(leaders.begin(), leaders.end(),
@@ -206,7 +207,7 @@ PlaneSearch::State PlaneSearch::decideAhead() {
   return State::kGoesOn;
 }
 
-// Where texture repeats, as in the bars of a threshold, swapped images have planes in front as well.
+// Where texture repeats, as in threshold bars, swapped images also have planes in front of the camera.
 PlaneSearch::State PlaneSearch::decideBySample() {
   constexpr double kClearly = 0.5;
   const auto clear = [&](const Leader& leader) { return leader.share < kClearly * found_->share; };

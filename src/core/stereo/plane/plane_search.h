@@ -14,66 +14,66 @@
 
 namespace uav_landing {
 
-/// The ground's plane with nothing known: all disparities, windows sheared as for a range of heights, all
-/// peaks kept as candidates and resolved by consensus, so that repeated texture does not decide. Small
-/// disparities are looked for at the coarse level, large ones at half of it.
-///
-/// It takes as long as several pairs whose plane is known. So it is done in steps, over the images of the
-/// pair that it began with, and each pair gives it as much time as its size allows.
+/// The ground plane when nothing is known. All disparities are scored, with windows sheared for several
+/// ranges of heights. All peaks are kept as candidates and a consensus decides, so that repeated texture does
+/// not. Small disparities are looked for at the coarse level, large ones at half of it.
+/// A search takes as long as several pairs whose plane is known. So it is done in steps, on the images of the
+/// pair that it began with. Each pair gives it as much time as its size allows.
 class PlaneSearch {
  public:
-  /// model: at full size; factor: of the coarse level.
+  /// model: at full size. factor: full size over the coarse level's size.
   PlaneSearch(const RigModel& model, int factor, const StereoDepthParameters& parameters,
               const PlaneLimits& limits);
 
   enum class State {
-    kGoesOn,    ///< in the next pair
-    kFound,     ///< plane() is that of the pair that it began with
+    kGoesOn,    ///< the next pair continues
+    kFound,     ///< plane() is that of the pair that the search began with
     kNotFound,  ///< no plane
-    kSwapped,   ///< none, as left and right are exchanged, in this search or the last one that looked
-    kOverhead,  ///< none, but one above the horizon, in this search or the last one that looked
+    kSwapped,   ///< no plane, as left and right are exchanged; by this search or the last one that looked
+    kOverhead,  ///< no plane but one above the horizon; by this search or the last one that looked
   };
 
-  /// Begins with this pair, when none is under way. The level's images must be whole. budget: places to
-  /// score, about; a pair goes on until it has done so many.
+  /// Continues the search, or begins one with this pair. The level's images must be complete. budget: places
+  /// to score in this pair, about.
   State advance(const StereoLevel& coarse, double budget);
-  /// So many places have time in a pair of this size. alone: as long as lines and motion wait for the plane.
+  /// Budget of a pair of this size. alone: lines and motion wait for the plane, so more time is left.
   static double budgetOf(const cv::Size& size, bool alone = false);
 
-  /// What was found last, until the next pair.
+  /// The plane found last, 1/m; valid until the next pair.
   const Eigen::Vector3d& plane() const { return found_->g; }
-  /// Whether it began with the last pair that it was given.
+  /// Whether the search began with the latest pair.
   bool beganHere() const { return began_here_; }
-  /// A search that finds nothing, from this one on, looks for why, even if one has done so lately.
+  /// The next search that finds nothing looks for the cause, even if an earlier one did so recently. It may
+  /// be the one in progress.
   void lookAgain() { failed_ = 0; }
   /// Begins anew with the next pair.
   void restart() { phase_ = Phase::kNone; }
-  /// A plane is known again: there is nothing to search for.
+  /// The plane is known again, so there is nothing to search for.
   void stop();
-  /// Forgets what it knows of the rig, too.
+  /// Forgets everything, including what it knows of the rig.
   void reset();
 
  private:
-  // What is looked for, band by band: the plane; with left and right exchanged by some corners, or by all;
+  // What is looked for, band by band: the plane; with left and right exchanged, by some corners or by all;
   // with the cameras turned over.
   enum class Phase { kNone, kAhead, kSample, kBehind, kOverhead };
-  // Both images at one size, with the corners that are looked for.
+  // Both images at one size, with the corners to look for.
   struct Tier {
     StereoLevel level;
     cv::Mat right;  // of the level, with room beside it
     std::vector<cv::Point> corners;
   };
-  // At the coarse level, and at half of it or, where that is too small, at the coarse level again.
+  // The coarse level, and half of it. Where half is too small, both are the coarse level.
   struct Tiers {
     Tier coarse, wide;
   };
-  // The best plane of a band, with the share of the corners that speaks for it, and where it was found.
+  // The best plane of a band, the share of corners that agree with it, and where it was found.
   struct Leader {
     Eigen::Vector3d g;
     double share;
     bool wide;
   };
-  // share: of the plane with the most votes, of which this may be a rival.
+  // share: of the plane with the most votes, which may be a rival of this one.
   struct Best {
     Eigen::Vector3d g;
     double share;
@@ -84,7 +84,7 @@ class PlaneSearch {
   void prepare(Tier& tier, size_t corners);
   void beginBand(size_t band);
   bool isWide() const { return band_ >= SlopeBands::kFar; }
-  // Takes a few corners of the band, or decides on its plane when all were taken. Returns its cost.
+  // Takes a few corners of the band, or decides on its plane after the last corner. Returns the cost.
   double searchOn();
   double lookAtCorners(const SlopeBand& band, const Tier& tier);
   double endBand(const SlopeBand& band, const Tier& tier);
@@ -102,13 +102,14 @@ class PlaneSearch {
   std::vector<Leader> leaders_;
   std::optional<Best> found_;
   Phase phase_ = Phase::kNone;
-  size_t band_ = 0;                          // under way
-  size_t corner_ = 0;                        // of it, the next one
-  std::vector<DisparitySample> candidates_;  // of the corners before
+  size_t band_ = 0;                          // in progress
+  size_t corner_ = 0;                        // next one of the band
+  std::vector<DisparitySample> candidates_;  // from the corners before
   bool began_here_ = false;
   int failed_ = 0;                       // searches in a row
-  State looks_like_ = State::kNotFound;  // by the last search that looked: swapped, overhead
-  bool was_upright_ = false;             // there was a plane: a rig does not turn over in flight
+  State looks_like_ = State::kNotFound;  // by the last search that looked for swapped or overhead
+  bool was_upright_ = false;             // a plane was found, so the rig is not upside down: it does not turn
+                                         // over in flight
   CornerMemory memory_;
 };
 

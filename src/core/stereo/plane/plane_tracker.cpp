@@ -10,19 +10,20 @@
 namespace uav_landing {
 namespace {
 
-// Failing pairs for which the last plane stays the first guess.
+// Failing pairs after which the last plane is still the first guess.
 constexpr int kKeepPlaneFor = 5;
-// Share of the image's rows by which the horizon mostly moves less from pair to pair.
+// Largest usual movement of the horizon from pair to pair, as a share of the image's rows.
 constexpr double kSlack = 0.02;
-// Share of the corners on the last pair's ground that must be on that of this one to be used for it.
+// The last pair's corners are used again when at least this share of them lies on this pair's ground.
 constexpr double kKept = 0.8;
-// Of disparities, see Steadiness: corners are looked for within two and a half pixels.
+// Limits of the disparities' change, pixels (see Steadiness). Corners are looked for within two and a half
+// pixels.
 constexpr double kSteadyOff = 1.0, kMostOff = 1.5;
 
-// Weight of the last pair's rate in the mean: that of one pair alone is mostly noise.
+// Weight of the last pair's rate in the mean; the rate of one pair alone is mostly noise.
 constexpr double kLatest = 0.4;
 
-// Of the corners looked for, those on the plane.
+// Share of the corners looked for that lie on the plane.
 double agreeingShare(const StereoDepthResult& result) {
   const auto agreeing = std::count_if(result.points.begin(), result.points.end(),
                                       [](const StereoDepthResult::Point& point) { return point.on_plane; });
@@ -83,7 +84,8 @@ void PlaneTracker::remember(const StereoDepthResult& result, bool certain) {
   failures_ = 0;
 }
 
-// By how many pixels the disparities of what is on the plane differ from those that were expected.
+// Largest difference in pixels, over the corners on the plane, between the disparity by the plane and the
+// expected one.
 double PlaneTracker::farthestOff(const StereoDepthResult& result) const {
   const ShiftModel now(rig_, result.plane.g), expected(rig_, expected_);
   double farthest = 0;
@@ -98,7 +100,7 @@ bool PlaneTracker::bearsOut(const StereoDepthResult& result) const {
 }
 
 std::optional<Eigen::Vector3d> PlaneTracker::steadyPlane(Timings& timings) {
-  // Instead of the search by a few corners.
+  // Replaces the search by a few corners.
   ScopedTimer timer(timings, "feature_matching_coarse");
   if (!steadiness_.goesWithout()) return std::nullopt;
   return expected_;
@@ -139,7 +141,7 @@ std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const Ei
 }
 
 FirstRows PlaneTracker::rowsOf(const Eigen::Vector3d& g, double slack) const {
-  constexpr int kInterpolation = 8;  // px that windows are moved, and that is interpolated from
+  constexpr int kInterpolation = 8;  // pixels that windows are moved by, and that interpolation reads
   const int above = parameters_.window_radius + kInterpolation;
   return firstGroundRows(rig_, g, {above, above}, slack);
 }

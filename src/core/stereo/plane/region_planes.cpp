@@ -8,11 +8,11 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kFewest = 10;        // points that make a plane
+constexpr int kFewest = 10;        // points that a plane needs
 constexpr double kTolerance = 1;   // pixels, see PlaneLimits
-constexpr double kMaxAngle = 1.0;  // rad; the stage before has checked the attitude already
+constexpr double kMaxAngle = 1.0;  // rad; the previous stage has checked the attitude already
 
-/// Where the strips and halves meet, pixels.
+/// Borders of the strips and halves: disparities far and near, column middle, pixels.
 struct Borders {
   double far = 0, near = 0, middle = 0;
 };
@@ -70,7 +70,8 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   const Expected<PlaneFit> all = refinePlane(rig, samples, plane, limits, 0, memory);
   if (!all) return planes;
   planes.all = all->plane;
-  // By where the plane says that a point lies: what stands on the ground is sorted as the ground behind it.
+  // Points are sorted by the disparity that the plane predicts, so an object on the ground belongs to the
+  // ground behind it.
   std::vector<double> expected;
   expected.reserve(samples.size());
   for (const DisparitySample& sample : samples)

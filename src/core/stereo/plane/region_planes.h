@@ -10,15 +10,15 @@
 
 namespace uav_landing {
 
-/// The ground plane from the matched points outside of each region.
+/// The ground plane from the matched points outside each region.
 struct RegionPlanes {
-  GroundPlane all;  ///< from all points; compare with this one: the pair's own plane may be from grey levels
-  std::array<GroundPlane, kImageRegions> without;  ///< not valid() where too few points are left
+  GroundPlane all;  ///< from all points; compare with this, as the pair's own plane may come from grey levels
+  std::array<GroundPlane, kImageRegions> without;  ///< not valid() when too few points are left
 };
 
-/// points: of the pair, on the plane or not; plane: of the pair, where the robust fits start. The covariances
-/// are of random errors only, and none is smaller than its share of the points allows: few points tell their
-/// own scatter badly. Without points nothing is valid.
+/// points: of the pair, on the plane or not. plane: of the pair, 1/m; the robust fits start there. The
+/// covariances contain random errors only. None is smaller than its share of the points allows, as few points
+/// estimate their own scatter badly. Without points no plane is valid.
 RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                                   const Eigen::Vector3d& plane);
 

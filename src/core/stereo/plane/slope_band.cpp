@@ -12,11 +12,11 @@
 namespace uav_landing {
 namespace {
 
-// Disparities down to this are looked for, so that what is at infinity is not taken for ground.
+// Smallest disparity looked for, pixels. It is negative, so that infinity is not taken for ground.
 constexpr double kNearestToHorizon = -2.0;
 constexpr int kRoom = 4 * kLargestWindowRadius;  // columns
 
-// The largest disparity on planes within the limits whose disparity changes by at most this much per row.
+// Largest disparity on planes within the limits whose disparity changes by at most this much per row.
 class LargestDisparity {
  public:
   LargestDisparity(const StereoRig& rig, const PlaneLimits& limits, double slope, double largest)
@@ -26,7 +26,7 @@ class LargestDisparity {
         roll_(std::tan(limits.max_roll)),
         pitch_(std::tan(limits.max_pitch) / std::cos(limits.max_roll)) {}
 
-  // The horizon at the corner's column is at most this far above where it is with neither roll nor pitch.
+  // At the corner's column the horizon is at most this far above its place without roll and pitch.
   double at(const cv::Point& corner) const {
     const Eigen::Vector3d ray = rig_.ray(corner.x, corner.y);
     const double horizon = roll_ * std::abs(ray.x()) + pitch_;
@@ -38,7 +38,7 @@ class LargestDisparity {
   double slope_, largest_, roll_, pitch_;
 };
 
-// Columns of the right image where a corner is looked for.
+// Columns of the right image in which a corner is looked for.
 class Columns {
  public:
   Columns(const cv::Point& corner, double offset, double largest, int width) {
@@ -46,12 +46,12 @@ class Columns {
     const int right = cvCeil(corner.x - offset - kNearestToHorizon);
     first_ = std::max(0, left);
     steps_ = (std::min(width - 1, right) - first_ + 1) / 2;
-    // A peak at an end of what is looked at is not known to be one, but at the image's border nothing
+    // A peak at an end of the range may be none. At the image's border this does not matter, as nothing
     // follows.
     least_ = left > 0 ? first_ + 0.5 : -INFINITY;
     most_ = right < width - 1 ? right - 0.5 : INFINITY;
   }
-  int steps() const { return steps_; }  // to both sides of the middle
+  int steps() const { return steps_; }  // to each side of the middle
   int middle() const { return first_ + steps_; }
   bool isPeak(double column) const { return column > least_ && column < most_; }
 

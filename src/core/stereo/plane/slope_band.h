@@ -11,31 +11,31 @@
 
 namespace uav_landing {
 
-/// Planes whose disparity changes by about the same from row to row, so that windows sheared by that match on
+/// Planes whose disparity changes by nearly the same amount from row to row. Windows with one shear match on
 /// all of them.
 struct SlopeBand {
-  double shear;           ///< pixels of disparity a row
-  Eigen::Vector2d range;  ///< of the planes, likewise
+  double shear;           ///< disparity per row, pixels
+  Eigen::Vector2d range;  ///< of the planes, in the same unit
 };
 
-/// Bands that overlap. A level camera sees a slope of the baseline over the height, so the last band is for
-/// heights down to a third of the baseline. The first kFar have small disparities.
+/// Overlapping bands. A level camera sees a slope of baseline over height, so the last band serves heights
+/// down to a third of the baseline. The first kFar bands have small disparities.
 struct SlopeBands {
   static constexpr size_t kAll = 10, kFar = 5;
   static SlopeBand at(size_t index);
 };
 
-/// Copies a picture to where windows have room beside it; there is no score there.
+/// Copies an image so that windows have room beside it. Places in that room get no score.
 void addRoomBeside(const cv::Mat& image, cv::Mat& wide);
 
-/// Corners with all places along their rows that resemble them.
+/// Corners with all places along their rows that look like them.
 struct BandCandidates {
   std::vector<DisparitySample> samples;
-  int scored = 0;  ///< places that were looked at
+  int scored = 0;  ///< number of places
 };
 
-/// Looks on the planes of a band that are within the limits. right: the level's right image with room beside
-/// it.
+/// Looks for corners on the planes of a band that are within the limits. right: the level's right image with
+/// room beside it (addRoomBeside()).
 BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, const cv::Mat& right,
                             const std::vector<cv::Point>& corners, const StereoDepthParameters& parameters,
                             const PlaneLimits& limits);

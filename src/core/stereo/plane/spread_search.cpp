@@ -11,15 +11,15 @@
 namespace uav_landing {
 namespace {
 
-// A plane that was known so long ago, s, is within the reach in which a plane is followed; the reach for
-// older ones grows with their age.
+// When a plane was known so long ago (s), it is within the reach of following. Older planes need a reach that
+// grows with their age.
 constexpr double kUsualAge = 0.1;
 
-// To follow a plane in vain takes as long as scoring so many places, at any size of the pictures.
+// Following a plane in vain takes as long as scoring so many places, at any image size.
 constexpr double kFollowingCost = 55e3;
 
-// A plane above the horizon has to be there so long, s, before it is told. A hangar's roof, trees and clouds
-// over water look like one, too.
+// A plane above the horizon must persist so long (s) before it is reported. The roof of a hangar, trees, and
+// clouds over water look like one, too.
 constexpr double kOverheadLasts = 1.5;
 
 Failure noPlane() { return {Reason::kNoPlane, "the matches of the pair do not agree on one ground plane"}; }
@@ -101,18 +101,18 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
   return tl::make_unexpected(not_found_);
 }
 
-// Two searches count that began seconds apart.
+// Only two searches that began seconds apart count.
 void SpreadSearch::noteOverhead(bool seen) {
   if (!seen) overhead_age_.reset();
   overhead_lasts_ = overhead_age_ && *overhead_age_ - age_ >= kOverheadLasts;
   if (seen && !overhead_age_) overhead_age_ = age_;
 }
 
-// A single gap is none of the camera's, and nobody knows when the pair after the first one comes.
+// One long gap does not make a slow camera, and after the first pair nobody knows when the next one comes.
 double SpreadSearch::budget(bool followed) const {
   const bool rare = std::min(duration_, duration_before_) > kRarePairs && std::isfinite(duration_);
   if (at_once_ || rare) return std::numeric_limits<double>::infinity();
-  // Lines and motion wait for the first search alone.
+  // Lines and motion wait for the first search only.
   return PlaneSearch::budgetOf(size_, first_) - (followed ? kFollowingCost : 0);
 }
 

@@ -14,23 +14,23 @@
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
 
-/// Robust fit of what moves the rows of the right image: the first N of its rotation (3) and the direction of
-/// the baseline (2).
+/// Robust fit of what moves the rows of the right image. The N parameters are its rotation (3) and, with N =
+/// 5, the direction of the baseline (2).
 namespace uav_landing::row_fit {
 
 struct RowShift {
-  Eigen::Matrix<double, 1, 5> by;  ///< derivatives, pixels per rad
+  Eigen::Matrix<double, 1, 5> by;  ///< derivatives by the parameters, pixels per rad
   double shift, stddev;            ///< pixels
-  double below_centre;             ///< place in the image, pixels
-  int cell;                        ///< of the image
+  double below_centre;             ///< row in the image below its centre, pixels
+  int cell;                        ///< cell of the image (image_cells.h)
 };
 
 template <int N>
 struct RowFit {
   Eigen::Matrix<double, N, 1> value;  ///< rad
   Eigen::Matrix<double, N, N> covariance;
-  int count = 0;                ///< rows that count
-  std::vector<double> weights;  ///< of the rows, by their residuals after the fit
+  int count = 0;                ///< rows that are no outliers
+  std::vector<double> weights;  ///< per row, by its residual after the fit
 };
 
 template <int N>
@@ -38,7 +38,7 @@ double residualOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value)
   return row.shift - row.by.head<N>().dot(value);
 }
 
-/// Robust size of the residuals as a multiple of the claimed stddevs.
+/// Robust size of the residuals as a multiple of the claimed stddevs, at least 1.
 template <int N>
 double residualScale(const std::vector<RowShift>& rows, const Eigen::Matrix<double, N, 1>& value) {
   std::vector<double> ratios;
@@ -55,7 +55,7 @@ double weightOf(const RowShift& row, const Eigen::Matrix<double, N, 1>& value, d
   return root * root / (stddev * stddev);
 }
 
-/// What neighbouring rows share adds to the covariance.
+/// Addition to the covariance, because neighbouring rows share errors.
 template <int N>
 Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit) {
   ClusterCovariance<N> clusters;
@@ -66,8 +66,8 @@ Eigen::Matrix<double, N, N> sharedVariance(const std::vector<RowShift>& rows, co
   return clusters.shared();
 }
 
-/// What an error of 1 sigma (pixels) that all rows in a part of the image have adds to the covariance,
-/// independent between the parts. The fit may have taken it for what it fits, so that no residual shows it.
+/// Addition to the covariance by an error of 1 sigma (pixels) that all rows in a cell of the image share.
+/// Cells are independent. Residuals do not show this error where the fit absorbs it.
 template <int N>
 Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
                                            double sigma) {
@@ -84,8 +84,8 @@ Eigen::Matrix<double, N, N> commonVariance(const std::vector<RowShift>& rows, co
   return common;
 }
 
-/// The same of a focal length of the right camera that is wrong by a share of 1 sigma, which moves rows in
-/// proportion to their distance from the centre.
+/// The same for the focal length of the right camera, which may be wrong by a share of 1 sigma. It moves rows
+/// in proportion to their distance from the centre.
 template <int N>
 Eigen::Matrix<double, N, N> focalVariance(const std::vector<RowShift>& rows, const RowFit<N>& fit,
                                           double sigma) {
@@ -100,7 +100,7 @@ template <int N>
 Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
   using Matrix = Eigen::Matrix<double, N, N>;
   constexpr int kIterations = 6, kFewest = 20;
-  // Without corners on all sides a component is not determined; rad.
+  // Prior stddev of a component that the corners do not determine because they are not on all sides, rad.
   constexpr double kAnything = 0.1, kAnyBaseline = 10;
   const auto few = [](int count) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(count) + " rows, at least " +
@@ -110,7 +110,7 @@ Expected<RowFit<N>> fitRows(const std::vector<RowShift>& rows) {
   Eigen::Matrix<double, 5, 1> loose;
   loose << Eigen::Vector3d::Constant(kAnything), Eigen::Vector2d::Constant(kAnyBaseline);
   const Matrix prior = loose.head<N>().array().square().inverse().matrix().asDiagonal();
-  // The median row shift is a start from which outliers show.
+  // The median row shift is the start, so that outliers show.
   std::vector<double> shifts;
   for (const RowShift& row : rows) shifts.push_back(row.shift / row.by[0]);
   RowFit<N> fit;

@@ -21,11 +21,11 @@ using row_fit::RowFit;
 using row_fit::RowShift;
 
 constexpr size_t kSearched = 80;  // corners
-// Error of a row that its residuals do not show, pixels.
+// Error of a row that residuals do not show, pixels.
 constexpr double kStddevFloor = 0.04;
 constexpr double kMinScore = 0.8;
 
-// A corner with its disparity: as found along the row, or the plane's.
+// A corner with its disparity: as matched along the row, or as the plane predicts it.
 struct PlacedCorner {
   cv::Point corner;
   double disparity;
@@ -51,20 +51,20 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
   return all;
 }
 
-// Where the window around a corner is in the right image, looked for from start on.
+// Place in the right image of the window around a corner, looked for from start on.
 RowRefinement::Across lookAcross(const StereoLevel& level, const cv::Point& corner,
                                  const Eigen::Vector2d& start, const Eigen::Matrix2d& warp, int radius) {
   return RowRefinement::Across(refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius));
 }
 
-// Only ground has the plane's disparity: what stands on it is found beside, or not where it is.
+// Only ground has the disparity of the plane. An object on it is found beside that place or not at all.
 bool isBeside(const RowRefinement::Across& found, double column) {
-  constexpr double kSigmas = 3, kPlane = 0.1;  // the latter pixels
+  constexpr double kSigmas = 3, kPlane = 0.1;  // kPlane: error of the plane's disparity, pixels
   const double off = found.place.x() - column;
   return off * off > kSigmas * kSigmas * (found.column_variance + kPlane * kPlane);
 }
 
-// disparity: of the corner, as known so far. False when it has no row.
+// disparity: of the corner, as known so far. False when the corner has no usable row.
 bool addRow(const StereoRig& rig, const cv::Point& corner, double disparity,
             const RowRefinement::Across& across, std::vector<RowShift>& rows) {
   if (!across.found || across.score < kMinScore) return false;
@@ -86,9 +86,9 @@ Expected<RigRotation> fitRotation(const std::vector<RowShift>& rows) {
 }
 
 BaselineDirection fitBaseline(const std::vector<RowShift>& rows) {
-  // What a lens or texture leaves in a part of the image, the same for all corners there, pixels.
+  // Error of lens or texture that all corners in a cell of the image share, pixels.
   constexpr double kCommon = 0.1;
-  // 1 sigma of the right focal length over the left one after a calibration.
+  // 1 sigma of the ratio of the right focal length to the left one after a calibration.
   constexpr double kFocal = 0.0015;
   const Expected<RowFit<5>> fit = row_fit::fitRows<5>(rows);
   if (!fit) return {};
@@ -135,7 +135,7 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
 Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
                                                 const std::vector<cv::Point>& corners,
                                                 const Eigen::Vector3d& g, int window_radius) {
-  constexpr int kSteps = 4;  // a peak on the border does not count
+  constexpr int kSteps = 4;  // a peak at the end of the range does not count
   const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
   const std::vector<cv::Point> some = thinned(corners, kSearched);
   PatchSearch search(level.left, level.right, window_radius);
@@ -165,7 +165,7 @@ void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Ma
   out.create(right.size(), CV_32F);
   const cv::Range wanted = rows == cv::Range::all() ? cv::Range(0, out.rows) : rows;
   for (int v = wanted.start; v < wanted.end; ++v) {
-    // Linear in the column.
+    // The vertical disparity is linear in the column.
     const double first = v + verticalDisparityByRotation(rig, 0, v).dot(w);
     const double last = v + verticalDisparityByRotation(rig, out.cols - 1, v).dot(w);
     sampleSlantedRow(right, {first, (last - first) / (out.cols - 1)}, out.ptr<float>(v));
@@ -173,7 +173,7 @@ void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Ma
 }
 
 Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g) {
-  constexpr double kLean = 2.5;  // rms over simulated runways
+  constexpr double kLean = 2.5;  // rms of the lean of lines, over simulated runways
   const Eigen::Vector3d squares = residual.w.array().square() + residual.covariance.diagonal().array();
   Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
   leak(0, 0) = squares.x() * std::pow(kLean / rig.baseline, 2) + squares.z() * g.y() * g.y();
@@ -211,7 +211,7 @@ RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std
 }
 
 void RowAlignment::average(const RigRotation& measured) {
-  constexpr double kKept = 0.95;  // of a pair's weight when the next comes
+  constexpr double kKept = 0.95;  // a pair's weight falls by this factor with each later pair
   const Eigen::Matrix3d weight = measured.covariance.inverse();
   information_ = kKept * information_ + weight;
   right_ = kKept * right_ + weight * measured.w;
@@ -219,7 +219,7 @@ void RowAlignment::average(const RigRotation& measured) {
 }
 
 RigRotation RowAlignment::residual(const StereoRig& rig) const {
-  // Chi-square (3 degrees of freedom) up to which the calibration may be as good as it is said to be.
+  // Largest chi-square (3 degrees of freedom) with which the calibration can be as good as claimed.
   constexpr double kBelievable = 16;
   constexpr double kExact = 1e-6;  // pixels
   const Eigen::Vector3d variances =
@@ -240,12 +240,12 @@ RigRotation RowAlignment::residual(const StereoRig& rig) const {
 }
 
 bool RowAlignment::adapt(const StereoRig& rig, const RigRotation& residual) {
-  // Vertical disparities up to this, pixels, do not disturb the matching along rows, and straightening costs
+  // Vertical disparities up to this (pixels) do not disturb the matching along rows, and straightening takes
   // time.
   constexpr double kStraightEnough = 0.5;
-  // Chi-square (3 degrees of freedom) from which a residual is not noise.
+  // From this chi-square on (3 degrees of freedom) a residual is not noise.
   constexpr double kSignificant = 30;
-  // What looks like ry is rather the residual of a lens, and no help where it is extrapolated to.
+  // What looks like ry mostly is the residual of a lens, and extrapolating it would do harm.
   const Eigen::Vector3d w(residual.w.x(), 0, residual.w.z());
   if (largestVerticalDisparity(rig, w) < kStraightEnough) return false;
   if (residual.w.dot(residual.covariance.inverse() * residual.w) < kSignificant) return false;

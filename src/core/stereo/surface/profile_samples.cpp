@@ -10,7 +10,7 @@
 namespace uav_landing {
 namespace {
 
-// Farther away distances are not told, pixels.
+// With a smaller disparity (pixels) the distance is unknown.
 constexpr double kLeastDisparity = 0.3;
 
 }  // namespace

@@ -13,32 +13,32 @@
 namespace uav_landing {
 namespace {
 
-// Stretches of the seen ground, each longer than the one before by the same factor. Besides, there is one
-// from below the camera to where ground begins to be seen.
+// Stretches of the ground that is seen; each is longer than the nearer one by the same factor. One more lies
+// between the camera and the first ground that is seen.
 constexpr int kStretches = 6;
 constexpr int kKinks = 2 * (kStretches + 1);
 using Kinks = Eigen::Matrix<double, kKinks, 1>;
 using KinkMatrix = Eigen::Matrix<double, kKinks, kKinks>;
 
-// What stands on the ground far ahead looks like a sag, too, but not as clearly: to be believed, a bend must
-// show by some five sigma. One that may just as well be there is in the covariance.
+// A bend counts only when it shows by about five sigma, because objects far ahead look like a sag, but less
+// clearly. The covariance contains a bend that is merely possible.
 constexpr double kBelieved = 1e-6;
-// Fits of the most bent surface before that of the likely one.
+// Fits of the most bent surface, before the fit of the likely one.
 constexpr int kSteps = 2;
-// Errors of the calibration's lens model differ from row to row: as many waves over the rows besides those
-// that look like a plane.
+// Number of waves over the rows that errors of the lens model may have, besides those that look like a plane.
+// These errors differ from row to row.
 constexpr int kWaves = 5;
 using Waves = Eigen::Matrix<double, kWaves, 1>;
 // Distance over which the curvature of a surface stays about the same, m.
 constexpr double kCorrelation = 100;
-// Pixels; for a rig that is said to have no errors.
+// Pixels; for a rig that claims to have no errors.
 constexpr double kLeastBias = 1e-4;
 
-/// Ground with a curvature that wanders at random, by kinks: two for each stretch, where their changes of
-/// slope are worth as much as its curvature (Gauss' quadrature of degree 3).
+/// Ground with a random curvature, as changes of slope at kinks. Each stretch has two kinks, placed so that
+/// they have the effect of its curvature (Gauss' quadrature of degree 3).
 struct Kinked {
   Kinks at;         // distance from below the camera, m
-  KinkMatrix root;  // of their changes' covariance where the curvature has a variance of 1 1/m^2
+  KinkMatrix root;  // of the covariance of their changes for a curvature with a variance of 1 1/m^2
   double farthest;
 
   Kinked(double nearest, double end) : farthest(end) {
@@ -61,24 +61,24 @@ struct Kinked {
   }
 };
 
-/// Along axes where the samples tell each coordinate by itself, in which a curvature with a variance of 1
-/// 1/m^2 is as likely in all directions.
+/// The bend along axes that the samples tell independently of each other. A curvature with a variance of 1
+/// 1/m^2 is equally likely in all directions.
 struct Bend {
   Kinks mean = Kinks::Zero();
   KinkMatrix covariance = KinkMatrix::Zero();
 };
 
-/// What may be there besides a plane: a surface with some variance of its curvature.
+/// A hypothesis besides the plane: a surface with a certain variance of its curvature.
 struct Alternative {
   double log = 0;         // of its likelihood ratio
   Kinks mean, variances;  // of the bend
 };
 struct Alternatives {
   std::array<Alternative, kBendShares.size()> each;
-  KinkMatrix to_kinks;  // from the axes
+  KinkMatrix to_kinks;  // from the axes to changes of slope at the kinks
 };
 
-/// prior: of each alternative.
+/// prior: probability of each alternative.
 Bend mixture(const Alternatives& alternatives, double prior) {
   double largest = 0;
   for (const Alternative& one : alternatives.each) largest = std::max(largest, one.log);
@@ -110,8 +110,7 @@ class ProfileFit {
 
   bool possible() const { return kinks_.has_value(); }
 
-  /// noise: by which the samples' errors count more than as independent ones of their stddevs, as a factor on
-  /// variances.
+  /// noise: factor on the variances of the samples, because their errors are not independent.
   void accumulate(double noise) {
     const ProfileSums sums = samples_.sums(plane_, noise);
     to_plane_ = sums.information;
@@ -135,7 +134,7 @@ class ProfileFit {
       right_waves += c * bin.y;
     }
     plane_by_kinks_ = -to_plane_.ldlt().solve(mixed);
-    // Without what the waves explain, and then without what the plane does.
+    // First without what the waves explain, then without what the plane explains.
     const Eigen::LDLT<Eigen::Matrix<double, kWaves, kWaves>> by_waves(to_waves);
     const Eigen::Matrix<double, kWaves, kKinks> waves_by_kinks = by_waves.solve(waves_kinks);
     const Waves waves_by_right = by_waves.solve(right_waves);
@@ -148,8 +147,7 @@ class ProfileFit {
     information -= waves_kinks.transpose() * waves_by_kinks;
     information -= mixed_left.transpose() * by_plane.solve(mixed_left);
     const Kinks right = right_kinks - mixed_left.transpose() * by_plane.solve(right_plane);
-    // In coordinates of which nothing is known but that they have a stddev of the curvature's, each by
-    // itself.
+    // In coordinates with independent priors, each with the stddev of the curvature.
     information_ = kinks_->root.transpose() * information * kinks_->root;
     right_ = kinks_->root.transpose() * right;
   }
@@ -161,7 +159,7 @@ class ProfileFit {
     return kinks_->root * information.llt().solve(right_);
   }
 
-  /// per_metre: variance of the curvature, 1/m^2, of which the alternatives have their shares.
+  /// per_metre: variance of the curvature, 1/m^2; each alternative has a share of it.
   Alternatives alternatives(double per_metre) const {
     const Eigen::SelfAdjointEigenSolver<KinkMatrix> axes(information_);
     const Kinks information = axes.eigenvalues().cwiseMax(0.0);
@@ -177,7 +175,7 @@ class ProfileFit {
     return all;
   }
 
-  /// Takes the bend off the disparities and fits the plane to what is left.
+  /// Subtracts the bend from the disparities and fits the plane to the rest.
   bool flatten(const Kinks& bend, const PlaneLimits& limits, double bias_stddev) {
     for (size_t i = 0; i < samples_.size(); ++i)
       samples_.takeOff(i, byKinks(samples_.expected(i), samples_.reach(i)).dot(bend));
@@ -187,13 +185,13 @@ class ProfileFit {
     return fit.has_value();
   }
 
-  /// Takes the bend for what is there: the samples are where it says, and are off by what it leaves.
+  /// Accepts the bend: places and stddevs of the samples then follow from the flattened surface.
   void settle() {
     samples_.findPlaces(plane_.plane);
     samples_.calmDown(plane_);
   }
 
-  /// By how much the covariance of the plane is larger than independent errors would make it.
+  /// Factor by which the covariance of the plane exceeds that of independent errors.
   double noise(double bias_stddev) const {
     Eigen::Matrix3d random = plane_.plane.covariance;
     random(2, 2) -= biasVariance(rig_, bias_stddev);
@@ -218,7 +216,7 @@ class ProfileFit {
     return 0.5 * (variance * right.array().square() / gain - gain.log()).sum();
   }
 
-  /// By the plane through all of them.
+  /// Distances of the kinks, by the plane through all samples.
   void findDistances() {
     samples_.findPlaces(plane_.plane);
     std::vector<double> seen;
@@ -244,8 +242,8 @@ class ProfileFit {
     return values;
   }
 
-  /// What changes of slope at the kinks do to a disparity. Ground that is higher by z is at the inverse depth
-  /// 1/Z = g.r + z |g| / Z; behind a kink, z is the distance from it.
+  /// Effect on a disparity of changes of slope at the kinks. Ground that is higher by z has the inverse depth
+  /// 1/Z = g.r + z |g| / Z. Behind a kink, z is the distance from it.
   Kinks byKinks(double expected, double reach) const {
     return plane_.plane.g.norm() * (reach - expected * kinks_->at.array()).max(0.0);
   }
@@ -259,7 +257,7 @@ class ProfileFit {
   Eigen::Matrix3d to_plane_;
   Eigen::Matrix<double, 3, kKinks> plane_by_kinks_;
   Eigen::Matrix<double, kWaves, kWaves> wave_information_;
-  KinkMatrix information_;  // of the changes of slope, in coordinates of root
+  KinkMatrix information_;  // for the changes of slope, in coordinates of root
   Kinks right_;
 };
 
@@ -273,7 +271,7 @@ std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
   if (!fit.possible()) return std::nullopt;
   const double per_metre = std::pow(slope_change / 100, 2);
   const double most = std::pow(kBendShares.back(), 2) * per_metre;
-  // First as bent as may be, for the distances and to see the noise; then as bent as it is.
+  // First as bent as possible, which gives the distances and the noise; then as bent as is likely.
   for (int step = 0; step < kSteps; ++step) {
     fit.accumulate(1);
     if (!fit.flatten(fit.meanBend(most), limits, bias_stddev)) return std::nullopt;

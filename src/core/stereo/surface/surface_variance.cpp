@@ -6,15 +6,16 @@
 namespace uav_landing {
 namespace {
 
-// Share of the largest disparity; farther away a pixel is too much height to say anything of the surface.
+// Share of the largest disparity that is near enough. Farther away a pixel is too much height to tell the
+// surface.
 constexpr double kNear = 0.4;
-constexpr int kColumns = 10;  // patches along a row of the image; square
+constexpr int kColumns = 10;  // square patches along a row of the image
 constexpr int kRounds = 10;
-constexpr size_t kFewest = 3;  // points of a patch
+constexpr size_t kFewest = 3;  // points that a patch needs
 
 using Point = SurfaceMemory::Point;
 
-// Share of the error that two matches have in common: that of the pixels that both their windows are of.
+// Share of the error that two matches have in common, because their windows share pixels.
 double inCommon(const Point& a, const Point& b, int window) {
   const double across = std::abs(a.u - b.u), down = std::abs(a.v - b.v);
   return across < window && down < window ? (1 - across / window) * (1 - down / window) : 0;
@@ -23,12 +24,13 @@ double inCommon(const Point& a, const Point& b, int window) {
 struct Patch {
   double square;   // of the mean height, m^2
   double scatter;  // sum of squares about the mean, over the claimed variances
-  double free;     // what that is where matches scatter as they claim, on level ground
-  double of_mean;  // the variance of the mean then, m^2
+  double free;     // expected scatter on level ground, if matches scatter as claimed
+  double of_mean;  // variance of the mean in that case, m^2
 };
 
 Patch patchOf(const std::vector<Point>& points, int window) {
-  double weights = 0, sum = 0, squares = 0, shared = 0;  // shared: of all pairs, each with itself, too
+  double weights = 0, sum = 0, squares = 0, shared = 0;  // shared: over all pairs of points, and each point
+                                                         // with itself
   for (size_t i = 0; i < points.size(); ++i) {
     const double weight = points[i].precision * points[i].precision;
     weights += weight;
@@ -43,8 +45,7 @@ Patch patchOf(const std::vector<Point>& points, int window) {
           shared / (weights * weights)};
 }
 
-/// By how much variances of matches are larger than they claim: what the scatter within all patches says
-/// together.
+/// Factor by which variances of matches exceed their claims, from the scatter within all patches together.
 double inflation(const std::vector<Patch>& patches) {
   double scatter = 0, free = 0;
   for (const Patch& patch : patches) {
@@ -54,8 +55,8 @@ double inflation(const std::vector<Patch>& patches) {
   return free > 0 ? scatter / free : 0;
 }
 
-/// The variance that, added to what is expected of the means, makes their squares what they are; m^2.
-/// of_mean: m^2.
+/// The variance that explains the squares of the patches' means beyond their expected scatter, m^2. of_mean:
+/// m^2.
 double varianceBetween(const std::vector<Patch>& patches) {
   double variance = 0;
   for (int i = 0; i < kRounds; ++i) {
@@ -66,7 +67,8 @@ double varianceBetween(const std::vector<Patch>& patches) {
       slope += patch.square * weight * weight;
       weights += weight;
     }
-    // Below zero, by chance, there is no solution near: what the excess is on average.
+    // The means scatter less than expected, by chance, so there is no solution nearby. The mean excess stands
+    // for it.
     if (i == 0 && excess <= 0) return excess / weights;
     variance += excess / slope;  // Newton's method, from the left of a convex function
   }

@@ -16,15 +16,16 @@ struct SurfaceMemory {
   std::vector<std::vector<Point>> patches;
 };
 
-/// Square of the height by which the surface near the camera rises and falls about the plane. Matches
-/// scatter, too, and not only by what they claim: but an undulation is common to neighbours and the scatter
-/// is not. So it is what the means of patches differ by, beyond what the scatter within the patches explains.
-/// Within a patch matches count by their stddevs, which need to be true but for a factor; patches count by
-/// how well their means are known: heights scatter the more the farther away (Paule, Mandel: Consensus values
-/// and weighting factors, Journal of Research of the National Bureau of Standards 87, 1982). Matches whose
-/// windows (squares of so many pixels) overlap have that share of their errors in common; 1 for blocks, which
-/// share no pixel. Where rows are not level all matches along a marking aslant are off together, which looks
-/// the same as a surface that rises. Below zero by chance on flat ground. m^2
+/// Variance of the surface's height about the plane near the camera, m^2. It is unbiased, so on flat ground
+/// it may be negative by chance.
+/// Matches scatter as well, and by more than they claim. But neighbours share an undulation and do not share
+/// scatter. So the variance is the excess of the differences between patch means over the scatter within the
+/// patches. Within a patch, matches count by their stddevs, which need to be true up to a common factor.
+/// Patches count by how well their means are known, as heights scatter more far away (Paule, Mandel:
+/// Consensus values and weighting factors, Journal of Research of the National Bureau of Standards 87, 1982).
+/// window: size of the matches' square windows, pixels. Windows that overlap share this part of their errors.
+/// Blocks share no pixel: 1. When rows are not level, all matches along a slanted marking are off together,
+/// and this looks like a surface that rises.
 double surfaceVariance(const StereoRig& rig, const std::vector<DisparitySample>& samples, const PlaneFit& fit,
                        int window, SurfaceMemory& memory);
 /// The same with memory of its own.
