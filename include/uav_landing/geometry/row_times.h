@@ -22,6 +22,8 @@ struct Readout {
 /// shutter.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
+/// A readout of 1 s where no time is given, which tells what an unknown one does. Else a global shutter.
+Readout unknownReadout(const RigParameters& parameters);
 
 /// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
 /// to its raw row. The default is a global shutter.

@@ -29,6 +29,10 @@ Readout rightReadout(const RigParameters& p) {
           p.row_direction};
 }
 
+Readout unknownReadout(const RigParameters& p) {
+  return {std::isnan(p.readout_time) ? 1.0 : 0.0, p.stamp_row, p.row_direction};
+}
+
 RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout) : time_(readout.time) {
   if (atOnce()) return;
   const CameraCalibration c = calibration.ofDeliveredImage();
