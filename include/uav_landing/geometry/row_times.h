@@ -18,8 +18,8 @@ struct Readout {
   RowDirection direction = RowDirection::kRows;
 };
 
-/// Of the left and the right camera, as the parameters say; a time that is not given is that of a global
-/// shutter.
+/// Of the left and the right camera, as the parameters say; nothing is carried by a time that is not
+/// given.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
 /// A readout of 1 s where no time is given, which tells what an unknown one does. Else a global shutter.
