@@ -19,10 +19,12 @@ struct Readout {
 };
 
 /// Of the left and the right camera that the stages work with (see workingPair()), as the parameters say. In
-/// a rig upside down the left one is the camera that is named right. A time that is not given is that of a
-/// global shutter.
+/// a rig upside down the left one is the camera that is named right. Nothing is carried by a time that is not
+/// given.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
+/// A readout of 1 s where no time is given, which tells what an unknown one does. Else a global shutter.
+Readout unknownReadout(const RigParameters& parameters);
 
 /// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
 /// to its raw row; in a rig upside down the first one is at the bottom. The default is a global shutter.

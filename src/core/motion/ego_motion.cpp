@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "estimation/convergence.h"
 #include "estimation/ransac.h"
@@ -133,13 +134,46 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
   return clusters.shared();
 }
 
+constexpr double kApart = 1e-3;  // s, of readout times, by whose difference derivatives are taken
+
+// Sums by the readout time, about the state that the rows were last linearised at.
+SumsByTime sumsByReadout(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                         const MotionState& state, const Vector9d& step, MotionMemory& memory) {
+  memory.shifted = matches;
+  for (TemporalMatch& match : memory.shifted) match.then += kApart * match.by_readout;
+  MotionRows& later = memory.drawn;
+  later.assign(rig, memory.shifted);
+  later.linearise(state);
+  return memory.all.sumsByTime(later, kApart, step);
+}
+
+// What is known of the motion when the normal given says nothing: it may be wrong by the rig in every pair
+// alike, which would be taken for a time. information: with the prior.
+Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& normal,
+                                const Eigen::Matrix3d& prior) {
+  constexpr double kAnySlope = 0.02;  // rad
+  const Eigen::Matrix3d any =
+      kAnySlope * kAnySlope * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  information.bottomRightCorner<3, 3>() += priorInformation(normal, any) - prior;
+  return information.ldlt().solve(Matrix9d::Identity());
+}
+
+// The time as one unknown more, by the Schur complement. A longer time adds to the residuals, so that what
+// is missing to it is what takes them away. by_prior: right side of the normal equations by the prior.
+void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen::Vector3d& by_prior,
+              ReadoutEffect& effect) {
+  const Vector9d by_time = without_prior * sums.with_motion;
+  effect.information = sums.information - sums.with_motion.dot(by_time);
+  effect.score = -sums.right - by_time.tail<3>().dot(by_prior);
+}
+
 }  // namespace
 
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, MotionMemory& memory,
-                                        const RotationPrior* rotation) {
+                                        int min_matches, MotionMemory& memory, const RotationPrior* rotation,
+                                        const Eigen::Vector3d& normal_by_readout) {
   constexpr int kIterations = 8;
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
@@ -156,6 +190,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const double overlap = overlapFactor(matches);
   double factor = 1;
   Convergence convergence;
+  MotionState linearised = state;
   Vector9d step;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
@@ -176,8 +211,17 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     if (rotation != nullptr) addRotation(*rotation, state, sums);
     information = sums.information.selfadjointView<Eigen::Lower>();
     step = information.ldlt().solve(sums.right);
-    state = state.apply(step);
+    linearised = std::exchange(state, state.apply(step));
     if (convergence.reached(step, information)) break;
+  }
+  const bool by_readout = std::any_of(matches.begin(), matches.end(),
+                                      [](const TemporalMatch& match) { return !match.by_readout.isZero(0); });
+  SumsByTime by_time;
+  if (by_readout) {
+    by_time = sumsByReadout(rig, matches, linearised, step, memory);
+    by_time.with_motion /= factor;
+    by_time.information /= factor;
+    by_time.right /= factor;
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
@@ -190,12 +234,22 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
+  if (by_readout) {
+    Vector9d moved = by_time.with_motion;
+    moved.tail<3>() += prior * normal_by_readout;
+    result.readout.by_time = turn * covariance * moved;
+    tellTime(by_time, covarianceWithoutPrior(information, normal, prior), prior * (normal - state.n),
+             result.readout);
+  }
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
   result.of_normal = by_normal * prior * by_normal.transpose();
   information.bottomRightCorner<3, 3>() -= prior;
   const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
+    result.readout.own_normal_by_time =
+        own->covariance *
+        (by_time.with_motion.tail<3>() + own->by_it.transpose() * by_time.with_motion.head<6>());
     result.own_normal_covariance =
         own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor, step);
   }

@@ -12,6 +12,14 @@
 
 namespace uav_landing {
 
+/// What a readout time that is not given does to a motion by the matches, and what these say of it.
+struct ReadoutEffect {
+  Eigen::Matrix<double, 9, 1> by_time = Eigen::Matrix<double, 9, 1>::Zero();  ///< of R, t and normal, per s
+  Eigen::Vector3d own_normal_by_time = Eigen::Vector3d::Zero();               ///< 1/s
+  double information = 0;                                                     ///< 1/s^2
+  double score = 0;  ///< information times what is missing to the time, 1/s
+};
+
 /// Motion with the ground normal that fits both the prior and the matches.
 struct MotionEstimate {
   CameraMotion motion;
@@ -26,6 +34,7 @@ struct MotionEstimate {
   /// its covariance is larger where parts of the image are wrong together.
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
+  ReadoutEffect readout;
   std::vector<char> inliers;
   int inlier_count = 0;
 };
@@ -33,18 +42,22 @@ struct MotionEstimate {
 /// Memory that the estimate works in: all matches, and the three that are drawn.
 struct MotionMemory {
   MotionRows all, drawn;
+  std::vector<TemporalMatch> shifted;
 };
 
 /// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then
 /// Gauss-Newton with redescending weights over rotation, translation and normal, the latter with its prior
 /// covariance (rank 2), and with the rotation prior when there is one. Covariances are less than the matches
 /// claim where these agree better (the variance factor a posteriori of least squares), and more where their
-/// windows overlap. Fixed seed. Fails when fewer than min_matches agree.
+/// windows overlap. Fixed
+/// seed. normal_by_readout: how the normal given follows a readout time, 1/s. Fails when fewer than
+/// min_matches agree.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, MotionMemory& memory,
-                                        const RotationPrior* rotation = nullptr);
+                                        const RotationPrior* rotation = nullptr,
+                                        const Eigen::Vector3d& normal_by_readout = Eigen::Vector3d::Zero());
 /// The same with memory of its own.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,

@@ -142,6 +142,27 @@ Vector9d MotionRows::score(size_t match, const Vector9d& step) const {
   return score;
 }
 
+SumsByTime MotionRows::sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const {
+  SumsByTime sums;
+  for (size_t match = 0; match < count_; ++match) {
+    const double weight = outputs_[kRayWeight * padded_ + match];
+    if (!(weight > 0)) continue;
+    const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
+    for (const int row : {0, kRayRow}) {
+      const double residual = value(row + kRayResidual);
+      const double by_time =
+          (later.outputs_[(row + kRayResidual) * later.padded_ + match] - residual) / seconds;
+      Vector9d by;
+      for (int k = 0; k < kRayUnknowns; ++k) by[k] = value(row + k);
+      const double weighted = weight * value(row + kRayPrecision) * by_time;
+      sums.with_motion += weighted * by;
+      sums.information += weighted * by_time;
+      sums.right += weighted * (residual - by.dot(step));
+    }
+  }
+  return sums;
+}
+
 Eigen::Matrix<double, 6, 1> MotionRows::solveExactly() const {
   Eigen::Matrix<double, 6, 6> A;
   Eigen::Matrix<double, 6, 1> b;

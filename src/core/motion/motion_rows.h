@@ -23,6 +23,12 @@ struct MotionNormal {
   double residual_scale = 1;  // robust size of the residuals over their stddevs
 };
 
+/// Sums of what one unknown more does to the residuals, and they with it: that unknown is a time.
+struct SumsByTime {
+  Vector9d with_motion = Vector9d::Zero();
+  double information = 0, right = 0;
+};
+
 /// The least squares problem of a camera's motion: for each match two residuals (pixels) where it was then
 /// less where the motion puts it, by columns, so that four matches are worked on at once. Keeps its memory.
 class MotionRows {
@@ -47,6 +53,10 @@ class MotionRows {
 
   /// What one match adds to the right side of the normal equations after one step more. After accumulate().
   Vector9d score(size_t match, const Vector9d& step) const;
+
+  /// later: the same matches as they are a time (s) later, linearised at the same state. The residuals are
+  /// those after one step more. After accumulate().
+  SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
 
   /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
   /// one lies behind the camera. After linearise().
