@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "support/rolling_camera.h"
 #include "uav_landing/pipeline.h"
@@ -112,6 +113,41 @@ TEST(RollingShutter, ThatIsGivenIsNotEstimated) {
   Pipeline pipeline =
       Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
   EXPECT_FALSE(pipeline.process(0, image, image).approach.readout.known());
+}
+
+/// Least and largest variance of the angle from the tenth pair on, with vibration in pitch (rad).
+std::pair<double, double> angleVariances(double amplitude) {
+  constexpr int kPairs = 20, kFirst = 10;
+  constexpr double kFrequency = 37;  // Hz
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  const auto poseAt = [&](double t) {
+    test::Pose pose = test::movingPose(t);
+    pose.pitch += amplitude * std::sin(2 * M_PI * kFrequency * t);
+    return pose;
+  };
+  Parameters parameters;
+  parameters.rig.readout_time = kReadout;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  double least = 100, largest = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    const Pipeline::Output& output =
+        pipeline.process(stamp, test::rollingImage(poseAt, ground, rig, stamp, kReadout),
+                         test::rollingImage(poseAt, ground, rig, stamp, kReadout, true));
+    if (i < kFirst || output.approach.window.failure) continue;
+    least = std::min(least, output.approach.window.angle_variance);
+    largest = std::max(largest, output.approach.window.angle_variance);
+  }
+  return {least, largest};
+}
+
+TEST(RollingShutter, ThatShakesTellsNoAngle) {
+  const auto [least_shaken, largest_shaken] = angleVariances(0.1 * test::kDegree);
+  EXPECT_EQ(least_shaken, 1) << "1 rad: nothing is known";
+  EXPECT_EQ(largest_shaken, 1);
+  EXPECT_LT(angleVariances(0).second, 1e-3);
 }
 
 TEST(RollingShutter, OfTheRightCameraAloneIsSkew) {

@@ -136,15 +136,57 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
 
 constexpr double kApart = 1e-3;  // s, of readout times, by whose difference derivatives are taken
 
-// Sums by the readout time, about the state that the rows were last linearised at.
-SumsByTime sumsByReadout(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                         const MotionState& state, const Vector9d& step, MotionMemory& memory) {
+// The matches as they are at a readout time that is longer by kApart, about the state that the others were
+// last linearised at.
+const MotionRows& laterRows(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                            const MotionState& state, MotionMemory& memory) {
   memory.shifted = matches;
   for (TemporalMatch& match : memory.shifted) match.then += kApart * match.by_readout;
   MotionRows& later = memory.drawn;
   later.assign(rig, memory.shifted);
   later.linearise(state);
-  return memory.all.sumsByTime(later, kApart, step);
+  return later;
+}
+
+SumsByTime sumsByReadout(const MotionRows& rows, const MotionRows& later, const Vector9d& step,
+                         double factor) {
+  SumsByTime sums = rows.sumsByTime(later, kApart, step);
+  sums.with_motion /= factor;
+  sums.information /= factor;
+  sums.right /= factor;
+  return sums;
+}
+
+std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalMatch>& matches,
+                              const MotionRows& rows, const MotionRows* later, const Vector9d& step,
+                              double factor) {
+  std::vector<double> shares;
+  shares.reserve(matches.size());
+  for (const TemporalMatch& match : matches)
+    shares.push_back(times.at(match.now.x(), match.now.y()) / times.readoutTime());
+  std::vector<RowNode> nodes = rows.rowNodes(shares, step, later, kApart);
+  for (RowNode& node : nodes) {
+    node.rotation /= factor;
+    node.with_next /= factor;
+    node.with_motion /= factor;
+    node.with_time /= factor;
+    node.score /= factor;
+    node.squares /= factor;
+  }
+  return nodes;
+}
+
+TimeUnknown timeUnknown(const SumsByTime& by_time) {
+  constexpr double kAnyReadout = 0.02;  // s
+  return {by_time.with_motion, by_time.information + 1 / (kAnyReadout * kAnyReadout), by_time.right};
+}
+
+// The unknowns beside the motion are taken out of all sums.
+void takeOut(const RowShake& shake, Matrix9d& information, SumsByTime& by_time) {
+  information = shake.information;
+  by_time.right -= by_time.with_motion.dot(shake.step) + shake.time_right;
+  by_time.with_motion -= shake.time_with_motion;
+  by_time.information -= shake.time_information;
 }
 
 // What is known of the motion when the normal given says nothing: it may be wrong by the rig in every pair
@@ -173,7 +215,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, MotionMemory& memory, const RotationPrior* rotation,
-                                        const Eigen::Vector3d& normal_by_readout) {
+                                        const RowDoubt& doubt) {
   constexpr int kIterations = 8;
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
@@ -216,12 +258,20 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   }
   const bool by_readout = std::any_of(matches.begin(), matches.end(),
                                       [](const TemporalMatch& match) { return !match.by_readout.isZero(0); });
+  const MotionRows* later = by_readout ? &laterRows(rig, matches, linearised, memory) : nullptr;
   SumsByTime by_time;
-  if (by_readout) {
-    by_time = sumsByReadout(rig, matches, linearised, step, memory);
-    by_time.with_motion /= factor;
-    by_time.information /= factor;
-    by_time.right /= factor;
+  if (later != nullptr) by_time = sumsByReadout(rows, *later, step, factor);
+  std::optional<Matrix9d> without_shake;
+  if (doubt.times != nullptr && doubt.shake != nullptr) {
+    const RowShake shake =
+        findRowShake(rowNodes(*doubt.times, matches, rows, later, step, factor), information,
+                     later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
+    if (shake.found()) {
+      without_shake = information.ldlt().solve(Matrix9d::Identity());
+      takeOut(shake, information, by_time);
+      state = state.apply(shake.step);
+      step += shake.step;
+    }
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
@@ -234,9 +284,10 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
+  if (without_shake) result.of_shake = turn * (covariance - *without_shake) * turn.transpose();
   if (by_readout) {
     Vector9d moved = by_time.with_motion;
-    moved.tail<3>() += prior * normal_by_readout;
+    moved.tail<3>() += prior * doubt.normal_by_readout;
     result.readout.by_time = turn * covariance * moved;
     tellTime(by_time, covarianceWithoutPrior(information, normal, prior), prior * (normal - state.n),
              result.readout);

@@ -8,6 +8,7 @@
 #include "motion/temporal_match.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/row_times.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
@@ -35,8 +36,18 @@ struct MotionEstimate {
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   ReadoutEffect readout;
+  /// Share of it that comes from rotations while rows are exposed, see RowShake; 0 where there are none.
+  Eigen::Matrix<double, 9, 9> of_shake = Eigen::Matrix<double, 9, 9>::Zero();
   std::vector<char> inliers;
   int inlier_count = 0;
+};
+
+/// What rows that are exposed one after the other do to a motion.
+struct RowDoubt {
+  const RowTimes* times = nullptr;  ///< of rows that may shake; null: all are exposed at once
+  ShakeMemory* shake = nullptr;
+  /// How the normal given follows a readout time that is not given, 1/s.
+  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();
 };
 
 /// Memory that the estimate works in: all matches, and the three that are drawn.
@@ -50,14 +61,13 @@ struct MotionMemory {
 /// covariance (rank 2), and with the rotation prior when there is one. Covariances are less than the matches
 /// claim where these agree better (the variance factor a posteriori of least squares), and more where their
 /// windows overlap. Fixed
-/// seed. normal_by_readout: how the normal given follows a readout time, 1/s. Fails when fewer than
+/// seed. Rows that shake (RowShake) are unknowns besides, where the matches show them. Fails when fewer than
 /// min_matches agree.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, MotionMemory& memory,
-                                        const RotationPrior* rotation = nullptr,
-                                        const Eigen::Vector3d& normal_by_readout = Eigen::Vector3d::Zero());
+                                        const RotationPrior* rotation = nullptr, const RowDoubt& doubt = {});
 /// The same with memory of its own.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,

@@ -6,6 +6,7 @@
 
 #include "kernels/samples/seen_rays.h"
 #include "motion/motion_state.h"
+#include "motion/row_shake.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -57,6 +58,12 @@ class MotionRows {
   /// later: the same matches as they are a time (s) later, linearised at the same state. The residuals are
   /// those after one step more. After accumulate().
   SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
+
+  /// Sums of nodes over the rows after one step more, of those that have matches beside them. shares: of the
+  /// readout at which the matches are exposed. later: as above, or null where the readout time is no unknown.
+  /// After accumulate().
+  std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
+                                const MotionRows* later, double seconds) const;
 
   /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
   /// one lies behind the camera. After linearise().

@@ -59,6 +59,15 @@ double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& rea
   return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
 }
 
+constexpr double kAnyAngle = 1;  // rad: 1 sigma where nothing is known
+
+// Rows that shake move the angle by more than a small part of its error. By how much is known to a factor of
+// some only: matches do not tell slow shake from a motion.
+bool isShaken(const MotionEstimate& estimate, double angle_variance) {
+  constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
+  return angleVariance(estimate, estimate.of_shake) > kSmallPart * kSmallPart * angle_variance;
+}
+
 // Adds what a readout time that is not given makes of the estimate.
 void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
   if (!readout.known()) return;
@@ -117,6 +126,7 @@ void MotionTracker::reset() {
   past_.clear();
   last_step_.reset();
   search_.reset();
+  step_shake_ = window_shake_ = {};
   filter_.reset();
   last_rate_stddev_ = 0;
   last_window_ = {};
@@ -189,20 +199,10 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{now.image,
-                        past_.back().image,
-                        duration,
-                        corners,
-                        textures_,
-                        memory_,
-                        normal,
-                        covariance,
-                        rotation,
-                        regular,
-                        conditions.time,
-                        &times_,
-                        doubtOf(conditions),
-                        past_.back().motion};
+  const StepImages step{
+      now.image,    past_.back().image,  duration,           corners, textures_,       memory_,
+      normal,       covariance,          rotation,           regular, conditions.time, &times_,
+      &step_shake_, doubtOf(conditions), past_.back().motion};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -266,9 +266,9 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     const ReadoutDoubt doubt = doubtOf(conditions);
     shiftByReadout(rig_, {doubt.times, motion, then.motion.value_or(motion)}, predicted, normal, doubt.time,
                    window_matches_);
-    const Expected<MotionEstimate> estimate =
-        estimateMotion(rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches,
-                       memory_.motion, nullptr, doubt.normal_by_time);
+    const Expected<MotionEstimate> estimate = estimateMotion(
+        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion,
+        nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time});
     if (!estimate) continue;
     result.window =
         describe(estimate, duration, window_matches_.size(), conditions.readout, result.window_angle);
@@ -306,6 +306,8 @@ ApproachAngleResult::Motion MotionTracker::describe(
   const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
   angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
            angleByReadout(*estimate, readout)};
+  angle->shaken = isShaken(*estimate, motion.angle_variance);
+  if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;
 }
 
@@ -322,6 +324,8 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;
+  if (step.shaken || (result.window_angle && result.window_angle->shaken))
+    result.window.angle_variance = kAnyAngle * kAnyAngle;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {

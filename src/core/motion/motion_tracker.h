@@ -103,6 +103,7 @@ class MotionTracker {
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // s, of it
   double last_sink_ = 0;      // in it, in heights at its end
+  ShakeMemory step_shake_, window_shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
   double last_rate_stddev_ = 0;  // of its angle, rad/s

@@ -10,6 +10,11 @@ RowMotion slowed(const RowMotion& motion) { return {kApart * motion.w, kApart * 
 
 }  // namespace
 
+const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt) {
+  if (doubt.times != nullptr) return doubt.times;
+  return given != nullptr && !given->atOnce() ? given : nullptr;
+}
+
 void shiftByReadout(const StereoRig& rig, const RowsOverTime& unit, const CameraMotion& motion,
                     const Eigen::Vector3d& normal, double time, std::vector<TemporalMatch>& matches) {
   if (unit.times == nullptr || unit.times->atOnce()) return;

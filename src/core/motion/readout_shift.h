@@ -17,6 +17,10 @@ struct ReadoutDoubt {
   Eigen::Vector3d normal_by_time = Eigen::Vector3d::Zero();  ///< of the ground's normal now, 1/s
 };
 
+/// The times of rows that are, or may be, exposed one after the other: as they are given, or else those of
+/// the doubt. Null where they are exposed at once.
+const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt);
+
 /// Sets by_readout of matches, and carries them to the stamps by the estimated time: all of it goes into the
 /// place then. The effect is linear for times much shorter than the step. unit: of a readout of 1 s. motion:
 /// of the step, as far as it is known: matches shifted before by one that is less well known are shifted

@@ -18,6 +18,10 @@ bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
   return off.dot(prior.covariance.inverse() * off) <= gate;
 }
 
+RowDoubt rowDoubt(const StepImages& step) {
+  return {rollingRows(step.times, step.doubt), step.shake, step.doubt.normal_by_time};
+}
+
 }  // namespace
 
 StepMatching::StepMatching(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters)
@@ -63,11 +67,11 @@ Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const Ca
     const int needed = std::max(kFewestScouts, fewest / 2);
     const Expected<MotionEstimate> aided =
         estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.memory.motion,
-                       step.rotation, step.doubt.normal_by_time);
+                       step.rotation, rowDoubt(step));
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
   return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, fewest, step.memory.motion,
-                        nullptr, step.doubt.normal_by_time);
+                        nullptr, rowDoubt(step));
 }
 
 double StepMatching::likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,

@@ -38,6 +38,7 @@ struct StepImages {
   bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
   SearchTime time = SearchTime::kAmple;
   const RowTimes* times = nullptr;          ///< of the left image's rows
+  ShakeMemory* shake = nullptr;             ///< of steps
   ReadoutDoubt doubt = {};                  ///< where these are not given
   std::optional<RowMotion> rows_then = {};  ///< how the camera moved then, if that is known
 };

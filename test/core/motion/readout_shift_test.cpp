@@ -59,12 +59,16 @@ struct RollingStep {
     return matches;
   }
 
-  Expected<MotionEstimate> estimate(double readout, double given) const {
+  std::vector<TemporalMatch> shifted(double readout, double given) const {
     std::vector<TemporalMatch> all = matches(readout);
     const RowMotion rows = evenMotion(motion, kPeriod);
     const RowMotion rows_then{rows.w, motion.R.transpose() * rows.v / (1 + truth.n.dot(truth.t))};
     shiftByReadout(motionRig(), {&unit, rows, rows_then}, motion, truth.n, given, all);
-    return test::estimate(all, truth.n, 1e-3, motion);
+    return all;
+  }
+
+  Expected<MotionEstimate> estimate(double readout, double given) const {
+    return test::estimate(shifted(readout, given), truth.n, 1e-3, motion);
   }
 };
 
@@ -99,6 +103,21 @@ TEST(ReadoutShift, FindsTheTimeInTheMatches) {
     const Expected<MotionEstimate> known = step.estimate(readout, readout);
     ASSERT_TRUE(known);
     EXPECT_NEAR(known->readout.score / known->readout.information, 0, 0.05 * kReadout);
+  }
+}
+
+TEST(ReadoutShift, IsNotTakenForRowsThatShake) {
+  const RollingStep step;
+  const std::vector<TemporalMatch> all = step.shifted(kReadout, 0);
+  ShakeMemory memory;
+  MotionMemory work;
+  for (int i = 0; i < 60; ++i) {
+    const Expected<MotionEstimate> found =
+        estimateMotion(motionRig(), all, step.truth.n,
+                       1e-6 * (Eigen::Matrix3d::Identity() - step.truth.n * step.truth.n.transpose()),
+                       step.motion, 20, work, nullptr, {&step.unit, &memory, Eigen::Vector3d::Zero()});
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->of_shake.isZero(0)) << i;
   }
 }
 
