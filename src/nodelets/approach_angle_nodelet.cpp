@@ -1,3 +1,4 @@
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <pluginlib/class_list_macros.hpp>
@@ -125,6 +126,9 @@ class ApproachAngleNodelet : public StageNodelet {
   }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
     if (imu_) status.add("imu", imu_use_);
+    if (readout_.known())
+      status.addf("estimated readout time [ms]", "%.0f +- %.0f", 1e3 * readout_.time,
+                  1e3 * std::sqrt(readout_.variance));
   }
 
   void takeImu(const sensor_msgs::Imu& message) {
@@ -187,10 +191,20 @@ class ApproachAngleNodelet : public StageNodelet {
     });
     result.stamp = stamp;
     noteImu(result.imu);
+    noteReadout(result.readout);
     warnOf(result.failure);
     warnOfRig(stage_.warnings());
     report_.served(left->header.stamp, compute_ms, result.failure.message());
     publisher_.publish(boost::make_shared<ApproachAngle>(toMessage(result, left->header, compute_ms)));
+  }
+
+  // The log says once what to do about it.
+  void noteReadout(const ReadoutEstimate& readout) {
+    readout_ = readout;
+    const std::string advice = advised_ ? "" : adviceOn(readout);
+    if (advice.empty()) return;
+    advised_ = true;
+    NODELET_WARN("%s: %s", getName().c_str(), advice.c_str());
   }
 
   void noteImu(const AttitudePrior& imu) {
@@ -199,6 +213,8 @@ class ApproachAngleNodelet : public StageNodelet {
     imu_use_ = !imu.failure ? "used" : imu.hasRotation() ? "rotation only: " + imu_reason_ : imu_reason_;
   }
 
+  ReadoutEstimate readout_;  // of the last pair, for the diagnostics
+  bool advised_ = false;
   ApproachAngleParameters parameters_;
   RigMasks masks_;
   ros::Publisher publisher_;

@@ -122,6 +122,8 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   toArray(result.foe_covariance, message.foe_covariance);
   message.runway = toMessage(result.runway);
   message.imu = toMessage(result.imu);
+  message.readout_time = result.readout.time;
+  message.readout_time_variance = result.readout.variance;
   message.compute_ms = compute_ms;
   return message;
 }
@@ -145,6 +147,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   fromArray(message.foe_covariance, result.foe_covariance);
   result.runway = toResult(message.runway);
   result.imu = toResult(message.imu);
+  result.readout = {message.readout_time, message.readout_time_variance};
   return result;
 }
 

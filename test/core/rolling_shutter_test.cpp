@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "support/rolling_camera.h"
 #include "uav_landing/pipeline.h"
@@ -51,6 +53,101 @@ TEST(RollingShutter, LeavesTheEstimatesAsTheyAreWhenItsReadoutTimeIsKnown) {
   EXPECT_LT(std::abs(known.pitch), 0.04 * test::kDegree) << global.pitch / test::kDegree;
   EXPECT_GT(std::abs(ignored.angle) + std::abs(ignored.pitch), 0.1 * test::kDegree)
       << "the shutter must matter";
+}
+
+/// Largest errors over their claimed standard deviations, of a chain that is not told of the shutter.
+struct UntoldRatios {
+  double angle = 0, height = 0, time = 0;
+  double found = 0, time_stddev = 0;  // s, of the last pair
+  int count = 0;
+};
+
+UntoldRatios untoldRatios(double readout) {
+  constexpr int kPairs = 32, kFirst = 6;
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), Parameters()).value();
+  UntoldRatios ratios;
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    const Pipeline::Output& output = pipeline.process(stamp, test::rollingImage(ground, rig, stamp, readout),
+                                                      test::rollingImage(ground, rig, stamp, readout, true));
+    const ReadoutEstimate& found = output.approach.readout;
+    ratios.found = found.time;
+    ratios.time_stddev = std::sqrt(found.variance);
+    if (i < kFirst || output.approach.step.failure || !std::isfinite(output.landing.raw_height)) continue;
+    const test::Pose now = test::movingPose(stamp);
+    const auto take = [](double error, double variance, double& largest) {
+      largest = std::max(largest, std::abs(error) / std::sqrt(variance));
+    };
+    const ApproachAngleResult::Motion& step = output.approach.step;
+    take(step.angle - test::Movement(test::movingPose(stamp - kPeriod), now).angle, step.angle_variance,
+         ratios.angle);
+    take(output.landing.raw_height - now.height(), output.landing.raw_height_variance, ratios.height);
+    take(found.time - readout, found.variance, ratios.time);
+    ++ratios.count;
+  }
+  return ratios;
+}
+
+TEST(RollingShutter, ThatNobodyToldOfIsClaimedAndFound) {
+  for (const double readout : {0.0, kReadout, -0.02}) {
+    const UntoldRatios ratios = untoldRatios(readout);
+    ASSERT_GT(ratios.count, 5);
+    EXPECT_LT(ratios.angle, 3) << readout;
+    EXPECT_LT(ratios.height, 3) << readout;
+    EXPECT_LT(ratios.time, 3) << readout;
+    EXPECT_LT(ratios.time_stddev, 0.015) << readout;
+    EXPECT_LE(std::abs(ratios.found), std::abs(readout)) << readout;
+    EXPECT_GT(ratios.time_stddev, 1e-3) << readout;
+  }
+  EXPECT_GT(untoldRatios(kReadout).found, 0.2 * kReadout);
+}
+
+TEST(RollingShutter, ThatIsGivenIsNotEstimated) {
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const cv::Mat image = test::GroundRenderer(12).left(rig, test::movingPose(0));
+  Parameters parameters;
+  parameters.rig.readout_time = 0;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  EXPECT_FALSE(pipeline.process(0, image, image).approach.readout.known());
+}
+
+/// Least and largest variance of the angle from the tenth pair on, with vibration in pitch (rad).
+std::pair<double, double> angleVariances(double amplitude) {
+  constexpr int kPairs = 20, kFirst = 10;
+  constexpr double kFrequency = 37;  // Hz
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  const auto poseAt = [&](double t) {
+    test::Pose pose = test::movingPose(t);
+    pose.pitch += amplitude * std::sin(2 * M_PI * kFrequency * t);
+    return pose;
+  };
+  Parameters parameters;
+  parameters.rig.readout_time = kReadout;
+  Pipeline pipeline =
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+  double least = 100, largest = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    const double stamp = i * kPeriod;
+    const Pipeline::Output& output =
+        pipeline.process(stamp, test::rollingImage(poseAt, ground, rig, stamp, kReadout),
+                         test::rollingImage(poseAt, ground, rig, stamp, kReadout, true));
+    if (i < kFirst || output.approach.window.failure) continue;
+    least = std::min(least, output.approach.window.angle_variance);
+    largest = std::max(largest, output.approach.window.angle_variance);
+  }
+  return {least, largest};
+}
+
+TEST(RollingShutter, ThatShakesTellsNoAngle) {
+  const auto [least_shaken, largest_shaken] = angleVariances(0.1 * test::kDegree);
+  EXPECT_EQ(least_shaken, 1) << "1 rad: nothing is known";
+  EXPECT_EQ(largest_shaken, 1);
+  EXPECT_LT(angleVariances(0).second, 1e-3);
 }
 
 TEST(RollingShutter, OfTheRightCameraAloneIsSkew) {

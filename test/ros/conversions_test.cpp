@@ -135,6 +135,7 @@ ApproachAngleResult distinctApproachAngle() {
   result.window = distinctMotion();
   fill(result.foe);
   fill(result.foe_covariance);
+  result.readout = {next(), next()};
   result.imu.failure = {Reason::kRejected, "off"};
   fill(result.imu.normal);
   fill(result.imu.normal_covariance);
@@ -292,6 +293,8 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   expectEqual(back.window, result.window);
   EXPECT_EQ(back.foe, result.foe);
   EXPECT_EQ(back.foe_covariance, result.foe_covariance);
+  EXPECT_EQ(back.readout.time, result.readout.time);
+  EXPECT_EQ(back.readout.variance, result.readout.variance);
   EXPECT_EQ(back.imu.failure.message(), result.imu.failure.message());
   EXPECT_EQ(back.imu.normal, result.imu.normal);
   EXPECT_EQ(back.imu.normal_covariance, result.imu.normal_covariance);

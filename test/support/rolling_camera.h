@@ -45,18 +45,25 @@ inline CameraCalibration calibrationOf(const StereoRig& rig, bool right = false)
 }
 
 /// What a rolling shutter sees whose middle row has the stamp: each row from where the camera is then.
-inline cv::Mat rollingImage(const GroundRenderer& ground, const StereoRig& rig, double stamp, double readout,
-                            bool right = false) {
+/// poseAt: of a time.
+template <class PoseAt>
+cv::Mat rollingImage(const PoseAt& poseAt, const GroundRenderer& ground, const StereoRig& rig, double stamp,
+                     double readout, bool right = false) {
   cv::Mat image(rig.size, CV_8UC1);
   StereoRig row = rig;
   row.size.height = 1;
   for (int v = 0; v < rig.size.height; ++v) {
-    const Pose pose = movingPose(stamp + ((v + 0.5) / rig.size.height - 0.5) * readout);
+    const Pose pose = poseAt(stamp + ((v + 0.5) / rig.size.height - 0.5) * readout);
     row.cy = rig.cy - v;
     const Exposure noiseless{1, 0, 0};
     (right ? ground.right(row, pose, noiseless) : ground.left(row, pose, noiseless)).copyTo(image.row(v));
   }
   return image;
+}
+/// Of the camera that moves steadily.
+inline cv::Mat rollingImage(const GroundRenderer& ground, const StereoRig& rig, double stamp, double readout,
+                            bool right = false) {
+  return rollingImage(movingPose, ground, rig, stamp, readout, right);
 }
 
 }  // namespace test

@@ -19,10 +19,12 @@ struct Readout {
 };
 
 /// Readout of the left and the right camera that the stages work with (see workingPair()), by the parameters.
-/// In a rig upside down the left one is the camera that is named right. Without a given time it is a global
-/// shutter.
+/// In a rig upside down the left one is the camera that is named right. Nothing is carried by a time that is
+/// not given.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
+/// A readout of 1 s where no time is given, which tells what an unknown one does. Else a global shutter.
+Readout unknownReadout(const RigParameters& parameters);
 
 /// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
 /// to its raw row. In a rig upside down the first row is at the bottom. The default is a global shutter.

@@ -39,6 +39,8 @@ struct RigModel {
   StereoRig rig;
   cv::Mat left_mask, right_mask;
   RowTimes left_times = {}, right_times = {};
+  /// Where no readout time is given: the left image as a readout of 1 s has it. Else a global shutter.
+  RowTimes left_unit_times = {};
 };
 /// Refuses masks of another size than the raw images. parameters: for the readout.
 Expected<RigModel> makeRigModel(const CameraCalibration& left, const CameraCalibration& right,

@@ -23,7 +23,7 @@ struct RigParameters {
   bool upside_down = false;
   int bits = 0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
-  /// See row_times.h. NaN: not given, for the right camera then as for both.
+  /// See row_times.h. NaN: not given, so that it is estimated; for the right camera: as for the left one.
   double readout_time = std::numeric_limits<double>::quiet_NaN();
   double right_readout_time = std::numeric_limits<double>::quiet_NaN();
   double stamp_row = 0.5;
@@ -57,11 +57,12 @@ struct RigParameters {
            "propeller. One channel of 8 bit (PNG), as large as the raw pictures. A relative path begins at "
            "the config file's folder. Empty: the whole picture is used");
     v.text("right_mask", right_mask, "the same for the right camera");
-    v.number("readout_time", readout_time, -1.0, 1.0, "s",
-             "rolling shutter: time from the exposure of the first row of a raw picture to that of the last "
-             "one, of the picture as the driver delivers it. 0: global shutter. Negative: the last row comes "
-             "first. Longer than the time between pictures is refused. Not given: not known, and taken for a "
-             "global shutter");
+    v.number(
+        "readout_time", readout_time, -1.0, 1.0, "s",
+        "rolling shutter: time from the exposure of the first row of a raw picture to that of the last "
+        "one, of the picture as the driver delivers it. 0: global shutter. Negative: the last row comes "
+        "first. Longer than the time between pictures is refused. Not given: estimated from what moves in "
+        "the pictures, and claims are wider");
     v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
              "row that is in the middle of its exposure at the stamp of a picture: 0 the first one, 0.5 the "
              "middle one, 1 the last one. Where the stamp is the begin of a row's exposure, subtract half of "

@@ -43,6 +43,16 @@ struct BaselineDirection {
   bool known() const { return t.allFinite() && covariance.allFinite(); }
 };
 
+/// Readout time of cameras where none is given, by what moves in the images. Unknown where one is given.
+struct ReadoutEstimate {
+  double time = kUnknown;      ///< s, from the first line to the last
+  double variance = kUnknown;  ///< s^2; an error is the same in all pairs
+
+  bool known() const { return variance > 0; }
+};
+/// What to do about one that is certain and not that of a global shutter; else empty.
+std::string adviceOn(const ReadoutEstimate& readout);
+
 /// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
 struct StereoDepthResult {
   /// One matched corner. Coordinates in the rectified left image, pixels.
@@ -61,7 +71,8 @@ struct StereoDepthResult {
   /// 1/m^2.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
   /// Where rows have times: how fast g changes by the pairs before (1/m/s), with which it was carried to the
-  /// stamp, and its derivative by that rate, s. Zero where all rows are exposed at once.
+  /// stamp, and its derivative by that rate, s. Zero where all rows are exposed at once. Where no readout
+  /// time is given nothing was carried, and the derivative is that of a readout of 1 s.
   Eigen::Vector3d plane_rate = Eigen::Vector3d::Zero();
   Eigen::Matrix3d plane_by_rate = Eigen::Matrix3d::Zero();
   /// Share of the rest of it, without the bias of disparities, that is no noise of the images, above 0 to 1:
@@ -155,6 +166,8 @@ struct ApproachAngleResult {
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, px, px^2
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
+  /// By the pairs before; all numbers of this pair are corrected by it and claim its error.
+  ReadoutEstimate readout;
   /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
   AttitudePrior imu;
 };

@@ -33,6 +33,13 @@ Readout leftReadout(const RigParameters& p) { return p.upside_down ? namedRight(
 
 Readout rightReadout(const RigParameters& p) { return p.upside_down ? namedLeft(p) : namedRight(p); }
 
+Readout unknownReadout(const RigParameters& p) {
+  const bool given = !std::isnan(p.readout_time) || (p.upside_down && !std::isnan(p.right_readout_time));
+  Readout left = leftReadout(p);
+  left.time = given ? 0 : 1;
+  return left;
+}
+
 RowTimes::RowTimes(const CameraCalibration& calibration, const Readout& readout) : time_(readout.time) {
   if (atOnce()) return;
   const CameraCalibration c = calibration.ofDeliveredImage();

@@ -27,7 +27,7 @@ PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo
     : stereo(checked(rig, given_stereo)),
       approach(checked(given_approach)),
       turn(turnOf(approach, fuse_imu)) {
-  carryPlane(approach.step, stereo);
+  carryPlane(approach.step, approach.readout, stereo);
   // Seen from where the camera was before.
   if (repeated())
     approach.runway.failure =

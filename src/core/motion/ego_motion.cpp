@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "estimation/convergence.h"
 #include "estimation/ransac.h"
@@ -133,13 +134,88 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
   return clusters.shared();
 }
 
+constexpr double kApart = 1e-3;  // s, of readout times, by whose difference derivatives are taken
+
+// The matches as they are at a readout time that is longer by kApart, about the state that the others were
+// last linearised at.
+const MotionRows& laterRows(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                            const MotionState& state, MotionMemory& memory) {
+  memory.shifted = matches;
+  for (TemporalMatch& match : memory.shifted) match.then += kApart * match.by_readout;
+  MotionRows& later = memory.drawn;
+  later.assign(rig, memory.shifted);
+  later.linearise(state);
+  return later;
+}
+
+SumsByTime sumsByReadout(const MotionRows& rows, const MotionRows& later, const Vector9d& step,
+                         double factor) {
+  SumsByTime sums = rows.sumsByTime(later, kApart, step);
+  sums.with_motion /= factor;
+  sums.information /= factor;
+  sums.right /= factor;
+  return sums;
+}
+
+std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalMatch>& matches,
+                              const MotionRows& rows, const MotionRows* later, const Vector9d& step,
+                              double factor) {
+  std::vector<double> shares;
+  shares.reserve(matches.size());
+  for (const TemporalMatch& match : matches)
+    shares.push_back(times.at(match.now.x(), match.now.y()) / times.readoutTime());
+  std::vector<RowNode> nodes = rows.rowNodes(shares, step, later, kApart);
+  for (RowNode& node : nodes) {
+    node.rotation /= factor;
+    node.with_next /= factor;
+    node.with_motion /= factor;
+    node.with_time /= factor;
+    node.score /= factor;
+    node.squares /= factor;
+  }
+  return nodes;
+}
+
+TimeUnknown timeUnknown(const SumsByTime& by_time) {
+  constexpr double kAnyReadout = 0.02;  // s
+  return {by_time.with_motion, by_time.information + 1 / (kAnyReadout * kAnyReadout), by_time.right};
+}
+
+// The unknowns beside the motion are taken out of all sums.
+void takeOut(const RowShake& shake, Matrix9d& information, SumsByTime& by_time) {
+  information = shake.information;
+  by_time.right -= by_time.with_motion.dot(shake.step) + shake.time_right;
+  by_time.with_motion -= shake.time_with_motion;
+  by_time.information -= shake.time_information;
+}
+
+// What is known of the motion when the normal given says nothing: it may be wrong by the rig in every pair
+// alike, which would be taken for a time. information: with the prior.
+Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& normal,
+                                const Eigen::Matrix3d& prior) {
+  constexpr double kAnySlope = 0.02;  // rad
+  const Eigen::Matrix3d any =
+      kAnySlope * kAnySlope * (Eigen::Matrix3d::Identity() - normal * normal.transpose());
+  information.bottomRightCorner<3, 3>() += priorInformation(normal, any) - prior;
+  return information.ldlt().solve(Matrix9d::Identity());
+}
+
+// The time as one unknown more, by the Schur complement. A longer time adds to the residuals, so that what
+// is missing to it is what takes them away. by_prior: right side of the normal equations by the prior.
+void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen::Vector3d& by_prior,
+              ReadoutEffect& effect) {
+  const Vector9d by_time = without_prior * sums.with_motion;
+  effect.information = sums.information - sums.with_motion.dot(by_time);
+  effect.score = -sums.right - by_time.tail<3>().dot(by_prior);
+}
+
 }  // namespace
 
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, MotionMemory& memory,
-                                        const RotationPrior* rotation) {
+                                        int min_matches, MotionMemory& memory, const RotationPrior* rotation,
+                                        const RowDoubt& doubt) {
   constexpr int kIterations = 8;
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
@@ -156,6 +232,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const double overlap = overlapFactor(matches);
   double factor = 1;
   Convergence convergence;
+  MotionState linearised = state;
   Vector9d step;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(state);
@@ -176,8 +253,25 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     if (rotation != nullptr) addRotation(*rotation, state, sums);
     information = sums.information.selfadjointView<Eigen::Lower>();
     step = information.ldlt().solve(sums.right);
-    state = state.apply(step);
+    linearised = std::exchange(state, state.apply(step));
     if (convergence.reached(step, information)) break;
+  }
+  const bool by_readout = std::any_of(matches.begin(), matches.end(),
+                                      [](const TemporalMatch& match) { return !match.by_readout.isZero(0); });
+  const MotionRows* later = by_readout ? &laterRows(rig, matches, linearised, memory) : nullptr;
+  SumsByTime by_time;
+  if (later != nullptr) by_time = sumsByReadout(rows, *later, step, factor);
+  std::optional<Matrix9d> without_shake;
+  if (doubt.times != nullptr && doubt.shake != nullptr) {
+    const RowShake shake =
+        findRowShake(rowNodes(*doubt.times, matches, rows, later, step, factor), information,
+                     later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
+    if (shake.found()) {
+      without_shake = information.ldlt().solve(Matrix9d::Identity());
+      takeOut(shake, information, by_time);
+      state = state.apply(shake.step);
+      step += shake.step;
+    }
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
@@ -190,12 +284,23 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
+  if (without_shake) result.of_shake = turn * (covariance - *without_shake) * turn.transpose();
+  if (by_readout) {
+    Vector9d moved = by_time.with_motion;
+    moved.tail<3>() += prior * doubt.normal_by_readout;
+    result.readout.by_time = turn * covariance * moved;
+    tellTime(by_time, covarianceWithoutPrior(information, normal, prior), prior * (normal - state.n),
+             result.readout);
+  }
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
   result.of_normal = by_normal * prior * by_normal.transpose();
   information.bottomRightCorner<3, 3>() -= prior;
   const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
   if (own) {
     result.own_normal = (state.n + own->step).normalized();
+    result.readout.own_normal_by_time =
+        own->covariance *
+        (by_time.with_motion.tail<3>() + own->by_it.transpose() * by_time.with_motion.head<6>());
     result.own_normal_covariance =
         own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor, step);
   }

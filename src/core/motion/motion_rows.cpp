@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "estimation/robust.h"
 #include "geometry/rotation.h"
@@ -140,6 +141,65 @@ Vector9d MotionRows::score(size_t match, const Vector9d& step) const {
     score += value(kRayWeight) * value(row + kRayPrecision) * (value(row + kRayResidual) - by.dot(step)) * by;
   }
   return score;
+}
+
+SumsByTime MotionRows::sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const {
+  SumsByTime sums;
+  for (size_t match = 0; match < count_; ++match) {
+    const double weight = outputs_[kRayWeight * padded_ + match];
+    if (!(weight > 0)) continue;
+    const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
+    for (const int row : {0, kRayRow}) {
+      const double residual = value(row + kRayResidual);
+      const double by_time =
+          (later.outputs_[(row + kRayResidual) * later.padded_ + match] - residual) / seconds;
+      Vector9d by;
+      for (int k = 0; k < kRayUnknowns; ++k) by[k] = value(row + k);
+      const double weighted = weight * value(row + kRayPrecision) * by_time;
+      sums.with_motion += weighted * by;
+      sums.information += weighted * by_time;
+      sums.right += weighted * (residual - by.dot(step));
+    }
+  }
+  return sums;
+}
+
+std::vector<RowNode> MotionRows::rowNodes(const std::vector<double>& shares, const Vector9d& step,
+                                          const MotionRows* later, double seconds) const {
+  std::map<int, RowNode> by_place;
+  for (size_t match = 0; match < count_; ++match) {
+    const double weight = outputs_[kRayWeight * padded_ + match];
+    if (!(weight > 0)) continue;
+    const double place = RowNode::kInReadout * shares[match];
+    const int above = static_cast<int>(std::floor(place));
+    const std::array<double, 2> parts = {above + 1 - place, place - above};
+    const std::array<RowNode*, 2> nodes = {&by_place[above], &by_place[above + 1]};
+    const auto value = [&](int column) { return outputs_[column * padded_ + match]; };
+    for (const int row : {0, kRayRow}) {
+      Vector9d by;
+      for (int k = 0; k < kRayUnknowns; ++k) by[k] = value(row + k);
+      const double residual = value(row + kRayResidual), left = residual - by.dot(step);
+      const double precision = weight * value(row + kRayPrecision);
+      const Eigen::Vector3d turn = by.head<3>();
+      const double time =
+          later ? (later->outputs_[(row + kRayResidual) * later->padded_ + match] - residual) / seconds : 0;
+      for (int i : {0, 1}) {
+        nodes[i]->rotation += precision * parts[i] * parts[i] * turn * turn.transpose();
+        nodes[i]->with_motion += precision * parts[i] * turn * by.transpose();
+        nodes[i]->score += precision * parts[i] * left * turn;
+        nodes[i]->with_time += precision * parts[i] * time * turn;
+      }
+      nodes[0]->with_next += precision * parts[0] * parts[1] * turn * turn.transpose();
+      nodes[0]->squares += precision * left * left;
+    }
+    nodes[0]->count += 1;
+  }
+  std::vector<RowNode> nodes;
+  for (auto& [place, node] : by_place) {
+    node.share = place / static_cast<double>(RowNode::kInReadout);
+    nodes.push_back(node);
+  }
+  return nodes;
 }
 
 Eigen::Matrix<double, 6, 1> MotionRows::solveExactly() const {

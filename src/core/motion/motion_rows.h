@@ -6,6 +6,7 @@
 
 #include "kernels/samples/seen_rays.h"
 #include "motion/motion_state.h"
+#include "motion/row_shake.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -21,6 +22,12 @@ struct MotionNormal {
   Vector9d right = Vector9d::Zero();
   int count = 0;              // of the matches with a weight
   double residual_scale = 1;  // robust size of the residuals over their stddevs
+};
+
+/// Sums of what one unknown more does to the residuals, and they with it: that unknown is a time.
+struct SumsByTime {
+  Vector9d with_motion = Vector9d::Zero();
+  double information = 0, right = 0;
 };
 
 /// The least squares problem of a camera's motion: for each match two residuals (pixels) where it was then
@@ -47,6 +54,16 @@ class MotionRows {
 
   /// What one match adds to the right side of the normal equations after one step more. After accumulate().
   Vector9d score(size_t match, const Vector9d& step) const;
+
+  /// later: the same matches as they are a time (s) later, linearised at the same state. The residuals are
+  /// those after one step more. After accumulate().
+  SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
+
+  /// Sums of nodes over the rows after one step more, of those that have matches beside them. shares: of the
+  /// readout at which the matches are exposed. later: as above, or null where the readout time is no unknown.
+  /// After accumulate().
+  std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
+                                const MotionRows* later, double seconds) const;
 
   /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
   /// one lies behind the camera. After linearise().

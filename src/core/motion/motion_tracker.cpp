@@ -30,15 +30,51 @@ constexpr double kMostSunk = 0.5;
 // Stamps may be off by this much for a frame still to be in the window, s.
 constexpr double kWindowSlack = 0.05;
 
-// The angle's variance by a covariance of t and n, which both enter asin(n.t/|t|).
-double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
+double sineOfAngle(const MotionEstimate& estimate) {
+  return estimate.normal.normalized().dot(estimate.motion.t.normalized());
+}
+
+// Of n.t/|t| by t and n.
+Eigen::Matrix<double, 6, 1> sineGradient(const MotionEstimate& estimate) {
   const Eigen::Vector3d& t = estimate.motion.t;
   const Eigen::Vector3d n = estimate.normal.normalized();
   const Eigen::Vector3d m = t.normalized();
   const double sine = n.dot(m);
   Eigen::Matrix<double, 6, 1> gradient;
   gradient << (n - sine * m) / t.norm(), m - sine * n;
+  return gradient;
+}
+
+// The angle's variance by a covariance of t and n, which both enter asin(n.t/|t|).
+double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
+  const double sine = sineOfAngle(estimate);
+  const Eigen::Matrix<double, 6, 1> gradient = sineGradient(estimate);
   return gradient.dot(covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
+}
+
+// What 1 sigma of a readout time that is not given does to the angle, rad.
+double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& readout) {
+  if (!readout.known()) return 0;
+  const double by_time = sineGradient(estimate).dot(estimate.readout.by_time.tail<6>());
+  return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
+}
+
+constexpr double kAnyAngle = 1;  // rad: 1 sigma where nothing is known
+
+// Rows that shake move the angle by more than a small part of its error. By how much is known to a factor of
+// some only: matches do not tell slow shake from a motion.
+bool isShaken(const MotionEstimate& estimate, double angle_variance) {
+  constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
+  return angleVariance(estimate, estimate.of_shake) > kSmallPart * kSmallPart * angle_variance;
+}
+
+// Adds what a readout time that is not given makes of the estimate.
+void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
+  if (!readout.known()) return;
+  const ReadoutEffect& effect = estimate.readout;
+  estimate.covariance += readout.variance * effect.by_time * effect.by_time.transpose();
+  estimate.own_normal_covariance +=
+      readout.variance * effect.own_normal_by_time * effect.own_normal_by_time.transpose();
 }
 
 // The inertial sensor's rotation, when it is that of this step.
@@ -60,6 +96,7 @@ double largestEigenvalue(const Eigen::Matrix3d& matrix) {
 MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
     : rig_(model.rig),
       times_(model.left_times),
+      unit_times_(model.left_unit_times),
       mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
       parameters_(parameters),
       search_(rig_, mask_, parameters),
@@ -89,10 +126,16 @@ void MotionTracker::reset() {
   past_.clear();
   last_step_.reset();
   search_.reset();
+  step_shake_ = window_shake_ = {};
   filter_.reset();
   last_rate_stddev_ = 0;
   last_window_ = {};
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
+}
+
+ReadoutDoubt MotionTracker::doubtOf(const StepConditions& conditions) const {
+  if (!conditions.readout.known()) return {};
+  return {&unit_times_, conditions.readout.time, conditions.normal_by_readout};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -144,7 +187,7 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
                  result);
   }
   ScopedTimer timer(timings, "window_motion");
-  estimateWindow(now, normal, normal_covariance, corners, result);
+  estimateWindow(now, normal, normal_covariance, corners, conditions, result);
   smoothAngle(stamp, result);
   advance(std::move(now), result);
   return result;
@@ -156,19 +199,10 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
                                  Result& result) {
   const double duration = now.stamp - past_.back().stamp;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{now.image,
-                        past_.back().image,
-                        duration,
-                        corners,
-                        textures_,
-                        memory_,
-                        normal,
-                        covariance,
-                        rotation,
-                        regular,
-                        conditions.time,
-                        &times_,
-                        past_.back().motion};
+  const StepImages step{
+      now.image,    past_.back().image,  duration,           corners, textures_,       memory_,
+      normal,       covariance,          rotation,           regular, conditions.time, &times_,
+      &step_shake_, doubtOf(conditions), past_.back().motion};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
@@ -181,8 +215,11 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
       estimate = tl::make_unexpected(failure);
     }
   }
-  result.step = describe(estimate, duration, step_matches_.size(), result.step_angle);
-  if (estimate) result.step_estimate = *estimate;
+  result.step = describe(estimate, duration, step_matches_.size(), conditions.readout, result.step_angle);
+  if (!estimate) return;
+  result.step_estimate = *estimate;
+  result.readout = estimate->readout;
+  claimReadout(conditions.readout, *result.step_estimate);
 }
 
 // As the camera moved last, with the known rotation first.
@@ -202,7 +239,7 @@ std::vector<CameraMotion> MotionTracker::predictions(double duration, const Rota
 
 void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
                                    const Eigen::Matrix3d& covariance, const Corners& corners,
-                                   Result& result) {
+                                   const StepConditions& conditions, Result& result) {
   constexpr double kStampRounding = 1e-3;
   if (!result.step_estimate) {
     result.window.failure = result.step.failure;
@@ -226,17 +263,22 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
         parameters_.window_radius, parameters_.min_zncc, 0, {&times_, motion, then.motion.value_or(motion)}};
     window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options,
                                     textures_, memory_.matching, std::move(window_matches_));
+    const ReadoutDoubt doubt = doubtOf(conditions);
+    shiftByReadout(rig_, {doubt.times, motion, then.motion.value_or(motion)}, predicted, normal, doubt.time,
+                   window_matches_);
     const Expected<MotionEstimate> estimate = estimateMotion(
-        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion);
+        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion,
+        nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time});
     if (!estimate) continue;
-    result.window = describe(estimate, duration, window_matches_.size(), result.window_angle);
+    result.window =
+        describe(estimate, duration, window_matches_.size(), conditions.readout, result.window_angle);
     return;
   }
   result.window = result.step;
 }
 
 ApproachAngleResult::Motion MotionTracker::describe(
-    const Expected<MotionEstimate>& estimate, double duration, size_t matches,
+    const Expected<MotionEstimate>& estimate, double duration, size_t matches, const ReadoutEstimate& readout,
     std::optional<PathAngleFilter::Measurement>& angle) const {
   ApproachAngleResult::Motion motion;
   motion.duration = duration;
@@ -248,18 +290,24 @@ ApproachAngleResult::Motion MotionTracker::describe(
   motion.inliers = estimate->inlier_count;
   motion.rotation = rotationVector(estimate->motion.R);
   motion.translation_over_height = estimate->motion.t;
-  motion.covariance = estimate->covariance.topLeftCorner<6, 6>();
-  motion.normal = estimate->own_normal;
-  motion.normal_covariance = estimate->own_normal_covariance;
+  MotionEstimate claimed = *estimate;
+  claimReadout(readout, claimed);
+  motion.covariance = claimed.covariance.topLeftCorner<6, 6>();
+  motion.normal = claimed.own_normal;
+  motion.normal_covariance = claimed.own_normal_covariance;
   const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
   if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
     motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};
     return motion;
   }
   motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
-  motion.angle_variance = angleVariance(*estimate, estimate->covariance);
+  motion.angle_variance = angleVariance(*estimate, claimed.covariance);
   const double of_normal = angleVariance(*estimate, estimate->of_normal);
-  angle = {motion.angle, std::max(motion.angle_variance - of_normal, 0.0), duration, std::sqrt(of_normal)};
+  const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
+  angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
+           angleByReadout(*estimate, readout)};
+  angle->shaken = isShaken(*estimate, motion.angle_variance);
+  if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;
 }
 
@@ -276,6 +324,8 @@ void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (result.window.failure) result.window = result.step;
   result.window.angle = estimate.angle;
   result.window.angle_variance = estimate.variance;
+  if (step.shaken || (result.window_angle && result.window_angle->shaken))
+    result.window.angle_variance = kAnyAngle * kAnyAngle;
 }
 
 void MotionTracker::advance(Frame&& now, const Result& result) {

@@ -25,6 +25,8 @@ enum class GroundProof {
 struct StepConditions {
   GroundProof proof = GroundProof::kGiven;
   SearchTime time = SearchTime::kAmple;
+  ReadoutEstimate readout = {};                                 ///< where none is given
+  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();  ///< derivative of the ground's normal, 1/s
 };
 
 /// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
@@ -36,15 +38,17 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
+    ReadoutEffect readout;                 ///< by the longest of both, which tells a readout time best
     std::optional<CameraMotion> unproven;  ///< a step that may not be one over a plane
     std::optional<PathAngleFilter::Measurement> step_angle, window_angle;  ///< as far as they have one
   };
 
-  /// normal: unit ground normal now with covariance (rank 2); corners: of the left image now, with depths in
-  /// units of the height. imu: its rotation since the frame before leads the search, helps where the corners
-  /// leave the rotation uncertain, and makes up for half of the corners; one that contradicts them is left
-  /// out. Without a ground normal call skip(). Corners that have to show by their motion that they are on the
-  /// ground make a step fail (plane_unproven) when too few do.
+  /// normal: unit ground normal now with covariance (rank 2, without what a readout time makes of it);
+  /// corners: of the left image now, with depths in units of the height. imu: its rotation since the frame
+  /// before leads the search, helps where the corners leave the rotation uncertain, and makes up for half of
+  /// the corners; one that contradicts them is left out. Without a ground normal call skip(). Corners that
+  /// have to show by their motion that they are on the ground make a step fail (plane_unproven) when too few
+  /// do.
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
                  Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
@@ -71,21 +75,22 @@ class MotionTracker {
   };
 
   using Corners = std::vector<TrackedCorner>;
+  ReadoutDoubt doubtOf(const StepConditions& conditions) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
   void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
                     const Corners& corners, const RotationPrior* rotation, const StepConditions& conditions,
                     Result& result);
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
   void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                      const Corners& corners, Result& result);
+                      const Corners& corners, const StepConditions& conditions, Result& result);
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
-                                       size_t matches,
+                                       size_t matches, const ReadoutEstimate& readout,
                                        std::optional<PathAngleFilter::Measurement>& angle) const;
 
   StereoRig rig_;
-  RowTimes times_;
+  RowTimes times_, unit_times_;
   cv::Mat mask_;  // left, eroded by the window
   ApproachAngleParameters parameters_;
   StepSearch search_;
@@ -98,6 +103,7 @@ class MotionTracker {
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // s, of it
   double last_sink_ = 0;      // in it, in heights at its end
+  ShakeMemory step_shake_, window_shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
   double last_rate_stddev_ = 0;  // of its angle, rad/s

@@ -39,17 +39,19 @@ Eigen::MatrixXd unitCovariance(const std::vector<double>& middles) {
 struct Posterior {
   double log_evidence = 0;  // of the newest measurements, given the earlier ones
   double mean = 0, variance = 0;
+  double by_readout = 0;  // of the mean
 };
 
 // Mean and variance of the models' posteriors; rate_stddev of the one with the most weight.
 PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& posteriors,
                                   const std::array<double, kRates.size()>& log_weights) {
   PathAngleFilter::Estimate estimate;
-  double total = 0, mean = 0, square = 0, heaviest = 0;
+  double total = 0, mean = 0, square = 0, heaviest = 0, by_readout = 0;
   for (size_t m = 0; m < kRates.size(); ++m) {
     const double weight = std::exp(log_weights[m]);
     total += weight;
     mean += weight * posteriors[m].mean;
+    by_readout += weight * posteriors[m].by_readout;
     square += weight * (posteriors[m].variance + posteriors[m].mean * posteriors[m].mean);
     if (weight > heaviest) {
       heaviest = weight;
@@ -59,6 +61,7 @@ PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& po
   mean /= total;
   estimate.angle = mean;
   estimate.variance = square / total - mean * mean;
+  if (by_readout != 0) estimate.variance += std::pow(by_readout / total, 2);
   return estimate;
 }
 
@@ -71,8 +74,9 @@ struct PathAngleFilter::Equations {
   Eigen::MatrixXd H;
   Eigen::VectorXd y;
   Eigen::MatrixXd noise;
-  double reference = 0;    // that y is relative to, rad
-  bool has_chord = false;  // one that is a measurement of its own
+  Eigen::VectorXd by_readout;  // one error in all
+  double reference = 0;        // that y is relative to, rad
+  bool has_chord = false;      // one that is a measurement of its own
 };
 
 // Those of them that are measurements, as every model needs them.
@@ -81,6 +85,7 @@ class PathAngleFilter::Regression {
   explicit Regression(const Equations& all)
       : rows_(all.y.size() - (all.has_chord ? 0 : 1)),
         y_(all.y.head(rows_)),
+        by_readout_(all.by_readout.head(rows_)),
         noise_(all.noise.topLeftCorner(rows_, rows_)) {
     const auto H = all.H.topRows(rows_);
     const Eigen::MatrixXd unit = unitCovariance(all.middles);
@@ -102,6 +107,8 @@ class PathAngleFilter::Regression {
     Posterior posterior;
     posterior.mean = solved.col(1).dot(solved.col(0));
     posterior.variance = rate * variance_of_last_ + kStart - solved.col(1).squaredNorm();
+    // What it does to the mean: differences of the measurements by it are too small to tell the error itself.
+    if (!by_readout_.isZero(0)) posterior.by_readout = solved.col(1).dot(llt.matrixL().solve(by_readout_));
     // As the Cholesky factor of the covariance of all begins with that of the earlier ones.
     const Eigen::Index newest = rows_ - earlier;
     posterior.log_evidence = -0.5 * solved.col(0).tail(newest).squaredNorm() -
@@ -111,7 +118,7 @@ class PathAngleFilter::Regression {
 
  private:
   Eigen::Index rows_;
-  Eigen::VectorXd y_;
+  Eigen::VectorXd y_, by_readout_;
   Eigen::MatrixXd noise_;  // with that of where the path starts
   // By a rate of 1 rad/s: variance of the last angle, covariances of the measurements with it and of these.
   double variance_of_last_;
@@ -143,6 +150,7 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   all.y.resize(n + 1);
   all.noise.resize(n + 1, n + 1);
   Eigen::VectorXd variance(n + 1), by_normal(n + 1);
+  all.by_readout.resize(n + 1);
   double covered = 0;
   for (int i = 0; i < n; ++i) {
     const Step& past = steps_[i];
@@ -151,6 +159,7 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
     all.y[i] = past.measurement.angle;
     variance[i] = past.measurement.variance;
     by_normal[i] = past.measurement.by_normal;
+    all.by_readout[i] = past.measurement.by_readout;
     if (past.stamp > begin) covered += past.measurement.duration;
   }
   for (int i = 0; i < n; ++i)
@@ -158,6 +167,7 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   all.y[n] = chord.angle;
   variance[n] = kChordShared * chord.variance;
   by_normal[n] = chord.by_normal;
+  all.by_readout[n] = chord.by_readout;
   // How far the errors by the normals of single pairs are the same nobody knows, but none has less of it than
   // what it has in common with another: differences of two never tell the normal.
   for (int i = 0; i <= n; ++i)

@@ -27,6 +27,9 @@ class PathAngleFilter {
     double variance = 0;   ///< rad^2, of the matches alone
     double duration = 0;   ///< s, back from now
     double by_normal = 0;  ///< 1 sigma by the error of the ground's normal, about the same in all, rad
+    /// By 1 sigma of the readout time, where that is not given: one error with its sign in all, rad.
+    double by_readout = 0;
+    bool shaken = false;  ///< by rows that move in themselves: the variance does not tell the error
   };
   struct Estimate {
     double angle = 0;        ///< of the middle of the last step, rad

@@ -18,6 +18,10 @@ bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
   return off.dot(prior.covariance.inverse() * off) <= gate;
 }
 
+RowDoubt rowDoubt(const StepImages& step) {
+  return {rollingRows(step.times, step.doubt), step.shake, step.doubt.normal_by_time};
+}
+
 }  // namespace
 
 StepMatching::StepMatching(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters)
@@ -29,21 +33,30 @@ std::vector<TemporalMatch> StepMatching::match(const StepImages& step,
                                                const std::vector<TrackedCorner>& corners,
                                                const CameraMotion& predicted, int coarse_steps,
                                                std::vector<TemporalMatch> list) const {
-  return matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal, predicted,
-                       options(step, predicted, coarse_steps), step.textures, step.memory.matching,
-                       std::move(list));
+  std::vector<TemporalMatch> matches = matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal,
+                                                     predicted, options(step, predicted, coarse_steps),
+                                                     step.textures, step.memory.matching, std::move(list));
+  shiftByReadout(step, predicted, matches);
+  return matches;
 }
 
 TemporalMatchOptions StepMatching::options(const StepImages& step, const CameraMotion& predicted,
                                            int coarse_steps) const {
-  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps, rowsBy(step, predicted)};
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps, rowsBy(step, step.times, predicted)};
 }
 
-RowsOverTime StepMatching::rowsBy(const StepImages& step, const CameraMotion& predicted) const {
-  if (step.times == nullptr || step.times->atOnce() || !(step.duration > 0)) return {};
+void StepMatching::shiftByReadout(const StepImages& step, const CameraMotion& motion,
+                                  std::vector<TemporalMatch>& matches) const {
+  uav_landing::shiftByReadout(rig_, rowsBy(step, step.doubt.times, motion), motion, step.normal,
+                              step.doubt.time, matches);
+}
+
+RowsOverTime StepMatching::rowsBy(const StepImages& step, const RowTimes* times,
+                                  const CameraMotion& predicted) const {
+  if (times == nullptr || times->atOnce() || !(step.duration > 0)) return {};
   const RowMotion now = evenMotion(predicted, step.duration);
   const double height_then = 1 + step.normal.dot(predicted.t);
-  return {step.times, now,
+  return {times, now,
           step.rows_then.value_or(RowMotion{now.w, predicted.R.transpose() * now.v / height_then})};
 }
 
@@ -52,12 +65,13 @@ Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const Ca
   if (step.rotation != nullptr) {
     // Three of the six unknowns are known already.
     const int needed = std::max(kFewestScouts, fewest / 2);
-    const Expected<MotionEstimate> aided = estimateMotion(rig_, matches, step.normal, step.normal_covariance,
-                                                          start, needed, step.memory.motion, step.rotation);
+    const Expected<MotionEstimate> aided =
+        estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.memory.motion,
+                       step.rotation, rowDoubt(step));
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
-  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, fewest,
-                        step.memory.motion);
+  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, fewest, step.memory.motion,
+                        nullptr, rowDoubt(step));
 }
 
 double StepMatching::likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,

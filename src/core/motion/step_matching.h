@@ -6,6 +6,7 @@
 
 #include "image/match_image.h"
 #include "motion/ego_motion.h"
+#include "motion/readout_shift.h"
 #include "motion/temporal_matching.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
@@ -37,6 +38,8 @@ struct StepImages {
   bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
   SearchTime time = SearchTime::kAmple;
   const RowTimes* times = nullptr;          ///< of the left image's rows
+  ShakeMemory* shake = nullptr;             ///< of steps
+  ReadoutDoubt doubt = {};                  ///< where these are not given
   std::optional<RowMotion> rows_then = {};  ///< how the camera moved then, if that is known
 };
 
@@ -54,6 +57,9 @@ class StepMatching {
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,
                                    std::vector<TemporalMatch> list = {}) const;
+  /// For a readout time that is not given, by the motion of the step.
+  void shiftByReadout(const StepImages& step, const CameraMotion& motion,
+                      std::vector<TemporalMatch>& matches) const;
   /// With the rotation that is known beforehand, where there is one that the matches do not contradict.
   /// fewest: matches that make a motion.
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
@@ -69,7 +75,7 @@ class StepMatching {
  private:
   TemporalMatchOptions options(const StepImages& step, const CameraMotion& predicted, int coarse_steps) const;
   /// While rows are exposed the camera moves as the predicted motion says.
-  RowsOverTime rowsBy(const StepImages& step, const CameraMotion& predicted) const;
+  RowsOverTime rowsBy(const StepImages& step, const RowTimes* times, const CameraMotion& predicted) const;
 
   StereoRig rig_;
   cv::Mat mask_;

@@ -42,7 +42,12 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
                                           const std::vector<CameraMotion>& predictions,
                                           std::vector<TemporalMatch>& matches) {
   const Expected<MotionEstimate> found = findMotion(step, predictions, matches);
-  if (!found || step.times == nullptr || step.times->atOnce()) return found;
+  if (!found) return found;
+  if (step.doubt.time != 0) {
+    matching_.shiftByReadout(step, found->motion, matches);
+    return matching_.estimate(step, found->motion, matches, min_matches_);
+  }
+  if (step.times == nullptr || step.times->atOnce()) return found;
   // Rows were carried to the stamps by the motion of before, which this one is not quite.
   matches = matching_.match(step, step.corners, found->motion, 0, std::move(matches));
   return matching_.estimate(step, found->motion, matches, min_matches_);

@@ -24,6 +24,8 @@ struct TemporalMatch {
   double inverse_depth_stddev = 0;
   /// Side of the square of pixels that it was matched by; those that overlap share noise.
   double extent = 0;
+  /// How then, less where now is seen then, follows a readout time that is not given, px/s.
+  Eigen::Vector2d by_readout = Eigen::Vector2d::Zero();
 };
 
 }  // namespace uav_landing

@@ -23,6 +23,8 @@ constexpr double kLeastRelative = 1e-6;   // 1 sigma over the value: no camera s
 constexpr double kRounding = 1e-6;        // of covariances that went through calculations
 constexpr size_t kMostPoints = 100000;
 
+constexpr double kLongestReadout = 1;  // s
+
 bool within(double value, double limit) { return std::abs(value) <= limit; }  // false for NaN
 
 bool isVariance(double value) { return value > 0 && value <= kLargestVariance; }
@@ -93,6 +95,11 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
   keepDirection(motion.normal, motion.normal_covariance);
 }
 
+bool isReadout(const ReadoutEstimate& readout) {
+  return within(readout.time, kLongestReadout) && readout.variance > 0 &&
+         readout.variance <= kLongestReadout * kLongestReadout;
+}
+
 void keepImu(AttitudePrior& imu) {
   keepDirection(imu.normal, imu.normal_covariance);
   const bool possible = imu.rotation.norm() <= M_PI && imu.duration >= kShortestStep &&
@@ -135,10 +142,10 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return "plane_covariance: not a covariance of this plane";
   if (!isShare(result.row_covariance, result.plane.covariance))
     return "plane_row_covariance: not a part of plane_covariance";
-  // No readout takes longer than a second, nor does a plane change by many times itself in it.
-  constexpr double kLongestReadout = 10, kLargestRate = 100;
-  if (!result.plane_by_rate.allFinite() || result.plane_by_rate.cwiseAbs().maxCoeff() > kLongestReadout)
-    return text("plane_by_rate: finite numbers up to ", kLongestReadout, " s expected");
+  // No plane changes by many times itself in a readout. Its components may be hardly told from each other.
+  constexpr double kLargestByRate = 100 * kLongestReadout, kLargestRate = 100;
+  if (!result.plane_by_rate.allFinite() || result.plane_by_rate.cwiseAbs().maxCoeff() > kLargestByRate)
+    return text("plane_by_rate: finite numbers up to ", kLargestByRate, " s expected");
   if (!(result.plane_rate.norm() <= kLargestRate * size))
     return text("plane_rate: not the rate of this plane");
   const double bias = biasVariance(rig, result.disparity_bias_stddev);
@@ -197,6 +204,7 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepMotion(kept.window);
   keepRunway(kept.runway);
   keepImu(kept.imu);
+  if (!isReadout(kept.readout)) kept.readout = {};
   if (!(kept.other_runway_probability >= 0 && kept.other_runway_probability <= 1))
     kept.other_runway_probability = 1;
   if (!kept.foe.allFinite()) kept.foe.setConstant(kUnknown);

@@ -1,5 +1,9 @@
 #include "uav_landing/results/stage_results.h"
 
+#include <cmath>
+
+#include "base/text.h"
+
 namespace uav_landing {
 
 const char* toString(Status status) {
@@ -18,6 +22,14 @@ const char* toString(Status status) {
 
 double LandingResult::speedVariance() const {
   return velocity.dot(twist_covariance.topLeftCorner<3, 3>() * velocity) / velocity.squaredNorm();
+}
+
+std::string adviceOn(const ReadoutEstimate& readout) {
+  constexpr double kUseful = 0.005, kCertain = 3;  // s, sigmas
+  const double stddev = std::sqrt(readout.variance);
+  if (!(stddev <= kUseful) || !(std::abs(readout.time) > kCertain * stddev)) return "";
+  return text("rows are read within ", std::round(readout.time * 1e3), " +- ", std::ceil(stddev * 1e3),
+              " ms, one after the other: set rig/readout_time");
 }
 
 }  // namespace uav_landing

@@ -9,30 +9,69 @@ bool hasRowTimes(const StereoDepthResult& stereo) {
   return !stereo.plane_by_rate.isZero(0) && stereo.plane.valid();
 }
 
-void addVariance(const Eigen::Matrix3d& of_rate, StereoDepthResult& stereo) {
-  const Eigen::Matrix3d added = stereo.plane_by_rate * of_rate * stereo.plane_by_rate.transpose();
+void addToPlane(const Eigen::Matrix3d& added, StereoDepthResult& stereo) {
   stereo.plane.covariance += added;
   if (stereo.below.valid()) stereo.below.covariance += added;
 }
 
-}  // namespace
+void addVariance(const Eigen::Matrix3d& of_rate, StereoDepthResult& stereo) {
+  addToPlane(stereo.plane_by_rate * of_rate * stereo.plane_by_rate.transpose(), stereo);
+}
 
-void carryPlane(const RowMotion& motion, StereoDepthResult& stereo) {
-  if (!hasRowTimes(stereo)) return;
-  const Eigen::Vector3d rate = planeRate(stereo.plane.g, motion);
+void carryTo(const Eigen::Vector3d& rate, StereoDepthResult& stereo) {
   const Eigen::Vector3d change = stereo.plane_by_rate * (rate - stereo.plane_rate);
   stereo.plane.g += change;
   if (stereo.below.valid()) stereo.below.g += change;
   stereo.plane_rate = rate;
 }
 
-void carryPlane(const ApproachAngleResult::Motion& step, StereoDepthResult& stereo) {
+// As if the estimated time had been given, and nothing carried: A is that of the time then.
+Eigen::Vector3d takeReadout(const Eigen::Vector3d& rate, const ReadoutEstimate& readout,
+                            StereoDepthResult& stereo) {
+  const Eigen::Vector3d by_time = stereo.plane_by_rate * rate;
+  const Eigen::Matrix3d variance = readout.variance * by_time * by_time.transpose();
+  addToPlane(variance, stereo);
+  stereo.row_covariance += variance;
+  stereo.plane_by_rate *= readout.time;
+  stereo.plane_rate.setZero();
+  return by_time;
+}
+
+}  // namespace
+
+Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& readout,
+                           StereoDepthResult& stereo) {
+  Eigen::Vector3d by_time = Eigen::Vector3d::Zero();
+  if (!hasRowTimes(stereo)) return by_time;
+  const Eigen::Vector3d rate = planeRate(stereo.plane.g, motion);
+  if (readout.known()) by_time = takeReadout(rate, readout, stereo);
+  carryTo(rate, stereo);
+  return by_time;
+}
+
+Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& stereo) {
+  if (!hasRowTimes(stereo) || !readout.known()) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d rate = stereo.plane_rate;
+  const Eigen::Vector3d by_time = takeReadout(rate, readout, stereo);
+  carryTo(rate, stereo);
+  return by_time;
+}
+
+void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,
+                StereoDepthResult& stereo) {
   if (!hasRowTimes(stereo)) return;
   const bool known = step.duration > 0 && step.rotation.allFinite() &&
                      step.translation_over_height.allFinite() && step.covariance.allFinite();
-  if (!known) return addVariance(stereo.plane_rate * stereo.plane_rate.transpose(), stereo);
+  if (!known) {
+    if (readout.known())
+      carryPlane(readout, stereo);
+    else
+      addVariance(stereo.plane_rate * stereo.plane_rate.transpose(), stereo);
+    return;
+  }
   const Eigen::Vector3d g = stereo.plane.g;
-  carryPlane(RowMotion{step.rotation / step.duration, step.translation_over_height / step.duration}, stereo);
+  carryPlane(RowMotion{step.rotation / step.duration, step.translation_over_height / step.duration}, readout,
+             stereo);
   Eigen::Matrix<double, 3, 6> by_step;
   by_step << -crossMatrix(g), g * g.normalized().transpose();
   by_step /= step.duration;

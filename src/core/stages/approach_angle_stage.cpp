@@ -12,6 +12,7 @@
 #include "motion/angle_normal.h"
 #include "motion/motion_corners.h"
 #include "motion/motion_tracker.h"
+#include "motion/readout_filter.h"
 #include "results/result_check.h"
 #include "rig/plane_rate.h"
 #include "runway/runway_direction.h"
@@ -27,6 +28,13 @@ constexpr double kPatience = 1;  // s, after which directions of a pair say noth
 struct SeenDirections {
   double stamp = kUnknown;
   std::optional<Eigen::Vector3d> path, runway;
+};
+
+/// What a readout time that is not given does to the ground's normal or plane, and the covariance without
+/// that.
+struct DoubtByReadout {
+  Eigen::Vector3d by_time = Eigen::Vector3d::Zero();  ///< 1/s, of a plane 1/m/s
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace
@@ -46,6 +54,7 @@ struct ApproachAngleStage::Implementation {
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   ReadoutCheck readout;
+  std::optional<ReadoutFilter> readout_time;  // where none is given
   Eigen::Vector3d last_normal = Eigen::Vector3d::Constant(kUnknown);
   Timings timings;
 
@@ -58,6 +67,7 @@ struct ApproachAngleStage::Implementation {
         readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
+    if (!rig.left_unit_times.atOnce()) readout_time.emplace();
   }
 
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
@@ -65,6 +75,7 @@ struct ApproachAngleStage::Implementation {
     timings.clear();
     ApproachAngleResult result;
     result.stamp = stamp;
+    if (readout_time) result.readout = readout_time->estimate();
     if (parameters.use_imu) result.imu = overSlopingGround(imu);
     result.failure = checkPair(model, left, right);
     const Failure too_long = readout.follow(stamp);
@@ -82,7 +93,9 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
-    if (const std::optional<RowMotion> motion = tracker.lastMotion(stamp)) carryPlane(*motion, stereo);
+    const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
+    DoubtByReadout plane{Eigen::Vector3d::Zero(), stereo.plane.covariance};
+    plane.by_time = motion ? carryPlane(*motion, result.readout, stereo) : carryPlane(result.readout, stereo);
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (!(stamp > last.stamp && stamp - last.stamp <= kPatience)) last = {};
     const SeenGround ground{
@@ -93,7 +106,8 @@ struct ApproachAngleStage::Implementation {
     const RunwayDirection direction = lines_left_out
                                           ? noDirection(result)
                                           : findDirection(left, right, has_plane ? &ground : nullptr, result);
-    if (!findNormal(has_plane ? &stereo.plane : nullptr, result)) {
+    DoubtByReadout normal;
+    if (!findNormal(has_plane ? &stereo.plane : nullptr, plane, normal, result)) {
       result.failure = {Reason::kNoGroundNormal,
                         "neither a stereo plane nor a vanishing point nor an imu's attitude"};
       nothingKnown(result);
@@ -102,7 +116,7 @@ struct ApproachAngleStage::Implementation {
     }
     straightenPlan(result);
     last_normal = result.n;
-    followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), result);
+    followMotion(stamp, left, has_plane ? &stereo : nullptr, repeated(stereo), normal, result);
     if (repeated(stereo)) {
       result.other_runway_probability = identity.otherProbability();
     } else {
@@ -207,17 +221,30 @@ struct ApproachAngleStage::Implementation {
   }
 
   // The normal that the angles refer to; false when there is none.
-  bool findNormal(const GroundPlane* plane, ApproachAngleResult& result) const {
-    const std::optional<AngleNormal> found =
-        findAngleNormal({plane,
-                         {result.vanishing_direction, result.vanishing_covariance},
-                         {result.n_vp, result.n_vp_covariance},
-                         result.imu},
-                        parameters);
+  bool findNormal(const GroundPlane* plane, const DoubtByReadout& of_plane, DoubtByReadout& normal,
+                  ApproachAngleResult& result) const {
+    constexpr double kApart = 1e-6;  // s, of readout times, by whose difference the derivative is taken
+    NormalSources sources{plane,
+                          {result.vanishing_direction, result.vanishing_covariance},
+                          {result.n_vp, result.n_vp_covariance},
+                          result.imu};
+    GroundPlane carried;
+    const bool doubted = plane != nullptr && !of_plane.by_time.isZero(0);
+    if (doubted) {
+      carried = *plane;
+      carried.covariance = of_plane.covariance;
+      sources.plane = &carried;
+    }
+    const std::optional<AngleNormal> found = findAngleNormal(sources, parameters);
     if (!found) return false;
     result.n = found->normal.n;
-    result.n_covariance = found->normal.covariance;
+    result.n_covariance = normal.covariance = found->normal.covariance;
     if (found->imu_failure) result.imu.failure = found->imu_failure;
+    if (!doubted) return true;
+    carried.g += kApart * of_plane.by_time;
+    if (const std::optional<AngleNormal> later = findAngleNormal(sources, parameters))
+      normal.by_time = (later->normal.n - result.n) / kApart;
+    result.n_covariance += result.readout.variance * normal.by_time * normal.by_time.transpose();
     return true;
   }
 
@@ -237,18 +264,19 @@ struct ApproachAngleStage::Implementation {
   }
 
   void followMotion(double stamp, const cv::Mat& left, const StereoDepthResult* stereo, bool repeated,
-                    ApproachAngleResult& result) {
+                    const DoubtByReadout& normal, ApproachAngleResult& result) {
     const std::vector<TrackedCorner> corners =
         stereo ? stereoCorners(model.rig, *stereo) : cornersWithoutStereo(left, result.n);
     const StepConditions conditions{
         stereo || hasPaperForm(parameters) ? GroundProof::kGiven : GroundProof::kMotion,
         !stereo                                     ? SearchTime::kLeast
         : lines_left_out || runway.isSettled(stamp) ? SearchTime::kAmple
-                                                    : SearchTime::kShort};
-    const MotionTracker::Result motion = repeated
-                                             ? tracker.repeat(stamp)
-                                             : tracker.process(stamp, left, result.n, result.n_covariance,
-                                                               corners, timings, result.imu, conditions);
+                                                    : SearchTime::kShort,
+        result.readout, normal.by_time};
+    const MotionTracker::Result motion = repeated ? tracker.repeat(stamp)
+                                                  : tracker.process(stamp, left, result.n, normal.covariance,
+                                                                    corners, timings, result.imu, conditions);
+    if (readout_time && motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
     ScopedTimer timer(timings, "foe_and_angle");
     const StepFoe found =
         findStepFoe(model.rig, tracker, motion, {result.n, result.n_covariance}, parameters);
@@ -285,6 +313,7 @@ void ApproachAngleStage::reset() {
   implementation_->first_search = true;
   implementation_->lines_left_out = false;
   implementation_->readout.reset();
+  if (implementation_->readout_time) implementation_->readout_time.emplace();
   implementation_->last_normal.setConstant(kUnknown);
 }
 

@@ -107,6 +107,11 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
+  // What the rows of the pair see of the drift, or would at a readout of 1 s where no time is given.
+  PlaneDrift rowDrift() const {
+    return {fine.drift.rate, model.left_unit_times.atOnce() ? fine.drift.times : &model.left_unit_times};
+  }
+
   // Width and height of corners' windows, pixels.
   int window() const { return 2 * parameters.window_radius + 1; }
 
@@ -231,8 +236,8 @@ struct StereoDepthStage::Implementation {
     corners.fit = std::move(*plane);
     const PlaneFit& fit = corners.fit;
     result.plane = fit.plane;
-    if (!fine.drift.isStill()) result.plane_rate = fine.drift.rate;
-    result.plane_by_rate = planeByRate(model.rig, fine.drift, samples, fit.agrees);
+    if (!rowDrift().isStill()) result.plane_rate = fine.drift.rate;
+    result.plane_by_rate = planeByRate(model.rig, rowDrift(), samples, fit.agrees);
     result.residual_stddev = fit.residual_stddev;
     result.surface_variance = surfaceVariance(model.rig, samples, fit, window(), surface_memory);
     for (size_t i = 0; i < samples.size(); ++i) result.points[i].on_plane = fit.agrees[i] != 0;
@@ -275,7 +280,7 @@ struct StereoDepthStage::Implementation {
       return false;
     }
     result.plane = fit->plane;
-    result.plane_by_rate = planeByRate(model.rig, fine.drift, direct->samples(), fit->agrees);
+    result.plane_by_rate = planeByRate(model.rig, rowDrift(), direct->samples(), fit->agrees);
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
     // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.

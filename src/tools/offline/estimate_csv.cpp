@@ -18,7 +18,7 @@ const char* const kHeader =
     "runway_width_m,width_height_m,width_height_stddev_m,rig_rx_deg,rig_ry_deg,rig_rz_deg,rig_rx_stddev_deg,"
     "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests,"
     "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s,yaw_stddev_deg,yaw_known,"
-    "yaw_reason,other_runway_probability";
+    "yaw_reason,other_runway_probability,estimated_readout_time_s,estimated_readout_time_stddev_s";
 
 }  // namespace
 
@@ -52,6 +52,8 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.number(landing.speed()).number(std::sqrt(landing.speedVariance()));
   row.number(std::sqrt(landing.yaw_variance) * kDegrees).flag(std::isfinite(landing.yaw));
   row.text(toString(landing.yaw_failure.reason)).number(landing.other_runway_probability);
+  const ReadoutEstimate& readout = pair.output.approach.readout;
+  row.number(readout.time).number(std::sqrt(readout.variance));
   file_ << '\n';
 }
 

@@ -21,11 +21,17 @@ std::string listed(const std::map<std::string, std::size_t>& counts) {
 
 }  // namespace
 
+void PairCount::take(const ProcessedPair& pair) {
+  tally_.add(pair);
+  if (pair.output.approach.readout.known()) readout_ = pair.output.approach.readout;
+}
+
 void PairCount::finish() {
   if (!tally_.failed_tests.empty())
     out_ << "pairs on which a test failed" << listed(tally_.failed_tests) << '\n';
   if (const std::string verdict = verdictOf(tally_); !verdict.empty())
     out_ << "likely cause: " << verdict << '\n';
+  if (const std::string advice = adviceOn(readout_); !advice.empty()) out_ << advice << '\n';
   out_ << tally_.pairs << (tally_.pairs == 1 ? " pair, " : " pairs, ") << tally_.valid << " valid"
        << listed(tally_.reasons) << '\n';
 }

@@ -12,13 +12,14 @@ namespace uav_landing {
 class PairCount : public PairSink {
  public:
   explicit PairCount(std::ostream& out) : out_(out) {}
-  void take(const ProcessedPair& pair) override { tally_.add(pair); }
-  /// Prints the lines, and the verdict, if there is one.
+  void take(const ProcessedPair& pair) override;
+  /// Prints the lines, the verdict, and what to do about a rolling shutter, if there is one.
   void finish() override;
 
  private:
   std::ostream& out_;
   PairTally tally_;
+  ReadoutEstimate readout_;  // the last one
 };
 
 }  // namespace uav_landing

@@ -58,6 +58,23 @@ TEST(PathAngleFilter, IsNearlyAsAccurateAsTheChordOnASteadyGlide) {
   EXPECT_LT(glide.rms(), 1.6 * 0.0169 * kDegree);
 }
 
+TEST(PathAngleFilter, DoesNotAverageAwayWhatAReadoutTimeDoesToAll) {
+  // 0.1 deg in steps and chords alike, with a sign: 200 pairs know no more of it than one.
+  constexpr double kAlike = 0.1 * kDegree;
+  for (const double sign : {1.0, -1.0}) {
+    PathAngleFilter filter(0.5);
+    PathAngleFilter::Estimate estimate;
+    for (int k = 1; k <= 200; ++k) {
+      PathAngleFilter::Measurement step{5 * kDegree, kStepNoise * kStepNoise, 1 / kRate};
+      PathAngleFilter::Measurement chord{5 * kDegree, kChordNoise * kChordNoise, 0.5};
+      step.by_readout = chord.by_readout = sign * kAlike;
+      estimate = filter.update(k / kRate, step, k < 10 ? step : chord);
+    }
+    EXPECT_GT(std::sqrt(estimate.variance), kAlike);
+    EXPECT_LT(std::sqrt(estimate.variance), 1.1 * kAlike);
+  }
+}
+
 TEST(PathAngleFilter, DoesNotLagThroughAFlare) {
   // 5 degrees down to 0.5 in three seconds; a chord would be a quarter of a second late, 0.375 degrees.
   const auto flare = [](double t) { return (t < 4 ? 5.0 : t < 7 ? 5.0 - 1.5 * (t - 4) : 0.5) * kDegree; };

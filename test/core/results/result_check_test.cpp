@@ -185,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance(0, 0) = -1e-8; }},
         BadField{"plane_covariance", [](StereoDepthResult& r) { r.plane.covariance(1, 1) = kUnknown; }},
         BadField{"plane_row_covariance", [](StereoDepthResult& r) { r.row_covariance *= 100; }},
-        BadField{"plane_by_rate", [](StereoDepthResult& r) { r.plane_by_rate(1, 1) = 11; }},
+        BadField{"plane_by_rate", [](StereoDepthResult& r) { r.plane_by_rate(1, 1) = 101; }},
         BadField{"plane_by_rate", [](StereoDepthResult& r) { r.plane_by_rate(2, 0) = kUnknown; }},
         BadField{"plane_rate", [](StereoDepthResult& r) { r.plane_rate.y() = 200; }},
         BadField{"plane_rate", [](StereoDepthResult& r) { r.plane_rate.y() = kUnknown; }},
@@ -227,6 +227,20 @@ TEST(ResultCheck, ABaselineFurtherThanAnyIsLeftOut) {
   EXPECT_TRUE(isKept(0.1, 1e-4));
   EXPECT_FALSE(isKept(200, 1e-4));
   EXPECT_FALSE(isKept(0.1, 0));
+}
+
+TEST(ResultCheck, AReadoutTimeThatNoCameraHasIsLeftOut) {
+  const auto isKept = [](double time, double variance) {
+    ApproachAngleResult result;
+    result.readout = {time, variance};
+    return checked(result).readout.known();
+  };
+  EXPECT_TRUE(isKept(-0.03, 1e-5));
+  EXPECT_FALSE(isKept(2, 1e-5));
+  EXPECT_FALSE(isKept(kUnknown, 1e-5));
+  EXPECT_FALSE(isKept(0.03, 0)) << "a message that was never filled in";
+  EXPECT_FALSE(isKept(0.03, kUnknown));
+  EXPECT_FALSE(isKept(0.03, 2));
 }
 
 /// A runway that is seen from 2 heights to the side, 4 heights wide, 10 heights ahead.

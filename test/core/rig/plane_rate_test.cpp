@@ -35,22 +35,22 @@ TEST(PlaneRate, OfABetterKnownMotionCorrectsThePlane) {
   const Eigen::Vector3d rate = planeRate(kPlane, kMotion);
   StereoDepthResult pair = pairOf(kPlane, rate);
   EXPECT_GT((pair.plane.g - kPlane).norm(), 2e-3 * kPlane.norm());
-  carryPlane(kMotion, pair);
+  carryPlane(kMotion, {}, pair);
   EXPECT_LT((pair.plane.g - kPlane).norm(), kSecondOrder * kPlane.norm());
   EXPECT_LT((pair.below.g - kPlane).norm(), kSecondOrder * kPlane.norm());
   const Eigen::Vector3d once = pair.plane.g;
-  carryPlane(kMotion, pair);
+  carryPlane(kMotion, {}, pair);
   EXPECT_LT((pair.plane.g - once).norm(), kSecondOrder * kPlane.norm()) << "the rate is taken in already";
 }
 
 TEST(PlaneRate, IsAsUncertainAsTheStep) {
   StereoDepthResult pair = pairOf(kPlane, planeRate(kPlane, kMotion)), exact = pair;
   ApproachAngleResult::Motion step = stepOf(0.05);
-  carryPlane(step, exact);
+  carryPlane(step, {}, exact);
   EXPECT_LT((exact.plane.g - kPlane).norm(), kSecondOrder * kPlane.norm());
   // 1 mrad of the step's turn about the right axis is 20 mrad/s, of which 8 ms count.
   step.covariance(0, 0) = 1e-6;
-  carryPlane(step, pair);
+  carryPlane(step, {}, pair);
   const Eigen::Vector3d tilt = Eigen::Vector3d::UnitX().cross(exact.plane.g).normalized();
   const double added = tilt.dot((pair.plane.covariance - exact.plane.covariance) * tilt);
   EXPECT_NEAR(std::sqrt(added), 0.02 * 0.008 * kPlane.norm(), 0.02 * 0.02 * 0.008 * kPlane.norm());
@@ -60,7 +60,7 @@ TEST(PlaneRate, IsAsUncertainAsItIsLargeWithoutAStep) {
   StereoDepthResult pair = pairOf(kPlane, Eigen::Vector3d::Zero());
   pair.plane_rate = {0, 0.1, 0};
   const Eigen::Vector3d before = pair.plane.g;
-  carryPlane(ApproachAngleResult::Motion(), pair);
+  carryPlane(ApproachAngleResult::Motion(), {}, pair);
   EXPECT_EQ(pair.plane.g, before);
   EXPECT_NEAR(std::sqrt(pair.plane.covariance(1, 1)), 0.008 * 0.1, 1e-5);
 }
@@ -69,10 +69,34 @@ TEST(PlaneRate, ChangesNothingWithoutRowTimes) {
   StereoDepthResult pair = pairOf(kPlane, Eigen::Vector3d::Zero());
   pair.plane_by_rate.setZero();
   const GroundPlane before = pair.plane;
-  carryPlane(stepOf(0.05), pair);
-  carryPlane(kMotion, pair);
+  carryPlane(stepOf(0.05), {}, pair);
+  carryPlane(kMotion, {}, pair);
   EXPECT_EQ(pair.plane.g, before.g);
   EXPECT_EQ(pair.plane.covariance, before.covariance);
+}
+
+TEST(PlaneRate, ByAnEstimatedReadoutTimeCorrectsThePlaneAndClaimsItsError) {
+  // Rows that are late by a quarter of a readout of 32 ms, which is given as one of 1 s.
+  constexpr double kReadout = 0.032, kStddev = 0.004;
+  const Eigen::Vector3d rate = planeRate(kPlane, kMotion);
+  StereoDepthResult pair = pairOf(kPlane, rate), by_stereo = pair, wide;
+  pair.plane_by_rate = by_stereo.plane_by_rate = -0.25 * Eigen::Matrix3d::Identity();
+  by_stereo.plane_rate = rate;  // was not carried by it
+  wide = pair;
+  carryPlane(kMotion, {kReadout, kStddev * kStddev}, pair);
+  EXPECT_LT((pair.plane.g - kPlane).norm(), 2 * kSecondOrder * kPlane.norm());
+  EXPECT_LT((pair.below.g - kPlane).norm(), 2 * kSecondOrder * kPlane.norm());
+  const Eigen::Vector3d along = rate.normalized();
+  const double claimed = std::sqrt(along.dot(pair.plane.covariance * along));
+  EXPECT_NEAR(claimed, 0.25 * kStddev * rate.norm(), 0.02 * 0.25 * kStddev * rate.norm());
+  EXPECT_NEAR(std::sqrt(along.dot(pair.row_covariance * along)), claimed, 0.01 * claimed)
+      << "is the same in all pairs";
+  carryPlane(stepOf(0.05), {0, kReadout * kReadout}, wide);
+  EXPECT_EQ(wide.plane.g, pairOf(kPlane, rate).plane.g);
+  EXPECT_GT(std::sqrt(along.dot(wide.plane.covariance * along)), 7.9 * claimed);
+  carryPlane(ApproachAngleResult::Motion(), {kReadout, kStddev * kStddev}, by_stereo);
+  EXPECT_LT((by_stereo.plane.g - kPlane).norm(), 2 * kSecondOrder * kPlane.norm());
+  EXPECT_NEAR(std::sqrt(along.dot(by_stereo.plane.covariance * along)), claimed, 0.02 * claimed);
 }
 
 }  // namespace

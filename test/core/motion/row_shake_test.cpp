@@ -1,0 +1,149 @@
+#include "motion/row_shake.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "motion/ego_motion.h"
+#include "support/motion_matches.h"
+#include "support/rolling_camera.h"
+
+namespace uav_landing {
+namespace {
+
+using test::kDegree;
+using test::motionRig;
+using test::Pose;
+
+constexpr double kPeriod = 0.05, kReadout = 0.03;  // s
+
+/// A camera that glides level, with its pitch and roll vibrating.
+struct Vibration {
+  double amplitude = 0, frequency = 37, phase = 0;  // rad, Hz, rad
+
+  Pose pose(double t) const {
+    Pose pose;
+    pose.position = {20 * t, 0, 27 - 1.9 * t};
+    const double p = 2 * M_PI * frequency * t + phase;
+    pose.pitch = -5 * kDegree + amplitude * std::sin(p);
+    pose.roll = 0.5 * amplitude * std::sin(1.13 * p + 1);
+    return pose;
+  }
+  Eigen::Vector2d seen(double stamp, double readout, const Eigen::Vector3d& world) const {
+    Eigen::Vector2d pixel(0, 0.5 * motionRig().size.height);
+    for (int i = 0; i < 20; ++i) {
+      const Pose at = pose(stamp + ((pixel.y() + 0.5) / motionRig().size.height - 0.5) * readout);
+      pixel = motionRig().project(at.seen(world - at.position));
+    }
+    return pixel;
+  }
+};
+
+constexpr double kNoise = 0.08;  // px
+const RowTimes& unitTimes() {
+  static const RowTimes times(test::calibrationOf(motionRig()), {1.0, 0.5});
+  return times;
+}
+
+/// One step of that camera, with matches as its rolling shutter makes them.
+struct ShakenStep {
+  test::Step truth;
+  std::vector<TemporalMatch> matches;
+
+  ShakenStep(const Vibration& vibration, double stamp, unsigned seed)
+      : truth(Vibration().pose(stamp - kPeriod), Vibration().pose(stamp)) {
+    const Pose level = Vibration().pose(stamp);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, kNoise);
+    std::uniform_real_distribution<double> u(10, motionRig().size.width - 10),
+        v(215, motionRig().size.height - 10);
+    while (matches.size() < 300) {
+      const Eigen::Vector3d ray = motionRig().ray(u(random), v(random));
+      const double slope = truth.n.dot(ray);
+      if (slope < 0.02) continue;
+      const Eigen::Vector3d world =
+          level.worldFromOptical() * (level.height() / slope * ray) + level.position;
+      TemporalMatch match;
+      match.now = vibration.seen(stamp, kReadout, world);
+      match.then =
+          vibration.seen(stamp - kPeriod, kReadout, world) + Eigen::Vector2d(noise(random), noise(random));
+      match.covariance = kNoise * kNoise * Eigen::Matrix2d::Identity();
+      matches.push_back(match);
+    }
+  }
+
+  Expected<MotionEstimate> estimate(ShakeMemory* memory) const {
+    constexpr double kSlope = 1e-4;  // rad
+    MotionMemory work;
+    return estimateMotion(motionRig(), matches, truth.n,
+                          kSlope * kSlope * (Eigen::Matrix3d::Identity() - truth.n * truth.n.transpose()),
+                          {truth.movement.R, truth.t}, 20, work, nullptr,
+                          {&unitTimes(), memory, Eigen::Vector3d::Zero()});
+  }
+  /// Error of the translation across the way, up and down, over its claimed standard deviation.
+  double ratio(const MotionEstimate& found) const {
+    const Eigen::Vector3d& n = truth.n;
+    return n.dot(found.motion.t - truth.t) / std::sqrt(n.dot(found.covariance.block<3, 3>(3, 3) * n));
+  }
+};
+
+/// Root mean squares of these ratios, with shake and without, and the share of steps that it was found in.
+struct Ratios {
+  double with = 0, without = 0, found = 0;
+};
+
+Ratios ratiosOf(const Vibration& vibration) {
+  constexpr int kFirst = 20, kSteps = 80;
+  ShakeMemory memory;
+  Ratios ratios;
+  for (int i = 0; i < kSteps; ++i) {
+    const ShakenStep step(vibration, kPeriod * i, i);
+    const Expected<MotionEstimate> with = step.estimate(&memory), without = step.estimate(nullptr);
+    if (!with || !without || i < kFirst) continue;
+    ratios.with += std::pow(step.ratio(*with), 2) / (kSteps - kFirst);
+    ratios.without += std::pow(step.ratio(*without), 2) / (kSteps - kFirst);
+    ratios.found += !with->of_shake.isZero(0) / double(kSteps - kFirst);
+  }
+  return {std::sqrt(ratios.with), std::sqrt(ratios.without), ratios.found};
+}
+
+TEST(RowShake, OfVibrationIsFoundAndClaimed) {
+  for (const double frequency : {37.0, 61.0}) {
+    const Ratios ratios = ratiosOf({0.05 * kDegree, frequency, 0});
+    EXPECT_GT(ratios.found, 0.99) << frequency;
+    EXPECT_GT(ratios.without, 3) << frequency << ": vibration must matter";
+    EXPECT_LT(ratios.with, 0.5 * ratios.without) << frequency;
+    EXPECT_LT(ratios.with, 3) << frequency;
+  }
+}
+
+TEST(RowShake, IsNotFoundInNoise) {
+  ShakeMemory memory;
+  for (int i = 0; i < 60; ++i) {
+    const ShakenStep step(Vibration(), kPeriod * i, i);
+    const Expected<MotionEstimate> with = step.estimate(&memory), without = step.estimate(nullptr);
+    ASSERT_TRUE(with && without);
+    EXPECT_TRUE(with->of_shake.isZero(0));
+    EXPECT_EQ(with->motion.t, without->motion.t) << "nothing may change";
+    EXPECT_EQ(with->covariance, without->covariance);
+  }
+}
+
+TEST(RowShake, IsForgottenWhenItEnds) {
+  ShakeMemory memory;
+  const auto isFound = [&](double amplitude, int first, int end) {
+    bool found = false;
+    for (int i = first; i < end; ++i) {
+      const ShakenStep step({amplitude, 37, 0}, kPeriod * i, i);
+      const Expected<MotionEstimate> estimate = step.estimate(&memory);
+      found = estimate && !estimate->of_shake.isZero(0);
+    }
+    return found;
+  };
+  EXPECT_TRUE(isFound(0.05 * kDegree, 0, 20));
+  EXPECT_FALSE(isFound(0, 20, 200));
+}
+
+}  // namespace
+}  // namespace uav_landing
