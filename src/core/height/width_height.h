@@ -5,9 +5,11 @@
 namespace uav_landing {
 
 /// Height from the width of the runway: h = W / w with w the width seen in multiples of the height (between
-/// the outermost edges, from the ground's attitude and the picture alone). W is known, or learned from
-/// heights by stereo. A learned width has the errors of those heights: it carries on where stereo fails, but
-/// says nothing new where it does not.
+/// the outermost edges, from the ground's attitude and the picture alone). W is known from a
+/// chart, or learned from heights by stereo. A chart has the width of the surface, and stripes lie inside it:
+/// its width is as uncertain as that, until stereo tells better. Where the place of the stripes is given
+/// closely, the width is exact to 0.2 % and remains. A learned width has the errors of those
+/// heights: it carries on where stereo fails, but says nothing new where it does not.
 class WidthHeight {
  public:
   struct Estimate {
@@ -15,8 +17,8 @@ class WidthHeight {
     double common = 0;  ///< the part of the variance that is the width's own: the same on all pairs
   };
 
-  /// known_width: m, taken as exact to 0.2 %; 0: learned.
-  explicit WidthHeight(double known_width);
+  /// known_width: m, 0: learned. largest_inset: by which the edges that show may lie inside it, m.
+  explicit WidthHeight(double known_width, double largest_inset = 0);
 
   /// Of one pair. ratio, variance: width over height as seen. Nothing before a width is known.
   std::optional<Estimate> height(double ratio, double variance) const;
@@ -26,7 +28,8 @@ class WidthHeight {
   /// besides the height, of which less and less is known while stereo is out. ratio and variance as height()
   /// takes them.
   bool isSame(double ratio, double variance, double height, double height_variance);
-  /// A pair with a height by stereo (m, m^2) that is believed. Other edges take the place of those before
+  /// A pair with a height by stereo (m, m^2) that is believed. It says nothing of a width that is known
+  /// better. Other edges take the place of those before
   /// when some pairs in a row saw them.
   void learn(double ratio, double variance, double height, double height_variance);
   /// Whether the width does not depend on stereo.
@@ -41,8 +44,8 @@ class WidthHeight {
   static bool agree(const Width& a, const Width& b);
   static void merge(const Width& seen, Width& width);
 
-  bool known_;
-  double known_width_;
+  bool known_;                          // the width is the chart's alone
+  bool learns_;                         // the place of the edges that show is not known
   std::optional<Width> width_, other_;  // other_: seen by the last pairs in the place of the edges of width_
   bool changed_ = false;                // the edges: were not those of width_, nor have they been since
 };
