@@ -16,12 +16,13 @@ constexpr double kSpeed[] = {60, 8, 8};  // m/s, 1 sigma before anything is know
 // 1 sigma that all pairs have in common, by the texture of the ground and what is painted, as a share of the
 // distance for x and y and of the height for z.
 constexpr double kSystematicX = 0.012, kSystematicY = 0.0005, kSystematicZ = 0.012;
-constexpr double kCommon = 0.12,
-                 kMostCommon = 0.8;    // share of a measurement's variance, at least and at most
+// Whether stripes lie along the edges, which moves them in all pairs alike, is most of a variance.
+constexpr double kCommon = 0.7,
+                 kMostCommon = 0.9;    // share of a measurement's variance, at least and at most
 constexpr double kSpeedError = 0.005;  // of the speed: by axes that are a little turned
 constexpr Sigmas kGate(5);
 constexpr double kPatience = 12;      // s without the outline
-constexpr double kChartError = 0.05;  // of width and length
+constexpr double kChartError = 0.10;  // of width and length
 constexpr Sigmas kContradiction(3);   // between the height and the one without an element
 constexpr Sigmas kOtherSize(4);
 constexpr double kSameSize = 0.04;  // by which a size may differ from the chart's and be the same
@@ -159,9 +160,10 @@ double RunwayTrack::protectionLevel() const {
       normalQuantile(std::min(1.0, parameters_.integrity_risk / parameters_.fault_probability));
   const double height = axes_[2].value(), stddev = std::sqrt(axes_[2].variance());
   const double distance = std::max(0.0, -axes_[0].value());
-  // h = v D (D + L) / (f L) with D in proportion to the width.
+  // h = v D (D + L) / (f L) with D in proportion to the width; the length and the outline's taper take up
+  // half of what that makes more than in proportion.
   const double share = runway_.length > 0 ? distance / (distance + runway_.length) : 0;
-  const double by_chart = kChartError * height * (runway_.width > 0 ? 1 + share : 1);
+  const double by_chart = kChartError * height * (1 + 0.5 * share);
   double level = std::max(factor * stddev, by_chart + fault_factor * stddev);
   for (const Axis& axis : without_) {
     if (!axis.known()) continue;

@@ -36,7 +36,7 @@ RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3
 /// that part of a measurement's variance does not average out.
 ///
 /// The protection level of the height is the largest of
-///   k sigma;  what a chart that is wrong by 5 % does to it + k_f sigma;
+///   k sigma;  what a chart that is wrong by 10 % does to it + k_f sigma;
 ///   |z - z_i| + k_f sigma_i, z_i without element i, where that contradicts z.
 /// Nothing tells a wrong chart from afar. Near, stereo measures the runway: a size other than the chart's
 /// takes the position away, as all lengths are wrong by it.
