@@ -28,7 +28,9 @@ constexpr double kNearest = 11;       // widths: nearer, its marks tell more tha
 constexpr double kLowestFlight = 8;   // m: cars and laboratories do not look down on runways
 constexpr double kNarrowest = 6, kWidest = 100, kShortest = 250, kLongest = 6500, kLeastAspect = 8;
 constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart have too many, one in 1000
-constexpr double kRough = 1.5;      // px, 1 sigma of the search
+// Doubt of the width by stripes, m: at most, and where a pixel is a metre.
+constexpr double kMostDoubt = 2.5, kDoubt = 0.18;
+constexpr double kRough = 1.5;          // px, 1 sigma of the search
 constexpr double kStarts[] = {0, 0.3};  // of the outline's height, that the near end may be farther
 constexpr double kDoubtfulStart = 7;    // misfit
 constexpr double kPoorFit = 6;   // misfit above which the fit begins once more at the pose that it gave
@@ -254,6 +256,13 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
   return report(*seen, ground);
 }
 
+/// 1 sigma of the width that shows against the chart's, as a share: whether stripes lie along the edges
+/// cannot be told while they are much narrower than a pixel. All lengths are wrong by it alike.
+double Sighting::widthDoubt(const OutlinePose& pose) const {
+  const double pixel = -pose.pose.position.x() / model_.rig.fx;  // m
+  return std::min(kMostDoubt, kDoubt * pixel * pixel) / pose.size.width;
+}
+
 ApproachAngleResult::Sight Sighting::report(const Seen& seen, const KnownGround& ground) const {
   ApproachAngleResult::Sight sight;
   const OutlinePose& found = seen.pose;
@@ -268,6 +277,8 @@ ApproachAngleResult::Sight Sighting::report(const Seen& seen, const KnownGround&
   sight.length_variance = variance(found.size.length, found.covariance(7, 7));
   sight.by_chart = byChart();
   if (!sight.by_chart) return sight;
+  const double by_stripes = std::pow(widthDoubt(found), 2);
+  sight.covariance += by_stripes * sight.position * sight.position.transpose();
   const PoseKnowledge known = knowledge(ground);
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;
@@ -276,7 +287,7 @@ ApproachAngleResult::Sight Sighting::report(const Seen& seen, const KnownGround&
     const Expected<OutlinePose> pose = fitPose(seen.outline.seen, known, model_.rig, without[i]);
     if (!pose) continue;
     sight.height_without[i] = pose->pose.position.z();
-    sight.variance_without[i] = pose->covariance(2, 2);
+    sight.variance_without[i] = pose->covariance(2, 2) + by_stripes * std::pow(pose->pose.position.z(), 2);
   }
   const RunwaySize& chart = known.chart;
   const Expected<OutlinePose> by_stereo =

@@ -52,6 +52,7 @@ class Sighting {
   Expected<Seen> fitCandidate(const cv::Mat& left, const Corners& corners, const KnownGround& ground) const;
   Expected<Seen> search(const cv::Mat& left, const KnownGround& ground) const;
   Expected<Seen> follow(const cv::Mat& left, const KnownGround& ground) const;
+  double widthDoubt(const OutlinePose& pose) const;
   bool agrees(const OutlinePose& pose) const;
   void keep(const cv::Mat& left, const Seen& seen);
   ApproachAngleResult::Sight report(const Seen& seen, const KnownGround& ground) const;
