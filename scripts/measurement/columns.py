@@ -5,7 +5,8 @@ import math
 KEYS = (("stamp_s",), ("seed", "cell_height_m", "noise", "frame"))
 TIMING = {"compute_ms"}
 FLAGS = ("valid", "height_valid", "angle_valid")
-VERDICTS = {*FLAGS, "status", "reason", "protection_source", "failed_tests", "yaw_known", "yaw_reason"}
+VERDICTS = {*FLAGS, "status", "reason", "protection_source", "failed_tests", "yaw_known", "yaw_reason",
+            "height_above_runway_known", "height_origin", "runway_reason"}
 # What the simulator drew for a campaign's row, besides the columns with "_true_" in their names.
 DRAWN = {"time_s", "stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg", "lens_rows_px", "lens_tilt_deg",
          "slope_change_deg", "readout_time_s", "vibration_hz", "vibration_deg"}
@@ -31,7 +32,9 @@ def compared(header):
 
 def is_claim(column):
     """Whether the column says how uncertain another one is."""
-    return "_stddev" in column or column in ("height_protection_level_m", "height_alert_limit_m")
+    return "_stddev" in column or column in (
+        "height_protection_level_m", "height_alert_limit_m", "height_above_runway_protection_level_m",
+        "height_above_runway_limit_m")
 
 
 def unit_of(column):

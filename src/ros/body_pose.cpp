@@ -71,6 +71,9 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   body.height_above_runway_variance += by_attitude;
   const double swing = normalQuantile(parameters.integrity_risk) * std::sqrt(by_attitude);
   body.height_protection_level += swing;
+  body.height_above_runway_protection_level += swing;
+  if (!(body.height_above_runway_protection_level <= body.height_above_runway_limit))
+    body.height_above_runway_known = false;
   refuseHeight(levelAbove(body.height_alert_limit, body.height_protection_level, swing), body);
   refuseHeight(tooUncertain(body.height, body.height_variance, parameters), body);
 

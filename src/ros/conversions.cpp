@@ -121,6 +121,7 @@ ApproachAngle toMessage(const ApproachAngleResult& result, const std_msgs::Heade
   toArray(result.foe, message.foe);
   toArray(result.foe_covariance, message.foe_covariance);
   message.runway = toMessage(result.runway);
+  message.sight = toMessage(result.sight);
   message.imu = toMessage(result.imu);
   message.readout_time = result.readout.time;
   message.readout_time_variance = result.readout.variance;
@@ -146,6 +147,7 @@ ApproachAngleResult toResult(const ApproachAngle& message) {
   fromArray(message.foe, result.foe);
   fromArray(message.foe_covariance, result.foe_covariance);
   result.runway = toResult(message.runway);
+  result.sight = toResult(message.sight);
   result.imu = toResult(message.imu);
   result.readout = {message.readout_time, message.readout_time_variance};
   return result;
@@ -198,6 +200,11 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.y_variance = result.y_variance;
   message.height_above_runway = result.height_above_runway;
   message.height_above_runway_variance = result.height_above_runway_variance;
+  message.height_above_runway_known = result.height_above_runway_known;
+  message.height_above_runway_protection_level = result.height_above_runway_protection_level;
+  message.height_above_runway_limit = result.height_above_runway_limit;
+  message.height_origin = toString(result.height_origin);
+  message.runway_reason = result.runway_failure.message();
   message.runway_width = result.runway_width;
   message.runway_width_variance = result.runway_width_variance;
   message.width_height = result.width_height;
@@ -254,6 +261,11 @@ LandingResult toResult(const LandingEstimate& message) {
   result.y_variance = message.y_variance;
   result.height_above_runway = message.height_above_runway;
   result.height_above_runway_variance = message.height_above_runway_variance;
+  result.height_above_runway_known = message.height_above_runway_known;
+  result.height_above_runway_protection_level = message.height_above_runway_protection_level;
+  result.height_above_runway_limit = message.height_above_runway_limit;
+  result.height_origin = parseOrigin(message.height_origin);
+  result.runway_failure = parseFailure(message.runway_reason);
   result.runway_width = message.runway_width;
   result.runway_width_variance = message.runway_width_variance;
   result.width_height = message.width_height;

@@ -15,6 +15,12 @@ Failure parseFailure(const std::string& reason) {
   return {Reason::kInputInvalid, reason};
 }
 
+HeightOrigin parseOrigin(const std::string& name) {
+  for (int i = 0; i <= static_cast<int>(HeightOrigin::kPrediction); ++i)
+    if (name == toString(static_cast<HeightOrigin>(i))) return static_cast<HeightOrigin>(i);
+  return HeightOrigin::kNone;
+}
+
 ImageLines toMessage(const ApproachAngleResult::View& view) {
   ImageLines message;
   message.reason = view.failure.message();
@@ -125,6 +131,44 @@ ApproachAngleResult::Runway toResult(const RunwayPosition& message) {
   runway.x_variance = message.x_variance;
   runway.x_systematic_variance = message.x_systematic_variance;
   return runway;
+}
+
+RunwaySight toMessage(const ApproachAngleResult::Sight& sight) {
+  RunwaySight message;
+  message.reason = sight.failure.message();
+  toArray(sight.position, message.position);
+  toArray(sight.covariance, message.covariance);
+  message.yaw = sight.yaw;
+  message.yaw_variance = sight.yaw_variance;
+  message.width = sight.width;
+  message.width_variance = sight.width_variance;
+  message.length = sight.length;
+  message.length_variance = sight.length_variance;
+  message.by_chart = sight.by_chart;
+  toArray(sight.height_without, message.height_without);
+  toArray(sight.variance_without, message.variance_without);
+  message.size_over_chart = sight.size_over_chart;
+  message.size_over_chart_variance = sight.size_over_chart_variance;
+  return message;
+}
+
+ApproachAngleResult::Sight toResult(const RunwaySight& message) {
+  ApproachAngleResult::Sight sight;
+  sight.failure = parseFailure(message.reason);
+  fromArray(message.position, sight.position);
+  fromArray(message.covariance, sight.covariance);
+  sight.yaw = message.yaw;
+  sight.yaw_variance = message.yaw_variance;
+  sight.width = message.width;
+  sight.width_variance = message.width_variance;
+  sight.length = message.length;
+  sight.length_variance = message.length_variance;
+  sight.by_chart = message.by_chart;
+  fromArray(message.height_without, sight.height_without);
+  fromArray(message.variance_without, sight.variance_without);
+  sight.size_over_chart = message.size_over_chart;
+  sight.size_over_chart_variance = message.size_over_chart_variance;
+  return sight;
 }
 
 ImuPrior toMessage(const AttitudePrior& prior) {

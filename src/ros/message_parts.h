@@ -5,6 +5,7 @@
 #include <uav_landing/ImuPrior.h>
 #include <uav_landing/Motion.h>
 #include <uav_landing/RunwayPosition.h>
+#include <uav_landing/RunwaySight.h>
 
 #include <string>
 
@@ -16,6 +17,8 @@ namespace uav_landing {
 
 /// Inverse of Failure::message().
 Failure parseFailure(const std::string& reason);
+/// Inverse of toString(HeightOrigin).
+HeightOrigin parseOrigin(const std::string& name);
 
 ImageLines toMessage(const ApproachAngleResult::View& view);
 ApproachAngleResult::View toResult(const ImageLines& message);
@@ -25,6 +28,8 @@ Motion toMessage(const ApproachAngleResult::Motion& motion);
 ApproachAngleResult::Motion toResult(const Motion& message);
 RunwayPosition toMessage(const ApproachAngleResult::Runway& runway);
 ApproachAngleResult::Runway toResult(const RunwayPosition& message);
+RunwaySight toMessage(const ApproachAngleResult::Sight& sight);
+ApproachAngleResult::Sight toResult(const RunwaySight& message);
 ImuPrior toMessage(const AttitudePrior& prior);
 AttitudePrior toResult(const ImuPrior& message);
 

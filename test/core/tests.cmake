@@ -164,6 +164,12 @@ uav_landing_add_gtest(common_gain_test test/core/motion/common_gain_test.cpp)
 uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 
+# far
+uav_landing_add_gtest(outline_pose_test test/core/far/outline_pose_test.cpp)
+uav_landing_add_gtest(outline_fit_test test/core/far/outline_fit_test.cpp)
+uav_landing_add_gtest(outline_search_test test/core/far/outline_search_test.cpp)
+uav_landing_add_gtest(sighting_test test/core/far/sighting_test.cpp)
+
 # runway
 uav_landing_add_gtest(runway_hypothesis_test test/core/runway/runway_hypothesis_test.cpp
   SOURCES test/support/ground_renderer.cpp)
@@ -199,6 +205,8 @@ uav_landing_add_gtest(runway_identity_test test/core/integrity/runway_identity_t
 uav_landing_add_gtest(velocity_memory_test test/core/integrity/velocity_memory_test.cpp)
 
 # landing
+uav_landing_add_gtest(runway_track_test test/core/landing/runway_track_test.cpp)
+uav_landing_add_gtest(runway_report_test test/core/landing/runway_report_test.cpp)
 uav_landing_add_gtest(ground_estimate_test test/core/landing/ground_estimate_test.cpp)
 uav_landing_add_gtest(yaw_failure_test test/core/landing/yaw_failure_test.cpp)
 uav_landing_add_gtest(height_by_ground_test test/core/landing/height_by_ground_test.cpp)

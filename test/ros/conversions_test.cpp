@@ -142,6 +142,16 @@ ApproachAngleResult distinctApproachAngle() {
   result.imu.duration = next();
   fill(result.imu.rotation);
   fill(result.imu.rotation_covariance);
+  ApproachAngleResult::Sight& sight = result.sight;
+  sight.failure = {Reason::kNoRunway, "no outline"};
+  fill(sight.position);
+  fill(sight.covariance);
+  for (double* number : {&sight.yaw, &sight.yaw_variance, &sight.width, &sight.width_variance, &sight.length,
+                         &sight.length_variance, &sight.size_over_chart, &sight.size_over_chart_variance})
+    *number = next();
+  sight.by_chart = true;
+  fill(sight.height_without);
+  fill(sight.variance_without);
   result.runway.failure = {Reason::kNotYet, "2 of 3"};
   result.runway.threshold_failure = {Reason::kNoRunway, "no bars"};
   for (double* number :
@@ -184,6 +194,8 @@ LandingResult distinctLanding() {
                          &result.y_variance,
                          &result.height_above_runway,
                          &result.height_above_runway_variance,
+                         &result.height_above_runway_protection_level,
+                         &result.height_above_runway_limit,
                          &result.runway_width,
                          &result.runway_width_variance,
                          &result.width_height,
@@ -201,6 +213,9 @@ LandingResult distinctLanding() {
   result.height_protection_level = 0.4;
   result.height_alert_limit = 0.5;
   result.protection_source = "near_region";
+  result.height_above_runway_known = true;
+  result.height_origin = HeightOrigin::kGeometry;
+  result.runway_failure = {Reason::kInconsistent, "1.1 times the chart's"};
   TestResult tilt;
   tilt.name = "tilt";
   tilt.difference = 2;
@@ -486,6 +501,20 @@ TEST(Conversions, EachFieldOfApproachAngleHasItsOwnNumber) {
   EXPECT_FIELD(message.runway, result.runway, y_variance);
   EXPECT_FIELD(message.runway, result.runway, width);
   EXPECT_FIELD(message.runway, result.runway, width_variance);
+  EXPECT_EQ(message.sight.reason, "no_runway: no outline");
+  EXPECT_ROW_MAJOR(message.sight, result.sight, position);
+  EXPECT_ROW_MAJOR(message.sight, result.sight, covariance);
+  EXPECT_FIELD(message.sight, result.sight, yaw);
+  EXPECT_FIELD(message.sight, result.sight, yaw_variance);
+  EXPECT_FIELD(message.sight, result.sight, width);
+  EXPECT_FIELD(message.sight, result.sight, width_variance);
+  EXPECT_FIELD(message.sight, result.sight, length);
+  EXPECT_FIELD(message.sight, result.sight, length_variance);
+  EXPECT_TRUE(message.sight.by_chart);
+  EXPECT_ROW_MAJOR(message.sight, result.sight, height_without);
+  EXPECT_ROW_MAJOR(message.sight, result.sight, variance_without);
+  EXPECT_FIELD(message.sight, result.sight, size_over_chart);
+  EXPECT_FIELD(message.sight, result.sight, size_over_chart_variance);
   EXPECT_EQ(message.imu.reason, "rejected: off");
   EXPECT_ROW_MAJOR(message.imu, result.imu, normal);
   EXPECT_ROW_MAJOR(message.imu, result.imu, normal_covariance);
@@ -530,6 +559,11 @@ TEST(Conversions, EachFieldOfALandingEstimateHasItsOwnNumber) {
   EXPECT_FIELD(message, result, y_variance);
   EXPECT_FIELD(message, result, height_above_runway);
   EXPECT_FIELD(message, result, height_above_runway_variance);
+  EXPECT_FIELD(message, result, height_above_runway_protection_level);
+  EXPECT_FIELD(message, result, height_above_runway_limit);
+  EXPECT_EQ(message.height_origin, "geometry");
+  EXPECT_EQ(message.runway_reason, "inconsistent: 1.1 times the chart's");
+  EXPECT_EQ(toResult(message).height_origin, HeightOrigin::kGeometry);
   EXPECT_FIELD(message, result, runway_width);
   EXPECT_FIELD(message, result, runway_width_variance);
   EXPECT_FIELD(message, result, width_height);
@@ -550,7 +584,7 @@ TEST(Conversions, EachFieldOfALandingEstimateHasItsOwnNumber) {
 }
 
 TEST(Conversions, EachFlagOfALandingEstimateIsItsOwn) {
-  for (int flag = 0; flag < 7; ++flag) {
+  for (int flag = 0; flag < 8; ++flag) {
     LandingResult result;
     result.status = Status::kTracking;
     result.height_valid = flag == 0 || flag == 5;
@@ -559,7 +593,10 @@ TEST(Conversions, EachFlagOfALandingEstimateIsItsOwn) {
     if (flag == 3) result.x = -40;
     if (flag == 4) result.y = 3;
     if (flag == 6) result.yaw = 0.1;
+    result.height_above_runway_known = flag == 7;
     const LandingEstimate message = toMessage(result, header(), "base_link", 0, 0);
+    EXPECT_EQ(message.height_above_runway_known, flag == 7);
+    EXPECT_EQ(toResult(message).height_above_runway_known, flag == 7);
     EXPECT_EQ(message.height_valid, result.height_valid) << flag;
     EXPECT_EQ(message.angle_valid, result.angle_valid) << flag;
     EXPECT_EQ(message.valid, flag == 5) << flag;

@@ -83,6 +83,11 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   landing.width_height_variance = 0.16;
   landing.height_above_runway = 13.5;
   landing.height_above_runway_variance = 0.36;
+  landing.height_above_runway_known = true;
+  landing.height_above_runway_protection_level = 1.75;
+  landing.height_above_runway_limit = 2.25;
+  landing.height_origin = HeightOrigin::kGeometry;
+  landing.runway_failure = {Reason::kInconsistent, "another width"};
   landing.rig_rotation.w = Eigen::Vector3d(0.01, 0.02, 0.03) * kDegree;
   landing.rig_rotation.covariance =
       Eigen::Vector3d(0.0001, 0.0004, 0.0009).asDiagonal() * Eigen::Matrix3d::Identity() * kDegree * kDegree;
@@ -123,6 +128,8 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                               {"width_height_stddev_m", 0.4},
                                               {"height_above_runway_m", 13.5},
                                               {"height_above_runway_stddev_m", 0.6},
+                                              {"height_above_runway_protection_level_m", 1.75},
+                                              {"height_above_runway_limit_m", 2.25},
                                               {"rig_rx_deg", 0.01},
                                               {"rig_ry_deg", 0.02},
                                               {"rig_rz_deg", 0.03},
@@ -147,6 +154,9 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                                  {"reason", "rejected"},
                                                  {"yaw_known", "1"},
                                                  {"yaw_reason", "no_runway"},
+                                                 {"height_above_runway_known", "1"},
+                                                 {"height_origin", "geometry"},
+                                                 {"runway_reason", "inconsistent"},
                                                  {"protection_source", "near_region"},
                                                  {"failed_tests", "innovation"}};
   EXPECT_EQ(row, texts) << "all other columns";

@@ -39,6 +39,7 @@ struct KalmanHeightParameters {
   double alert_limit = 0.15;
   double alert_limit_relative = 0.05;
   double unwatched_scale_error = 0.02;
+  double runway_height_limit = 0.15;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -120,6 +121,9 @@ struct KalmanHeightParameters {
     v.number("unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
              "largest error of a scale common to all heights, such as a wrong baseline. No test can "
              "see it, so the protection level assumes it. The variance has rig/baseline_stddev instead");
+    v.number("runway_height_limit", runway_height_limit, 0.0, 1.0, "of height",
+             "the height above the runway is not known when its protection level exceeds this share of it and "
+             "alert_limit");
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <sstream>
 
 #include "uav_landing/base/failure.h"
@@ -17,18 +18,23 @@ struct RunwayParameters {
   template <class Visitor>
   void visit(Visitor&& v) {
     v.number("width", width, 0.0, 200.0, "m",
-             "width of the runway, between its outermost long edges. approach_angle rejects edges of another "
-             "width, and kalman_height gets a second height from it (fuse_width_height). That height follows "
-             "the width, so give one that is right to 0.2 %. 0: unknown; kalman_height then learns the width "
-             "while the stereo height is good");
+             "width of the runway's surface, as charts have it. From afar it gives the height above the runway, "
+             "and kalman_height gets a second height from it (fuse_width_height). It learns the width itself "
+             "while the stereo height is good. 0: unknown");
     v.number("length", length, 0.0, 10000.0, "m",
-             "length of the runway, as charts have it. What is longer is not the runway. 0: unknown");
+             "length of the runway's surface, as charts have it. With the width it gives the height above the "
+             "runway from afar. What is longer is not the runway. 0: unknown");
     v.number("side_stripe_inset", side_stripe_inset, 0.0, 20.0, "m",
-             "by how much the painted stripes along the sides lie inside the runway's width. An object of "
-             "either width may be the runway");
+             "by how much the painted stripes along the sides lie inside the runway's width. The edges that "
+             "show may be either. 0: unknown; up to 3 % of the width, and 1.25 m");
     v.flag("paved", paved,
            "false for a strip of grass: it has a direction only where its two edges show, and other lines "
            "that meet are not believed");
+  }
+
+  /// Stripes lie inside the width by at most this, m.
+  double largestInset() const {
+    return side_stripe_inset > 0 ? side_stripe_inset : std::min(0.03 * width, 1.25);
   }
 
   /// What cannot be true of any runway.

@@ -144,6 +144,22 @@ struct ApproachAngleResult {
     double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
     double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
   };
+  /// Where the camera is over the runway by the runway's outline in the picture: see sighting.h.
+  struct Sight {
+    Failure failure;  ///< set when the outline is not seen, or gives no position
+    /// Past the threshold, left of the centre line, above the plane of the runway's surface; m, m^2.
+    Eigen::Vector3d position = Eigen::Vector3d::Constant(kUnknown);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
+    double yaw = kUnknown, yaw_variance = kUnknown;        ///< left of the landing direction, rad, rad^2
+    double width = kUnknown, width_variance = kUnknown;    ///< of the runway's surface, m, m^2
+    double length = kUnknown, length_variance = kUnknown;  ///< the same
+    bool by_chart = false;  ///< lengths are by the chart's width and length; otherwise by stereo
+    /// The height with one element left out: the chart's width, its length, the ground's normal; m, m^2.
+    Eigen::Vector3d height_without = Eigen::Vector3d::Constant(kUnknown);
+    Eigen::Vector3d variance_without = Eigen::Vector3d::Constant(kUnknown);
+    /// Size of the surface by stereo, over the chart's; unknown without either.
+    double size_over_chart = kUnknown, size_over_chart_variance = kUnknown;
+  };
   double stamp = 0;
   Failure failure;  ///< set when there is no approach angle
   View left, right;
@@ -166,6 +182,7 @@ struct ApproachAngleResult {
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, px, px^2
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
+  Sight sight;
   /// By the pairs before; all numbers of this pair are corrected by it and claim its error.
   ReadoutEstimate readout;
   /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
@@ -174,6 +191,11 @@ struct ApproachAngleResult {
 
 enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 const char* toString(Status status);
+
+/// Where a height comes from.
+enum class HeightOrigin { kNone, kStereo, kWidth, kGeometry, kPrediction };
+/// For example "geometry"; "" for kNone.
+const char* toString(HeightOrigin origin);
 
 /// The estimate for one pair. Mirrors LandingEstimate.msg. All of the left rectified camera.
 struct LandingResult {
@@ -198,11 +220,22 @@ struct LandingResult {
   double other_runway_probability = 1;         ///< chance that the direction seen is not the runway's, 0 to 1
   double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
-  /// Of the point above the plane of the runway's surface, m, m^2; unknown until the threshold is seen.
+  /// Of the point above the plane of the runway's surface, m, m^2; unknown until the runway is found.
   double height_above_runway = kUnknown, height_above_runway_variance = kUnknown;
+  bool height_above_runway_known = false;                  ///< its protection level is within its limit
+  double height_above_runway_protection_level = kUnknown;  ///< m; holds for a wrong chart, too
+  double height_above_runway_limit = kUnknown;             ///< m, what that may be
+  /// Of the height above the runway or, where there is none, of the height.
+  HeightOrigin height_origin = HeightOrigin::kNone;
+  Failure runway_failure;  ///< in what the runway is not that of the chart
+  void forgetHeightAboveRunway() {
+    height_above_runway = height_above_runway_variance = kUnknown;
+    height_above_runway_protection_level = height_above_runway_limit = kUnknown;
+    height_above_runway_known = false;
+  }
   void forgetPosition() {
     x = x_variance = y = y_variance = kUnknown;
-    height_above_runway = height_above_runway_variance = kUnknown;
+    forgetHeightAboveRunway();
   }
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2

@@ -8,15 +8,20 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kKnownStddev = 0.002;  // 1 sigma of a known width, as a share
-constexpr double kSame = 0.005;         // share of the width; beyond it (and 4 sigma) other edges are seen
+constexpr double kKnownStddev =
+    0.002;                       // 1 sigma of a known width, as a share, besides the place of the edges
+constexpr double kSame = 0.005;  // share of the width; beyond it (and 4 sigma) other edges are seen
 constexpr Sigmas kGate(4);
 constexpr int kAgreeing = 5;  // pairs in a row before a width is learned
 
 }  // namespace
 
-WidthHeight::WidthHeight(double known_width) : known_(known_width > 0), known_width_(known_width) {
-  if (known_) width_ = Width{known_width_, std::pow(kKnownStddev * known_width_, 2), kAgreeing};
+WidthHeight::WidthHeight(double known_width, double largest_inset)
+    : known_(known_width > 0), learns_(!known_ || largest_inset > kSame * known_width) {
+  if (!known_) return;
+  // As well at the surface's edges as at stripes inside: one standard deviation takes in both.
+  const double variance = std::pow(kKnownStddev * known_width, 2) + largest_inset * largest_inset;
+  width_ = Width{known_width - largest_inset, variance, kAgreeing};
 }
 
 std::optional<WidthHeight::Estimate> WidthHeight::height(double ratio, double variance) const {
@@ -58,9 +63,11 @@ bool WidthHeight::isSame(double ratio, double variance, double height, double he
 }
 
 void WidthHeight::learn(double ratio, double variance, double height, double height_variance) {
-  if (known_ || !(ratio > 0) || !(variance > 0) || !(height > 0) || !(height_variance > 0)) return;
+  if (!learns_ || !(ratio > 0) || !(variance > 0) || !(height > 0) || !(height_variance > 0)) return;
   const Width now = seen(ratio, variance, height, height_variance);
+  if (known_ && !(now.variance < width_->variance)) return;
   if (width_ && agree(now, *width_)) {
+    known_ = false;
     merge(now, *width_);
     other_.reset();
     return;
@@ -73,7 +80,7 @@ void WidthHeight::learn(double ratio, double variance, double height, double hei
   if (width_ && width_->pairs >= kAgreeing && other_->pairs < kAgreeing) return;
   width_ = other_;
   other_.reset();
-  changed_ = false;
+  known_ = changed_ = false;
 }
 
 }  // namespace uav_landing

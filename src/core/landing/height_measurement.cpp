@@ -34,7 +34,7 @@ HeightMeasurement::HeightMeasurement(const StereoRig& rig, const KalmanHeightPar
     : rig_(rig),
       parameters_(parameters),
       baseline_stddev_(baseline_stddev),
-      width_(runway.width),
+      width_(runway.width, runway.largestInset()),
       stamps_(parameters.max_deceleration) {}
 
 MeasuredHeight HeightMeasurement::propose(const PairInput& in, const Ground& ground,

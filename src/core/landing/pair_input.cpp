@@ -30,8 +30,8 @@ PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo
   carryPlane(approach.step, approach.readout, stereo);
   // Seen from where the camera was before.
   if (repeated())
-    approach.runway.failure =
-        approach.runway.threshold_failure = {Reason::kInconsistent, toString(IntegrityTest::kRepeatedImage)};
+    approach.runway.failure = approach.runway.threshold_failure =
+        approach.sight.failure = {Reason::kInconsistent, toString(IntegrityTest::kRepeatedImage)};
 }
 
 const ApproachAngleResult::Motion& PairInput::path() const {

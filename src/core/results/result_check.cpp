@@ -131,6 +131,27 @@ void keepRunway(ApproachAngleResult::Runway& runway) {
   }
 }
 
+void keepSight(ApproachAngleResult::Sight& sight) {
+  constexpr double kFarthest = 1e5;  // m
+  const auto isKnown = [](double value, double variance) {
+    return within(value, kFarthest) && isVariance(variance);
+  };
+  const auto keep = [&](double& value, double& variance) {
+    if (!isKnown(value, variance)) value = variance = kUnknown;
+  };
+  keep(sight.yaw, sight.yaw_variance);
+  keep(sight.width, sight.width_variance);
+  keep(sight.length, sight.length_variance);
+  keep(sight.size_over_chart, sight.size_over_chart_variance);
+  for (int i = 0; i < 3; ++i) keep(sight.height_without[i], sight.variance_without[i]);
+  const Eigen::Vector3d& p = sight.position;
+  if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kFarthest && isCovariance<3>(sight.covariance)) return;
+  sight.position.setConstant(kUnknown);
+  sight.covariance.setConstant(kUnknown);
+  if (!sight.failure)
+    sight.failure = {Reason::kInputInvalid, "sight.position: not a position with a covariance"};
+}
+
 /// "" or the field that makes the plane useless, and why.
 std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result) {
   const Eigen::Vector3d& g = result.plane.g;
@@ -203,6 +224,7 @@ ApproachAngleResult checked(const ApproachAngleResult& result) {
   keepMotion(kept.step);
   keepMotion(kept.window);
   keepRunway(kept.runway);
+  keepSight(kept.sight);
   keepImu(kept.imu);
   if (!isReadout(kept.readout)) kept.readout = {};
   if (!(kept.other_runway_probability >= 0 && kept.other_runway_probability <= 1))

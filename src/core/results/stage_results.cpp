@@ -20,6 +20,22 @@ const char* toString(Status status) {
   return "unknown";
 }
 
+const char* toString(HeightOrigin origin) {
+  switch (origin) {
+    case HeightOrigin::kNone:
+      return "";
+    case HeightOrigin::kStereo:
+      return "stereo";
+    case HeightOrigin::kWidth:
+      return "width";
+    case HeightOrigin::kGeometry:
+      return "geometry";
+    case HeightOrigin::kPrediction:
+      return "prediction";
+  }
+  return "unknown";
+}
+
 double LandingResult::speedVariance() const {
   return velocity.dot(twist_covariance.topLeftCorner<3, 3>() * velocity) / velocity.squaredNorm();
 }

@@ -209,9 +209,9 @@ double againstSize(const RunwayHypothesis& h, const RunwayPrior& prior) {
     sum += penalty(longer, kSizeSigma * kSizeSigma + far_sigma * far_sigma, kMostOff);
   }
   if (runway.width > 0) {
-    const double stripes = runway.width - 2 * runway.side_stripe_inset;
-    const auto off = [&](double width) { return std::abs(std::log(h.width() * *prior.height / width)); };
-    sum += penalty(std::min(off(runway.width), off(stripes)), kSizeSigma * kSizeSigma, kMostOff);
+    const double width = h.width() * *prior.height, stripes = runway.width - 2 * runway.largestInset();
+    const double off = std::max({0.0, std::log(width / runway.width), std::log(stripes / width)});
+    sum += penalty(off, kSizeSigma * kSizeSigma, kMostOff);
   }
   return sum;
 }

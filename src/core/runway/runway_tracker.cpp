@@ -163,7 +163,14 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   RunwayWidth width;
   if (std::isfinite(height)) width = {known_width_ / height, std::max(kWidestRunway, known_width_) / height};
   const Outlook outlook{model_.rig, edges.either};
-  Expected<RunwayCrossSection> seen = findRunwayEdges(axes, edges.both, width, std::nullopt, &outlook);
+  const auto find = [&](const std::vector<GroundEdge>& among, const std::optional<ExpectedCentre>& expected,
+                        const Outlook* outlook) {
+    Expected<RunwayCrossSection> found = findRunwayEdges(axes, among, width, expected, outlook);
+    if (found || width.known <= 0) return found;
+    // The edges that show may be those of stripes inside the chart's width.
+    return findRunwayEdges(axes, among, {0, width.widest}, expected, outlook);
+  };
+  Expected<RunwayCrossSection> seen = find(edges.both, std::nullopt, &outlook);
   if (centre_.confirmations() >= kConfirmations) {
     const ExpectedCentre expected = *centre_.expected(kSlack * width_.value());
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;
@@ -171,8 +178,8 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
     if (contradicted_ > kPatience) {
       forgetRunway();
     } else if ((!seen || contradicts) && expected.tolerance <= kVague * width_.value()) {
-      seen = findRunwayEdges(axes, edges.both, width, expected);
-      if (!seen) seen = findRunwayEdges(axes, edges.either, width, expected);
+      seen = find(edges.both, expected, nullptr);
+      if (!seen) seen = find(edges.either, expected, nullptr);
     }
   }
   if (!seen) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "far/sighting.h"
 #include "image/image_check.h"
 #include "integrity/runway_identity.h"
 #include "motion/angle_by_foe.h"
@@ -46,6 +47,7 @@ struct ApproachAngleStage::Implementation {
   cv::Mat left_mask, right_mask;  // eroded, for lines and corners
   MotionTracker tracker;
   RunwayTracker runway;
+  Sighting sighting;
   RunwayIdentity identity;
   SeenDirections last;
   double stamp_before = kUnknown;
@@ -64,6 +66,7 @@ struct ApproachAngleStage::Implementation {
         known_runway(known),
         tracker(rig, p),
         runway(rig, p, known),
+        sighting(rig, p, known),
         readout(rig.left_times, rig.right_times) {
     left_mask = erodeMask(rig.left_mask, p.window_radius + 2);
     right_mask = erodeMask(rig.right_mask, p.window_radius + 2);
@@ -86,6 +89,7 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
+    sight(stamp, left, stereo, result);
     if (waitsForPlane(stamp, stereo)) {
       result.failure = {Reason::kNotYet,
                         "waiting for the ground plane: lines and motion follow one pair later"};
@@ -133,6 +137,24 @@ struct ApproachAngleStage::Implementation {
     return result;
   }
 
+  // From afar the runway is seen before there is a plane by stereo.
+  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo,
+             ApproachAngleResult& result) {
+    ScopedTimer timer(timings, "runway_outline");
+    if (repeated(stereo)) {
+      result.sight.failure = {Reason::kInconsistent, "the left image is that of the pair before"};
+      return;
+    }
+    KnownGround ground;
+    const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
+    if (has_plane) ground.plane = stereo.plane;
+    if (has_plane)
+      ground.normal = {stereo.plane.normal(), stereo.plane.normalCovariance()};
+    else if (!result.imu.failure && result.imu.normal.allFinite())
+      ground.normal = {result.imu.normal, result.imu.normal_covariance};
+    result.sight = sighting.process(stamp, left, ground);
+  }
+
   // By the last motion over the last ground that is known.
   StampMap rowsOf(double stamp, const Eigen::Matrix3d& K, const RowTimes& times) const {
     const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
@@ -150,6 +172,7 @@ struct ApproachAngleStage::Implementation {
   static void nothingKnown(ApproachAngleResult& result) {
     result.step.failure = result.window.failure = result.failure;
     result.runway.failure = result.runway.threshold_failure = result.failure;
+    if (!result.sight.failure && !result.sight.position.allFinite()) result.sight.failure = result.failure;
   }
 
   void identify(double stamp, const RunwayDirection& direction, ApproachAngleResult& result) {
@@ -308,6 +331,7 @@ ApproachAngleResult ApproachAngleStage::process(double stamp, const cv::Mat& lef
 void ApproachAngleStage::reset() {
   implementation_->tracker.reset();
   implementation_->runway.reset();
+  implementation_->sighting.reset();
   implementation_->identity = RunwayIdentity();
   implementation_->last = {};
   implementation_->first_search = true;

@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "height/attitude.h"
-#include "height/runway_height.h"
 #include "landing/ground_estimate.h"
 #include "landing/height_measurement.h"
 #include "landing/height_track.h"
@@ -15,6 +14,8 @@
 #include "landing/pair_monitor.h"
 #include "landing/path_doubt.h"
 #include "landing/recovery_wait.h"
+#include "landing/runway_report.h"
+#include "landing/runway_track.h"
 #include "landing/sink_rate_watch.h"
 #include "landing/surface_below.h"
 #include "landing/yaw_failure.h"
@@ -34,6 +35,7 @@ struct Parts {
   SurfaceBelow below;
   PathDoubt doubt;
   PositionFilter position;
+  RunwayTrack runway;
   FailureCounts failures;
 
   Parts(const StereoRig& rig, const KalmanHeightParameters& parameters, const RunwayParameters& runway,
@@ -45,7 +47,8 @@ struct Parts {
         sink_rate(parameters),
         recovery(parameters),
         below(rig, parameters.gate),
-        doubt(parameters) {}
+        doubt(parameters),
+        runway(parameters, runway) {}
 };
 
 /// What a pair shows by itself, and what was expected of it.
@@ -121,6 +124,7 @@ struct KalmanHeightStage::Implementation {
     reportDirections(in, ground, pair, result);
     if (motionBelieved(ground, pair))
       reportTwist(believedTwist(rig, in, ground, pair, result, doubtOfStep(in, ground)), result);
+    result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");
     reportPosition(in, ground, result);
     timer.reset();
@@ -191,9 +195,12 @@ struct KalmanHeightStage::Implementation {
     parts->position.process(in.approach, ground.positionNormalOr(in.approach.n), in.turn,
                             result.height_valid ? result.height - bend : kUnknown, result.height_variance,
                             result);
-    const RunwayHeight above = runwayHeight(result, bend, parts->measurement.widthKnown());
-    result.height_above_runway = above.height;
-    result.height_above_runway_variance = above.variance;
+    Eigen::Vector3d direction = in.approach.vanishing_direction;
+    if (result.yaw_failure) direction.setConstant(kUnknown);
+    const TrackedPosition outline =
+        parts->runway.follow(in.T, in.approach.sight, runwayVelocity(result, in.approach.n, direction));
+    handOver(outline, in.approach.sight, result);
+    reportHeightAboveRunway(outline, bend, parts->measurement.widthKnown(), parameters, result);
   }
 
   // A pair of no time says nothing, and what is known stays as it is.

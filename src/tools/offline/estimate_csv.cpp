@@ -18,7 +18,10 @@ const char* const kHeader =
     "runway_width_m,width_height_m,width_height_stddev_m,rig_rx_deg,rig_ry_deg,rig_rz_deg,rig_rx_stddev_deg,"
     "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests,"
     "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s,yaw_stddev_deg,yaw_known,"
-    "yaw_reason,other_runway_probability,estimated_readout_time_s,estimated_readout_time_stddev_s";
+    "yaw_reason,other_runway_probability,estimated_readout_time_s,estimated_readout_time_stddev_s,"
+    "height_above_runway_known,height_above_runway_protection_level_m,height_above_runway_limit_m,height_"
+    "origin,"
+    "runway_reason";
 
 }  // namespace
 
@@ -54,6 +57,9 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.text(toString(landing.yaw_failure.reason)).number(landing.other_runway_probability);
   const ReadoutEstimate& readout = pair.output.approach.readout;
   row.number(readout.time).number(std::sqrt(readout.variance));
+  row.flag(landing.height_above_runway_known);
+  row.number(landing.height_above_runway_protection_level).number(landing.height_above_runway_limit);
+  row.text(toString(landing.height_origin)).text(toString(landing.runway_failure.reason));
   file_ << '\n';
 }
 

@@ -21,6 +21,27 @@ TEST(WidthHeight, OfAKnownWidthIsTheWidthOverWhatIsSeen) {
   EXPECT_NEAR(std::sqrt(estimate->common), 15 * 0.002, 1e-9);
 }
 
+TEST(WidthHeight, OfAChartIsAsUncertainAsThePlaceOfTheStripes) {
+  // Edges of 45 m, or of stripes 1.25 m inside: as well 45 m as 42.5 m.
+  const WidthHeight width(kWidth, 1.25);
+  const auto estimate = width.height(43.75 / 15, 1e-10);
+  ASSERT_TRUE(estimate);
+  EXPECT_NEAR(estimate->height, 15, 1e-9);
+  EXPECT_NEAR(std::sqrt(estimate->common), 15 * std::hypot(1.25, 0.09) / 43.75, 1e-3);
+}
+
+TEST(WidthHeight, StereoTellsBetterThanAChartWhichEdgesAreSeen) {
+  WidthHeight width(kWidth, 1.25);
+  EXPECT_TRUE(width.independent());
+  for (int i = 0; i < 5; ++i) width.learn(42.6 / 15, 1e-8, 15, 1e-4);
+  EXPECT_FALSE(width.independent()) << "what is known now is of stereo";
+  ASSERT_TRUE(width.height(42.6 / 15, 1e-8));
+  EXPECT_NEAR(width.height(42.6 / 15, 1e-8)->height, 15, 0.01);
+  WidthHeight exact(kWidth);
+  for (int i = 0; i < 5; ++i) exact.learn(44.9 / 15, 1e-8, 15, 0.01);
+  EXPECT_TRUE(exact.independent()) << "stereo knows less";
+}
+
 TEST(WidthHeight, IsNotKnownBeforeTheWidthWasLearned) {
   WidthHeight width(0);
   EXPECT_FALSE(width.independent());

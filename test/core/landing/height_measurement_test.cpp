@@ -32,7 +32,7 @@ ApproachAngleResult runwayFrom(double height) {
   return approach;
 }
 
-RunwayParameters withKnownWidth(double width = kWidth) { return {width}; }
+RunwayParameters withKnownWidth(double width = kWidth) { return {width, 0, 1e-12}; }
 
 int indexOf(FaultySource source) { return static_cast<int>(source); }
 

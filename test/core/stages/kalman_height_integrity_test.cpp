@@ -99,7 +99,7 @@ TEST(KalmanHeightIntegrity, APairThatFailsItsTestsGivesNoAngleEither) {
 }
 
 TEST(KalmanHeightIntegrity, AWrongKnownWidthIsWithinTheProtectionLevel) {
-  KalmanHeightStage stage(test::usualRig(), {}, {40});
+  KalmanHeightStage stage(test::usualRig(), {}, {40, 0, 1e-6});
   LandingResult result;
   for (int i = 0; i < 80; ++i) {
     const double stamp = 1 + 0.05 * i;

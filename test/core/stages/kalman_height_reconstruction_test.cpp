@@ -117,7 +117,7 @@ TEST(KalmanHeightReconstruction, ClaimsWhatAKnownWidthIsWrongByInEveryPair) {
   std::normal_distribution<double> normal;
   double ratio = 0, share_of_width = 0;
   for (int run = 0; run < kRuns; ++run) {
-    KalmanHeightStage stage(usualRig(), parameters, {kWidth}, exact);
+    KalmanHeightStage stage(usualRig(), parameters, {kWidth, 0, 1e-6}, exact);
     const double width = kWidth * (1 + 0.002 * normal(random));
     LandingResult result;
     for (int i = 0; i < kPairs; ++i) {
@@ -255,7 +255,7 @@ TEST(KalmanHeightReconstruction, DoesNotAverageAwayWhatAKnownWidthIsWrongBy) {
   KalmanHeightParameters parameters;
   parameters.height_model_error = 0;
   parameters.acceleration_stddev = 0.1;
-  KalmanHeightStage stage(usualRig(), parameters, {45});
+  KalmanHeightStage stage(usualRig(), parameters, {45, 0, 1e-6});
   LandingResult result;
   for (int i = 0; i < 100; ++i)
     result = stage.process(stereoAt(i * kStep, 20, -0.1, 0.05, 0.3), runwayFrom(i * kStep, 20));

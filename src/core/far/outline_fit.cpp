@@ -1,0 +1,340 @@
+#include "far/outline_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/text.h"
+#include "estimation/robust.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr int kIterations = 5;
+constexpr double kOutside = 6, kInside = 4;  // px: band of pixels that tell of a side
+constexpr double kMostPixels = 700;
+constexpr double kLargestStep = 1.0;               // px in one iteration
+constexpr double kFarthest = 8;                    // px from the start
+constexpr double kSettled = 0.01;                  // px
+constexpr double kShortest = 2, kNarrowest = 1.2;  // px
+constexpr double kLeastNoise = 1.5;                // grey levels
+constexpr double kTexture = 2;  // times: neighbouring pixels of the ground have texture in common
+// 1 sigma by which texture beside a side moves all of it, px.
+constexpr double kAcross = 0.05, kAlong = 0.03, kEnd = 0.1;  // kEnd: of each end by itself
+constexpr double kLeastContrast = 5;                         // of its standard deviation
+
+// Markings, m: stripe inside of the edge, bars behind the threshold. Amplitudes: grey levels times m for
+// lines.
+constexpr double kStripePlace = 1.0, kBarsBegin = 6, kBarsEnd = 36;
+constexpr double kStripe = 60, kStripeStddev = 50, kCentre = 25, kCentreStddev = 40;
+constexpr double kBars = 30, kBarsStddev = 50;
+constexpr double kShortestRunway = 400, kLongestRunway = 5000;  // m
+constexpr double kThresholdLine = 4;  // m, 1 sigma by which a line across at the end moves the side
+
+// Parameters: places of the sides, blur, and amplitudes.
+constexpr int kBlur = 8, kGround = 9, kSurface = 13, kStripes = 15, kMiddle = 16, kNearBars = 17,
+              kFarBars = 18;
+constexpr int kCount = 19;
+using Vector = Eigen::Matrix<double, kCount, 1>;
+using Matrix = Eigen::Matrix<double, kCount, kCount>;
+
+/// A blurred edge and its slope, by linear interpolation: both of a distance in standard deviations.
+class BlurTable {
+ public:
+  BlurTable() {
+    for (int i = 0; i <= kSteps; ++i) {
+      const double t = kReach * (2.0 * i / kSteps - 1);
+      bell_[i] = std::exp(-0.5 * t * t) / std::sqrt(2 * M_PI);
+      share_[i] = 0.5 * std::erfc(-t * M_SQRT1_2);
+    }
+  }
+  double bell(double t) const { return std::abs(t) < kReach ? at(bell_, t) : 0; }
+  double share(double t) const { return std::abs(t) < kReach ? at(share_, t) : t > 0 ? 1 : 0; }
+
+ private:
+  static constexpr int kSteps = 800;
+  static constexpr double kReach = 5;
+  using Table = std::array<double, kSteps + 1>;
+  static double at(const Table& table, double t) {
+    const double place = (t + kReach) * (kSteps / (2 * kReach));
+    const int i = std::min(static_cast<int>(place), kSteps - 1);
+    return table[i] + (place - i) * (table[i + 1] - table[i]);
+  }
+  Table bell_, share_;
+};
+
+const BlurTable& blurTable() {
+  static const BlurTable table;
+  return table;
+}
+
+/// The model of the picture with its derivatives.
+class Model {
+ public:
+  Model(const Corners& reference, const OutlineLook& look)
+      : sides_{OutlineSide(reference, 0), OutlineSide(reference, 1), OutlineSide(reference, 2),
+               OutlineSide(reference, 3)},
+        width_(look.size.width) {
+    middle_ = 0.25 * (reference[0] + reference[1] + reference[2] + reference[3]);
+    near_width_ = sides_[kNearSide].length;
+    far_width_ = sides_[kFarSide].length;
+    const double taper = far_width_ / near_width_;
+    const double by_taper = look.focal_length * width_ / near_width_ * (1 - taper) / taper;
+    const double length =
+        look.size.length > 0 ? look.size.length : std::clamp(by_taper, kShortestRunway, kLongestRunway);
+    const auto place = [&](double metres) {
+      return metres / length / (taper + (1 - taper) * metres / length);
+    };
+    const double height = 0.5 * (sides_[kLeftSide].length + sides_[kRightSide].length);
+    bars_[0] = place(kBarsBegin) * height;
+    bars_[1] = place(kBarsEnd) * height;
+    // At the far end all is shorter by the square of the taper.
+    far_bars_[0] = kBarsBegin / length * taper * height;
+    far_bars_[1] = kBarsEnd / length * taper * height;
+    line_[0] = kThresholdLine / length / taper * height;
+    line_[1] = kThresholdLine / length * taper * height;
+  }
+
+  /// 1 sigma by which what is painted across at an end moves the side, px.
+  double lineAcross(int side) const { return side == kNearSide ? line_[0] : side == kFarSide ? line_[1] : 0; }
+
+  /// Distances from the reference's sides, inside is positive. False for a pixel that tells nothing.
+  bool mayTell(const Eigen::Vector2d& pixel) const {
+    double least = kInside + 1;
+    for (const OutlineSide& side : sides_) least = std::min(least, side.inward.dot(pixel - side.from));
+    return least >= -kOutside && least <= kInside;
+  }
+
+  /// Value at a pixel, and its derivatives.
+  double at(const Eigen::Vector2d& pixel, const Vector& p, Vector& slope) const {
+    double d[kSides], s[kSides], in[kSides], rise[kSides];
+    const double blur = p[kBlur];
+    for (int i = 0; i < kSides; ++i) {
+      const OutlineSide& side = sides_[i];
+      s[i] = std::clamp(side.along.dot(pixel - side.from) / side.length, -0.5, 1.5);
+      d[i] = side.inward.dot(pixel - side.from) - (1 - s[i]) * p[2 * i] - s[i] * p[2 * i + 1];
+      in[i] = table_.share(d[i] / blur);
+      rise[i] = table_.bell(d[i] / blur) / blur;
+    }
+    const double across = std::max(in[kLeftSide] + in[kRightSide] - 1, 0.0);
+    const double along = std::max(in[kNearSide] + in[kFarSide] - 1, 0.0);
+    const double t = std::clamp(d[kNearSide] / std::max(d[kNearSide] + d[kFarSide], 1.0), 0.0, 1.0);
+    const double scale = (near_width_ + (far_width_ - near_width_) * t) / width_;  // px for each m
+    const double body = p[kSurface] * (1 - t) + p[kSurface + 1] * t;
+    // Lines along the runway: across them a blurred bell.
+    const auto line = [&](double off, double& by_off) {
+      const double value = table_.bell(off / blur) / blur * scale;
+      by_off = -off / (blur * blur) * value;
+      return value;
+    };
+    double by_left, by_right, by_middle;
+    const double stripes = line(d[kLeftSide] - kStripePlace * scale, by_left) +
+                           line(d[kRightSide] - kStripePlace * scale, by_right);
+    const double centre = line(0.5 * (d[kLeftSide] - d[kRightSide]), by_middle);
+    const auto bars = [&](int side, const double* from_to, double& by_side) {
+      by_side = table_.bell((d[side] - from_to[0]) / blur) / blur -
+                table_.bell((d[side] - from_to[1]) / blur) / blur;
+      return table_.share((d[side] - from_to[0]) / blur) - table_.share((d[side] - from_to[1]) / blur);
+    };
+    double by_near, by_far;
+    const double near_bars = bars(kNearSide, bars_, by_near), far_bars = bars(kFarSide, far_bars_, by_far);
+    const Eigen::Vector2d from_middle = (pixel - middle_) / 10;
+    slope[kGround] = 1;
+    slope[kGround + 1] = from_middle.x();
+    slope[kGround + 2] = from_middle.y();
+    slope[kGround + 3] = from_middle.y() * from_middle.y();
+    slope[kSurface] = across * along * (1 - t);
+    slope[kSurface + 1] = across * along * t;
+    slope[kStripes] = stripes * along;
+    slope[kMiddle] = centre * along;
+    slope[kNearBars] = near_bars * across;
+    slope[kFarBars] = far_bars * across;
+    const double value = slope.tail<kCount - kGround>().dot(p.tail<kCount - kGround>());
+    const double ends = p[kNearBars] * near_bars + p[kFarBars] * far_bars;
+    const double lines = p[kStripes] * stripes + p[kMiddle] * centre;
+    const double by[kSides] = {
+        along * (body * rise[kLeftSide] + p[kStripes] * by_left + 0.5 * p[kMiddle] * by_middle) +
+            ends * rise[kLeftSide],
+        (across * body + lines) * rise[kFarSide] + p[kFarBars] * across * by_far,
+        along * (body * rise[kRightSide] + p[kStripes] * by_right - 0.5 * p[kMiddle] * by_middle) +
+            ends * rise[kRightSide],
+        (across * body + lines) * rise[kNearSide] + p[kNearBars] * across * by_near};
+    slope[kBlur] = 0;
+    for (int i = 0; i < kSides; ++i) {
+      slope[2 * i] = -(1 - s[i]) * by[i];
+      slope[2 * i + 1] = -s[i] * by[i];
+      slope[kBlur] -= by[i] * d[i] / blur;  // of edges; lines only get lower, which their amplitude takes up
+    }
+    return value;
+  }
+
+ private:
+  const BlurTable& table_ = blurTable();
+  std::array<OutlineSide, kSides> sides_;
+  double width_, near_width_, far_width_;
+  double bars_[2], far_bars_[2];  // px from the sides
+  double line_[2];                // of the near and the far side
+  Eigen::Vector2d middle_;
+};
+
+struct Pixel {
+  Eigen::Vector2d place;
+  double grey;
+};
+
+std::vector<Pixel> pixelsAround(const cv::Mat& image, const cv::Mat& mask, const Corners& corners,
+                                const Model& model) {
+  Eigen::Vector2d low = corners[0], high = corners[0];
+  double around = 0;
+  for (int i = 0; i < kSides; ++i) {
+    low = low.cwiseMin(corners[i]);
+    high = high.cwiseMax(corners[i]);
+    around += (corners[(i + 1) % kSides] - corners[i]).norm();
+  }
+  const int stride = static_cast<int>(std::ceil(around * (kInside + kOutside) / kMostPixels));
+  const int left = std::max(0, static_cast<int>(low.x() - kOutside)),
+            top = std::max(0, static_cast<int>(low.y() - kOutside));
+  const int right = std::min(image.cols - 1, static_cast<int>(high.x() + kOutside) + 1),
+            bottom = std::min(image.rows - 1, static_cast<int>(high.y() + kOutside) + 1);
+  std::vector<Pixel> pixels;
+  for (int v = top; v <= bottom; ++v) {
+    const uchar *grey = image.ptr<uchar>(v), *valid = mask.ptr<uchar>(v);
+    for (int u = left; u <= right; ++u) {
+      if ((u + 3 * v) % stride != 0 || valid[u] == 0) continue;
+      const Eigen::Vector2d place(u, v);
+      if (model.mayTell(place)) pixels.push_back({place, static_cast<double>(grey[u])});
+    }
+  }
+  return pixels;
+}
+
+/// What is known of the parameters beforehand: value and information.
+struct Prior {
+  Vector value = Vector::Zero(), information = Vector::Zero();
+  void set(int i, double expected, double stddev) {
+    value[i] = expected;
+    information[i] = 1 / (stddev * stddev);
+  }
+};
+
+Prior priorOf(const OutlineLook& look) {
+  Prior prior;
+  for (int i = 0; i < 8; ++i) prior.set(i, 0, kFarthest);
+  prior.set(kBlur, look.blur, look.blur_stddev);
+  for (int i = kGround; i < kStripes; ++i) prior.set(i, 0, 500);
+  prior.set(kStripes, kStripe, kStripeStddev);
+  prior.set(kMiddle, kCentre, kCentreStddev);
+  prior.set(kNearBars, kBars, kBarsStddev);
+  prior.set(kFarBars, kBars, kBarsStddev);
+  return prior;
+}
+
+Failure noOutline(const std::string& why) { return {Reason::kNoRunway, why}; }
+
+/// Gauss-Newton with Cauchy's weights, over the pixels.
+class Solver {
+ public:
+  Solver(const Model& model, const std::vector<Pixel>& pixels, const OutlineLook& look)
+      : model_(model),
+        pixels_(pixels),
+        prior_(priorOf(look)),
+        p_(prior_.value),
+        residuals_(pixels.size()),
+        slopes_(pixels.size(), kCount) {}
+
+  bool run() {
+    // The amplitudes first: the places are as good as the start.
+    if (!iterate(true)) return false;
+    for (int i = 0; i < kIterations; ++i) {
+      if (!iterate(false)) return false;
+      if (step_.head<8>().cwiseAbs().maxCoeff() < kSettled) break;
+    }
+    return iterate(false) && p_.head<8>().cwiseAbs().maxCoeff() < kFarthest;
+  }
+
+  const Vector& parameters() const { return p_; }
+  double noise() const { return noise_; }
+  Matrix covariance() const { return information_.inverse(); }
+
+ private:
+  bool iterate(bool amplitudes_only) {
+    Vector gradient = Vector::Zero(), slope;
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+      const double r = pixels_[i].grey - model_.at(pixels_[i].place, p_, slope);
+      residuals_[i] = std::abs(r);
+      const double weight = 1 / (1 + std::pow(r / (2.5 * noise_), 2));
+      gradient += weight * r * slope;
+      slopes_.row(static_cast<Eigen::Index>(i)) = std::sqrt(weight) * slope.transpose();
+    }
+    const Matrix data = slopes_.transpose() * slopes_;
+    if (!amplitudes_only) noise_ = std::max(kLeastNoise, robustStddev(residuals_));
+    const double variance = kTexture * noise_ * noise_;
+    information_ = data / variance;
+    information_.diagonal() += prior_.information;
+    gradient = gradient / variance + prior_.information.cwiseProduct(prior_.value - p_);
+    if (amplitudes_only) {
+      const int n = kCount - kGround;
+      step_.setZero();
+      step_.tail(n) = information_.bottomRightCorner(n, n).ldlt().solve(gradient.tail(n));
+    } else {
+      step_ = information_.ldlt().solve(gradient);
+      step_ /= std::max(1.0, step_.head<8>().cwiseAbs().maxCoeff() / kLargestStep);
+    }
+    p_ += step_;
+    p_[kBlur] = std::clamp(p_[kBlur], 0.35, 1.5);
+    return p_.allFinite();
+  }
+
+  const Model& model_;
+  const std::vector<Pixel>& pixels_;
+  Prior prior_;
+  Vector p_, step_ = Vector::Zero();
+  Matrix information_ = Matrix::Identity();
+  std::vector<double> residuals_;
+  Eigen::Matrix<double, Eigen::Dynamic, kCount> slopes_;
+  double noise_ = 20;
+};
+
+bool isUsable(const Corners& corners) {
+  const double height =
+      0.5 * (OutlineSide(corners, kLeftSide).length + OutlineSide(corners, kRightSide).length);
+  return height >= kShortest && OutlineSide(corners, kNearSide).length >= kNarrowest &&
+         OutlineSide(corners, kFarSide).length >= 0.3 * kNarrowest &&
+         std::all_of(corners.begin(), corners.end(), [](const auto& corner) { return corner.allFinite(); });
+}
+
+}  // namespace
+
+Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
+                                   const OutlineLook& look) {
+  if (!isUsable(start)) return tl::make_unexpected(noOutline("the runway is too small in the picture"));
+  const Model model(start, look);
+  const std::vector<Pixel> pixels = pixelsAround(image, mask, start, model);
+  if (pixels.size() < 3 * kCount) return tl::make_unexpected(noOutline("the runway is not in the picture"));
+  Solver solver(model, pixels, look);
+  if (!solver.run()) return tl::make_unexpected(noOutline("no outline where the runway is expected"));
+  const Vector& p = solver.parameters();
+  const Matrix covariance = solver.covariance();
+  FittedOutline fitted;
+  fitted.seen = {start, p.head<8>(), covariance.topLeftCorner<8, 8>()};
+  for (int i = 0; i < kSides; ++i) {
+    const double stddev = std::hypot(i == kNearSide || i == kFarSide ? kAcross : kAlong, model.lineAcross(i));
+    fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).array() += stddev * stddev;
+    fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).diagonal().array() += kEnd * kEnd;
+  }
+  if (!isUsable(movedBy(start, fitted.seen.inward)))
+    return tl::make_unexpected(noOutline("no outline where the runway is expected"));
+  fitted.blur = p[kBlur];
+  fitted.contrast = 0.5 * (p[kSurface] + p[kSurface + 1]);
+  const Eigen::Matrix2d ends = covariance.block<2, 2>(kSurface, kSurface);
+  fitted.contrast_stddev = 0.5 * std::sqrt(ends.sum());
+  fitted.residual = solver.noise();
+  if (!(std::abs(fitted.contrast) > kLeastContrast * fitted.contrast_stddev))
+    return tl::make_unexpected(noOutline(text("a contrast of ", rounded(fitted.contrast), " +- ",
+                                              rounded(fitted.contrast_stddev), " grey levels only")));
+  return fitted;
+}
+
+}  // namespace uav_landing

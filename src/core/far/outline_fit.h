@@ -1,0 +1,39 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "far/outline_pose.h"
+
+namespace uav_landing {
+
+/// What the outline's picture is expected to be like.
+struct OutlineLook {
+  double focal_length = 0;  ///< px
+  RunwaySize size{35,
+                  0};  ///< of the surface, about, m: what markings are small against; length 0: by the taper
+  double blur = 0.65;  ///< 1 sigma of the picture's blur, pixels included, px
+  double blur_stddev = 0.12;
+};
+
+/// An outline with what tells how clearly it is there.
+struct FittedOutline {
+  SeenOutline seen;
+  double blur = 0;      ///< px
+  double contrast = 0;  ///< grey levels between surface and ground, and
+  double contrast_stddev = 0;
+  double residual = 0;  ///< 1 sigma of what the model leaves, grey levels
+};
+
+/// The runway's outline by least squares over the grey levels around it.
+///
+/// A surface of one grey level lies on ground of another; both change evenly with the distance, as haze makes
+/// them. From afar a painted stripe along an edge is much narrower than a pixel. It looks like an edge that
+/// is farther inside, by its width times its contrast over that of the surface: three metres of each side of
+/// a dark runway. Bars at the threshold do the same. So stripes, bars and centre line are part of the model,
+/// with amplitudes that are not known, and the claimed covariance of the sides takes in what they leave open.
+///
+/// start: corners within some pixels. Fails where it leads astray, or no contrast is there.
+Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
+                                   const OutlineLook& look);
+
+}  // namespace uav_landing

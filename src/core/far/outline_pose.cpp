@@ -1,0 +1,188 @@
+#include "far/outline_pose.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr int kIterations = 12;
+constexpr double kSettled = 1e-4;        // of a standard deviation
+constexpr double kLevel = 10 * kDegree;  // 1 sigma of roll and pitch of a camera that flies an approach
+constexpr double kUsualWidth = 35, kUsualLength = 1800;  // m
+constexpr double kAnySize = 0.8;      // 1 sigma of the logarithm of a size that is not known
+constexpr double kHills = 0.01;       // of the distance: 1 sigma of the threshold off the plane before it
+constexpr double kLargestStep = 0.3;  // of a distance, in one iteration
+
+using State = Vector8d;  // position, roll, pitch, yaw, logarithms of width and length
+
+RunwayPose poseOf(const State& s) { return {s.head<3>(), s[3], s[4], s[5]}; }
+RunwaySize sizeOf(const State& s) { return {std::exp(s[6]), std::exp(s[7])}; }
+
+tl::unexpected<Failure> noPose(const char* why) {
+  return tl::make_unexpected(Failure{Reason::kNoRunway, why});
+}
+
+/// Normal equations of the state.
+class Fit {
+ public:
+  Fit(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig, const PoseElements& elements)
+      : seen_(seen), known_(known), rig_(rig), elements_(elements), weight_(seen.covariance.inverse()) {}
+
+  bool hasWidth() const { return elements_.width && known_.chart.width > 0; }
+  bool hasLength() const { return elements_.length && known_.chart.length > 0; }
+  bool hasPlane() const { return elements_.stereo && known_.plane.valid(); }
+  bool hasNormal() const { return elements_.normal && known_.normal.known(); }
+
+  std::optional<State> start() const {
+    const Corners c = movedBy(seen_.reference, seen_.inward);
+    const Eigen::Vector2d near = 0.5 * (c[0] + c[3]), far = 0.5 * (c[1] + c[2]);
+    const double near_width = (c[3] - c[0]).norm(), far_width = (c[2] - c[1]).norm();
+    const double taper = far_width / near_width, rise = near.y() - far.y();
+    if (!(taper > 0.01 && taper < 0.99 && rise > 0)) return std::nullopt;
+    RunwaySize size;
+    if (hasWidth()) size.width = known_.chart.width;
+    if (hasLength()) size.length = known_.chart.length;
+    if (!hasWidth() && hasLength()) size.width = near_width * size.length * taper / (1 - taper) / rig_.fx;
+    if (!hasWidth() && !hasLength()) {
+      const double inverse_depth = known_.plane.inverseDepth(rig_.ray(near.x(), near.y()));
+      if (!hasPlane() || !(inverse_depth > 0)) return std::nullopt;
+      size.width = near_width / rig_.fx / inverse_depth;
+    }
+    const double distance = rig_.fx * size.width / near_width;
+    if (!hasLength()) size.length = distance * (1 - taper) / taper;
+    const double beyond = distance + size.length;
+    const double height = rise * distance * beyond / (rig_.fy * size.length);
+    const double right = (near.x() - rig_.cx) / rig_.fx * distance;
+    const double yaw = ((far.x() - rig_.cx) / rig_.fx * beyond - right) / size.length;
+    const double pitch = std::atan((near.y() - rig_.cy) / rig_.fy) - std::atan(height / distance);
+    State state;
+    state << -distance, right - yaw * distance, height, 0, pitch, yaw, std::log(size.width),
+        std::log(size.length);
+    if (known_.normal.known()) state[3] = rollOf(known_.normal.n);
+    if (hasNormal()) state[4] = pitchOf(known_.normal.n);
+    return state;
+  }
+
+  /// Fills the equations at a state; false where the surface is not ahead.
+  bool linearise(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+    const auto corners = cornersOf(poseOf(state), sizeOf(state), rig_);
+    if (!corners) return false;
+    const Vector8d missing = seen_.inward - movedInward(seen_.reference, *corners);
+    Matrix8d slopes;
+    for (int i = 0; i < 8; ++i) {
+      State moved = state;
+      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
+      moved[i] += step;
+      const auto there = cornersOf(poseOf(moved), sizeOf(moved), rig_);
+      if (!there) return false;
+      slopes.col(i) = (seen_.inward - movedInward(seen_.reference, *there) - missing) / -step;
+    }
+    information = slopes.transpose() * weight_ * slopes;
+    gradient = slopes.transpose() * weight_ * missing;
+    misfit = missing.dot(weight_ * missing);
+    addKnowledge(state, information, gradient, misfit);
+    return information.allFinite();
+  }
+
+ private:
+  static void add(const State& slope, double missing, double variance, Matrix8d& information, State& gradient,
+                  double& misfit) {
+    misfit += missing * missing / variance;
+    information += slope * slope.transpose() / variance;
+    gradient += slope * missing / variance;
+  }
+  static void addDirectly(int i, double missing, double stddev, Matrix8d& information, State& gradient,
+                          double& misfit) {
+    add(State::Unit(i), missing, stddev * stddev, information, gradient, misfit);
+  }
+
+  void addKnowledge(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+    const auto size = [&](int i, bool given, double chart, double stddev, double usual) {
+      addDirectly(i, std::log(given ? chart : usual) - state[i], given ? stddev / chart : kAnySize,
+                  information, gradient, misfit);
+    };
+    size(6, hasWidth(), known_.chart.width, known_.width_stddev, kUsualWidth);
+    size(7, hasLength(), known_.chart.length, known_.length_stddev, kUsualLength);
+    addDirectly(3, -state[3], kLevel, information, gradient, misfit);
+    addDirectly(4, -state[4], kLevel, information, gradient, misfit);
+    if (hasNormal()) addNormal(state, information, gradient, misfit);
+    if (hasPlane()) addPlane(state, information, gradient, misfit);
+  }
+
+  void addNormal(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+    const double roll = state[3], pitch = state[4];
+    Eigen::Matrix<double, 3, 2> tips;  // derivatives of the normal by roll and pitch
+    tips << std::cos(roll) * std::cos(pitch), -std::sin(roll) * std::sin(pitch),
+        -std::sin(roll) * std::cos(pitch), -std::cos(roll) * std::sin(pitch), 0, -std::cos(pitch);
+    const Eigen::Matrix2d scale = (tips.transpose() * tips).inverse();
+    const Eigen::Matrix<double, 2, 3> angles = scale * tips.transpose();
+    const Eigen::Matrix2d weight =
+        Eigen::Matrix2d(angles * known_.normal.covariance * angles.transpose()).inverse();
+    const Eigen::Vector2d missing = angles * (known_.normal.n - normalFromPitchRoll(pitch, roll));
+    information.block<2, 2>(3, 3) += weight;
+    gradient.segment<2>(3) += weight * missing;
+    misfit += missing.dot(weight * missing);
+  }
+
+  /// The threshold lies on the plane: g . T = 1.
+  void addPlane(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+    const auto at = [&](const State& s) {
+      return known_.plane.g.dot(poseOf(s).seen(Eigen::Vector3d::Zero()));
+    };
+    const double here = at(state);
+    State slope;
+    for (int i = 0; i < 8; ++i) {
+      State moved = state;
+      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
+      moved[i] += step;
+      slope[i] = (at(moved) - here) / step;
+    }
+    const Eigen::Vector3d threshold = poseOf(state).seen(Eigen::Vector3d::Zero());
+    const double hills = kHills * threshold.norm() * known_.plane.g.norm();
+    add(slope, 1 - here, threshold.dot(known_.plane.covariance * threshold) + hills * hills, information,
+        gradient, misfit);
+  }
+
+  const SeenOutline& seen_;
+  const PoseKnowledge& known_;
+  const StereoRig& rig_;
+  PoseElements elements_;
+  Matrix8d weight_;
+};
+
+}  // namespace
+
+Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig,
+                              const PoseElements& elements) {
+  const Fit fit(seen, known, rig, elements);
+  if (!fit.hasWidth() && !fit.hasLength() && !fit.hasPlane())
+    return noPose("nothing tells the runway's scale");
+  std::optional<State> state = fit.start();
+  if (!state) return noPose("the outline is not that of a surface ahead");
+  OutlinePose result;
+  Matrix8d information;
+  State gradient;
+  for (int i = 0; i < kIterations; ++i) {
+    if (!fit.linearise(*state, information, gradient, result.misfit))
+      return noPose("the outline is not that of a surface ahead");
+    State step = information.ldlt().solve(gradient);
+    const double most = kLargestStep * std::abs((*state)[0]);
+    const double share = std::max({step.head<3>().cwiseAbs().maxCoeff() / most,
+                                   step.tail<5>().cwiseAbs().maxCoeff() / kLargestStep, 1.0});
+    *state += step / share;
+    if (step.dot(information * step) < kSettled * kSettled) break;
+  }
+  result.pose = poseOf(*state);
+  result.size = sizeOf(*state);
+  result.covariance = information.inverse();
+  const bool possible = state->allFinite() && result.covariance.allFinite() && result.pose.position.z() > 0 &&
+                        result.pose.position.x() < 0;
+  if (!possible) return noPose("the outline is not that of a surface ahead");
+  return result;
+}
+
+}  // namespace uav_landing

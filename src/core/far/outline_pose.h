@@ -1,0 +1,51 @@
+#pragma once
+
+#include "far/outline.h"
+#include "uav_landing/base/failure.h"
+#include "uav_landing/geometry/ground_plane.h"
+
+namespace uav_landing {
+
+/// The outline as a picture shows it.
+struct SeenOutline {
+  Corners reference;    ///< px
+  Vector8d inward;      ///< by how much the sides lie inside of it at its ends, px (see movedInward())
+  Matrix8d covariance;  ///< px^2
+};
+
+/// Elements of a pose that may be left out.
+struct PoseElements {
+  bool width = true, length = true;  ///< of the chart
+  bool normal = true;                ///< of the ground
+  bool stereo = true;                ///< the ground's plane by stereo, which has a scale
+};
+
+/// What is known besides the outline. What is not known is 0, or not known().
+struct PoseKnowledge {
+  RunwaySize chart;
+  double width_stddev = 0.3, length_stddev = 5;  ///< m
+  GroundNormal normal;  ///< of the runway's plane, with what it may slope against the ground
+  GroundPlane plane;    ///< of the ground before the threshold
+};
+
+/// A pose with the size of the surface.
+struct OutlinePose {
+  RunwayPose pose;
+  RunwaySize size;
+  Matrix8d covariance;  ///< of position, roll, pitch, yaw, and the logarithms of width and length
+  double misfit = 0;    ///< sum of the normalised squares of what outline and knowledge differ by
+};
+
+/// The pose by the runway's outline, in one least squares of the four sides with what charts, the horizon
+/// and stereo say. Four sides are eight numbers, and a pose with a size has eight: so the outline alone
+/// leaves the scale open, and says little of roll and pitch from afar. With width and length of the chart the
+/// height needs no horizon:
+///   D = f W / w,  h = v D (D + L) / (f L)
+/// with the near side's width w and the outline's height v in the picture. Without a chart the plane of
+/// stereo gives the scale at the threshold, whose corners lie on it.
+///
+/// Fails where nothing tells the scale, or the outline is none of a surface ahead.
+Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig,
+                              const PoseElements& elements = {});
+
+}  // namespace uav_landing

@@ -1,0 +1,97 @@
+#include "far/sighting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runway_picture.h"
+
+namespace uav_landing {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+
+/// Pairs from 2.2 km on, 60 m/s and 5 a second, with an attitude that is never the same.
+class Approach {
+ public:
+  explicit Approach(const RunwayParameters& runway, const RunwayPicture& picture = {})
+      : picture_(picture), sighting_(modelOf(picture), ApproachAngleParameters(), runway) {}
+
+  ApproachAngleResult::Sight next(const KnownGround& ground = {}) {
+    const double time = 0.2 * count_++;
+    pose = {{-2200 + 60 * time, 8, 120 - 3.1 * time},
+            2 * kDegree * std::sin(1.5 * time),
+            -3 * kDegree + 0.5 * kDegree * std::sin(2 * time),
+            0.5 * kDegree};
+    return sighting_.process(10 + time, picture_.render(pose, 100 + count_), ground);
+  }
+
+  RunwayPose pose;
+
+ private:
+  static RigModel modelOf(const RunwayPicture& picture) {
+    RigModel model;
+    model.rig = picture.rig();
+    model.left_mask = cv::Mat(picture.size, CV_8U, cv::Scalar(255));
+    return model;
+  }
+
+  RunwayPicture picture_;
+  Sighting sighting_;
+  int count_ = 0;
+};
+
+RunwayParameters chart(double width, double length) {
+  RunwayParameters runway;
+  runway.width = width;
+  runway.length = length;
+  return runway;
+}
+
+TEST(Sighting, TellsThePositionAfterSomePairs) {
+  Approach approach(chart(45, 2500));
+  for (int i = 1; i < Sighting::kConfirmations; ++i)
+    EXPECT_EQ(approach.next().failure.reason, Reason::kNotYet);
+  for (int i = 0; i < 6; ++i) {
+    const auto sight = approach.next();
+    ASSERT_FALSE(sight.failure) << sight.failure.message();
+    const Eigen::Vector3d error = sight.position - approach.pose.position;
+    for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(error[k]), 3.5 * std::sqrt(sight.covariance(k, k))) << k;
+    EXPECT_LT(std::abs(error.x()), 0.06 * -approach.pose.position.x());
+    EXPECT_LT(std::abs(error.z()), 0.06 * approach.pose.position.z());
+    EXPECT_NEAR(sight.yaw, approach.pose.yaw, 0.2 * kDegree);
+    EXPECT_TRUE(sight.by_chart);
+    EXPECT_TRUE(sight.height_without.allFinite());
+  }
+}
+
+TEST(Sighting, WithoutAChartAndStereoNothingTellsTheScale) {
+  Approach approach(chart(0, 0));
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(approach.next().failure.reason, Reason::kNoRunway);
+}
+
+TEST(Sighting, StereoFindsThatTheChartIsAnotherRunways) {
+  Approach approach(chart(36, 2000));  // 20 % smaller in both: the same outline from nearer
+  ApproachAngleResult::Sight sight;
+  for (int i = 0; i < 6; ++i) {
+    const RunwayPose& pose = approach.pose;
+    approach.next();
+    KnownGround ground;
+    ground.plane.g = normalFromPitchRoll(pose.pitch, pose.roll) / pose.position.z();
+    ground.plane.covariance = std::pow(1e-3 / pose.position.z(), 2) * Eigen::Matrix3d::Identity();
+    sight = approach.next(ground);
+  }
+  ASSERT_FALSE(sight.failure) << sight.failure.message();
+  EXPECT_NEAR(sight.size_over_chart, 1.25, 4 * std::sqrt(sight.size_over_chart_variance));
+  EXPECT_LT(sight.position.z(), 0.97 * approach.pose.position.z()) << "the scale is the chart's";
+}
+
+TEST(Sighting, NothingOnBareGroundIsARunway) {
+  RunwayPicture bare;
+  bare.surface = bare.paint = bare.ground;
+  Approach approach(chart(45, 2500), bare);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(approach.next().failure.reason, Reason::kNoRunway);
+}
+
+}  // namespace
+}  // namespace uav_landing

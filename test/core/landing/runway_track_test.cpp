@@ -1,0 +1,117 @@
+#include "landing/runway_track.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace uav_landing {
+namespace {
+
+RunwayParameters chart() {
+  RunwayParameters runway;
+  runway.width = 45;
+  runway.length = 2500;
+  return runway;
+}
+
+ApproachAngleResult::Sight sightAt(const Eigen::Vector3d& position, const Eigen::Vector3d& stddev) {
+  ApproachAngleResult::Sight sight;
+  sight.position = position;
+  sight.covariance = stddev.cwiseAbs2().asDiagonal();
+  sight.by_chart = true;
+  return sight;
+}
+
+TEST(RunwayTrack, SmoothsWhatPairsDoNotHaveInCommon) {
+  RunwayTrack track({}, chart());
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const Eigen::Vector3d stddev(150, 10, 12);
+  TrackedPosition found;
+  Eigen::Vector3d truth;
+  for (int i = 0; i < 60; ++i) {
+    truth = {-3000 + 12.0 * i, 5, 160 - 0.63 * i};
+    const Eigen::Vector3d noise(normal(random), normal(random), normal(random));
+    found = track.follow(i == 0 ? 0 : 0.2, sightAt(truth + stddev.cwiseProduct(noise), stddev));
+  }
+  ASSERT_TRUE(found.known());
+  for (int i = 0; i < 3; ++i) {
+    const double claimed = std::sqrt(found.variance[i]);
+    EXPECT_LT(claimed, 0.95 * stddev[i]);
+    EXPECT_GT(claimed, 0.8 * stddev[i]) << "texture and paint are the same in all pairs";
+    EXPECT_LT(std::abs(found.position[i] - truth[i]), 3 * claimed);
+  }
+}
+
+TEST(RunwayTrack, TheProtectionLevelHoldsForAChartThatIsATenthOff) {
+  RunwayTrack track({}, chart());
+  TrackedPosition found;
+  for (int i = 0; i < 30; ++i)
+    found = track.follow(i == 0 ? 0 : 0.2, sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3}));
+  // h = v D (D + L) / (f L), so a tenth of the width is a tenth and some more of the height.
+  EXPECT_GT(found.protection_level, 0.10 * found.position.z());
+  EXPECT_LT(found.protection_level, 0.15 * found.position.z());
+}
+
+TEST(RunwayTrack, AnElementThatContradictsRaisesTheLevel) {
+  RunwayTrack plain({}, chart()), contradicted({}, chart());
+  double level = 0;
+  for (int i = 0; i < 30; ++i) {
+    ApproachAngleResult::Sight sight = sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3});
+    level = plain.follow(i == 0 ? 0 : 0.2, sight).protection_level;
+    sight.height_without[0] = sight.position.z() - 12;
+    sight.variance_without[0] = 1;
+    const TrackedPosition found = contradicted.follow(i == 0 ? 0 : 0.2, sight);
+    if (i == 29) EXPECT_GT(found.protection_level, 12);
+  }
+  EXPECT_LT(level, 10);
+}
+
+TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
+  RunwayTrack track({}, chart());
+  TrackedPosition found;
+  for (int i = 0; i < 10; ++i) {
+    ApproachAngleResult::Sight sight = sightAt({-800 + 12.0 * i, 0, 45}, {5, 1, 0.3});
+    sight.size_over_chart = 0.9;
+    sight.size_over_chart_variance = 1e-4;
+    found = track.follow(i == 0 ? 0 : 0.2, sight);
+    if (i == 1) EXPECT_TRUE(found.known()) << "one or two pairs may be wrong";
+  }
+  EXPECT_EQ(found.contradiction.reason, Reason::kInconsistent);
+  EXPECT_NE(found.contradiction.detail.find("runway/width"), std::string::npos);
+  EXPECT_FALSE(found.known());
+}
+
+TEST(RunwayTrack, CarriesOnByTheSpeedForSomeSeconds) {
+  RunwayTrack track({}, chart());
+  RunwayVelocity velocity;
+  velocity.value = {60, 0, -3};
+  velocity.variance.setConstant(0.01);
+  TrackedPosition found;
+  for (int i = 0; i < 20; ++i)
+    found =
+        track.follow(i == 0 ? 0 : 0.2, sightAt({-800 + 12.0 * i, 1, 45 - 0.6 * i}, {5, 1, 0.3}), velocity);
+  ApproachAngleResult::Sight gone;
+  gone.failure = {Reason::kNoRunway, "near"};
+  for (int i = 20; i < 45; ++i) found = track.follow(0.2, gone, velocity);
+  ASSERT_TRUE(found.known());
+  EXPECT_FALSE(found.measured);
+  EXPECT_NEAR(found.position.x(), -800 + 12.0 * 44, 6);
+  EXPECT_NEAR(found.position.z(), 45 - 0.6 * 44, 1);
+  for (int i = 0; i < 60; ++i) found = track.follow(0.2, gone, velocity);
+  EXPECT_FALSE(found.known()) << "not for ever";
+}
+
+TEST(RunwayTrack, OnePairThatIsFarOffChangesNothing) {
+  RunwayTrack track({}, chart());
+  TrackedPosition found;
+  for (int i = 0; i < 20; ++i)
+    found = track.follow(i == 0 ? 0 : 0.2, sightAt({-800 + 12.0 * i, 1, 45}, {5, 1, 0.3}));
+  const double before = found.position.z();
+  found = track.follow(0.2, sightAt({-400, 1, 60}, {5, 1, 0.3}));
+  EXPECT_NEAR(found.position.z(), before, 0.5);
+}
+
+}  // namespace
+}  // namespace uav_landing
