@@ -121,9 +121,10 @@ struct KalmanHeightParameters {
     v.number("unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
              "largest error of a scale common to all heights, such as a wrong baseline. No test can "
              "see it, so the protection level assumes it. The variance has rig/baseline_stddev instead");
-    v.number("runway_height_limit", runway_height_limit, 0.0, 1.0, "of height",
-             "the height above the runway is not known when its protection level exceeds this share of it and "
-             "alert_limit");
+    v.number(
+        "runway_height_limit", runway_height_limit, 0.0, 1.0, "of height",
+        "the height above the runway is not known when its protection level exceeds this share of it and "
+        "alert_limit");
   }
 };
 

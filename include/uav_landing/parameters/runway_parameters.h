@@ -17,13 +17,15 @@ struct RunwayParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.number("width", width, 0.0, 200.0, "m",
-             "width of the runway's surface, as charts have it. From afar it gives the height above the runway, "
-             "and kalman_height gets a second height from it (fuse_width_height). It learns the width itself "
-             "while the stereo height is good. 0: unknown");
-    v.number("length", length, 0.0, 10000.0, "m",
-             "length of the runway's surface, as charts have it. With the width it gives the height above the "
-             "runway from afar. What is longer is not the runway. 0: unknown");
+    v.number(
+        "width", width, 0.0, 200.0, "m",
+        "width of the runway's surface, as charts have it. From afar it gives the height above the runway, "
+        "and kalman_height gets a second height from it (fuse_width_height). It learns the width itself "
+        "while the stereo height is good. 0: unknown");
+    v.number(
+        "length", length, 0.0, 10000.0, "m",
+        "length of the runway's surface, as charts have it. With the width it gives the height above the "
+        "runway from afar. What is longer is not the runway. 0: unknown");
     v.number("side_stripe_inset", side_stripe_inset, 0.0, 20.0, "m",
              "by how much the painted stripes along the sides lie inside the runway's width. The edges that "
              "show may be either. 0: unknown; up to 3 % of the width, and 1.25 m");

@@ -30,7 +30,6 @@ constexpr double kNarrowest = 6, kWidest = 100, kShortest = 250, kLongest = 6500
 constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart have too many, one in 1000
 // Doubt of the width by stripes, m: at most, and where a pixel is a metre.
 constexpr double kMostDoubt = 2.5, kDoubt = 0.18;
-constexpr double kRough = 1.5;          // px, 1 sigma of the search
 constexpr double kStarts[] = {0, 0.3};  // of the outline's height, that the near end may be farther
 constexpr double kDoubtfulStart = 7;    // misfit
 constexpr double kPoorFit = 6;   // misfit above which the fit begins once more at the pose that it gave
