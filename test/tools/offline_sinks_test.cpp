@@ -47,6 +47,7 @@ std::map<std::string, std::string> rowOf(const ProcessedPair& pair) {
 
 TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   Pipeline::Output output;
+  output.approach.readout = {0.025, 0.004 * 0.004};
   LandingResult& landing = output.landing;
   landing.status = Status::kCoasting;
   landing.failure = {Reason::kRejected, "raw height 3 m"};
@@ -139,7 +140,9 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                               {"speed_m_s", 13},
                                               {"speed_stddev_m_s", 0.3},
                                               {"yaw_stddev_deg", 0.6},
-                                              {"other_runway_probability", 0.0625}};
+                                              {"other_runway_probability", 0.0625},
+                                              {"estimated_readout_time_s", 0.025},
+                                              {"estimated_readout_time_stddev_s", 0.004}};
   for (const auto& [name, value] : numbers) {
     ASSERT_EQ(row.count(name), 1u) << name;
     ASSERT_FALSE(row[name].empty()) << name;
