@@ -22,7 +22,7 @@ constexpr double kAside = 0.3, kBeside = 60;  // of the distance, and m: from th
 constexpr double kMostTilt = 25 * kDegree;
 constexpr double kFarthest = 12000;   // m
 constexpr double kNearestStart = 16;  // widths: an outline is not begun with from nearer
-constexpr double kSearchWait = 0.15;  // s from one search to the next
+constexpr double kSearchWait = 0.3;   // s from one search to the next, as it takes the time of half a pair
 constexpr double kNearWait = 10;      // s without a search after a runway has become too near to be followed
 constexpr double kNearest = 11;       // widths: nearer, its marks tell more than its outline
 constexpr double kLowestFlight = 8;   // m: cars and laboratories do not look down on runways
@@ -66,6 +66,10 @@ bool Sighting::isNear(const OutlinePose& pose) {
 bool Sighting::mayStart(const KnownGround& ground) const {
   const bool low = ground.plane.valid() && ground.plane.height() < kLowestFlight;
   return !low && (byChart() || ground.plane.valid());
+}
+
+bool Sighting::waits(double stamp, const KnownGround& ground) const {
+  return !last_ && (stamp < wait_until_ || (ground.has_runway && !byChart()));
 }
 
 PoseKnowledge Sighting::knowledge(const KnownGround& ground) const {
@@ -226,7 +230,7 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     sight.failure = noSight("low over the ground, or neither a chart nor stereo tells the runway's size");
     return sight;
   }
-  if (!last_ && stamp < wait_until_) {
+  if (waits(stamp, ground)) {
     sight.failure = noSight("the runway's outline is not looked for in every pair");
     return sight;
   }
@@ -237,8 +241,8 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     sight.failure = seen.error();
     missed_ += seconds;
     const bool near = last_ && isNear(last_->pose);
+    if (!last_ || confirmations_ < kConfirmations) wait_until_ = stamp + kSearchWait;
     if (near) wait_until_ = stamp + kNearWait;
-    if (!last_) wait_until_ = stamp + kSearchWait;
     if (near || missed_ > kPatience || confirmations_ < kConfirmations) {
       last_.reset();
       confirmations_ = 0;
