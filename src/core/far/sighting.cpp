@@ -22,10 +22,12 @@ constexpr double kAside = 0.3, kBeside = 60;  // of the distance, and m: from th
 constexpr double kMostTilt = 25 * kDegree;
 constexpr double kFarthest = 12000;   // m
 constexpr double kNearestStart = 16;  // widths: an outline is not begun with from nearer
-constexpr double kSearchWait = 0.3;   // s from one search to the next, as it takes the time of half a pair
-constexpr double kNearWait = 10;      // s without a search after a runway has become too near to be followed
-constexpr double kNearest = 11;       // widths: nearer, its marks tell more than its outline
-constexpr double kLowestFlight = 8;   // m: cars and laboratories do not look down on runways
+// From one search to the next, with a chart and without, s: a search takes the time of half a pair.
+constexpr double kSearchWait = 0.3, kIdleWait = 1;
+constexpr double kNearWait = 10;     // s without a search after a runway has become too near to be followed
+constexpr double kNearest = 11;      // widths: nearer, its marks tell more than its outline
+constexpr double kRoughly = 0.5;     // corners of a candidate may be off by this
+constexpr double kLowestFlight = 8;  // m: cars and laboratories do not look down on runways
 constexpr double kNarrowest = 6, kWidest = 100, kShortest = 250, kLongest = 6500, kLeastAspect = 8;
 constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart have too many, one in 1000
 // Doubt of the width by stripes, m: at most, and where a pixel is a metre.
@@ -168,6 +170,21 @@ Expected<Sighting::Seen> Sighting::fitCandidate(const cv::Mat& left, const Corne
   return best;
 }
 
+/// Before anything is fitted: whether the near side is a runway's, and far enough, by the pixels that it is
+/// wide, and by the ground below it where that is known.
+bool Sighting::isPlausible(const Corners& corners, const KnownGround& ground) const {
+  const Eigen::Vector2d& left = corners[0];
+  const Eigen::Vector2d& right = corners[3];
+  const double pixels = (right - left).norm();
+  if (pixels * kRoughly * kNearestStart > model_.rig.fx) return false;
+  if (!ground.plane.valid()) return true;
+  const Eigen::Vector2d middle = 0.5 * (left + right);
+  const double inverse_depth = ground.plane.inverseDepth(model_.rig.ray(middle.x(), middle.y()));
+  if (!(inverse_depth > 0)) return true;
+  const double width = pixels / (model_.rig.fx * inverse_depth);
+  return within(width, kRoughly * kNarrowest, kWidest / kRoughly);
+}
+
 Expected<Sighting::Seen> Sighting::search(const cv::Mat& left, const KnownGround& ground) const {
   const std::vector<OutlineCandidate> candidates = searchOutlines(left, model_.left_mask, region(ground));
   Failure failure = noSight("no outline of a runway in the picture");
@@ -175,6 +192,7 @@ Expected<Sighting::Seen> Sighting::search(const cv::Mat& left, const KnownGround
   double strength = 0;
   for (const OutlineCandidate& candidate : candidates) {
     if (best && candidate.strength < kRival * strength) break;
+    if (!isPlausible(candidate.corners, ground)) continue;
     Expected<Seen> seen = fitCandidate(left, candidate.corners, ground);
     if (!seen) {
       failure = seen.error();
@@ -241,7 +259,8 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     sight.failure = seen.error();
     missed_ += seconds;
     const bool near = last_ && isNear(last_->pose);
-    if (!last_ || confirmations_ < kConfirmations) wait_until_ = stamp + kSearchWait;
+    if (!last_ || confirmations_ < kConfirmations)
+      wait_until_ = stamp + (byChart() ? kSearchWait : kIdleWait);
     if (near) wait_until_ = stamp + kNearWait;
     if (near || missed_ > kPatience || confirmations_ < kConfirmations) {
       last_.reset();

@@ -47,6 +47,7 @@ class Sighting {
   static bool isNear(const OutlinePose& pose);
   bool mayStart(const KnownGround& ground) const;
   bool waits(double stamp, const KnownGround& ground) const;
+  bool isPlausible(const Corners& corners, const KnownGround& ground) const;
   PoseKnowledge knowledge(const KnownGround& ground) const;
   cv::Rect region(const KnownGround& ground) const;
   Expected<Seen> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground) const;
