@@ -396,7 +396,7 @@ TEST_F(ForeignMessages, TheFieldThatIsWrongIsNamed) {
 TEST_F(ForeignMessages, ResultsOfTheOwnStagesComeThroughUnchanged) {
   ApproachMessages healthy;
   healthy.make(0);
-  healthy.approach.runway.reason = "no_runway";
+  healthy.approach.runway.reason = healthy.approach.sight.reason = "no_runway";
   const StereoDepthResult stereo = checked(healthy.rig, toResult(healthy.stereo));
   const ApproachAngleResult approach = checked(toResult(healthy.approach));
   const auto bytes = [](const auto& message) {
