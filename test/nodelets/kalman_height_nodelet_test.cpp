@@ -648,6 +648,7 @@ TEST_F(KalmanHeightNodeletTest, TheRunwayIsDrawnAsWideAsItIsKnownToBe) {
 
 TEST_F(KalmanHeightNodeletTest, TheRunwaysWidthGivesASecondHeight) {
   setParameter("runway", "width", 45);
+  setParameter("runway", "side_stripe_inset", 0.01);  // so that the edges which show are the chart's
   start();
   runway_width_ = 45 / 2.02;  // over the height, as from 2.02 m
   publishSome(0, 4);
