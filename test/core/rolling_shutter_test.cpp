@@ -66,8 +66,10 @@ UntoldRatios untoldRatios(double readout) {
   constexpr int kPairs = 32, kFirst = 6;
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const test::GroundRenderer ground(12);
+  Parameters parameters;
+  parameters.rig.estimate_readout_time = true;
   Pipeline pipeline =
-      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), Parameters()).value();
+      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
   UntoldRatios ratios;
   for (int i = 0; i < kPairs; ++i) {
     const double stamp = i * kPeriod;
@@ -105,14 +107,19 @@ TEST(RollingShutter, ThatNobodyToldOfIsClaimedAndFound) {
   EXPECT_GT(untoldRatios(kReadout).found, 0.2 * kReadout);
 }
 
-TEST(RollingShutter, ThatIsGivenIsNotEstimated) {
+TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
   const StereoRig rig = test::makeRig(320, 240, 0.3);
   const cv::Mat image = test::GroundRenderer(12).left(rig, test::movingPose(0));
-  Parameters parameters;
-  parameters.rig.readout_time = 0;
-  Pipeline pipeline =
-      Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
-  EXPECT_FALSE(pipeline.process(0, image, image).approach.readout.known());
+  for (const bool given : {false, true}) {
+    for (const bool asked : {false, true}) {
+      Parameters parameters;
+      if (given) parameters.rig.readout_time = 0;
+      parameters.rig.estimate_readout_time = asked;
+      Pipeline pipeline =
+          Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+      EXPECT_EQ(pipeline.process(0, image, image).approach.readout.known(), asked && !given);
+    }
+  }
 }
 
 /// Least and largest variance of the angle from the tenth pair on, with vibration in pitch (rad).

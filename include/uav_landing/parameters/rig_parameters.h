@@ -23,9 +23,10 @@ struct RigParameters {
   bool upside_down = false;
   int bits = 0;
   std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
-  /// See row_times.h. NaN: not given, so that it is estimated; for the right camera: as for the left one.
+  /// See row_times.h. NaN: not given; for the right camera: as for the left one.
   double readout_time = std::numeric_limits<double>::quiet_NaN();
   double right_readout_time = std::numeric_limits<double>::quiet_NaN();
+  bool estimate_readout_time = false;
   double stamp_row = 0.5;
   double right_stamp_row = std::numeric_limits<double>::quiet_NaN();
   RowDirection row_direction = RowDirection::kRows;
@@ -61,8 +62,11 @@ struct RigParameters {
         "readout_time", readout_time, -1.0, 1.0, "s",
         "rolling shutter: time from the exposure of the first row of a raw picture to that of the last "
         "one, of the picture as the driver delivers it. 0: global shutter. Negative: the last row comes "
-        "first. Longer than the time between pictures is refused. Not given: estimated from what moves in "
-        "the pictures, and claims are wider");
+        "first. Longer than the time between pictures is refused. Not given: a global shutter, unless it is "
+        "estimated");
+    v.flag("estimate_readout_time", estimate_readout_time,
+           "estimates readout_time from what moves in the pictures where it is not given. Angles and heights "
+           "claim what is not known of it yet, and a pair takes up to half more time");
     v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
              "row that is in the middle of its exposure at the stamp of a picture: 0 the first one, 0.5 the "
              "middle one, 1 the last one. Where the stamp is the begin of a row's exposure, subtract half of "
