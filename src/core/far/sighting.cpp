@@ -22,8 +22,8 @@ constexpr double kAside = 0.3, kBeside = 60;  // of the distance, and m: from th
 constexpr double kMostTilt = 25 * kDegree;
 constexpr double kFarthest = 12000;   // m
 constexpr double kNearestStart = 16;  // widths: an outline is not begun with from nearer
-// From one search to the next, with a chart and without, s: a search takes the time of half a pair.
-constexpr double kSearchWait = 0.3, kIdleWait = 1;
+// From one search to the next, s: a search takes the time of half a pair and more.
+constexpr double kSearchWait = 0.3;
 constexpr double kNearWait = 10;     // s without a search after a runway has become too near to be followed
 constexpr double kNearest = 11;      // widths: nearer, its marks tell more than its outline
 constexpr double kRoughly = 0.5;     // corners of a candidate may be off by this
@@ -67,11 +67,7 @@ bool Sighting::isNear(const OutlinePose& pose) {
 
 bool Sighting::mayStart(const KnownGround& ground) const {
   const bool low = ground.plane.valid() && ground.plane.height() < kLowestFlight;
-  return !low && (byChart() || ground.plane.valid());
-}
-
-bool Sighting::waits(double stamp, const KnownGround& ground) const {
-  return !last_ && (stamp < wait_until_ || (ground.has_runway && !byChart()));
+  return !low && byChart();
 }
 
 PoseKnowledge Sighting::knowledge(const KnownGround& ground) const {
@@ -245,10 +241,10 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
   if (!mayStart(ground)) {
     last_.reset();
     confirmations_ = 0;
-    sight.failure = noSight("low over the ground, or neither a chart nor stereo tells the runway's size");
+    sight.failure = noSight("low over the ground, or no chart gives the runway's size");
     return sight;
   }
-  if (waits(stamp, ground)) {
+  if (!last_ && stamp < wait_until_) {
     sight.failure = noSight("the runway's outline is not looked for in every pair");
     return sight;
   }
@@ -259,8 +255,7 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     sight.failure = seen.error();
     missed_ += seconds;
     const bool near = last_ && isNear(last_->pose);
-    if (!last_ || confirmations_ < kConfirmations)
-      wait_until_ = stamp + (byChart() ? kSearchWait : kIdleWait);
+    if (!last_ || confirmations_ < kConfirmations) wait_until_ = stamp + kSearchWait;
     if (near) wait_until_ = stamp + kNearWait;
     if (near || missed_ > kPatience || confirmations_ < kConfirmations) {
       last_.reset();

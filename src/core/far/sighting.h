@@ -16,8 +16,6 @@ namespace uav_landing {
 struct KnownGround {
   GroundNormal normal;  ///< without what the runway slopes against it
   GroundPlane plane;    ///< by stereo, or not valid
-  /// The runway's edges are followed near by: without a chart the outline has nothing to add.
-  bool has_runway = false;
 };
 
 /// The runway from afar, from pair to pair: its outline is searched for, fitted, and followed.
@@ -46,7 +44,6 @@ class Sighting {
   bool byChart() const { return runway_.width > 0 || runway_.length > 0; }
   static bool isNear(const OutlinePose& pose);
   bool mayStart(const KnownGround& ground) const;
-  bool waits(double stamp, const KnownGround& ground) const;
   bool isPlausible(const Corners& corners, const KnownGround& ground) const;
   PoseKnowledge knowledge(const KnownGround& ground) const;
   cv::Rect region(const KnownGround& ground) const;

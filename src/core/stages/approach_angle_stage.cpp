@@ -148,7 +148,6 @@ struct ApproachAngleStage::Implementation {
     KnownGround ground;
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (has_plane) ground.plane = stereo.plane;
-    ground.has_runway = runway.isSettled(stamp);
     if (has_plane)
       ground.normal = {stereo.plane.normal(), stereo.plane.normalCovariance()};
     else if (!result.imu.failure && result.imu.normal.allFinite())
