@@ -144,7 +144,6 @@ RunwaySight toMessage(const ApproachAngleResult::Sight& sight) {
   message.width_variance = sight.width_variance;
   message.length = sight.length;
   message.length_variance = sight.length_variance;
-  message.by_chart = sight.by_chart;
   toArray(sight.height_without, message.height_without);
   toArray(sight.variance_without, message.variance_without);
   message.size_over_chart = sight.size_over_chart;
@@ -163,7 +162,6 @@ ApproachAngleResult::Sight toResult(const RunwaySight& message) {
   sight.width_variance = message.width_variance;
   sight.length = message.length;
   sight.length_variance = message.length_variance;
-  sight.by_chart = message.by_chart;
   fromArray(message.height_without, sight.height_without);
   fromArray(message.variance_without, sight.variance_without);
   sight.size_over_chart = message.size_over_chart;

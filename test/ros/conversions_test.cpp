@@ -149,7 +149,6 @@ ApproachAngleResult distinctApproachAngle() {
   for (double* number : {&sight.yaw, &sight.yaw_variance, &sight.width, &sight.width_variance, &sight.length,
                          &sight.length_variance, &sight.size_over_chart, &sight.size_over_chart_variance})
     *number = next();
-  sight.by_chart = true;
   fill(sight.height_without);
   fill(sight.variance_without);
   result.runway.failure = {Reason::kNotYet, "2 of 3"};
@@ -510,7 +509,6 @@ TEST(Conversions, EachFieldOfApproachAngleHasItsOwnNumber) {
   EXPECT_FIELD(message.sight, result.sight, width_variance);
   EXPECT_FIELD(message.sight, result.sight, length);
   EXPECT_FIELD(message.sight, result.sight, length_variance);
-  EXPECT_TRUE(message.sight.by_chart);
   EXPECT_ROW_MAJOR(message.sight, result.sight, height_without);
   EXPECT_ROW_MAJOR(message.sight, result.sight, variance_without);
   EXPECT_FIELD(message.sight, result.sight, size_over_chart);

@@ -43,7 +43,7 @@ struct BaselineDirection {
   bool known() const { return t.allFinite() && covariance.allFinite(); }
 };
 
-/// Readout time of cameras where none is given, by what moves in the images. Unknown where one is given.
+/// Readout time of cameras by what moves in the images. Unknown where it is not estimated.
 struct ReadoutEstimate {
   double time = kUnknown;      ///< s, from the first line to the last
   double variance = kUnknown;  ///< s^2; an error is the same in all pairs
@@ -144,7 +144,8 @@ struct ApproachAngleResult {
     double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
     double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
   };
-  /// Where the camera is over the runway by the runway's outline in the picture: see sighting.h.
+  /// Where the camera is over the runway by the runway's outline in the picture and its size in charts: see
+  /// sighting.h.
   struct Sight {
     Failure failure;  ///< set when the outline is not seen, or gives no position
     /// Past the threshold, left of the centre line, above the plane of the runway's surface; m, m^2.
@@ -153,11 +154,10 @@ struct ApproachAngleResult {
     double yaw = kUnknown, yaw_variance = kUnknown;        ///< left of the landing direction, rad, rad^2
     double width = kUnknown, width_variance = kUnknown;    ///< of the runway's surface, m, m^2
     double length = kUnknown, length_variance = kUnknown;  ///< the same
-    bool by_chart = false;  ///< lengths are by the chart's width and length; otherwise by stereo
     /// The height with one element left out: the chart's width, its length, the ground's normal; m, m^2.
     Eigen::Vector3d height_without = Eigen::Vector3d::Constant(kUnknown);
     Eigen::Vector3d variance_without = Eigen::Vector3d::Constant(kUnknown);
-    /// Size of the surface by stereo, over the chart's; unknown without either.
+    /// Size of the surface by stereo, over the chart's; unknown without stereo.
     double size_over_chart = kUnknown, size_over_chart_variance = kUnknown;
   };
   double stamp = 0;

@@ -109,68 +109,87 @@ class Model {
 
   /// Value at a pixel, and its derivatives.
   double at(const Eigen::Vector2d& pixel, const Vector& p, Vector& slope) const {
-    double d[kSides], s[kSides], in[kSides], rise[kSides];
     const double blur = p[kBlur];
-    for (int i = 0; i < kSides; ++i) {
-      const OutlineSide& side = sides_[i];
-      s[i] = std::clamp(side.along.dot(pixel - side.from) / side.length, -0.5, 1.5);
-      d[i] = side.inward.dot(pixel - side.from) - (1 - s[i]) * p[2 * i] - s[i] * p[2 * i + 1];
-      in[i] = table_.share(d[i] / blur);
-      rise[i] = table_.bell(d[i] / blur) / blur;
-    }
-    const double across = std::max(in[kLeftSide] + in[kRightSide] - 1, 0.0);
-    const double along = std::max(in[kNearSide] + in[kFarSide] - 1, 0.0);
-    const double t = std::clamp(d[kNearSide] / std::max(d[kNearSide] + d[kFarSide], 1.0), 0.0, 1.0);
-    const double scale = (near_width_ + (far_width_ - near_width_) * t) / width_;  // px for each m
-    const double body = p[kSurface] * (1 - t) + p[kSurface + 1] * t;
-    // Lines along the runway: across them a blurred bell.
-    const auto line = [&](double off, double& by_off) {
-      const double value = table_.bell(off / blur) / blur * scale;
-      by_off = -off / (blur * blur) * value;
-      return value;
-    };
-    double by_left, by_right, by_middle;
-    const double stripes = line(d[kLeftSide] - kStripePlace * scale, by_left) +
-                           line(d[kRightSide] - kStripePlace * scale, by_right);
-    const double centre = line(0.5 * (d[kLeftSide] - d[kRightSide]), by_middle);
-    const auto bars = [&](int side, const double* from_to, double& by_side) {
-      by_side = table_.bell((d[side] - from_to[0]) / blur) / blur -
-                table_.bell((d[side] - from_to[1]) / blur) / blur;
-      return table_.share((d[side] - from_to[0]) / blur) - table_.share((d[side] - from_to[1]) / blur);
-    };
-    double by_near, by_far;
-    const double near_bars = bars(kNearSide, bars_, by_near), far_bars = bars(kFarSide, far_bars_, by_far);
+    const Place place = placeOf(pixel, p);
+    const double* d = place.inward;
+    const double along = place.along, across = place.across;
+    const double body = p[kSurface] * (1 - place.beyond) + p[kSurface + 1] * place.beyond;
+    const Part left = line(d[kLeftSide] - kStripePlace * place.scale, blur, place.scale);
+    const Part right = line(d[kRightSide] - kStripePlace * place.scale, blur, place.scale);
+    const Part centre = line(0.5 * (d[kLeftSide] - d[kRightSide]), blur, place.scale);
+    const Part near = bars(d[kNearSide], bars_, blur), far = bars(d[kFarSide], far_bars_, blur);
     const Eigen::Vector2d from_middle = (pixel - middle_) / 10;
     slope[kGround] = 1;
     slope[kGround + 1] = from_middle.x();
     slope[kGround + 2] = from_middle.y();
     slope[kGround + 3] = from_middle.y() * from_middle.y();
-    slope[kSurface] = across * along * (1 - t);
-    slope[kSurface + 1] = across * along * t;
-    slope[kStripes] = stripes * along;
-    slope[kMiddle] = centre * along;
-    slope[kNearBars] = near_bars * across;
-    slope[kFarBars] = far_bars * across;
-    const double value = slope.tail<kCount - kGround>().dot(p.tail<kCount - kGround>());
-    const double ends = p[kNearBars] * near_bars + p[kFarBars] * far_bars;
-    const double lines = p[kStripes] * stripes + p[kMiddle] * centre;
-    const double by[kSides] = {
-        along * (body * rise[kLeftSide] + p[kStripes] * by_left + 0.5 * p[kMiddle] * by_middle) +
-            ends * rise[kLeftSide],
-        (across * body + lines) * rise[kFarSide] + p[kFarBars] * across * by_far,
-        along * (body * rise[kRightSide] + p[kStripes] * by_right - 0.5 * p[kMiddle] * by_middle) +
-            ends * rise[kRightSide],
-        (across * body + lines) * rise[kNearSide] + p[kNearBars] * across * by_near};
+    slope[kSurface] = across * along * (1 - place.beyond);
+    slope[kSurface + 1] = across * along * place.beyond;
+    slope[kStripes] = (left.value + right.value) * along;
+    slope[kMiddle] = centre.value * along;
+    slope[kNearBars] = near.value * across;
+    slope[kFarBars] = far.value * across;
+    const double ends = p[kNearBars] * near.value + p[kFarBars] * far.value;
+    const double lines = p[kStripes] * (left.value + right.value) + p[kMiddle] * centre.value;
+    const double by_left = body * place.rise[kLeftSide] + p[kStripes] * left.slope;
+    const double by_right = body * place.rise[kRightSide] + p[kStripes] * right.slope;
+    const double by_middle = 0.5 * p[kMiddle] * centre.slope, lengthwise = across * body + lines;
+    const double by[kSides] = {along * (by_left + by_middle) + ends * place.rise[kLeftSide],
+                               lengthwise * place.rise[kFarSide] + p[kFarBars] * across * far.slope,
+                               along * (by_right - by_middle) + ends * place.rise[kRightSide],
+                               lengthwise * place.rise[kNearSide] + p[kNearBars] * across * near.slope};
     slope[kBlur] = 0;
     for (int i = 0; i < kSides; ++i) {
-      slope[2 * i] = -(1 - s[i]) * by[i];
-      slope[2 * i + 1] = -s[i] * by[i];
+      slope[2 * i] = -(1 - place.share[i]) * by[i];
+      slope[2 * i + 1] = -place.share[i] * by[i];
       slope[kBlur] -= by[i] * d[i] / blur;  // of edges; lines only get lower, which their amplitude takes up
     }
-    return value;
+    return slope.tail<kCount - kGround>().dot(p.tail<kCount - kGround>());
   }
 
  private:
+  /// Where a pixel is: along each side (a share of it) and inward of it (px), with how much of the pixel is
+  /// inside and the derivative of that. beyond: how far from the near side to the far one. scale: px a metre.
+  struct Place {
+    double share[kSides], inward[kSides], rise[kSides];
+    double across, along, beyond, scale;
+  };
+  Place placeOf(const Eigen::Vector2d& pixel, const Vector& p) const {
+    Place place;
+    double inside[kSides];
+    const double blur = p[kBlur];
+    for (int i = 0; i < kSides; ++i) {
+      const OutlineSide& side = sides_[i];
+      const double share = std::clamp(side.along.dot(pixel - side.from) / side.length, -0.5, 1.5);
+      const double inward =
+          side.inward.dot(pixel - side.from) - (1 - share) * p[2 * i] - share * p[2 * i + 1];
+      place.share[i] = share;
+      place.inward[i] = inward;
+      place.rise[i] = table_.bell(inward / blur) / blur;
+      inside[i] = table_.share(inward / blur);
+    }
+    place.across = std::max(inside[kLeftSide] + inside[kRightSide] - 1, 0.0);
+    place.along = std::max(inside[kNearSide] + inside[kFarSide] - 1, 0.0);
+    const double near = place.inward[kNearSide];
+    place.beyond = std::clamp(near / std::max(near + place.inward[kFarSide], 1.0), 0.0, 1.0);
+    place.scale = (near_width_ + (far_width_ - near_width_) * place.beyond) / width_;
+    return place;
+  }
+
+  /// What a marking adds for an amplitude of 1, and the derivative by the distance from its side.
+  struct Part {
+    double value, slope;
+  };
+  /// A line along the runway, this far off: across it a blurred bell.
+  Part line(double off, double blur, double scale) const {
+    const double value = table_.bell(off / blur) / blur * scale;
+    return {value, -off / (blur * blur) * value};
+  }
+  Part bars(double inward, const double* from_to, double blur) const {
+    const double begin = (inward - from_to[0]) / blur, end = (inward - from_to[1]) / blur;
+    return {table_.share(begin) - table_.share(end), (table_.bell(begin) - table_.bell(end)) / blur};
+  }
+
   const BlurTable& table_ = blurTable();
   std::array<OutlineSide, kSides> sides_;
   double width_, near_width_, far_width_;

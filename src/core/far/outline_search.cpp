@@ -10,8 +10,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kBand = 6, kStep = 3;  // rows
-constexpr double kPerMean = 1.2533;  // standard deviation of normal errors over their mean size
+constexpr int kBand = 6, kStep = 3;                       // rows
 constexpr double kLeastEdge = 2.5, kClearEdge = 4;        // grey levels for two columns; standard deviations
 constexpr size_t kMostEdges = 24;                         // of a band
 constexpr double kNarrowest = 2, kWidest = 90;            // px
@@ -82,14 +81,12 @@ class Search {
     }
     slopes_.assign(n, 0);
     sizes_.assign(n, 0);
-    double sum = 0;
     const uchar *first = mask_.ptr<uchar>(top) + region_.x,
                 *last = mask_.ptr<uchar>(top + kBand - 1) + region_.x;
     for (int u = 1; u + 1 < n; ++u) {
       if (first[u - 1] == 0 || first[u + 1] == 0 || last[u - 1] == 0 || last[u + 1] == 0) continue;
       slopes_[u] = static_cast<float>(sums_[u + 1] - sums_[u - 1]) / kBand;
       sizes_[u] = std::abs(slopes_[u]);
-      sum += sizes_[u];
     }
     const double least = std::max(kLeastEdge, kClearEdge * robustStddev({sizes_.begin(), sizes_.end()}));
     std::vector<Edge> edges;

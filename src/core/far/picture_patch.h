@@ -9,8 +9,7 @@ class PicturePatch {
  public:
   /// place: in the image; what lies outside is left out.
   void take(const cv::Mat& image, const cv::Rect& place);
-  bool known() const { return !grey_.empty(); }
-  /// By how many whole pixels it has moved, within this reach: the least sum of absolute differences.
+  /// By how many whole pixels it has moved, within this reach: the least sum of squared differences.
   cv::Point movement(const cv::Mat& image, int reach) const;
 
  private:

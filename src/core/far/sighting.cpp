@@ -127,7 +127,7 @@ Expected<Sighting::Seen> Sighting::fitFrom(const cv::Mat& left, const Corners& s
   if ((corners[3] - corners[0]).norm() > kBroad * model_.rig.size.width)
     return tl::make_unexpected(noSight("the runway is near: its markings tell more than its outline"));
   PoseElements elements;
-  elements.stereo = !byChart();
+  elements.stereo = false;  // it is to tell whether the chart is right
   const Expected<OutlinePose> pose = fitPose(outline->seen, knowledge(ground), model_.rig, elements);
   if (!pose) return tl::make_unexpected(pose.error());
   return Seen{*outline, *pose, corners};
@@ -292,8 +292,6 @@ ApproachAngleResult::Sight Sighting::report(const Seen& seen, const KnownGround&
   sight.width_variance = variance(found.size.width, found.covariance(6, 6));
   sight.length = found.size.length;
   sight.length_variance = variance(found.size.length, found.covariance(7, 7));
-  sight.by_chart = byChart();
-  if (!sight.by_chart) return sight;
   const double by_stripes = std::pow(widthDoubt(found), 2);
   sight.covariance += by_stripes * sight.position * sight.position.transpose();
   const PoseKnowledge known = knowledge(ground);

@@ -38,10 +38,9 @@ void contradict(const char* what, const Value& near, const Value& outline, Landi
 
 /// near: by edges and threshold.
 Value handedOver(const char* name, const Value& near, const Value& outline, double largest_stddev,
-                 bool by_chart, LandingResult& result) {
+                 LandingResult& result) {
   if (!outline.known()) return near;
   if (!near.known()) return outline.variance <= largest_stddev * largest_stddev ? outline : near;
-  if (!by_chart) return near;
   if (agree(near, outline)) return weightedMean(near, outline);
   contradict(name, near, outline, result);
   return near;
@@ -62,15 +61,14 @@ void handOver(const TrackedPosition& outline, const ApproachAngleResult::Sight& 
   const Eigen::Vector3d &p = outline.position, &variance = outline.variance;
   const double distance = std::abs(p.x());
   const Value x = handedOver("x", {result.x, result.x_variance}, {p.x(), variance.x()},
-                             std::max(kLeastX, kLargestX * distance), outline.by_chart, result);
+                             std::max(kLeastX, kLargestX * distance), result);
   const Value y = handedOver("y", {result.y, result.y_variance}, {p.y(), variance.y()},
-                             std::max(kLeastY, kLargestY * distance), outline.by_chart, result);
+                             std::max(kLeastY, kLargestY * distance), result);
   result.x = x.value;
   result.x_variance = x.variance;
   result.y = y.value;
   result.y_variance = y.variance;
-  if (!outline.by_chart || !outline.measured || std::isfinite(result.yaw) || !std::isfinite(sight.yaw))
-    return;
+  if (!outline.measured || std::isfinite(result.yaw) || !std::isfinite(sight.yaw)) return;
   result.yaw = sight.yaw;
   result.yaw_variance = sight.yaw_variance;
   result.yaw_failure = {};
@@ -81,7 +79,7 @@ void reportHeightAboveRunway(const TrackedPosition& outline, double bend, bool w
   const RunwayHeight ahead = runwayHeight(result, bend, width_known);
   const Value by_stereo{ahead.height, ahead.variance};
   Value by_outline;
-  if (outline.known() && outline.by_chart) by_outline = {outline.position.z(), outline.variance.z()};
+  if (outline.known()) by_outline = {outline.position.z(), outline.variance.z()};
   // What the slope of the ground before the runway adds to the height's own bound.
   const double slope = normalQuantile(parameters.integrity_risk) *
                        std::sqrt(std::max(0.0, by_stereo.variance - result.height_variance));

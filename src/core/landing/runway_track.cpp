@@ -11,8 +11,8 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kAcceleration = 1.0;    // m/s^2, along each axis
-constexpr double kSpeed[] = {60, 8, 8};  // m/s, 1 sigma before anything is known
+constexpr double kAcceleration = 1.0;                  // m/s^2, along each axis
+constexpr double kForwardSpeed = 60, kOtherSpeed = 8;  // m/s, 1 sigma before anything is known
 // 1 sigma that all pairs have in common, by the texture of the ground and what is painted, as a share of the
 // distance for x and y and of the height for z.
 constexpr double kSystematicX = 0.012, kSystematicY = 0.0005, kSystematicZ = 0.012;
@@ -20,10 +20,10 @@ constexpr double kSystematicX = 0.012, kSystematicY = 0.0005, kSystematicZ = 0.0
 constexpr double kCommon = 0.7,
                  kMostCommon = 0.9;    // share of a measurement's variance, at least and at most
 constexpr double kSpeedError = 0.005;  // of the speed: by axes that are a little turned
-constexpr Sigmas kGate(5);
-constexpr double kPatience = 12;      // s without the outline
-constexpr double kChartError = 0.10;  // of width and length
-constexpr Sigmas kContradiction(3);   // between the height and the one without an element
+constexpr double kGate = 5;            // sigmas
+constexpr double kPatience = 12;       // s without the outline
+constexpr double kChartError = 0.10;   // of width and length
+constexpr Sigmas kContradiction(3);    // between the height and the one without an element
 constexpr Sigmas kOtherSize(4);
 constexpr double kSameSize = 0.04;  // by which a size may differ from the chart's and be the same
 constexpr int kPersistent = 6;      // measurements in a row that are rejected, before they are believed
@@ -32,45 +32,26 @@ constexpr int kAgreeing = 5;        // pairs in a row
 }  // namespace
 
 RunwayTrack::RunwayTrack(const KalmanHeightParameters& parameters, const RunwayParameters& runway)
-    : parameters_(parameters), runway_(runway) {}
+    : parameters_(parameters),
+      runway_(runway),
+      axes_{Axis(kForwardSpeed), Axis(kOtherSpeed), Axis(kOtherSpeed)},
+      without_{Axis(kOtherSpeed), Axis(kOtherSpeed), Axis(kOtherSpeed)} {}
 
-void RunwayTrack::Axis::predict(double T, double acceleration) {
-  if (!known_) return;
-  Eigen::Matrix2d transition;
-  transition << 1, T, 0, 1;
-  const Eigen::Vector2d gain(0.5 * T * T, T);
-  state_ = transition * state_;
-  covariance_ = transition * covariance_ * transition.transpose() +
-                acceleration * acceleration * gain * gain.transpose();
-}
+RunwayTrack::Axis::Axis(double speed_stddev) : filter_(kAcceleration, speed_stddev, kGate) {}
 
-void RunwayTrack::Axis::update(double value, double variance, double systematic, double speed_stddev) {
+void RunwayTrack::Axis::update(double value, double variance, double systematic) {
   common_ = std::min(std::max(kCommon * variance, systematic * systematic), kMostCommon * variance);
   const double own = variance - common_;
-  const double innovation = value - state_[0];
-  if (known_ && !kGate.admits(innovation, covariance_(0, 0) + common_ + own)) {
-    if (++rejected_ < kPersistent) return;
-    known_ = false;
-  }
+  const bool accepted = known() && filter_.update(value, own).accepted;
+  rejected_ = accepted ? 0 : rejected_ + 1;
+  if (known() && rejected_ < kPersistent) return;
+  filter_.initialise(value, own);
   rejected_ = 0;
-  if (!known_) {
-    known_ = true;
-    state_ << value, 0;
-    covariance_ << own, 0, 0, speed_stddev * speed_stddev;
-    return;
-  }
-  const Eigen::Vector2d gain = covariance_.col(0) / (covariance_(0, 0) + own);
-  state_ += gain * innovation;
-  covariance_ -= gain * (covariance_(0, 0) + own) * gain.transpose();
 }
 
-void RunwayTrack::Axis::updateSpeed(double value, double variance) {
-  if (!known_) return;
-  const double innovation = value - state_[1], total = covariance_(1, 1) + variance;
-  if (!kGate.admits(innovation, total)) return;
-  const Eigen::Vector2d gain = covariance_.col(1) / total;
-  state_ += gain * innovation;
-  covariance_ -= gain * total * gain.transpose();
+void RunwayTrack::Axis::forget() {
+  filter_.reset();
+  rejected_ = 0;
 }
 
 RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3d& normal,
@@ -90,16 +71,16 @@ RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3
 }
 
 void RunwayTrack::forget() {
-  axes_ = {};
-  without_ = {};
+  for (Axis& axis : axes_) axis.forget();
+  for (Axis& axis : without_) axis.forget();
   unseen_ = 0;
 }
 
 TrackedPosition RunwayTrack::follow(double T, const ApproachAngleResult::Sight& sight,
                                     const RunwayVelocity& velocity) {
   if (!(T > 0)) forget();
-  for (Axis& axis : axes_) axis.predict(T, kAcceleration);
-  for (Axis& axis : without_) axis.predict(T, kAcceleration);
+  for (Axis& axis : axes_) axis.predict(T);
+  for (Axis& axis : without_) axis.predict(T);
   unseen_ += T;
   TrackedPosition result;
   const bool seen = !sight.failure && sight.position.allFinite();
@@ -117,27 +98,24 @@ TrackedPosition RunwayTrack::follow(double T, const ApproachAngleResult::Sight& 
         Reason::kInconsistent,
         text("the runway is ", rounded(size_), " times as large as the chart's, by stereo, with 1 sigma of ",
              rounded(std::sqrt(size_variance_)), ": check runway/width and runway/length")};
-  if (!axes_[0].known() || (by_chart_ && result.contradiction)) return result;
+  if (!axes_[0].known() || result.contradiction) return result;
   result.measured = seen;
-  result.by_chart = by_chart_;
   for (int i = 0; i < 3; ++i) {
     result.position[i] = axes_[i].value();
     result.variance[i] = axes_[i].variance();
   }
-  if (by_chart_) result.protection_level = protectionLevel();
+  result.protection_level = protectionLevel();
   return result;
 }
 
 void RunwayTrack::measure(const ApproachAngleResult::Sight& sight) {
-  if (sight.by_chart != by_chart_) forget();
-  by_chart_ = sight.by_chart;
   unseen_ = 0;
   const double distance = std::abs(sight.position.x()), height = std::abs(sight.position.z());
   const double systematic[] = {kSystematicX * distance, kSystematicY * distance, kSystematicZ * height};
   for (int i = 0; i < 3; ++i) {
-    axes_[i].update(sight.position[i], sight.covariance(i, i), systematic[i], kSpeed[i]);
+    axes_[i].update(sight.position[i], sight.covariance(i, i), systematic[i]);
     if (std::isfinite(sight.height_without[i]) && sight.variance_without[i] > 0)
-      without_[i].update(sight.height_without[i], sight.variance_without[i], systematic[2], kSpeed[2]);
+      without_[i].update(sight.height_without[i], sight.variance_without[i], systematic[2]);
   }
 }
 

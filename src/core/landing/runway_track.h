@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "height/height_filter.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
@@ -13,10 +14,9 @@ namespace uav_landing {
 struct TrackedPosition {
   Eigen::Vector3d position = Eigen::Vector3d::Constant(kUnknown);  ///< m, runway frame
   Eigen::Vector3d variance = Eigen::Vector3d::Constant(kUnknown);  ///< m^2
-  double protection_level = kUnknown;  ///< of the height, m; unknown where its scale is not a chart's
-  bool by_chart = false;
-  bool measured = false;  ///< on this pair
-  Failure contradiction;  ///< the chart's size is not the runway's
+  double protection_level = kUnknown;                              ///< of the height, m
+  bool measured = false;                                           ///< on this pair
+  Failure contradiction;                                           ///< the chart's size is not the runway's
 
   bool known() const { return position.allFinite(); }
 };
@@ -30,10 +30,10 @@ struct RunwayVelocity {
 RunwayVelocity runwayVelocity(const LandingResult& landing, const Eigen::Vector3d& normal,
                               const Eigen::Vector3d& direction);
 
-/// Follows the position by the outline with a Kalman filter for each axis: position and speed, white random
-/// acceleration. Where stereo tells the speed it follows that, also some seconds after the outline has become
-/// too large to be fitted. Pairs have some of their errors in common (the ground's texture, what is painted);
-/// that part of a measurement's variance does not average out.
+/// Follows the position by the outline with a filter for each axis, as the height has it. Where stereo tells
+/// the speed it follows that, also some seconds after the outline has become too large to be fitted. Pairs
+/// have some of their errors in common (the ground's texture, what is painted); that part of a measurement's
+/// variance does not average out.
 ///
 /// The protection level of the height is the largest of
 ///   k sigma;  what a chart that is wrong by 10 % does to it + k_f sigma;
@@ -49,22 +49,23 @@ class RunwayTrack {
                          const RunwayVelocity& velocity = {});
 
  private:
+  /// One coordinate by the height's filter, which begins anew when it has rejected some in a row.
   class Axis {
    public:
-    void predict(double T, double acceleration);
+    explicit Axis(double speed_stddev);
+    void predict(double T) { filter_.predict(T); }
     /// systematic: 1 sigma that all measurements have in common.
-    void update(double value, double variance, double systematic, double speed_stddev);
-    void updateSpeed(double value, double variance);
-    bool known() const { return known_; }
-    double value() const { return state_[0]; }
-    double variance() const { return covariance_(0, 0) + common_; }
+    void update(double value, double variance, double systematic);
+    void updateSpeed(double value, double variance) { filter_.updateSpeed(value, variance); }
+    void forget();
+    bool known() const { return filter_.initialised(); }
+    double value() const { return filter_.state()[0]; }
+    double variance() const { return filter_.covariance()(0, 0) + common_; }
 
    private:
-    bool known_ = false;
-    Eigen::Vector2d state_ = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d covariance_ = Eigen::Matrix2d::Zero();
-    double common_ = 0;
-    int rejected_ = 0;  // measurements in a row
+    HeightFilter filter_;
+    double common_ = 0;  // variance of the last measurement that the next ones have, too
+    int rejected_ = 0;   // measurements in a row
   };
   void measure(const ApproachAngleResult::Sight& sight);
   void compareSize(double T, const ApproachAngleResult::Sight& sight);
@@ -73,10 +74,10 @@ class RunwayTrack {
 
   KalmanHeightParameters parameters_;
   RunwayParameters runway_;
-  std::array<Axis, 3> axes_, without_;
-  bool by_chart_ = false;
-  double unseen_ = 0;   // s
-  int other_size_ = 0;  // pairs in a row with a size other than the chart's; negative: with the same
+  std::array<Axis, 3> axes_;     // x, y, z
+  std::array<Axis, 3> without_;  // z without an element
+  double unseen_ = 0;            // s
+  int other_size_ = 0;           // pairs in a row with a size other than the chart's; negative: with the same
   double size_ = kUnknown, size_variance_ = kUnknown;  // over the chart's
 };
 

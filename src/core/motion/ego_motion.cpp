@@ -134,61 +134,6 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
   return clusters.shared();
 }
 
-constexpr double kApart = 1e-3;  // s, of readout times, by whose difference derivatives are taken
-
-// The matches as they are at a readout time that is longer by kApart, about the state that the others were
-// last linearised at.
-const MotionRows& laterRows(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                            const MotionState& state, MotionMemory& memory) {
-  memory.shifted = matches;
-  for (TemporalMatch& match : memory.shifted) match.then += kApart * match.by_readout;
-  MotionRows& later = memory.drawn;
-  later.assign(rig, memory.shifted);
-  later.linearise(state);
-  return later;
-}
-
-SumsByTime sumsByReadout(const MotionRows& rows, const MotionRows& later, const Vector9d& step,
-                         double factor) {
-  SumsByTime sums = rows.sumsByTime(later, kApart, step);
-  sums.with_motion /= factor;
-  sums.information /= factor;
-  sums.right /= factor;
-  return sums;
-}
-
-std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalMatch>& matches,
-                              const MotionRows& rows, const MotionRows* later, const Vector9d& step,
-                              double factor) {
-  std::vector<double> shares;
-  shares.reserve(matches.size());
-  for (const TemporalMatch& match : matches)
-    shares.push_back(times.at(match.now.x(), match.now.y()) / times.readoutTime());
-  std::vector<RowNode> nodes = rows.rowNodes(shares, step, later, kApart);
-  for (RowNode& node : nodes) {
-    node.rotation /= factor;
-    node.with_next /= factor;
-    node.with_motion /= factor;
-    node.with_time /= factor;
-    node.score /= factor;
-    node.squares /= factor;
-  }
-  return nodes;
-}
-
-TimeUnknown timeUnknown(const SumsByTime& by_time) {
-  constexpr double kAnyReadout = 0.02;  // s
-  return {by_time.with_motion, by_time.information + 1 / (kAnyReadout * kAnyReadout), by_time.right};
-}
-
-// The unknowns beside the motion are taken out of all sums.
-void takeOut(const RowShake& shake, Matrix9d& information, SumsByTime& by_time) {
-  information = shake.information;
-  by_time.right -= by_time.with_motion.dot(shake.step) + shake.time_right;
-  by_time.with_motion -= shake.time_with_motion;
-  by_time.information -= shake.time_information;
-}
-
 // What is known of the motion when the normal given says nothing: it may be wrong by the rig in every pair
 // alike, which would be taken for a time. information: with the prior.
 Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& normal,
@@ -209,33 +154,32 @@ void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen
   effect.score = -sums.right - by_time.tail<3>().dot(by_prior);
 }
 
-}  // namespace
+// The motion that fits best, with the state of its last iteration.
+struct Fitted {
+  MotionState state, linearised;
+  Vector9d step;         // from linearised to state
+  Matrix9d information;  // with the prior
+  double factor = 1;     // by which variances are larger than rows say
+};
 
-Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                                        const Eigen::Vector3d& normal,
-                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, MotionMemory& memory, const RotationPrior* rotation,
-                                        const RowDoubt& doubt) {
+// The ground's normal as it was given.
+struct GivenNormal {
+  Eigen::Vector3d n;
+  Eigen::Matrix3d information;
+
+  // Right side of the normal equations by it.
+  Eigen::Vector3d pull(const MotionState& state) const { return information * (n - state.n); }
+};
+
+Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const GivenNormal& given,
+                           const MotionState& start, int min_matches, const RotationPrior* rotation,
+                           MotionRows& rows, MotionEstimate& result) {
   constexpr int kIterations = 8;
-  if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
-    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
-                                                                   " corners followed, at least " +
-                                                                   std::to_string(min_matches) + " needed"});
-  }
-  MotionRows& rows = memory.all;
-  rows.assign(rig, matches);
-  MotionState state = bestByConsensus({start.R.transpose(), start.t, normal}, memory);
-  const Eigen::Matrix3d prior = priorInformation(normal, normal_covariance);
-  MotionEstimate result;
-  result.inliers.assign(matches.size(), 0);
-  Matrix9d information;
+  Fitted fitted{start, start, {}, {}};
   const double overlap = overlapFactor(matches);
-  double factor = 1;
   Convergence convergence;
-  MotionState linearised = state;
-  Vector9d step;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    rows.linearise(state);
+    rows.linearise(fitted.state);
     MotionNormal sums = rows.accumulate(result.inliers);
     result.inlier_count = sums.count;
     if (sums.count < min_matches) {
@@ -245,33 +189,51 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
                                            " needed"});
     }
     // Matches that agree better than they claim may be as good as that (the variance factor a posteriori).
-    factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
-    sums.information /= factor;
-    sums.right /= factor;
-    sums.information.bottomRightCorner<3, 3>() += prior;
-    sums.right.tail<3>() += prior * (normal - state.n);
-    if (rotation != nullptr) addRotation(*rotation, state, sums);
-    information = sums.information.selfadjointView<Eigen::Lower>();
-    step = information.ldlt().solve(sums.right);
-    linearised = std::exchange(state, state.apply(step));
-    if (convergence.reached(step, information)) break;
+    fitted.factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
+    sums.information /= fitted.factor;
+    sums.right /= fitted.factor;
+    sums.information.bottomRightCorner<3, 3>() += given.information;
+    sums.right.tail<3>() += given.pull(fitted.state);
+    if (rotation != nullptr) addRotation(*rotation, fitted.state, sums);
+    fitted.information = sums.information.selfadjointView<Eigen::Lower>();
+    fitted.step = fitted.information.ldlt().solve(sums.right);
+    fitted.linearised = std::exchange(fitted.state, fitted.state.apply(fitted.step));
+    if (convergence.reached(fitted.step, fitted.information)) break;
   }
-  const bool by_readout = std::any_of(matches.begin(), matches.end(),
-                                      [](const TemporalMatch& match) { return !match.by_readout.isZero(0); });
-  const MotionRows* later = by_readout ? &laterRows(rig, matches, linearised, memory) : nullptr;
-  SumsByTime by_time;
-  if (later != nullptr) by_time = sumsByReadout(rows, *later, step, factor);
+  return fitted;
+}
+
+}  // namespace
+
+Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
+                                        const Eigen::Vector3d& normal,
+                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
+                                        int min_matches, MotionMemory& memory, const RotationPrior* rotation,
+                                        const RowDoubt& doubt) {
+  if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
+    return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
+                                                                   " corners followed, at least " +
+                                                                   std::to_string(min_matches) + " needed"});
+  }
+  MotionRows& rows = memory.all;
+  rows.assign(rig, matches);
+  const GivenNormal given{normal, priorInformation(normal, normal_covariance)};
+  MotionEstimate result;
+  result.inliers.assign(matches.size(), 0);
+  Expected<Fitted> found =
+      fitMotion(matches, given, bestByConsensus({start.R.transpose(), start.t, normal}, memory), min_matches,
+                rotation, rows, result);
+  if (!found) return tl::make_unexpected(found.error());
+  MotionState& state = found->state;
+  Matrix9d& information = found->information;
+  const RowUnknowns beside = findRowUnknowns(
+      rig, matches, {rows, found->linearised, found->step, information, found->factor}, doubt, memory);
   std::optional<Matrix9d> without_shake;
-  if (doubt.times != nullptr && doubt.shake != nullptr) {
-    const RowShake shake =
-        findRowShake(rowNodes(*doubt.times, matches, rows, later, step, factor), information,
-                     later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
-    if (shake.found()) {
-      without_shake = information.ldlt().solve(Matrix9d::Identity());
-      takeOut(shake, information, by_time);
-      state = state.apply(shake.step);
-      step += shake.step;
-    }
+  if (beside.shake.found()) {
+    without_shake = information.ldlt().solve(Matrix9d::Identity());
+    information = beside.shake.information;
+    state = state.apply(beside.shake.step);
+    found->step += beside.shake.step;
   }
   const Matrix9d covariance = information.ldlt().solve(Matrix9d::Identity());
   if (!covariance.allFinite() || !state.t.allFinite() || !(covariance.diagonal().minCoeff() >= 0)) {
@@ -285,24 +247,23 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();
   if (without_shake) result.of_shake = turn * (covariance - *without_shake) * turn.transpose();
-  if (by_readout) {
-    Vector9d moved = by_time.with_motion;
-    moved.tail<3>() += prior * doubt.normal_by_readout;
+  const Vector9d& with_time = beside.by_time.with_motion;
+  if (beside.has_time) {
+    Vector9d moved = with_time;
+    moved.tail<3>() += given.information * doubt.normal_by_readout;
     result.readout.by_time = turn * covariance * moved;
-    tellTime(by_time, covarianceWithoutPrior(information, normal, prior), prior * (normal - state.n),
-             result.readout);
+    tellTime(beside.by_time, covarianceWithoutPrior(information, normal, given.information),
+             given.pull(state), result.readout);
   }
   const Eigen::Matrix<double, 9, 3> by_normal = turn * covariance.rightCols<3>();
-  result.of_normal = by_normal * prior * by_normal.transpose();
-  information.bottomRightCorner<3, 3>() -= prior;
-  const std::optional<OwnNormal> own = freedOfPrior(information, normal, prior * (normal - state.n));
-  if (own) {
+  result.of_normal = by_normal * given.information * by_normal.transpose();
+  information.bottomRightCorner<3, 3>() -= given.information;
+  if (const std::optional<OwnNormal> own = freedOfPrior(information, normal, given.pull(state))) {
     result.own_normal = (state.n + own->step).normalized();
     result.readout.own_normal_by_time =
-        own->covariance *
-        (by_time.with_motion.tail<3>() + own->by_it.transpose() * by_time.with_motion.head<6>());
-    result.own_normal_covariance =
-        own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own, factor, step);
+        own->covariance * (with_time.tail<3>() + own->by_it.transpose() * with_time.head<6>());
+    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own,
+                                                                    found->factor, found->step);
   }
   return result;
 }

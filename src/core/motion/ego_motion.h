@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "motion/camera_motion.h"
-#include "motion/motion_rows.h"
+#include "motion/row_unknowns.h"
 #include "motion/temporal_match.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
@@ -40,20 +40,6 @@ struct MotionEstimate {
   Eigen::Matrix<double, 9, 9> of_shake = Eigen::Matrix<double, 9, 9>::Zero();
   std::vector<char> inliers;
   int inlier_count = 0;
-};
-
-/// What rows that are exposed one after the other do to a motion.
-struct RowDoubt {
-  const RowTimes* times = nullptr;  ///< of rows that may shake; null: all are exposed at once
-  ShakeMemory* shake = nullptr;
-  /// How the normal given follows a readout time that is not given, 1/s.
-  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();
-};
-
-/// Memory that the estimate works in: all matches, and the three that are drawn.
-struct MotionMemory {
-  MotionRows all, drawn;
-  std::vector<TemporalMatch> shifted;
 };
 
 /// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then

@@ -79,4 +79,10 @@ class MotionRows {
   std::vector<double> ratios_;
 };
 
+/// Memory that a fit works in: all matches, the three that are drawn, and those of another readout time.
+struct MotionMemory {
+  MotionRows all, drawn;
+  std::vector<TemporalMatch> shifted;
+};
+
 }  // namespace uav_landing

@@ -19,9 +19,8 @@ const char* const kHeader =
     "rig_ry_stddev_deg,rig_rz_stddev_deg,height_alert_limit_m,protection_source,failed_tests,"
     "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s,yaw_stddev_deg,yaw_known,"
     "yaw_reason,other_runway_probability,estimated_readout_time_s,estimated_readout_time_stddev_s,"
-    "height_above_runway_known,height_above_runway_protection_level_m,height_above_runway_limit_m,height_"
-    "origin,"
-    "runway_reason";
+    "height_above_runway_known,height_above_runway_protection_level_m,height_above_runway_limit_m,"
+    "height_origin,runway_reason";
 
 }  // namespace
 

@@ -12,7 +12,7 @@ TrackedPosition outlineAt(double x, double height, double stddev) {
   outline.position = {x, 2, height};
   outline.variance = {25, 1, stddev * stddev};
   outline.protection_level = 0.1 * height;
-  outline.by_chart = outline.measured = true;
+  outline.measured = true;
   return outline;
 }
 
@@ -75,20 +75,6 @@ TEST(RunwayReport, SaysWhereOutlineAndStereoContradictEachOther) {
   EXPECT_TRUE(std::isnan(landing.height_above_runway));
   EXPECT_FALSE(landing.height_above_runway_known);
   EXPECT_EQ(landing.height, 30) << "which keeps its meaning";
-}
-
-TEST(RunwayReport, WhereNoChartIsGivenEdgesAndThresholdKeepTheSay) {
-  LandingResult landing = stereoAt(30);
-  landing.y = 1.5;
-  landing.y_variance = 0.01;
-  TrackedPosition outline = outlineAt(-300, 33, 1);
-  outline.by_chart = false;
-  handOver(outline, {}, landing);
-  EXPECT_EQ(landing.y, 1.5);
-  EXPECT_EQ(landing.x, -300) << "fills the gap";
-  reportHeightAboveRunway(outline, 0, false, {}, landing);
-  EXPECT_EQ(landing.height_above_runway, 30) << "the outline has no scale of its own";
-  EXPECT_EQ(landing.height_origin, HeightOrigin::kStereo);
 }
 
 TEST(RunwayReport, NamesTheOriginOfTheHeight) {

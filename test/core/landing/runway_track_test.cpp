@@ -19,7 +19,6 @@ ApproachAngleResult::Sight sightAt(const Eigen::Vector3d& position, const Eigen:
   ApproachAngleResult::Sight sight;
   sight.position = position;
   sight.covariance = stddev.cwiseAbs2().asDiagonal();
-  sight.by_chart = true;
   return sight;
 }
 
@@ -63,7 +62,9 @@ TEST(RunwayTrack, AnElementThatContradictsRaisesTheLevel) {
     sight.height_without[0] = sight.position.z() - 12;
     sight.variance_without[0] = 1;
     const TrackedPosition found = contradicted.follow(i == 0 ? 0 : 0.2, sight);
-    if (i == 29) EXPECT_GT(found.protection_level, 12);
+    if (i == 29) {
+      EXPECT_GT(found.protection_level, 12);
+    }
   }
   EXPECT_LT(level, 10);
 }
@@ -76,7 +77,9 @@ TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
     sight.size_over_chart = 0.9;
     sight.size_over_chart_variance = 1e-4;
     found = track.follow(i == 0 ? 0 : 0.2, sight);
-    if (i == 1) EXPECT_TRUE(found.known()) << "one or two pairs may be wrong";
+    if (i == 1) {
+      EXPECT_TRUE(found.known()) << "one or two pairs may be wrong";
+    }
   }
   EXPECT_EQ(found.contradiction.reason, Reason::kInconsistent);
   EXPECT_NE(found.contradiction.detail.find("runway/width"), std::string::npos);
