@@ -246,8 +246,6 @@ Failure run(const Options& options) {
     if (!loaded) return loaded.error();
     parameters = *loaded;
   }
-  // All sequences are of global shutters.
-  if (std::isnan(parameters.rig.readout_time)) parameters.rig.readout_time = 0;
   std::vector<Measurement> measurements;
   const auto take = [&](const Expected<Sequence>& sequence) -> Failure {
     if (!sequence) return sequence.error();

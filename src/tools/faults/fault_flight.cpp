@@ -28,8 +28,6 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
                          uint64_t seed, const Parameters& parameters, const FaultObserver& observe) {
   CameraCalibration left = flight.left, right = flight.right;
   Parameters told = parameters;
-  // The flights' cameras have a global shutter. The chain knows, but for faults that leave it in the dark.
-  if (std::isnan(told.rig.readout_time)) told.rig.readout_time = 0;
   for (const Fault* fault : faults) {
     if (fault->calibrate) fault->calibrate(left, right);
     if (fault->tell) fault->tell(told);

@@ -238,10 +238,8 @@ void shake(SimulatorParameters& p, double onset) {
 }
 
 void addRows(std::vector<Fault>& all) {
-  Fault untold = built("readout_untold", "a rolling shutter of 10 ms that nobody told the chain of",
-                       [](SimulatorParameters& p) { p.image.readout_time = 0.01; });
-  untold.tell = [](Parameters& p) { p.rig.readout_time = RigParameters().readout_time; };
-  all.push_back(untold);
+  all.push_back(built("readout_untold", "a rolling shutter of 10 ms that nobody told the chain of",
+                      [](SimulatorParameters& p) { p.image.readout_time = 0.01; }));
   Fault told = built("readout_told", "a rolling shutter of 30 ms, and the chain is told 20 ms",
                      [](SimulatorParameters& p) { p.image.readout_time = 0.03; });
   told.tell = [](Parameters& p) { p.rig.readout_time = 0.02; };

@@ -63,9 +63,7 @@ SimulatorParameters parametersOf(double height, int seed) {
 Expected<Scenery> render(const SimulatorParameters& parameters) {
   const Expected<CameraRig> rig = makeCameraRig(parameters);
   if (!rig) return tl::make_unexpected(rig.error());
-  RigParameters known;
-  known.readout_time = 0;
-  const Expected<RigModel> model = makeRigModel(rig->left.calibration, rig->right.calibration, {}, known);
+  const Expected<RigModel> model = makeRigModel(rig->left.calibration, rig->right.calibration);
   if (!model) return tl::make_unexpected(model.error());
   Scenery scenery;
   scenery.model = *model;
