@@ -53,8 +53,9 @@ class AutopilotNodelet : public StageNodelet {
   void subscribe() override {
     feed<0, sensor_msgs::Range>("height", *pairing_, subscribers_);
     feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *pairing_, subscribers_);
-    feed<0, geometry_msgs::TwistWithCovarianceStamped>("twist", *movements_, subscribers_);
     feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *movements_, subscribers_);
+    // Last, because it goes to one pairing only: whoever sees it connected knows that all are.
+    feed<0, geometry_msgs::TwistWithCovarianceStamped>("twist", *movements_, subscribers_);
   }
   void unsubscribe() override {
     subscribers_.clear();
