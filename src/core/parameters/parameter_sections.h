@@ -15,7 +15,7 @@
 
 namespace uav_landing {
 
-// Loading of any set of parameter structs, such as Parameters: a struct whose visitSections() names its
+// Loads any set of parameter structs, such as Parameters. The set is a struct whose visitSections() names its
 // sections.
 
 template <class ParameterSet>
@@ -36,7 +36,7 @@ Failure loadSections(const YAML::Node& root, ParameterSet& parameters) {
   return {};
 }
 
-/// The failure begins with the name.
+/// name: what the message of a failure begins with.
 template <class ParameterSet>
 Expected<ParameterSet> parseSections(const std::string& yaml_text, const std::string& name) {
   ParameterSet parameters;

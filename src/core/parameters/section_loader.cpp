@@ -35,7 +35,7 @@ Failure invalid(const Parts&... parts) {
 }  // namespace
 
 std::string suggestName(const std::string& word, const std::vector<std::string>& names) {
-  constexpr std::size_t kLongestName = 100;  // a longer word is no misspelt name, and takes long to compare
+  constexpr std::size_t kLongestName = 100;  // a longer word is no misspelt name, and comparing it takes long
   if (word.size() > kLongestName) return "";
   const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return editDistance(word, a) < editDistance(word, b);

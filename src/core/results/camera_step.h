@@ -2,7 +2,7 @@
 
 namespace uav_landing {
 
-/// By how much the camera moved since the pair before, in any direction.
+/// How far the camera moved since the pair before, in any direction.
 struct CameraStep {
   double duration = 0;           ///< s
   double way = 0, variance = 0;  ///< m, m^2

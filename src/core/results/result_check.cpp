@@ -11,16 +11,18 @@
 namespace uav_landing {
 namespace {
 
-// Wider than anything that flies, narrow enough that no square or product of them leaves the range of
-// numbers.
+// The range is wider than anything that flies. It is so narrow that no square or product of heights
+// overflows.
 constexpr double kLeastHeight = 1e-3, kLargestHeight = 1e5;  // m
-constexpr double kSteepest = 0.17;  // cosine of the ground's tilt in the picture: no ground rises like a wall
+// Smallest cosine of the ground's tilt in the image: no ground rises like a wall.
+constexpr double kSteepest = 0.17;
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
-constexpr double kLargestSkew = 0.1;                         // s, what max_skew can be
-constexpr double kLargestVariance = 1e9;  // in squares of the units below: says "unknown" in numbers
-constexpr double kLeastRelative = 1e-6;   // 1 sigma over the value: no camera sees better
-constexpr double kRounding = 1e-6;        // of covariances that went through calculations
+constexpr double kLargestSkew = 0.1;                         // s, largest value of max_skew
+// In squares of the units below; larger ones only say "unknown" in numbers.
+constexpr double kLargestVariance = 1e9;
+constexpr double kLeastRelative = 1e-6;  // 1 sigma over the value: no camera sees better
+constexpr double kRounding = 1e-6;       // error of covariances that were calculated
 constexpr size_t kMostPoints = 100000;
 
 constexpr double kLongestReadout = 1;  // s
@@ -29,7 +31,7 @@ bool within(double value, double limit) { return std::abs(value) <= limit; }  //
 
 bool isVariance(double value) { return value > 0 && value <= kLargestVariance; }
 
-/// Symmetric, without a negative direction, and not all zero.
+/// Whether the matrix is symmetric, has no negative direction, and is not all zero.
 template <int kSize>
 bool isCovariance(const Eigen::Matrix<double, kSize, kSize>& matrix) {
   const double size = matrix.trace();
@@ -40,21 +42,22 @@ bool isCovariance(const Eigen::Matrix<double, kSize, kSize>& matrix) {
   return solver.eigenvalues()[0] >= -kRounding * size;
 }
 
-/// A covariance, or none at all, that another one has in it.
+/// Whether share is zero, or a covariance that is contained in the other one.
 bool isShare(const Eigen::Matrix3d& share, const Eigen::Matrix3d& whole) {
   if (share.isZero(0)) return true;
   return isCovariance<3>(share) &&
          (share.diagonal().array() <= (1 + kRounding) * whole.diagonal().array()).all();
 }
 
-/// A unit vector with its covariance.
+/// Whether it is a unit vector with its covariance.
 bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
   constexpr double kLength = 1e-3;
   return within(direction.norm() - 1, kLength) && isCovariance<3>(covariance) &&
          covariance.trace() >= kLeastRelative * kLeastRelative;
 }
 
-/// Of the right camera as rows that do not match show it: the rows of larger ones are never found.
+/// Whether rows that do not match can show this rotation of the right camera. The rows of larger rotations
+/// are never found.
 bool isRotation(const RigRotation& rotation) {
   constexpr double kLargest = 0.2, kLargestYaw = 1, kLeastStddev = 1e-6;  // rad; rows hardly show a yaw
   return rotation.w.allFinite() && within(rotation.w.x(), kLargest) && within(rotation.w.z(), kLargest) &&
@@ -62,21 +65,22 @@ bool isRotation(const RigRotation& rotation) {
          rotation.covariance.diagonal().minCoeff() >= kLeastStddev * kLeastStddev;
 }
 
-/// Of the right camera against the left one: further than any that has its picture.
+/// Whether the right camera can be there. The limit is far beyond the place of any camera that sees the same
+/// scene.
 bool isBaseline(const BaselineDirection& baseline) {
   constexpr double kLargest = 100;  // baselines
   return within(baseline.t.norm(), kLargest) && isCovariance<2>(baseline.covariance);
 }
 
-/// Both become unknown unless they are a direction.
+/// Makes both unknown unless they are a direction.
 void keepDirection(Eigen::Vector3d& direction, Eigen::Matrix3d& covariance) {
   if (isDirection(direction, covariance)) return;
   direction.setConstant(kUnknown);
   covariance.setConstant(kUnknown);
 }
 
-/// What failed has no numbers, but for a camera that hardly moves: its turn is known all the same, an angle
-/// is not.
+/// Makes the numbers of a failed motion unknown. A camera that hardly moves is an exception: its rotation is
+/// known even though the angle is not.
 void keepMotion(ApproachAngleResult::Motion& motion) {
   const bool measured = !motion.failure || motion.failure.reason == Reason::kNoMotion;
   const bool possible =
@@ -152,7 +156,7 @@ void keepSight(ApproachAngleResult::Sight& sight) {
     sight.failure = {Reason::kInputInvalid, "sight.position: not a position with a covariance"};
 }
 
-/// "" or the field that makes the plane useless, and why.
+/// Returns the field that makes the plane useless, with the reason; "" when there is none.
 std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result) {
   const Eigen::Vector3d& g = result.plane.g;
   const double size = g.norm();
@@ -163,7 +167,7 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return "plane_covariance: not a covariance of this plane";
   if (!isShare(result.row_covariance, result.plane.covariance))
     return "plane_row_covariance: not a part of plane_covariance";
-  // No plane changes by many times itself in a readout. Its components may be hardly told from each other.
+  // No plane changes by many times itself within a readout. Its components may be hardly distinguishable.
   constexpr double kLargestByRate = 100 * kLongestReadout, kLargestRate = 100;
   if (!result.plane_by_rate.allFinite() || result.plane_by_rate.cwiseAbs().maxCoeff() > kLargestByRate)
     return text("plane_by_rate: finite numbers up to ", kLargestByRate, " s expected");
@@ -179,7 +183,7 @@ std::string problemOfPlane(const StereoRig& rig, const StereoDepthResult& result
     return text("row_bias_stddev: ", result.row_bias_stddev, " px, 0 to ", kLargestRowBias, " expected");
   if (!std::isnan(result.lasting_share) && !(result.lasting_share > 0 && result.lasting_share <= 1))
     return text("plane_lasting_share: ", result.lasting_share, ", at most 1 expected");
-  // The noise of an unbiased variance makes it negative, but not by much.
+  // An unbiased estimate of a variance may be negative because of noise, but not by much.
   constexpr double kLeastSurface = -1e-2, kLargestSurface = 1;
   const double surface = result.surface_variance * size * size;
   if (!std::isnan(surface) && !(surface >= kLeastSurface && surface <= kLargestSurface))

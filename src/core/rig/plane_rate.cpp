@@ -25,7 +25,8 @@ void carryTo(const Eigen::Vector3d& rate, StereoDepthResult& stereo) {
   stereo.plane_rate = rate;
 }
 
-// As if the estimated time had been given, and nothing carried: A is that of the time then.
+// Does as if the estimated readout time had been given and nothing had been carried yet. A becomes that of
+// the estimated time.
 Eigen::Vector3d takeReadout(const Eigen::Vector3d& rate, const ReadoutEstimate& readout,
                             StereoDepthResult& stereo) {
   const Eigen::Vector3d by_time = stereo.plane_by_rate * rate;

@@ -5,21 +5,24 @@
 
 namespace uav_landing {
 
-/// A pair's ground at the stamp by a better known motion than the one that its disparities were carried with:
-/// dg = A (rate(motion) - rate), with A and rate of the stereo result. Nothing changes without row times.
+/// Rows are exposed at different times, so disparities were carried to the stamp by a motion. This carries
+/// the pair's ground again, by a better known motion: dg = A (rate(motion) - rate), where A and rate are
+/// those of the stereo result. Nothing changes without row times.
 ///
-/// Where the readout time is estimated, as none is given, A is that of a readout of 1 s and nothing was
-/// carried: dg = time A rate(motion), and what the error of the time does is in the covariances, in the share
-/// that all pairs have in common, too. Returns dg by that time, 1/m/s, or 0.
+/// When no readout time is given, readout has the estimated one. A is then that of a readout of 1 s, and
+/// nothing was carried before: dg = time A rate(motion). The covariances contain the error of the time, and
+/// so does the share that all pairs have in common. Returns the derivative of g by the readout time, 1/m/s; 0
+/// when the time is not estimated.
 Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& readout,
                            StereoDepthResult& stereo);
 
-/// The same by the step up to this pair, with what its errors do to the plane in the covariance. Without a
-/// step the rate is as uncertain as it is large; by an estimated readout time it is that of stereo.
+/// The same with the step up to this pair; the covariance then contains the effect of the step's errors.
+/// Without a step the rate counts as an error of its own size. With an estimated readout time and no step,
+/// the rate of stereo is used instead.
 void carryPlane(const ApproachAngleResult::Motion& step, const ReadoutEstimate& readout,
                 StereoDepthResult& stereo);
 
-/// By an estimated readout time and the rate of stereo alone.
+/// The same with an estimated readout time and the rate of stereo alone.
 Eigen::Vector3d carryPlane(const ReadoutEstimate& readout, StereoDepthResult& stereo);
 
 }  // namespace uav_landing

@@ -8,15 +8,17 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kMemory = 2.0;                // s that the mean is of
-constexpr double kFirst = 0.4;                 // s before there is anything to compare with
-constexpr double kFirstTime = 0.1;             // s that the first pair of a mean counts for at most
-constexpr double kPatience = 3.0;              // s of something else, after which that may be the rig
-constexpr double kSettled = 1.0;               // s of it without a change, after which it is
-constexpr double kSmall = 0.1 * M_PI / 180;    // rad: of unsynchronised images, 0.1 % of the height at most
+constexpr double kMemory = 2.0;     // s, time over which the mean is taken
+constexpr double kFirst = 0.4;      // s, needed before there is anything to compare with
+constexpr double kFirstTime = 0.1;  // s, largest time that the first pair of a mean counts for
+constexpr double kPatience = 3.0;   // s of another rotation, after which it may be the rig's
+constexpr double kSettled = 1.0;    // s without a change, after which a rotation is the rig's
+// Rotation that does little harm, rad. Images that are not synchronised and show it change the height by at
+// most 0.1 %.
+constexpr double kSmall = 0.1 * M_PI / 180;
 constexpr double kSame = 13.8;                 // chi-square limit of 1e-3 with two degrees of freedom
-constexpr double kMostDisorder = 2.0;          // stddev of a pair over that of the pairs before
-constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma: scenes whose depth pulls at the rows
+constexpr double kMostDisorder = 2.0;          // largest stddev of a pair over that of the pairs before
+constexpr double kFloor = 0.004 * M_PI / 180;  // rad, 1 sigma, for scenes whose depth affects the rows
 
 Eigen::Matrix2d covarianceOf(const RigRotation& rotation) {
   return rotation.pitchAndRollCovariance() + kFloor * kFloor * Eigen::Matrix2d::Identity();
@@ -31,9 +33,9 @@ bool RigChange::Innovation::agrees() const {
 bool RigChange::Innovation::isLarge() const { return difference.norm() > kSmall && !agrees(); }
 
 RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) const {
-  // What neighbouring rows share is estimated from few parts of one image: where it is small by chance, the
-  // pairs before know better, and where it is large, images of two scenes must not be excused by the disorder
-  // they make.
+  // The covariance has errors that neighbouring rows share, estimated from few parts of one image. When it is
+  // small by chance, the mean's covariance is used. When it is large, it is limited: images of two different
+  // scenes must not pass because of the disorder that they cause.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> against(covarianceOf(measured), covariance);
   const Eigen::Vector2d ratios = against.eigenvalues().cwiseMax(1).cwiseMin(kMostDisorder * kMostDisorder);
   const Eigen::Matrix2d axes = covariance * against.eigenvectors();
@@ -43,9 +45,9 @@ RigChange::Innovation RigChange::Mean::compare(const RigRotation& measured) cons
 void RigChange::Mean::add(double T, const RigRotation& measured) {
   const double share = learned > 0 ? std::clamp(T / std::min(learned + T, kMemory), 0.0, 1.0) : 1.0;
   value += share * (measured.pitchAndRoll() - value);
-  // Pairs in a row see the same texture: their mean is not better than the best of them.
+  // Pairs in a row see the same texture, so their mean is not better than the best of them.
   covariance += share * (covarianceOf(measured) - covariance);
-  // For how long it had been so before the first pair nobody knows.
+  // Nobody knows for how long the rotation had been this one before the first pair.
   learned += std::clamp(T, 1e-3, learned > 0 ? kMemory : kFirstTime);
 }
 
@@ -95,7 +97,7 @@ bool RigChange::learn(double T, const RigRotation& measured, bool agrees) {
 RigRotation RigChange::mean() const {
   RigRotation rotation;
   rotation.w = {mean_.value.x(), 0, mean_.value.y()};
-  rotation.covariance.setIdentity();  // nothing of yaw
+  rotation.covariance.setIdentity();  // the yaw is not known
   rotation.covariance(0, 0) = mean_.covariance(0, 0);
   rotation.covariance(2, 2) = mean_.covariance(1, 1);
   rotation.covariance(0, 2) = rotation.covariance(2, 0) = mean_.covariance(0, 1);

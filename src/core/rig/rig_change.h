@@ -7,34 +7,36 @@
 
 namespace uav_landing {
 
-/// Sudden changes of what vertical disparities show of the rig's pitch and roll (rig_rotation.h): a camera
-/// that was bent, or images that were not taken at the same time. Constant errors, of lenses for instance, do
-/// not show.
+/// Finds sudden changes of the rig's pitch and roll as vertical disparities show them (rig_rotation.h): a
+/// camera was bent, or the images were not taken at the same time. Constant errors, such as those of lenses,
+/// do not show.
 class RigChange {
  public:
   struct Innovation {
     Eigen::Vector2d difference;  ///< of (rx, rz), rad
     Eigen::Matrix2d covariance;
 
-    /// But for one in a thousand.
+    /// True for all but one in a thousand differences of pure noise.
     bool agrees() const;
-    /// Far off, and for certain.
+    /// The rotation is larger than noise can make it, and large enough to matter.
     bool isLarge() const;
   };
-  /// Against the mean of the pairs before; none for the first ones.
+  /// The difference to the mean of the pairs before. There is none for the first pairs.
   std::optional<Innovation> compare(const RigRotation& measured) const;
-  /// T: s since the pair before. agrees: as compared. What does not agree is left out for some seconds; what
-  /// comes then is learned anew. A small change is the rig's as soon as it has stayed the same for a second:
-  /// what images that do not belong together do to the height goes with the rotation that they show. True
-  /// when another rotation than before is the rig's from now on.
+  /// Learns from a pair. T: s since the pair before. agrees: result of compare().
+  ///
+  /// Pairs that do not agree are left out. After some seconds of them, the rotation is learned anew. A small
+  /// change is accepted as soon as it has stayed the same for a second. This is safe when the images do not
+  /// belong together as well: their error of the height is proportional to the rotation that they show.
+  /// Returns true when the rig has another rotation from now on.
   bool learn(double T, const RigRotation& measured, bool agrees);
-  /// What has been learned, as one measurement of the pitch and roll.
+  /// The mean of what was learned, as one measurement of pitch and roll.
   RigRotation mean() const;
-  /// Whether it says nothing of the rig: far from the pairs before, and has not stayed the same for a second,
-  /// or what came after another rotation has not settled.
+  /// Whether the measurement says nothing about the rig. This is so while a new rotation has not settled. It
+  /// is also so for a rotation far from those before that has not stayed the same for a second.
   bool doubts(const RigRotation& measured) const;
-  /// False while another rotation than before is not yet known for long enough to be the rig's: that of
-  /// images that do not belong together changes.
+  /// False after a change, until the new rotation has been known for long enough to be the rig's. Images that
+  /// do not belong together show a rotation that keeps changing.
   bool settled() const;
   void reset() { *this = RigChange(); }
 
@@ -47,12 +49,12 @@ class RigChange {
     Innovation compare(const RigRotation& measured) const;
     void add(double T, const RigRotation& measured);
   };
-  /// The pairs that do not agree, as long as they agree with each other.
+  /// Averages the pairs that do not agree with the mean, as long as they agree with each other.
   void learnOther(double T, const RigRotation& measured);
 
   Mean mean_, other_;
   double disagreed_ = 0;  // s
-  bool anew_ = false;     // after another rotation
+  bool anew_ = false;     // the rotation is being learned anew
 };
 
 }  // namespace uav_landing

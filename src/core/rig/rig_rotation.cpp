@@ -12,7 +12,7 @@ double residualOf(const StereoRig& rig, const StereoDepthResult::Point& point, c
   return (point.disparity - rig.fb() * g.dot(rig.ray(point.u, point.v))) / point.disparity_stddev;
 }
 
-// Robust size of the residuals as a multiple of the claimed stddevs.
+// Robust size of the residuals, as a multiple of the claimed standard deviations; at least 1.
 double residualScale(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                      const Eigen::Vector3d& g) {
   std::vector<double> sizes;

@@ -11,22 +11,21 @@
 namespace uav_landing {
 namespace {
 
-// Seconds after which texture is another.
+// Time after which the camera sees other texture, s.
 constexpr double kCorrelationTime = 1.0;
-// The same of a vanishing direction: the lines of a runway far ahead are the same ones for longer, and are
-// misjudged by much the same (blur, ragged paint, which of them are found) until they are seen from much
-// nearer.
+// The same for a vanishing direction, s. The lines of a runway far ahead stay the same for longer. Their
+// errors (blur, ragged paint, which lines are found) hardly change until they are seen from much nearer.
 constexpr double kLinesTime = 5.0;
-// Degrees of freedom of the Student t: the fewer, the sooner a bent rig is believed.
+// Degrees of freedom of the Student t. The fewer there are, the sooner the filter believes in a bent rig.
 constexpr double kFreedom = 2.0;
-// Share of the vanishing point's smallest variance seen that is not the runway's slope.
+// Share of the vanishing point's smallest variance so far that is not due to the runway's slope.
 constexpr double kNoiseShare = 0.1;
-// 1 sigma of what a normal by the images' motion is wrong by in every frame, rad: lenses change what moves by
-// a share, and its plane is not quite that of stereo where the ground bends.
+// 1 sigma of the lasting error of a normal by the images' motion, rad. Lenses scale the motion in the image a
+// little. Where the ground bends, the plane that moves is not quite that of stereo.
 constexpr double kMovingStddev = 0.003 * M_PI / 180;
-// Share of such a normal's noise that those of the next pairs have too: of the same ground, by other images.
+// Share of such a normal's noise that the next pairs have, too. They see the same ground in other images.
 constexpr double kMovingLasting = 0.05;
-// Squared normalised innovation as which every larger one of such a normal counts.
+// Larger squared normalised innovations of such a normal count as this one.
 constexpr double kMovingLimit = 25;
 
 }  // namespace
@@ -76,7 +75,8 @@ void RigRotationFilter::setPrior(double bias_stddev, double row_bias_stddev) {
 void RigRotationFilter::updateVertical(const RigRotation& measured) {
   if (!measured.known() || !(calibrated_variance_ > 0)) return;
   const Eigen::Matrix2d covariance = measured.pitchAndRollCovariance();
-  // Without a definite covariance, as in a message whose field was never filled in, it would leave no state.
+  // A covariance that is not definite would make the state useless. A message whose field was never filled in
+  // has one.
   const Eigen::LLT<Eigen::Matrix2d> decomposed(covariance);
   if (!(covariance.trace() > 0) || decomposed.info() != Eigen::Success) return;
   const Eigen::Matrix2d weight = share_ * decomposed.solve(Eigen::Matrix2d::Identity());
@@ -110,7 +110,7 @@ double RigRotationFilter::learnSlopeVariance(int slope, double variance) {
   return smallest;
 }
 
-// Of 0 = p.g - s / h, by the state, the plane and the noise of p.
+// Innovation of the measurement 0 = p.g - s / h, with the errors of the state, the plane and p.
 RigRotationFilter::Innovation RigRotationFilter::innovationOf(const Sloping& sloping, double noise,
                                                               const Joint& joint) const {
   const Eigen::Vector3d& p = sloping.ground.direction;
@@ -154,11 +154,11 @@ std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(const Ot
   return directions;
 }
 
-// What is left of a direction's variance without that of its slope.
+// Variance of a direction without that of its slope.
 double RigRotationFilter::noiseOf(const Sloping& sloping, double variance, const Joint& joint) {
   if (!sloping.isMoving()) return variance - learnSlopeVariance(sloping.slope, variance);
-  // On uneven ground such normals scatter by more than the residuals of the points show, which are wrong
-  // together there.
+  // On uneven ground such normals scatter by more than the residuals of the points show, because the points
+  // have common errors there.
   const Innovation innovation = innovationOf(sloping, variance, joint);
   moving_scatter_.add(innovation.value * innovation.value / innovation.variance);
   return moving_scatter_.factor() * variance;
