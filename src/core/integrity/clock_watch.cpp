@@ -9,20 +9,23 @@
 namespace uav_landing {
 namespace {
 
-// Regular steps that have to come before. Period and speed are their medians.
+// Number of regular steps that must come before. The period and the speed are their medians.
 constexpr size_t kSteps = 5;
-// Share by which the way of a regular step may differ from the one of its time: gusts and brakes.
+// Share by which the distance of a regular step may differ from the one expected, because of gusts and
+// brakes.
 constexpr double kRegular = 0.15;
-// The same of a way that contradicts the stamps: the height that it is in units of is not exact either.
+// Share by which a distance must differ to contradict the stamps. It is larger because distances come in
+// units of the height, which is not exact either.
 constexpr double kContradicts = 0.25;
-// Frame periods that the way may be of: those of stamps that were left out as late (StampOrder), and one.
+// Largest number of frame periods that a distance may belong to: one, and those whose stamps were left out as
+// late (StampOrder).
 constexpr int kMostPeriods = 4;
-// Share of a period within which the way has to be one of whole periods.
+// Largest deviation from a whole number of periods, in periods.
 constexpr double kWhole = 0.25;
-// Times (s) that differ by less are those of stamps that jitter, which StampScatter follows. To start anew
-// for each of them would do more harm.
+// Smaller differences of time, s, are jitter of stamps, which StampScatter follows. To start anew for each of
+// them would do more harm.
 constexpr double kLeastStep = 0.045;
-// 1 sigma of a way over itself: one that is known worse tells no time.
+// Largest 1 sigma of a distance over itself. A worse distance tells no time.
 constexpr double kLargestRelative = 0.08;
 
 }  // namespace

@@ -7,26 +7,26 @@
 
 namespace uav_landing {
 
-/// Notices a clock that was set between two pairs: the stamps tell another time than the camera's way, and
-/// that way is the one of a frame period or a few.
+/// Notices a clock that was set between two pairs. The stamps then tell another time than the distance that
+/// the camera moved, and that distance belongs to a whole number of frame periods.
 ///
-/// An aircraft's speed hardly changes from pair to pair. So the way since the pair before, over the speed of
-/// the last steps, is the time that has really passed. A dropped frame moves the camera by two periods and
-/// the stamps by as much; a frozen picture does not move it; brakes change the way by some per cent. None of
-/// these looks like a clock that was set.
+/// An aircraft's speed hardly changes from pair to pair. So the distance since the pair before, over the
+/// speed of the last steps, is the time that has really passed. Three other events do not look like a clock
+/// that was set. A dropped frame moves the camera by two periods, and the stamps by as much. A frozen image
+/// does not move the camera. Brakes change the distance by some per cent.
 class ClockWatch {
  public:
-  /// A step, its duration by the stamps. Returns the time that the camera's way tells instead (s), where the
-  /// two contradict each other; nothing where they agree, or before enough steps were regular.
+  /// Follows a step, with its duration by the stamps. When the two contradict each other, returns the time by
+  /// the distance instead, s. Returns nothing when they agree, or before enough steps were regular.
   std::optional<double> follow(const CameraStep& step);
-  /// A pair whose motion is not known. What follows is no evidence until steps are regular again.
+  /// A pair whose motion is not known. Later steps are no evidence until they are regular again.
   void skip();
 
  private:
   struct Step {
     double duration = 0, speed = 0;  // s, m/s
   };
-  std::deque<Step> regular_;  // the last steps, as long as stamps and ways agree
+  std::deque<Step> regular_;  // the last steps, as long as stamps and distances agree
 };
 
 }  // namespace uav_landing

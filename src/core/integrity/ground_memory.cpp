@@ -11,29 +11,30 @@
 namespace uav_landing {
 namespace {
 
-// In multiples of the height.
+// Lengths are in multiples of the height.
 constexpr double kHalfWidth = 0.35;    // of the strip below the path
 constexpr double kLength = 0.5;        // of the strip that one pair is asked about
 constexpr double kSpacing = 0.1;       // between patches
-constexpr double kLargestGap = 0.5;    // between patches that are ground without a step
-constexpr double kMostOff = 0.15;      // by which ground may differ from the plane
-constexpr double kLeastMotion = 1e-3;  // since the pair before: less has no direction
-constexpr double kPathKept = 0.8;      // share of the path that counts on the next pair: of five pairs
-constexpr double kLongestStep = 5;     // over the mean step of the path: a longer one is wrong
-constexpr size_t kFewest = 5;          // points that make a patch
-// Share of the variance of a look that those of the next pairs have as well, as they see the same texture: by
-// the simulator's errors a twentieth to a third.
+constexpr double kLargestGap = 0.5;    // largest distance between two patches with continuous ground
+constexpr double kMostOff = 0.15;      // largest difference between ground and plane
+constexpr double kLeastMotion = 1e-3;  // since the pair before: a shorter one has no direction
+// Share of the path that remains on the next pair, as in a mean of five pairs.
+constexpr double kPathKept = 0.8;
+constexpr double kLongestStep = 5;  // longest possible step, over the mean step of the path
+constexpr size_t kFewest = 5;       // points that make a patch
+// Share of the variance of a look that the next pairs have as well, because they see the same texture. The
+// simulator's errors give a twentieth to a third.
 constexpr double kLasting = 1.0 / 3;
-constexpr int kMostCoasts = 3;  // pairs without a motion in a row
+constexpr int kMostCoasts = 3;  // pairs in a row without a motion
 constexpr double kClimbChange =
-    0.05;  // 1 sigma of the climb on a usual step that is not known, of its length
+    0.05;  // 1 sigma of the climb on an unknown step of usual length, as a share of that length
 
 struct GroundPoint {
   double ahead, height, stddev;  // m
-  double ahead_on_plane;         // m, where its ray meets the plane
+  double ahead_on_plane;         // m, where the point's ray meets the plane
 };
 
-/// Variance of the median of the heights: by their scatter, or by what they claim.
+/// Variance of the median of the heights: by their scatter or by their claims, whichever is larger.
 double medianVariance(const std::vector<GroundPoint>& points, double middle) {
   std::vector<double> off, claimed;
   for (const GroundPoint& point : points) {
@@ -74,8 +75,8 @@ void GroundMemory::move(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, doub
   if (gap_ && !wrong && T > 0) closeGap(R.transpose() * t / T, path_time_ / steps_);
   gap_.reset();
   coasts_ = 0;
-  // As long as can be believed: a speed that did change is after some pairs. The direction of a step that
-  // cannot be says nothing.
+  // The length is limited to what is possible: if the speed did change, the path follows after some pairs.
+  // The direction of an impossible step says nothing.
   path_ = kPathKept * before + (wrong ? longest * usual.normalized() : t);
   path_time_ = kPathKept * path_time_ + T;
   steps_ = kPathKept * steps_ + 1;
@@ -98,7 +99,7 @@ void GroundMemory::coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
   carry(patches_, R, path_ * (T / path_time_), turn_stddev * turn_stddev, climbVariance(T));
 }
 
-// Of steps over T at the usual speed.
+// Variance of the climb over a time T at the usual speed, m^2.
 double GroundMemory::climbVariance(double T) const {
   const double steps = steps_ * T / path_time_, usual = path_.norm() / steps_;
   return steps * std::pow(kClimbChange * usual, 2);
@@ -128,7 +129,7 @@ void GroundMemory::settleLater(const Eigen::Vector3d& normal, double turn_stddev
   unsettled_.reset();
 }
 
-// Between two speeds that are known the way is as certain as that of one usual step. usual_time: of that, s.
+// Between two known speeds the distance is as certain as that of one usual step. usual_time: of that step, s.
 void GroundMemory::closeGap(const Eigen::Vector3d& speed_after, double usual_time) {
   const Eigen::Vector3d speed = 0.5 * (path_ / path_time_ + speed_after);
   const double climb_variance = std::pow(kClimbChange * speed.norm() * usual_time, 2);
@@ -139,7 +140,8 @@ void GroundMemory::closeGap(const Eigen::Vector3d& speed_after, double usual_tim
   replaceBefore(std::move(gap_->patches), gap_->seen);
 }
 
-// Patches from before a gap, carried over it in another way than so far; those seen since stay.
+// Replaces the patches from before a gap by ones that were carried over it in a better way. Patches seen
+// since then stay.
 void GroundMemory::replaceBefore(std::deque<Patch> patches, size_t seen) {
   const auto kept = static_cast<std::ptrdiff_t>(std::min(seen, patches_.size()));
   patches.insert(patches.end(), patches_.end() - kept, patches_.end());
@@ -158,7 +160,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
   if (!(along.norm() > kLeastMotion * h)) return;
   const Eigen::Vector3d ahead = along.normalized(), side = n.cross(ahead);
   const auto distance = [&](const Patch& patch) { return ahead.dot(patch.at); };
-  // One that has been passed stays, to know the ground up to there.
+  // A patch that has been passed stays, so that the ground up to there is known.
   while (patches_.size() > 1 && distance(patches_[1]) < 0) patches_.pop_front();
 
   std::vector<GroundPoint> strip;
@@ -167,9 +169,10 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
     const Eigen::Vector3d ray = rig.ray(point.u, point.v);
     const double expected = rig.fb() * measured.dot(ray), inverse = plane.g.dot(ray);
     if (!(expected > 0 && inverse > 0 && point.disparity > 0)) continue;
-    const double ratio = expected / point.disparity;  // of its depth to the plane's
+    const double ratio = expected / point.disparity;  // depth of the point over that of the plane
     if (std::abs(ratio - 1) > kMostOff) continue;
-    // By the rays alone: where disparities decide what is in the strip, those of too near points are.
+    // The ray alone decides whether a point is in the strip. Otherwise wrong disparities that put points too
+    // near would bring those in.
     const Eigen::Vector3d on_plane = ray / inverse, at = ratio * on_plane;
     if (std::abs(side.dot(on_plane)) > kHalfWidth * h) continue;
     strip.push_back(
@@ -186,12 +189,12 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
   }
   const double place = medianOf(distances), height = medianOf(heights);
   const double information = 1 / medianVariance(strip, height);
-  if (!std::isfinite(information)) return;  // nothing is without an error
+  if (!std::isfinite(information)) return;  // no measurement is without an error
   remember({place * ahead + height * n, information, place - nearest}, ahead, kSpacing * h);
 }
 
-// A look at ground that has been seen is one more of the patch there: single ones are uncertain by much of
-// what may be below. Where that patch came over unknown steps, the two are not at one place.
+// Looks at ground that was seen before are added to the patch there, because a single look is uncertain. A
+// patch that was carried over unknown steps is not at the same place, and gets no more looks.
 void GroundMemory::remember(const Patch& look, const Eigen::Vector3d& ahead, double spacing) {
   const auto beyond = [&](const Patch& patch) { return ahead.dot(look.at - patch.at); };
   if (patches_.empty() || beyond(patches_.back()) >= spacing) {

@@ -7,34 +7,34 @@
 
 namespace uav_landing {
 
-/// The height as it was half a second ago and longer, carried on by the motion alone: what the height's own
-/// change is tested against. It survives a loss of track, so that another height afterwards shows.
+/// The height of half a second ago and longer, carried on by the motion alone. The change of the published
+/// height is tested against it. It survives a loss of track, so a different height afterwards is noticed.
 class HeightMemory {
  public:
   /// Age from which a remembered height is compared, s.
   static constexpr double kAge = 0.5;
-  /// 1 sigma by which the horizontal that the motion refers to is wrong for a whole memory, rad.
+  /// 1 sigma of the direction of "down" that the motion refers to, rad. The error lasts for a whole memory.
   static constexpr double kDirectionError = 0.15 * M_PI / 180;
 
-  /// Carries on. speed, variance: vertical speed by motion, NaN when there is none. velocity: m/s, of the
-  /// camera: what a wrong direction of the horizontal counts with.
+  /// Carries the memories on over T, s. speed, speed_variance: vertical speed by the motion, or NaN.
+  /// velocity: of the camera, m/s; it is what an error of the direction acts on.
   void carry(double T, double speed, double speed_variance, double velocity);
 
   struct Expected {
     double height = 0, variance = 0;  ///< m, m^2
   };
-  /// The height expected now; none before there was one for long enough.
+  /// The height expected now. There is none before one was remembered for long enough.
   std::optional<Expected> expected() const;
 
-  /// After each comparison. filter: with everything in it. A height that does not agree is not remembered:
-  /// the old one goes on until its 1 sigma is beyond useful (m).
+  /// Call it after each comparison. filter: the one with all sources. A height that does not agree is not
+  /// remembered. The old one stays until its standard deviation is larger than useful (m).
   void refresh(const HeightFilter& filter, bool agrees, double useful);
 
  private:
   struct Memory {
     HeightFilter filter;
     double age = 0;       // s
-    double distance = 0;  // flown since, m
+    double distance = 0;  // distance flown since, m
     double variance() const;
   };
   std::optional<Memory> young_, old_;

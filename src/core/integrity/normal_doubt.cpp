@@ -10,8 +10,8 @@ constexpr size_t kPairs = 3;
 
 }  // namespace
 
-// Without a fault the contradiction has the likelihood exp(-ratio / 2), with one of just its size that of no
-// contradiction at all: 1.
+// Without a fault the contradiction has the likelihood exp(-ratio / 2). A fault of just this size has the
+// likelihood 1, that of no contradiction at all.
 void NormalDoubt::add(double stamp, double ratio, const Eigen::Vector3d& turn, double variance, bool turned) {
   if (!(ratio >= 0) || !turn.allFinite() || !(variance >= 0)) return;
   if (turned || stamp - stamp_ > memory_) probabilities_.clear();

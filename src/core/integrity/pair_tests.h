@@ -10,31 +10,32 @@
 
 namespace uav_landing {
 
-/// What the tests of the catalogue say of one pair. Each is compared with the limit of its line there.
+/// Results of the catalogue's tests for one pair. Each is compared with the limit of its line there.
 class PairTests {
  public:
-  /// gate: sigmas.
+  /// gate: in sigmas.
   PairTests(double false_alarm_rate, double gate);
 
-  /// One difference with its variance; nothing when they are not finite and positive.
+  /// Adds one difference with its variance. Ignored unless both are finite and the variance is positive.
   void add(IntegrityTest test, double difference, double variance);
-  /// The same where only positive differences are wrong.
+  /// The same when only positive differences are wrong.
   void addOneSided(IntegrityTest test, double difference, double variance);
-  /// The same for the largest of several differences.
+  /// The same for the largest of `count` differences.
   void addLargest(IntegrityTest test, double difference, double variance, int count);
-  /// Several numbers at once. difference: the size that is reported.
+  /// Adds a test of several numbers at once. The size of the difference is reported.
   void add(IntegrityTest test, const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance);
-  /// A squared normalised difference that was found elsewhere.
+  /// Adds a squared normalised difference that was computed elsewhere.
   void addRatio(IntegrityTest test, double difference, double ratio);
 
   bool failed(IntegrityTest test) const { return result(test).failed(); }
-  /// The first that failed of those that are made in this step and have this consequence.
+  /// The first failed test of this step that has this consequence, in the order of the catalogue.
   std::optional<IntegrityTest> firstFailed(TestStep step, OnFailure consequence) const;
   const TestResult& result(IntegrityTest test) const { return results_[static_cast<int>(test)]; }
 
  private:
   TestResult& of(IntegrityTest test) { return results_[static_cast<int>(test)]; }
-  /// As the catalogue has it. count: of tests of which this is the largest. degrees: of freedom.
+  /// Limit by the catalogue. degrees: degrees of freedom. count: number of tests of which this is the
+  /// largest.
   double limitOf(IntegrityTest test, int degrees = 1, int count = 1) const;
 
   double false_alarm_rate_, gate_;
@@ -44,7 +45,7 @@ class PairTests {
 /// Counts each test's failures in a row.
 class FailureCounts {
  public:
-  /// After the last test of a pair: its results, with the counts.
+  /// Call it after the last test of a pair. Returns its results, with the counts.
   std::vector<TestResult> count(const PairTests& pair);
 
  private:

@@ -3,7 +3,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kRounding = 1e-6;  // s, of stamps that are added up
+constexpr double kRounding = 1e-6;  // s, rounding errors of added durations
 
 }  // namespace
 

@@ -2,20 +2,22 @@
 
 namespace uav_landing {
 
-/// When a height is believed again that contradictions have taken away: a fault that lasts lets pairs pass by
-/// chance, now and then many in a row, and after the reset timeout its own state is taken for the new one,
-/// which then agrees with itself. Until nothing has contradicted for a while the fault is taken to last.
+/// Decides when a height that contradictions have taken away is believed again. During a lasting fault, pairs
+/// pass by chance, now and then many in a row. After the reset timeout the filter takes the fault's state for
+/// the new one, which then agrees with itself. So the fault is assumed to last until nothing has contradicted
+/// for a while.
 class Recovery {
  public:
-  enum class Pair { kAgrees, kSilent, kContradicts };  ///< kSilent: measures nothing that could contradict
+  /// kSilent: the pair measures nothing that could contradict.
+  enum class Pair { kAgrees, kSilent, kContradicts };
 
-  /// quiet: s without a contradiction that are asked for; 0: none are.
+  /// quiet: time without a contradiction that is needed, s; 0: none.
   explicit Recovery(double quiet) : needed_(quiet) {}
   /// T: s since the pair before. lost: contradictions keep the height from being valid.
   void follow(double T, Pair pair, bool lost);
-  /// The height was lost, and too little has agreed since.
+  /// True when the height was lost and too little has agreed since.
   bool pending() const { return pending_; }
-  /// Since the last contradiction, pairs that agreed, s.
+  /// Time of pairs that agreed since the last contradiction, s.
   double quiet() const { return quiet_; }
 
  private:

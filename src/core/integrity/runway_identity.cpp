@@ -7,10 +7,10 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kPatience = 1;  // s, without a pair: then it may be any runway
+constexpr double kPatience = 1;  // s without a pair, after which any runway may be in view
 constexpr double kMean = 0.5;    // s, over which margins are averaged
-constexpr double kFade = 3;      // s, in which a margin fades while no runway is told from other lines
-constexpr int kMostLeaps = 3;    // in a row, of a direction that is not believed
+constexpr double kFade = 3;      // s, in which a margin fades while no runway stands out from other lines
+constexpr int kMostLeaps = 3;    // jumps in a row of a direction that is not believed
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 namespace uav_landing {
 namespace {
 
-// The gate of the filter that has everything in it decides for all.
+// The gate of the filter with all sources decides for these filters, too.
 constexpr double kNoGate = 1e6;
 
 }  // namespace
@@ -46,7 +46,7 @@ void SolutionSeparation::start(const Measurements& without, double height) {
   for (int i = 0; i < kFaultySources; ++i) {
     HeightFilter filter(acceleration_stddev_, initial_speed_stddev_, kNoGate);
     const Measurement& first = without[i];
-    // What is not known is somewhere.
+    // The height is not known without this source, so it may be anywhere.
     filter.initialise(first.known() ? first.height : height, first.known() ? first.variance : height * height,
                       first.known() ? first.common : CommonVariance());
     solutions_[i] = filter;

@@ -10,9 +10,9 @@
 
 namespace uav_landing {
 
-/// What may be wrong without anything showing it, one at a time: the runway's vanishing point (and its known
-/// width); the matches in one part of the image; the motion (the vertical speed, and the ground's normal, by
-/// it).
+/// Sources that may be wrong without anything showing it, one at a time. The vanishing point comes with the
+/// known width of the runway. The regions are the matches in one part of the image. The motion gives the
+/// vertical speed and a normal of the ground.
 enum class FaultySource { kVanishingPoint, kNear, kMiddle, kFar, kLeft, kRight, kMotion };
 constexpr int kFaultySources = 7;
 /// For example "vanishing_point" or "far_region".
@@ -25,13 +25,13 @@ inline FaultySource faultySource(ImageRegion region) {
 /// exclusion using the correlation method / solution separation, ION 1998; Blanch et al.: Baseline advanced
 /// RAIM user algorithm and possible improvements, IEEE TAES 51, 2015).
 ///
-/// Beside the height filter with everything in it, one filter more for each source, which leaves that source
-/// out. Was the source i wrong, then the filter i was not, so that the published height h is within
+/// Beside the height filter with all sources there is one more filter for each source, which leaves that
+/// source out. If source i is wrong, filter i is right. The published height h is then within
 ///   |h - h_i| + k sigma_i
-/// of the truth but with the probability that belongs to k: integrity_risk, less what the prior probability
-/// of the fault takes of it. The separation is the one observed and not the threshold of a detector: it
-/// bounds faults too small to be detected and those detected alike. The level is the largest over all
-/// sources, and of what no source here can tell: a scale common to all heights, whose size is a bound by
+/// of the truth, except with the probability that belongs to k: integrity_risk over the prior probability of
+/// the fault. The separation is the observed one and not the threshold of a detector. So the bound holds for
+/// faults that are too small to be detected, too. The level is the largest bound over all sources. It also
+/// covers a scale error common to all heights, which no source here can show; its size is bounded by
 /// assumption.
 class SolutionSeparation {
  public:
@@ -42,10 +42,10 @@ class SolutionSeparation {
     CommonVariance common;                          ///< part of the variance
     bool known() const { return height > 0 && variance > 0; }
   };
-  /// Of one pair: what it measures with each source left out; not known() where nothing is left.
+  /// Measurements of one pair with each source left out; not known() when nothing is left.
   using Measurements = std::array<Measurement, kFaultySources>;
 
-  // In step with the height filter: the same calls at the same time.
+  // These are called together with the same functions of the height filter.
   void start(const Measurements& without, double height);
   void predict(double T);
   void update(const Measurements& without);
@@ -54,12 +54,12 @@ class SolutionSeparation {
 
   struct Level {
     double bound = kUnknown;  ///< m
-    const char* source = "";  ///< what it is because of
+    const char* source = "";  ///< source that gives the bound
   };
-  /// height, variance: published, m, m^2. factor: by which the variances of all pairs are larger than
-  /// claimed.
+  /// Level of the published height (m) with its variance (m^2). factor: by which the variances of all pairs
+  /// exceed their claims.
   Level protectionLevel(double height, double variance, double factor = 1) const;
-  /// The level, or that because of one more solution for the height (m, m^2), whichever is larger.
+  /// The larger one of a level and the bound by one more solution for the height (m, m^2).
   Level larger(const Level& level, double height, double solution, double variance, const char* source) const;
 
  private:

@@ -5,9 +5,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kShare = 0.3;      // of the expected way that is enough
+constexpr double kShare = 0.3;      // of the expected distance that is enough
 constexpr double kPatience = 30.0;  // s
-constexpr int kSteps = 3;           // that are asked for at most, and that are remembered
+constexpr int kSteps = 3;           // largest number of steps that are remembered, and that are asked for
 
 }  // namespace
 

@@ -5,8 +5,8 @@
 namespace uav_landing {
 namespace {
 
-// Late stamps in a row that are those of a clock set back by little: half a second of 20 Hz, or a few that
-// come in order, as those of a clock do.
+// So many late stamps in a row mean that the clock was set back by little. Ten are half a second of 20 Hz.
+// Three are enough when they come in order, as those of a clock do.
 constexpr int kMostLate = 10, kMostInOrder = 3;
 
 }  // namespace

@@ -9,12 +9,12 @@
 namespace uav_landing {
 namespace {
 
-constexpr size_t kSteps = 9, kFewest = 5;  // changes that are asked; fewer say nothing
-constexpr double kMoves = 3;               // sigmas by which a way must be one
+constexpr size_t kSteps = 9, kFewest = 5;  // number of changes that are used; fewer than 5 say nothing
+constexpr double kMoves = 3;               // sigmas that a distance must exceed
 // Median of the squares of normal errors over their variance.
 constexpr double kMedianOfSquares = 0.455;
-// Two durations in a row have the stamp between them in common, with opposite signs: the variance of their
-// difference, 1 + 4 + 1 times that of a stamp, over that of one of them, 1 + 1.
+// Two durations in a row share the stamp between them, with opposite signs. Their difference has 1 + 4 + 1
+// times the variance of a stamp. One duration has 1 + 1 times that variance.
 constexpr double kInDifference = 3;
 
 }  // namespace
@@ -34,7 +34,7 @@ void StampScatter::follow(const CameraStep& step) {
 
 double StampScatter::ofDuration() const {
   if (changes_.size() < kFewest) return 0;
-  // A single wrong motion is no wrong stamp.
+  // The median is used because a single wrong motion is no wrong stamp.
   std::vector<double> squares(changes_.begin(), changes_.end());
   return std::max(0.0, medianOf(squares)) / kMedianOfSquares / kInDifference;
 }

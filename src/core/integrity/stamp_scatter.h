@@ -7,26 +7,26 @@
 
 namespace uav_landing {
 
-/// How wrong stamps are, by the camera's speed over the ground: an aircraft's does not change from pair to
-/// pair, so that where it seems to, the durations between the stamps are wrong.
+/// Measures errors of stamps by the camera's speed over the ground. The speed of an aircraft does not change
+/// from pair to pair. If it seems to, the durations between the stamps are wrong.
 class StampScatter {
  public:
-  /// acceleration: m/s^2, by which the aircraft can change its speed.
+  /// acceleration: of the aircraft, m/s^2.
   explicit StampScatter(double acceleration) : acceleration_(acceleration) {}
 
-  /// A step, its duration by the stamps; one that is not known.
+  /// follow() takes a step with its duration by the stamps. skip() is for a step that is not known.
   void follow(const CameraStep& step);
   void skip() { last_.reset(); }
-  /// Variance of the durations over their squares, of the last seconds; 0 when they are as good as shows.
+  /// Variance of the durations over their squares, in the last seconds. 0 when no errors show.
   double ofDuration() const;
 
  private:
   struct Speed {
-    double logarithm = 0, variance = 0;  // of m/s; its variance
+    double logarithm = 0, variance = 0;  // of the speed in m/s, and its variance
   };
   double acceleration_;
   std::optional<Speed> last_;
-  std::deque<double> changes_;  // squared, of the logarithm, less what they may be
+  std::deque<double> changes_;  // squared changes of the logarithm, less what is expected of them
 };
 
 }  // namespace uav_landing

@@ -4,33 +4,34 @@
 
 namespace uav_landing {
 
-/// In which step of the landing estimate a test is made (stages/kalman_height_stage.cpp).
+/// Step of the landing estimate in which a test is made (stages/kalman_height_stage.cpp).
 enum class TestStep { kGround, kPair, kTrack, kMemory };
 
 /// What follows from a failure.
 enum class OnFailure {
-  kReported,       ///< nothing but the report
-  kPairLeftOut,    ///< no height by this pair
-  kSourceLeftOut,  ///< that source does not count, the others do
+  kReported,       ///< only reported
+  kPairLeftOut,    ///< this pair gives no height
+  kSourceLeftOut,  ///< this source is not used, the others are
   kAngleDoubted,   ///< the approach angle is less certain
   kNoHeight        ///< the published height is not valid
 };
 
-/// With what the squared normalised difference is compared.
+/// Limit of the squared normalised difference.
 struct TestLimit {
   enum Kind { kChiSquare, kSquaredGate, kFixed } kind;
   double value;  ///< of kFixed
 
-  /// What noise alone exceeds with the probability false_alarm_rate.
+  /// Noise alone exceeds this limit with the probability false_alarm_rate.
   static constexpr TestLimit chiSquare() { return {kChiSquare, 0}; }
   /// The parameter gate, squared.
   static constexpr TestLimit squaredGate() { return {kSquaredGate, 0}; }
   static constexpr TestLimit fixed(double value) { return {kFixed, value}; }
 };
 
-/// All tests of integrity, in the order in which they are reported: name in the code, name for people, step,
-/// what follows, limit, unit, what is compared, and what follows in words. A new test is a line here and a
-/// call in its step; the enum, the messages, the diagnostics and docs/integrity_tests.md follow.
+/// All tests of integrity, in the order in which they are reported. A line has the name in the code, the name
+/// for people, the step, the consequence, the limit, the unit, what is compared, and the consequence in
+/// words. A new test is a line here and a call in its step. The enum, the messages, the diagnostics and
+/// docs/integrity_tests.md are made from these lines.
 // clang-format off
 #define UAV_LANDING_INTEGRITY_TESTS(TEST)                                                                              \
   TEST(kRepeatedImage, "repeated_image", TestStep::kPair, OnFailure::kPairLeftOut, TestLimit::fixed(0), "–",           \

@@ -11,7 +11,7 @@ namespace uav_landing {
 namespace {
 
 constexpr int kConfirmed = 3;
-constexpr double kPatience = 1.0;  // s, without one that agrees
+constexpr double kPatience = 1.0;  // s without a direction that agrees
 constexpr Sigmas kGate(5);
 
 }  // namespace

@@ -36,8 +36,8 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
   const Innovation measured = measuredBy(step);
   const Eigen::Vector3d difference = measured.difference - velocity_;
   if (agreements_ < kConfirmed) {
-    // Nothing yet says which of two is wrong.
-    constexpr double kAgreement = 16.3;  // chi-square of three, but for one in a thousand
+    // Nothing tells yet which of two steps is wrong.
+    constexpr double kAgreement = 16.3;  // chi-square limit of 1e-3 with three degrees of freedom
     const Eigen::Matrix3d sum = covariance_ + measured.covariance;
     if (agreements_ == 0 || !(difference.dot(sum.ldlt().solve(difference)) <= kAgreement))
       return restart(step);
@@ -45,7 +45,7 @@ void VelocityMemory::learn(const Step& step, bool agrees) {
   } else if (!agrees) {
     since_contradiction_ = 0;
     contradicted_ += step.duration;
-    // Nor is its turn believed.
+    // The rotation of this step is not believed, either.
     velocity_ = velocity_before_;
     covariance_ = covariance_before_;
     return carryOn(step.duration);
