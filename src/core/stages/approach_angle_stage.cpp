@@ -23,18 +23,18 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kPatience = 1;  // s, after which directions of a pair say nothing of the next
+constexpr double kPatience = 1;  // s, after which directions of a pair say nothing about the next
 
-/// Directions of a pair, unit: of flight, and of the runway.
+/// Unit directions that a pair shows: that of flight and that of the runway.
 struct SeenDirections {
   double stamp = kUnknown;
   std::optional<Eigen::Vector3d> path, runway;
 };
 
-/// What a readout time that is not given does to the ground's normal or plane, and the covariance without
-/// that.
+/// How an estimated readout time affects the ground's normal or plane, and the covariance without that
+/// effect.
 struct DoubtByReadout {
-  Eigen::Vector3d by_time = Eigen::Vector3d::Zero();  ///< 1/s, of a plane 1/m/s
+  Eigen::Vector3d by_time = Eigen::Vector3d::Zero();  ///< 1/s for a normal, 1/m/s for a plane
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
@@ -51,12 +51,12 @@ struct ApproachAngleStage::Implementation {
   RunwayIdentity identity;
   SeenDirections last;
   double stamp_before = kUnknown;
-  bool first_search = true;  // for the plane has not ended
+  bool first_search = true;  // the first search for the plane has not ended
   bool lines_left_out = false;
   RunwayDirectionMemory direction_memory;
   CornerMemory corner_memory;
   ReadoutCheck readout;
-  std::optional<ReadoutFilter> readout_time;  // where none is given
+  std::optional<ReadoutFilter> readout_time;  // used when no readout time is given
   Eigen::Vector3d last_normal = Eigen::Vector3d::Constant(kUnknown);
   Timings timings;
 
@@ -137,7 +137,7 @@ struct ApproachAngleStage::Implementation {
     return result;
   }
 
-  // From afar the runway is seen before there is a plane by stereo.
+  // Far away, the runway is seen before stereo has a plane.
   void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo,
              ApproachAngleResult& result) {
     ScopedTimer timer(timings, "runway_outline");
@@ -155,7 +155,7 @@ struct ApproachAngleStage::Implementation {
     result.sight = sighting.process(stamp, left, ground);
   }
 
-  // By the last motion over the last ground that is known.
+  // Maps rows to the stamp with the last motion over the last known ground.
   StampMap rowsOf(double stamp, const Eigen::Matrix3d& K, const RowTimes& times) const {
     const std::optional<RowMotion> motion = tracker.lastMotion(stamp);
     if (times.atOnce() || !motion || !last_normal.allFinite()) return {};
@@ -168,7 +168,7 @@ struct ApproachAngleStage::Implementation {
     return {rowsOf(stamp, model.rig.K(), model.left_times), rowsOf(stamp, right, model.right_times)};
   }
 
-  // Motion and runway are not known, for the reason of the pair.
+  // Sets motion and runway to not known, with the reason of the pair.
   static void nothingKnown(ApproachAngleResult& result) {
     result.step.failure = result.window.failure = result.failure;
     result.runway.failure = result.runway.threshold_failure = result.failure;
@@ -187,7 +187,7 @@ struct ApproachAngleStage::Implementation {
   }
 
   // Lines and the first step of the motion are looked for on the ground. They wait for the first search for
-  // its plane, which takes all the time that there is, also in the pair in which it ends.
+  // its plane, which takes all the time of a pair, also in the pair in which it ends.
   bool waitsForPlane(double stamp, const StereoDepthResult& stereo) {
     if (!(stamp > std::exchange(stamp_before, stamp))) first_search = true;
     if (!parameters.use_stereo || !first_search) return false;
@@ -195,9 +195,9 @@ struct ApproachAngleStage::Implementation {
     return stereo.from_search;
   }
 
-  // The search for the first step of the motion takes the time of the lines. The motion comes first, as it
-  // carries the ground that is in view now to below the aircraft. It needs lines only where they alone give
-  // the normal.
+  // The search for the first step of the motion takes the time of the lines. The motion comes first, because
+  // it carries the ground that is in view now to below the aircraft. Lines come first only when they alone
+  // give the normal.
   bool leavesOutLines(double stamp, bool has_plane) const {
     const bool needs_lines = parameters.normal_source == NormalSource::kVanishingLine;
     return has_plane && !needs_lines && !lines_left_out && tracker.needsSearch() &&
@@ -218,7 +218,7 @@ struct ApproachAngleStage::Implementation {
     runway.skip(stamp);
   }
 
-  // The ground's normal is that of level ground but for the slope of the ground.
+  // The ground differs from level ground by its slope, so the slope is added to the covariance of the normal.
   AttitudePrior overSlopingGround(AttitudePrior imu) const {
     const double slope = parameters.runway_slope_stddev_deg * kDegree;
     imu.normal_covariance +=
@@ -243,10 +243,10 @@ struct ApproachAngleStage::Implementation {
     return direction;
   }
 
-  // The normal that the angles refer to; false when there is none.
+  // Finds the normal that the angles refer to. Returns false when there is none.
   bool findNormal(const GroundPlane* plane, const DoubtByReadout& of_plane, DoubtByReadout& normal,
                   ApproachAngleResult& result) const {
-    constexpr double kApart = 1e-6;  // s, of readout times, by whose difference the derivative is taken
+    constexpr double kApart = 1e-6;  // s, difference of the readout times for a numerical derivative
     NormalSources sources{plane,
                           {result.vanishing_direction, result.vanishing_covariance},
                           {result.n_vp, result.n_vp_covariance},
@@ -271,8 +271,8 @@ struct ApproachAngleStage::Implementation {
     return true;
   }
 
-  // The runway's own slope and curve turn its vanishing point up and down. Seen from above it is straight,
-  // and yaw is against that.
+  // The runway's own slope and curve move its vanishing point up and down. Seen from above the runway is
+  // straight, and the yaw refers to that.
   void straightenPlan(ApproachAngleResult& result) const {
     if (!result.vanishing_direction.allFinite()) return;
     const Eigen::Vector3d across = result.n.cross(result.vanishing_direction).normalized();
@@ -280,8 +280,8 @@ struct ApproachAngleStage::Implementation {
     result.vanishing_covariance -= straightness * straightness * across * across.transpose();
   }
 
-  // A picture once more was not taken at its stamp: it says nothing of the motion up to now, and the motion
-  // to the next one is over the time of both.
+  // A repeated image was not taken at its stamp. It says nothing about the motion up to now, and the motion
+  // to the next image takes the time of both.
   bool repeated(const StereoDepthResult& stereo) const {
     return parameters.use_stereo && stereo.left_repeated;
   }

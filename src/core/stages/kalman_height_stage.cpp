@@ -24,7 +24,7 @@
 namespace uav_landing {
 namespace {
 
-/// What is known from the pairs before. It is forgotten by being made anew.
+/// What is known from the pairs before. A new object knows nothing.
 struct Parts {
   GroundEstimate ground;
   HeightMeasurement measurement;
@@ -51,7 +51,7 @@ struct Parts {
         runway(parameters, runway) {}
 };
 
-/// What a pair shows by itself, and what was expected of it.
+/// What a pair shows by itself, and what was expected.
 struct Look {
   HeightPrior prior;
   Ground ground;
@@ -84,7 +84,7 @@ struct KalmanHeightStage::Implementation {
     parts.emplace(rig, parameters, runway, baseline_stddev, resets);
   }
 
-  // What happens to a pair, in order.
+  // The steps of a pair, in order.
   LandingResult process(PairInput in) {
     LandingResult result;
     result.stamp = in.stamp();
@@ -96,7 +96,7 @@ struct KalmanHeightStage::Implementation {
     if (time.jump) startAnew();
     Look look = lookAt(in);
     const Failure jump = time.jump ? time.jump : clock.compare(in, look.by_ground, look.prior);
-    if (jump && !time.jump) {  // the clock was set: what was learned of the rig goes with the rest
+    if (jump && !time.jump) {  // the clock was set: what was learned about the rig is forgotten, too
       startAnew();
       in.T = 0;
       look = lookAt(in);
@@ -141,7 +141,7 @@ struct KalmanHeightStage::Implementation {
     return {prior, ground, heightByGround(rig, parameters, in, ground)};
   }
 
-  // Of a plane that is contradicted nobody knows which part of the motion was downwards.
+  // When the plane is contradicted, nobody knows which part of the motion was downwards.
   VerticalSpeed speedByMotion(const PairInput& in, const Ground& ground, const MeasuredHeight& measured,
                               const PairVerdict& pair) const {
     if (!parameters.use_motion || !ground.plane.valid() || !pair.knowsDown()) return {};
@@ -151,12 +151,12 @@ struct KalmanHeightStage::Implementation {
                          parts->measurement.durationVariance());
   }
 
-  // Before the pair is tested it has the doubt of those before alone.
+  // Before a pair is tested, only the doubt of the pairs before is known.
   MotionDoubt doubtOfStep(const PairInput& in, const Ground& ground) const {
     return {parts->doubt.variance(in, ground, in.step()), parts->measurement.durationVariance()};
   }
 
-  // Tests the published height, and bounds its error. Returns why it is waited for, if so.
+  // Tests the published height and bounds its error. Returns the reason when the height has to wait.
   Failure guardHeight(const PairInput& in, const Look& look, const MeasuredHeight& measured,
                       const PairVerdict& pair, const TrackVerdict& post, PairTests& tests,
                       LandingResult& result) {
@@ -182,8 +182,8 @@ struct KalmanHeightStage::Implementation {
     reportAttitude(normal.n, normal.covariance, runway, in.approach.vanishing_covariance, result);
   }
 
-  // A step that the velocity before contradicts may be of another period of a pattern, or of the other
-  // camera; before three have agreed, and in an unusual turn, nobody can tell.
+  // A step that contradicts the velocity before may belong to another period of a pattern, or to the other
+  // camera. Nobody can tell before three steps have agreed, or in an unusual turn.
   bool motionBelieved(const Ground& ground, const PairVerdict& pair) const {
     const TestResult& compared = pair.tests.result(IntegrityTest::kVelocity);
     const bool agrees = !parameters.integrity_monitor || (compared.possible() && !compared.failed());
@@ -203,7 +203,7 @@ struct KalmanHeightStage::Implementation {
     reportHeightAboveRunway(outline, bend, parts->measurement.widthKnown(), parameters, result);
   }
 
-  // A pair of no time says nothing, and what is known stays as it is.
+  // A pair without a time says nothing, and what is known stays as it is.
   LandingResult withoutStamp(LandingResult result) const {
     result.failure = result.yaw_failure = {Reason::kInputInvalid, "the stamp is not a finite number"};
     result.status = parts->track.status();

@@ -24,8 +24,8 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// By how much corners may be more wrong than they claim where texture is hardly more than noise: gradients in
-// their windows are the noise's own then. Measured: 1.6 in a hundred pairs of one simulated scene.
+// Factor by which errors of corners exceed their claims when texture is hardly more than noise. Gradients in
+// the windows are then those of the noise. Measured in a hundred pairs of one simulated scene: 1.6.
 constexpr double kNoisyCorners = 2.0;
 
 }  // namespace
@@ -38,17 +38,17 @@ struct StereoDepthStage::Implementation {
   PlaneTracker tracker;
   StereoLevel fine, coarse;
   LearnedFrame own_frame;
-  cv::Mat left_mask;  // of the fine level, with the aircraft's own frame
+  cv::Mat left_mask;  // of the fine level, without the aircraft's own frame
   MatchImage left, right;
   RowAlignment rows;
-  cv::Mat level_fine, level_coarse;  // right images with their rows made level
+  cv::Mat level_fine, level_coarse;  // right images whose rows were made level
   std::unique_ptr<DirectRefinement> direct;
-  cv::Mat right_grey, level_grey, level_image;  // for the direct refinement of a bent rig
+  cv::Mat right_grey, level_grey, level_image;  // for the direct refinement with a bent rig
   RepeatedImage left_repeated, right_repeated;
   SpreadSearch search;
   SurfaceMemory surface_memory;
   ReadoutCheck readout;
-  double later_rows;  // s, of the right camera
+  double later_rows;  // s, by which the rows of the right camera are later
   Timings timings;
 
   Implementation(const RigModel& rig, const StereoDepthParameters& p, std::unique_ptr<CornerMatcher> given)
@@ -94,8 +94,8 @@ struct StereoDepthStage::Implementation {
     return result;
   }
 
-  // In the next pair no corner is looked for where this one's own frame is, nor where windows would hold some
-  // of it.
+  // In the next pair no corner is looked for on the aircraft's own frame, as this pair shows it. The margin
+  // keeps the matching windows free of it, too.
   void leaveOutOwnFrame() { fine.left_mask = own_frame.leftOut(left_mask, parameters.window_radius + 2); }
 
   void learnOwnFrame(double stamp, const cv::Mat& left_image, const MatchedCorners& corners) {
@@ -107,18 +107,18 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
-  // What the rows of the pair see of the drift, or would at a readout of 1 s where no time is given.
+  // The drift that the rows of the pair see. When no readout time is given, the drift at a readout of 1 s.
   PlaneDrift rowDrift() const {
     return {fine.drift.rate, model.left_unit_times.atOnce() ? fine.drift.times : &model.left_unit_times};
   }
 
-  // Width and height of corners' windows, pixels.
+  // Width and height of the corners' matching windows, pixels.
   int window() const { return 2 * parameters.window_radius + 1; }
 
   void estimate(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     {
       ScopedTimer timer(timings, "match_images");
-      // Rows that are made level come from other rows.
+      // Making rows level takes other rows of the image.
       const FirstRows first = tracker.hasLast() && rows.isLevel() ? tracker.lastGroundRows() : FirstRows();
       left.assign(left_image, first);
       right.assign(right_image, first);
@@ -134,13 +134,13 @@ struct StereoDepthStage::Implementation {
     measureRows(corners, result);
     const bool refined = direct && refineDirectly(left_image, right_image, result);
     if (!refined) keepPlaneOf(corners, result);
-    // Images that speak against a plane call for another look around in the next pair.
+    // When the images contradict the plane, the next pair searches again.
     tracker.remember(result, refined || !direct);
     if (!refined && result.from_search) waitForNextPair(result);
   }
 
-  // A search finds some plane in nothing but noise, too. One that no alignment of the images bears out counts
-  // when the next pair's is there as well.
+  // A search finds some plane even in pure noise. A plane that the alignment of the images does not confirm
+  // counts only when the next pair has it as well.
   void waitForNextPair(StereoDepthResult& result) {
     StereoDepthResult waiting;
     waiting.stamp = result.stamp;
@@ -161,14 +161,14 @@ struct StereoDepthStage::Implementation {
     coarse.right = rows.level(coarse.rig, right.coarse, level_coarse);
   }
 
-  // What is matched needs these rows of the images, too.
+  // Matching needs these rows of the images, too.
   void extend(const cv::Mat& left_image, const cv::Mat& right_image, const FirstRows& first) {
     ScopedTimer timer(timings, "match_images");
     left.extend(left_image, first);
     right.extend(right_image, first);
   }
 
-  // By the plane as it moves on, unless the pair shows that it is elsewhere.
+  // Matches with the plane as it is expected to move on, unless the pair shows that it is elsewhere.
   std::optional<MatchedCorners> matchSteadily(const cv::Mat& left_image, const cv::Mat& right_image,
                                               StereoDepthResult& result) {
     const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(timings);
@@ -181,7 +181,7 @@ struct StereoDepthStage::Implementation {
     return corners;
   }
 
-  // By a plane that is followed from the previous pair, or searched.
+  // Matches with a plane that is followed from the previous pair, or that is searched.
   MatchedCorners searchAndMatch(const cv::Mat& left_image, const cv::Mat& right_image,
                                 StereoDepthResult& result) {
     const bool known = tracker.hasLast();
@@ -206,12 +206,12 @@ struct StereoDepthStage::Implementation {
     return search.find(coarse, tracker, followed);
   }
 
-  // With their plane, unless the result says why there is none.
+  // Matches the corners and fits their plane. If that fails, the result says why.
   MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
     MatchedCorners matched;
     matched.corners = tracker.cornersOn(fine, start, timings);
     result.corners = static_cast<int>(matched.corners.size());
-    // A bent rig's rows must be level before anything is matched along them.
+    // The rows of a bent rig must be level before anything is matched along them.
     if (result.from_search && rows.search(fine, matched.corners, start)) levelRows();
     {
       ScopedTimer timer(timings, "feature_matching");
@@ -256,7 +256,7 @@ struct StereoDepthStage::Implementation {
     result.plane.covariance += result.row_covariance;
   }
 
-  // The right image as the camera saw it but with its rows made level, where they are not.
+  // The right image as the camera saw it, with its rows made level if they are not.
   cv::Mat withLevelRows(const cv::Mat& right_image) {
     if (fine.right.data == right.fine.data) return right_image;
     right_image.convertTo(right_grey, CV_32F);
@@ -264,7 +264,8 @@ struct StereoDepthStage::Implementation {
     return level_image;
   }
 
-  // The plane of the corners stays when the images' alignment leads elsewhere; false then.
+  // Refines the plane by the alignment of the images. If that leads elsewhere, the plane of the corners
+  // stays, and the function returns false.
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
     RefinementStart start{result.plane.g, rows.residual(fine.rig), rows.levelledBy(), fine.drift};
@@ -283,7 +284,7 @@ struct StereoDepthStage::Implementation {
     result.plane_by_rate = planeByRate(model.rig, rowDrift(), direct->samples(), fit->agrees);
     result.row_covariance = fit->row_covariance;
     result.lasting_share = fit->lasting_share;
-    // Rows that are not level move all corners of a marking, as if the ground rose; blocks are freed of it.
+    // Rows that are not level move all corners of a marking, as if the ground rose. Blocks are free of that.
     result.surface_variance = surfaceVariance(model.rig, direct->samples(), *fit, 1, surface_memory);
     bend(direct->samples(), *fit, result.row_covariance, result);
     return true;
@@ -296,7 +297,7 @@ struct StereoDepthStage::Implementation {
          result);
   }
 
-  // flat: fit to the samples. besides: what these do not know of the covariance.
+  // flat: the fit to the samples. besides: part of the covariance that the samples do not know.
   void bend(const std::vector<DisparitySample>& seen, const PlaneFit& flat, const Eigen::Matrix3d& besides,
             StereoDepthResult& result) {
     if (!parameters.surface_curvature) return;
