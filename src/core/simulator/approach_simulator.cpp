@@ -14,7 +14,7 @@ namespace uav_landing {
 
 namespace {
 
-/// Objects moved from z = 0 to the ground's height where they stand.
+/// Moves objects from z = 0 to the height of the ground where they stand.
 std::vector<StandingObject> standOn(const GroundProfile& ground, std::vector<StandingObject> objects) {
   for (StandingObject& object : objects) {
     const auto lift = static_cast<float>(ground.height(0.5 * (object.low.x() + object.high.x())));
@@ -35,7 +35,7 @@ Failure checkReadout(const SimulatorParameters& p) {
 
 }  // namespace
 
-/// What the pictures are of, and what takes them. The same parameters make the same one.
+/// The scene of the images and the cameras that take them. The same parameters give the same world.
 struct ApproachSimulator::World {
   SimulatorParameters parameters;
   CameraRig rig;
@@ -80,7 +80,7 @@ struct ApproachSimulator::World {
     return {};
   }
 
-  /// All at once, or line by line, each as it is seen at its own time.
+  /// Renders the image at once, or line by line, each line at its own time.
   void render(const SimulatedCamera& camera, double time, cv::Mat& grey) const {
     if (shutter.atOnce()) return renderer.render(camera, trajectory.pose(time), grey);
     grey.create(camera.calibration.height, camera.calibration.width, CV_32F);

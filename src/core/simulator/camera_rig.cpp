@@ -33,7 +33,7 @@ CameraCalibration lensOf(const SimulatedCameraParameters& camera, const Simulate
   return calibration;
 }
 
-/// Fills R and P of both; returns the baseline. m.
+/// Fills R and P of both cameras. Returns the baseline, m.
 double rectify(const SimulatedRigParameters& rig, CameraCalibration& left, CameraCalibration& right) {
   cv::Mat left_k, right_k, axes;
   cv::eigen2cv(left.K, left_k);
@@ -57,7 +57,7 @@ double rectify(const SimulatedRigParameters& rig, CameraCalibration& left, Camer
   return -right.P(0, 3) / right.P(0, 0);
 }
 
-/// Corners of the pixels, pixel (0, 0) reaching from -0.5 to 0.5, row by row.
+/// Corners of the pixels, row by row. Pixel (0, 0) reaches from -0.5 to 0.5.
 std::vector<cv::Point2d> pixelCorners(const CameraCalibration& calibration) {
   std::vector<cv::Point2d> corners;
   corners.reserve((calibration.width + 1) * (calibration.height + 1));
@@ -66,7 +66,8 @@ std::vector<cv::Point2d> pixelCorners(const CameraCalibration& calibration) {
   return corners;
 }
 
-/// Raw pixels to directions (x, y, 1) in rectified axes: the inverse of the lens by iteration, then R.
+/// Directions (x, y, 1) of raw pixels in rectified axes. The lens is inverted by iteration, then R is
+/// applied.
 std::vector<cv::Point2d> directionsOf(const std::vector<cv::Point2d>& pixels,
                                       const CameraCalibration& calibration) {
   cv::Mat k, r;
@@ -81,7 +82,7 @@ std::vector<cv::Point2d> directionsOf(const std::vector<cv::Point2d>& pixels,
   return directions;
 }
 
-/// Largest distance between pixels and the images of their directions through the lens; px.
+/// Projects directions through the lens again. Returns their largest distance from the pixels, px.
 double worstReprojection(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& directions,
                          const CameraCalibration& calibration) {
   cv::Mat k, inverse_r, rotation;
@@ -132,12 +133,12 @@ void turn(std::vector<cv::Point2d>& directions, const Eigen::Vector3d& rotation)
   }
 }
 
-/// What a calibration leaves of a lens: rows that lie lower (focal lengths), and inclined (rad).
+/// Errors of the lens that the calibration leaves: rows lie lower (focal lengths) and are inclined (rad).
 void shearRows(std::vector<cv::Point2d>& directions, double lower, double inclined) {
   for (cv::Point2d& direction : directions) direction.y -= lower + inclined * direction.x;
 }
 
-/// What the calibration does not know of a camera.
+/// Errors of a camera that the calibration does not know.
 struct Uncalibrated {
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // rotation vector, rad
   double lower = 0, inclined = 0;                  // see shearRows()
@@ -166,7 +167,7 @@ Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters) {
         Failure{Reason::kInputInvalid,
                 "right_camera/lens: expected the lens of left_camera, as both are rectified together"});
   rig.right.offset_x = rectify(parameters.rig, rig.left.calibration, rig.right.calibration);
-  constexpr double kLeastForward = 0.7;  // of the optical axis after rectification: cosine of 45 degrees
+  constexpr double kLeastForward = 0.7;  // cosine of 45 degrees, for the optical axis after rectification
   const bool usable = rig.right.offset_x > 0 && rig.left.calibration.P.allFinite() &&
                       rig.right.calibration.P.allFinite() && rig.left.calibration.R(2, 2) > kLeastForward;
   if (!usable)

@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-/// The frame at the corner of a rectangle whose middle is given.
+/// The frame at the corner of a rectangle that is given by its middle.
 GroundFrame cornerOf(const SimulatedFieldsParameters& p) {
   const GroundFrame middle(p.x, p.y, p.direction_deg);
   GroundFrame corner = middle;
@@ -17,7 +17,8 @@ GroundFrame cornerOf(const SimulatedFieldsParameters& p) {
   return corner;
 }
 
-/// Borders from 0 to the whole at random distances around the mean; no piece is shorter than half of it.
+/// Borders from 0 to the whole length, at random distances around the mean. No piece is shorter than half of
+/// it.
 std::vector<float> divide(cv::RNG& random, double whole, double mean) {
   std::vector<float> borders{0};
   double at = random.uniform(0.5, 1.5) * mean;
@@ -27,7 +28,7 @@ std::vector<float> divide(cv::RNG& random, double whole, double mean) {
   return borders;
 }
 
-/// First element that reaches beyond `from`.
+/// The first element that reaches beyond `from`.
 template <class Element>
 typename std::vector<Element>::const_iterator firstFrom(const std::vector<Element>& elements, float from) {
   return std::upper_bound(elements.begin(), elements.end(), from,
@@ -65,8 +66,8 @@ float FieldsLayer::crop(const Field& field, const GroundPatch& patch) const {
   if (field.rows == 0 || extent >= 1) return field.brightness;
   const float phase = static_cast<float>(M_PI) * (field.rows_along ? patch.y : patch.x) / row_spacing_;
   const float half = static_cast<float>(M_PI) * extent;
-  // The mean of a sine over the extent. Rows that pixels can hardly show fade sooner, as they do in a lens:
-  // else they come back as false rows.
+  // The mean of a sine over the extent. Rows that pixels can hardly show fade sooner, as they do in a lens.
+  // Otherwise they come back as false rows.
   const float mean = half > 1e-3f ? std::sin(half) / half : 1.0f;
   const float faded = mean * std::min(2 - 2 * extent, 1.0f);
   return field.brightness * (1 + field.rows * faded * std::sin(2 * phase));
@@ -78,7 +79,7 @@ LayerCover FieldsLayer::cover(const GroundFootprint& footprint) const {
   if (share == 0) return {};
   const float low = patch.y - 0.5f * patch.width, high = patch.y + 0.5f * patch.width;
   const float near = patch.x - 0.5f * patch.length, far = patch.x + 0.5f * patch.length;
-  constexpr int kMost = 400;  // fields; more of them, far away, show their mean
+  constexpr int kMost = 400;  // number of fields; more of them, far away, show their mean
   int looked_at = 0;
   float inner = 0, light = 0;
   bool one = false;

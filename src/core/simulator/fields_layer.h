@@ -8,8 +8,8 @@
 
 namespace uav_landing {
 
-/// A patchwork of fields: strips of random width, each divided into fields of random length, every one with
-/// its own grey level and crop rows along one of its sides.
+/// A patchwork of fields. It consists of strips of random width, each divided into fields of random length.
+/// Every field has its own grey level, and crop rows along one of its sides.
 class FieldsLayer : public GroundLayer {
  public:
   FieldsLayer(const SimulatedFieldsParameters& fields, uint64_t seed);
@@ -19,15 +19,15 @@ class FieldsLayer : public GroundLayer {
  private:
   struct Field {
     float from, to;    ///< along the patchwork, m
-    float brightness;  ///< mean grey level of what grows there
-    float rows;        ///< amplitude of the crop rows, share of the brightness
+    float brightness;  ///< mean grey level of the crop
+    float rows;        ///< amplitude of the crop rows, as a share of the brightness
     bool rows_along;   ///< the rows follow the patchwork's direction
   };
   struct Strip {
     float from, to;  ///< across the patchwork, m
     std::vector<Field> fields;
   };
-  /// Grey level within the borders, in the middle of the patch.
+  /// Grey level in the middle of the patch, within the borders.
   float crop(const Field& field, const GroundPatch& patch) const;
 
   GroundFrame frame_;  ///< begins at the patchwork's corner

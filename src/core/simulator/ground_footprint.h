@@ -15,19 +15,20 @@ struct GroundPatch {
 /// A frame on the ground: its origin and the direction of its x axis in the runway frame.
 struct GroundFrame {
   Eigen::Vector2f origin, axis;
-  /// direction_deg: left of the landing direction.
+  /// direction_deg: angle to the left of the landing direction.
   GroundFrame(double x, double y, double direction_deg)
       : origin(Eigen::Vector2d(x, y).cast<float>()),
         axis(Eigen::Vector2d(std::cos(direction_deg * M_PI / 180), std::sin(direction_deg * M_PI / 180))
                  .cast<float>()) {}
-  /// A vector of the runway frame in this one.
+  /// Turns a vector of the runway frame into this frame.
   Eigen::Vector2f turned(const Eigen::Vector2f& v) const {
     return {axis.dot(v), axis.x() * v.y() - axis.y() * v.x()};
   }
 };
 
-/// The ground that a sample of the picture covers: a parallelogram with sides u and v. A box of the same
-/// variance along the axes stands for it, in whatever frame an edge is parallel to an axis.
+/// The ground that a sample of the image covers: a parallelogram with sides u and v. It is replaced by a box
+/// along the axes with the same variance. The axes are those of a frame in which an edge is parallel to an
+/// axis.
 struct GroundFootprint {
   GroundPatch box;       ///< in the runway frame
   Eigen::Vector2f u, v;  ///< its sides in the runway frame
@@ -43,7 +44,7 @@ struct GroundFootprint {
     return {middle.x(), middle.y(), std::hypot(along_u.x(), along_v.x()),
             std::hypot(along_u.y(), along_v.y())};
   }
-  /// The same with all sides this many times as long.
+  /// The same footprint with all sides longer by this factor.
   GroundFootprint scaled(float factor) const {
     GroundFootprint result = *this;
     result.box.length *= factor;
@@ -54,15 +55,15 @@ struct GroundFootprint {
   }
 };
 
-/// Share of the interval of this width around the centre that lies within [from, to]; exactly 0 or 1 when
-/// none or all of it does.
+/// Share of the interval of this width around the centre that lies within [from, to]. It is exactly 0 or 1
+/// when none or all of it does.
 inline float overlap(float centre, float width, float from, float to) {
   const float low = centre - 0.5f * width, high = centre + 0.5f * width;
   if (low >= from && high <= to) return 1.0f;
   return std::max(std::min(to, high) - std::max(from, low), 0.0f) / width;
 }
 
-/// Length of dashes ([0, dash) of every period) within [0, s], s >= 0.
+/// Length of the dashes within [0, s], s >= 0. A dash is the part [0, dash) of every period.
 inline float dashesUpTo(float s, float dash, float period) {
   const float whole = std::floor(s / period);
   return whole * dash + std::min(s - whole * period, dash);

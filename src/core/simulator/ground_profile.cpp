@@ -24,7 +24,8 @@ GroundProfile::GroundProfile(const SimulatedProfileParameters& p)
                                     std::tan(p.slope_before_deg * kRadiansPerDegree),
                                     std::tan(p.slope_after_deg * kRadiansPerDegree)}};
   if (p.hill_height > 0) {
-    // Up over two quarters of the length: the slope grows over the first and goes back to 0 over the second.
+    // The hill rises over two quarters of its length. The slope grows over the first one and returns to 0
+    // over the second one.
     const double quarter = 0.25 * p.hill_length, steepest = p.hill_height / quarter;
     const double foot = p.hill_x - 2 * quarter;
     changes.push_back({foot, foot + quarter, 0, steepest});
@@ -62,14 +63,14 @@ GroundProfile::Line GroundProfile::Piece::tangent(double x) const {
 }
 
 double GroundProfile::Piece::meet(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction) const {
-  // Height of the ray over the piece after s: a + b s - c s^2.
+  // Height of the ray above the piece at s: a + b s - c s^2.
   const double x = centre.x() - from, dx = direction.x();
   const double a = centre.z() - at(centre.x());
   const double b = direction.z() - (slope + curvature * x) * dx;
   const double c = 0.5 * curvature * dx * dx;
   const double root = std::sqrt(std::max(b * b + 4 * a * c, 0.0));
   double nearest = kInfinity;
-  // Both solutions in the form that loses no digits when c is small or 0.
+  // This form of both solutions loses no digits when c is small or 0.
   const double q = 0.5 * (b + std::copysign(root, b));
   for (const double s : {c != 0 ? q / c : kInfinity, q != 0 ? -a / q : kInfinity}) {
     const double met = centre.x() + s * dx;

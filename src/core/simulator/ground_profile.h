@@ -7,8 +7,9 @@
 
 namespace uav_landing {
 
-/// The ground's height along the runway, z(x) in the runway frame: a slope, a parabola, another slope,
-/// without a kink, and a hill of four parabolas on it. The same for all y, and 0 at x = 0.
+/// The ground's height along the runway, z(x) in the runway frame. A slope, a parabola and another slope
+/// follow each other without a kink, and a hill of four parabolas may lie on them. The height is the same for
+/// all y, and 0 at x = 0.
 class GroundProfile {
  public:
   explicit GroundProfile(const SimulatedProfileParameters& parameters = {});
@@ -22,8 +23,8 @@ class GroundProfile {
     double slope = 0, height = 0;
     double at(double x) const { return height + slope * x; }
   };
-  /// Tangent where a ray first meets the ground; for a ray that does not, the ground's line at infinity on
-  /// its side. direction: need not be normalised.
+  /// Tangent where a ray first meets the ground. A ray that does not meet it gets the ground's line at
+  /// infinity on its side. direction: need not be normalised.
   Line seen(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction) const;
 
  private:
@@ -32,7 +33,8 @@ class GroundProfile {
     double begin, end, from, height, slope, curvature;
     double at(double x) const;
     Line tangent(double x) const;
-    /// How far along the ray it meets this piece; infinite when it does not.
+    /// Distance along the ray to this piece, in units of the direction; infinite when the ray does not meet
+    /// it.
     double meet(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction) const;
   };
   const Piece& pieceAt(double x) const;

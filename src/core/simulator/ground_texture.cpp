@@ -5,7 +5,8 @@
 namespace uav_landing {
 namespace {
 
-/// Ratio of the texture's scales: no small ratio of whole numbers, so that the repeats of two never coincide.
+/// Ratio of the texture's scales. It is no small ratio of whole numbers, so the repeats of two scales never
+/// coincide.
 constexpr float kScaleRatio = 19.7f;
 
 }  // namespace
@@ -15,7 +16,7 @@ float groundTexture(const NoiseTile& tile, const GroundPatch& patch, float grain
   float texels_per_metre = 1.0f / grain;
   for (int scale = 0; scale < 3; ++scale, texels_per_metre /= kScaleRatio) {
     const float length = patch.length * texels_per_metre, width = patch.width * texels_per_metre;
-    // What is as large as the whole tile must not show its repeats.
+    // A patch as large as the whole tile must not show its repeats.
     constexpr float kWhole = NoiseTile::kSize, kNone = kWhole / 4;
     const float fade = (kWhole - std::max(length, width)) / (kWhole - kNone);
     if (fade <= 0) continue;

@@ -5,12 +5,12 @@
 
 namespace uav_landing {
 
-/// Keeps seams of the tiles away from the runway's centre line, texels.
+/// Shift in texels that keeps seams of the tiles away from the runway's centre line.
 constexpr float kTileShift = 161.3f;
-/// Spectrum of a ground's texture: amplitudes fall with spatial frequency f as f^-slope.
+/// Spectrum of the ground's texture: amplitudes fall with the spatial frequency f as f^-slope.
 constexpr double kGroundSlope = 0.8;
 
-/// A surface's texture at three scales, mean 0, each with variance 1 before averaging. grain: smallest
+/// Texture of a surface at three scales, each with mean 0 and variance 1 before averaging. grain: smallest
 /// detail, m.
 float groundTexture(const NoiseTile& tile, const GroundPatch& patch, float grain);
 

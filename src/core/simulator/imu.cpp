@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = boost::math::constants::degree<double>();
 
-/// Of the body (forward, left, up) over the runway.
+/// Orientation of the body (forward, left, up) over the runway.
 Eigen::Quaterniond bodyOrientation(const Attitude& attitude) {
   return Eigen::Quaterniond(runwayFromOptical(attitude) * bodyFromOptical().transpose());
 }
@@ -37,7 +37,7 @@ int SimulatedImu::count(double duration) const {
 }
 
 ImuSample SimulatedImu::sample(int index) const {
-  constexpr double kStep = 1e-4;  // s, of the differences that give the angular velocity
+  constexpr double kStep = 1e-4;  // s, of the finite differences that give the angular velocity
   const double t = index / parameters_.rate;
   const Eigen::Quaterniond before = bodyOrientation(trajectory_.pose(t - kStep).attitude);
   const Eigen::Quaterniond after = bodyOrientation(trajectory_.pose(t + kStep).attitude);

@@ -8,7 +8,8 @@
 namespace uav_landing {
 namespace {
 
-/// White noise whose spectrum is scaled by |frequency|^-slope, without its mean. Periodic, as spectra are.
+/// White noise whose spectrum is scaled by |frequency|^-slope, without its mean. It is periodic, as spectra
+/// are.
 cv::Mat makeNoise(int size, uint64_t seed, double slope) {
   cv::Mat noise(size, size, CV_32F);
   cv::RNG(seed * 0x9E3779B97F4A7C15ULL + 1).fill(noise, cv::RNG::NORMAL, 0.0, 1.0);
@@ -24,7 +25,7 @@ cv::Mat makeNoise(int size, uint64_t seed, double slope) {
   return noise / std::sqrt(noise.dot(noise) / noise.total());
 }
 
-/// log2, exact at powers of two and linear in between: continuous and monotone is all that is needed here.
+/// log2, exact at powers of two and linear in between. Here it only needs to be continuous and monotone.
 float roughLog2(float x) {
   uint32_t bits;
   std::memcpy(&bits, &x, sizeof bits);
@@ -32,16 +33,16 @@ float roughLog2(float x) {
   return static_cast<float>(exponent) + static_cast<float>(bits & 0x7FFFFFu) / 8388608.0f;
 }
 
-/// std::floor is a function call on processors without SSE 4.1; this is where most of the time goes.
+/// std::floor is a function call on processors without SSE 4.1, and most of the time is spent here.
 int roundDown(float x) {
   const int truncated = static_cast<int>(x);
   return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
 }
 
-/// Whole and fractional level whose texels are as large as the patch. With the interpolation between them
-/// (see Taps) a pixel then averages by a spline with zeros at all multiples of the pixels' own frequency:
-/// detail that pixels cannot show does not come back as false coarse texture that differs between the
-/// cameras. It costs some sharpness, as 0.5 px of blur would.
+/// Whole and fractional level whose texels are as large as the patch. With the interpolation between the
+/// texels (see Taps), a pixel then averages with a spline. It has zeros at all multiples of the pixels' own
+/// frequency. So detail that pixels cannot show does not come back as false coarse texture that differs
+/// between the cameras. This costs as much sharpness as 0.5 px of blur.
 struct Level {
   int whole;
   float fraction;
@@ -55,7 +56,7 @@ struct Level {
 }  // namespace
 
 /// Quadratic B-spline over three texels. Its variance is the same wherever between the texels it is
-/// evaluated, that of linear interpolation is not, and shows as a flicker of the texture.
+/// evaluated. The variance of linear interpolation is not, and makes the texture flicker.
 struct NoiseTile::Taps {
   int index[3];
   float weight[3];

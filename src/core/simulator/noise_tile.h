@@ -6,18 +6,19 @@
 
 namespace uav_landing {
 
-/// A square of random texture that repeats without a seam, with mean 0 and variance 1, from which the mean
-/// over any axis-aligned rectangle can be had at once: copies averaged over 2^i x 2^j texels are kept for all
-/// i and j (a rip-map), so that ground seen at a grazing angle neither aliases nor blurs to the sides.
+/// A square of random texture that repeats without a seam, with mean 0 and variance 1. The mean over any
+/// axis-aligned rectangle takes one look-up. To that end, copies averaged over 2^i x 2^j texels are kept for
+/// all i and j (a rip-map). So ground that is seen at a grazing angle neither aliases nor blurs sideways.
 class NoiseTile {
  public:
   static constexpr int kSize = 512;  ///< texels along a side
 
-  /// seed: picks the texture. slope: amplitude falls with spatial frequency f as f^-slope; 1 gives every
-  /// octave the same variance, more is softer.
+  /// seed: picks the texture. slope: amplitudes fall with the spatial frequency f as f^-slope. A slope of 1
+  /// gives every octave the same variance, and larger slopes are softer.
   NoiseTile(uint64_t seed, double slope);
 
-  /// Mean over a rectangle of width x height texels around (x, y), tiled. Texel i covers [i, i + 1).
+  /// Mean over a rectangle of width x height texels around (x, y). The tile repeats. Texel i covers [i, i +
+  /// 1).
   float mean(float x, float y, float width, float height) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-/// Corner with a bit for each axis that says which of the two it takes.
+/// One corner of the box. bits: one for each axis, which picks low or high.
 Eigen::Vector3d corner(const StandingObject& object, int bits) {
   Eigen::Vector3d point;
   for (int axis = 0; axis < 3; ++axis)
@@ -17,7 +17,7 @@ Eigen::Vector3d corner(const StandingObject& object, int bits) {
   return point;
 }
 
-/// Where a ray from the origin enters a box of these corners; the axis says through which side.
+/// Where a ray from the origin enters a box. axis: normal of the side through which it enters.
 struct Entry {
   float range;
   int axis;
@@ -32,7 +32,7 @@ std::optional<Entry> enter(const Eigen::Array3f& low, const Eigen::Array3f& high
   return entry;
 }
 
-/// A rectangle in directions (x, y, 1) of the rectified camera.
+/// A rectangle of directions (x, y, 1) in the rectified camera.
 struct Outline {
   float left = 1e9f, right = -1e9f, top = 1e9f, bottom = -1e9f;
   void include(float x, float y) {
@@ -41,13 +41,13 @@ struct Outline {
     top = std::min(top, y);
     bottom = std::max(bottom, y);
   }
-  /// margin: for the size of a pixel.
+  /// margin: allows for the size of a pixel.
   bool contains(const PixelRay& ray, float margin) const {
     return ray.x > left - margin && ray.x < right + margin && ray.y > top - margin && ray.y < bottom + margin;
   }
 };
 
-/// An object as one camera sees it: corners relative to the camera, and the directions it fills.
+/// An object as one camera sees it. The corners are relative to the camera; the outline has its directions.
 struct Visible {
   Eigen::Array3f low, high;
   float brightness;
@@ -66,14 +66,14 @@ Outline outlineOf(const StandingObject& object, const Eigen::Matrix3d& rotation,
       ++behind;
   }
   if (behind == 8) return {};
-  if (behind > 0) return {-1e9f, 1e9f, -1e9f, 1e9f};  // it reaches past the camera: can be anywhere
+  if (behind > 0) return {-1e9f, 1e9f, -1e9f, 1e9f};  // it reaches past the camera, so it can be anywhere
   return outline;
 }
 
-/// Sides along the runway are darker, the top is lighter.
+/// Sides along the runway are darker, and the top is lighter.
 float shadeOf(int axis) { return std::array<float, 3>{1.0f, 0.75f, 1.15f}[axis]; }
 
-/// Grey level where the ray meets the nearest of the objects.
+/// Grey level where the ray meets the nearest object.
 std::optional<float> trace(const std::vector<const Visible*>& objects, const Eigen::Array3f& direction) {
   float nearest = std::numeric_limits<float>::infinity();
   std::optional<float> grey;
@@ -86,7 +86,7 @@ std::optional<float> trace(const std::vector<const Visible*>& objects, const Eig
   return grey;
 }
 
-/// Puts the objects into one pixel over the ground's grey level.
+/// Draws the objects over the ground's grey level in one pixel.
 float drawPixel(const std::vector<const Visible*>& objects, const PixelRay& ray,
                 const Eigen::Matrix3f& rotation, const PixelFilter& filter, float ground) {
   float sum = 0;
@@ -134,7 +134,7 @@ void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCame
                        object.high.array() - centre.cast<float>().array(), object.brightness,
                        outlineOf(object, rotation, centre)});
   const Eigen::Matrix3f axes = rotation.cast<float>();
-  const PixelFilter finer = filter.finer();  // outlines are told by samples alone
+  const PixelFilter finer = filter.finer();  // only the samples show outlines
   cv::parallel_for_(cv::Range(part.y, part.br().y), [&](const cv::Range& rows) {
     std::vector<const Visible*> here;
     for (int row = rows.start; row < rows.end; ++row) {

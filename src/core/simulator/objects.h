@@ -20,8 +20,9 @@ struct StandingObject {
 std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& objects, double runway_width,
                                          uint64_t seed);
 
-/// Draws the objects over a part of an image of the ground (32-bit float). rotation: runway frame from
-/// rectified camera axes; centre: the camera's, in the runway frame; filter: what the ground was drawn with.
+/// Draws the objects over a part of an image of the ground (32-bit float). rotation: from rectified camera
+/// axes to the runway frame. centre: of the camera, in the runway frame. filter: the one that the ground was
+/// drawn with.
 void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
                  const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
                  const cv::Rect& part, cv::Mat& image);

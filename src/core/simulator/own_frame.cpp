@@ -23,7 +23,8 @@ void OwnFrame::addNose(const SimulatedOwnFrameParameters& frame, Side camera) {
   const double middle = (camera == Side::kLeft ? frame.nose_left : frame.nose_right) * clear_.cols - 0.5;
   const double half = 0.5 * frame.nose_width * clear_.cols, top = frame.nose_height * clear_.rows;
   for (int column = 0; column < clear_.cols; ++column) {
-    // A parabola. Its distance in pixels is that along the column, shortened by the outline's slope.
+    // The outline is a parabola. Its distance in pixels is that along the column, shortened by the outline's
+    // slope.
     const double at = (column - middle) / half;
     const double edge = clear_.rows - 0.5 - top * (1 - at * at);
     const double shorten = 1 / std::hypot(1.0, 2 * top * at / half);

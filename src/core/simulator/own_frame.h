@@ -6,13 +6,13 @@
 
 namespace uav_landing {
 
-/// Parts of the aircraft that one camera sees, always at the same place of its raw picture.
+/// Parts of the aircraft that one camera sees. They are always at the same place of its raw image.
 class OwnFrame {
  public:
   enum class Side { kLeft, kRight };
   OwnFrame(const SimulatedOwnFrameParameters& frame, const SimulatedImageParameters& image, Side camera);
 
-  /// Draws them over a picture of 32-bit floats.
+  /// Draws them over an image of 32-bit floats.
   void draw(cv::Mat& grey) const;
 
  private:
@@ -20,7 +20,8 @@ class OwnFrame {
   void addNose(const SimulatedOwnFrameParameters& frame, Side camera);
   void addPost(const SimulatedOwnFrameParameters& frame, Side camera);
 
-  cv::Mat light_, clear_;  ///< what is added to each pixel, and the share that is left of it; empty: nothing
+  /// light_ is added to each pixel, and clear_ is the share that remains of it; empty: nothing.
+  cv::Mat light_, clear_;
 };
 
 }  // namespace uav_landing

@@ -6,7 +6,7 @@
 namespace uav_landing {
 namespace {
 
-/// The frame at the near end of a strip whose middle is given.
+/// The frame at the near end of a strip that is given by its middle.
 template <class Strip>
 GroundFrame frameOf(const Strip& strip) {
   const double direction = strip.direction_deg * M_PI / 180;
@@ -30,7 +30,7 @@ SimulatedRunwayParameters plain(const SimulatedStripParameters& strip) {
   return p;
 }
 
-/// The main runway's marks on another one of this size; what has no room is left out.
+/// Marks of the main runway on another one of this size. A mark without room is left out.
 SimulatedRunwayParameters fitted(const SimulatedCrossingParameters& crossing,
                                  const SimulatedRunwayParameters& main) {
   SimulatedRunwayParameters p = main;

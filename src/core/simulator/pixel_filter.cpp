@@ -7,9 +7,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kPixelVariance = 1.0 / 12;  // of a square of 1 px along each side
+constexpr double kPixelVariance = 1.0 / 12;  // variance of a square of 1 px along each side
 
-/// Weights along one axis of pieces that share the support evenly, and the variance of it all.
+/// Weights along one axis of pieces that divide the support evenly, and the variance of the whole.
 struct Profile {
   std::vector<double> at, weight;
   double side, variance;

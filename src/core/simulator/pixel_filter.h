@@ -4,17 +4,18 @@
 
 namespace uav_landing {
 
-/// How a pixel weights the light around its centre before it is sampled: evenly over itself or, where the
-/// lens blurs by enough, by a tent over twice its sides, which leaves much less of what is finer than pixels.
-/// Blurred after sampling only, edges far ahead would be aliased and move otherwise than the scene.
+/// How a pixel weights the light around its centre before sampling. Usually the weight is even over the
+/// pixel. When the lens blurs enough, it is a tent of twice the width, which passes much less detail that is
+/// finer than pixels. If the image were blurred only after sampling, edges far ahead would alias and move
+/// differently from the scene.
 class PixelFilter {
  public:
-  /// samples: along each side of a pixel. blur: 1 sigma of the lens, px.
+  /// samples: number along each side of a pixel. blur: 1 sigma of the lens, px.
   PixelFilter(int samples, double blur);
   /// The same with twice the samples along each side.
   PixelFilter finer() const { return PixelFilter(2 * side_samples_, blur_, tent_); }
 
-  /// A square piece of the pixel's surroundings: its middle from the pixel's centre, px.
+  /// A square piece of the pixel's surroundings. du, dv: from the pixel's centre to its middle, px.
   struct Sample {
     float du, dv;
     float weight;  ///< their sum is 1
@@ -23,9 +24,9 @@ class PixelFilter {
   float sampleSide() const { return sample_side_; }
   /// Side of the square that holds all samples, px.
   float support() const { return support_; }
-  /// Side of the square, evenly weighted, of the filter's variance, px.
+  /// Side of the evenly weighted square that has the filter's variance, px.
   float equivalentSide() const { return equivalent_side_; }
-  /// 1 sigma of the lens's blur that the filter leaves to be done after sampling, px.
+  /// 1 sigma of the lens's blur that remains to be applied after sampling, px.
   double blurLeft() const { return blur_left_; }
 
  private:

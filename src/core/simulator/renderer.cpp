@@ -5,19 +5,19 @@
 
 namespace uav_landing {
 
-/// A camera in the world, ready to trace rays: directions are in the runway frame.
+/// A camera in the world, ready to trace rays. Directions are in the runway frame.
 struct Renderer::View {
-  Eigen::Matrix3f rotation;  ///< runway frame from rectified camera axes
+  Eigen::Matrix3f rotation;  ///< from rectified camera axes to the runway frame
   Eigen::Vector3f centre;
 };
 
 /// The rays of a square piece of a pixel.
 struct Renderer::Sample {
-  Eigen::Vector3f direction;         ///< of its middle, not normalised
-  Eigen::Vector3f along_u, along_v;  ///< change of the direction over its sides
+  Eigen::Vector3f direction;         ///< of the middle, not normalised
+  Eigen::Vector3f along_u, along_v;  ///< change of the direction over the sides
   float extent;                      ///< see measure()
 
-  /// The piece of this side around (du, dv) from the pixel's centre, in pixels.
+  /// The square piece of this side around (du, dv) from the pixel's centre, in pixels.
   Sample(const View& view, const PixelRay& ray, float side, float du, float dv) {
     along_u = view.rotation.col(0) * ray.xu + view.rotation.col(1) * ray.yu;
     along_v = view.rotation.col(0) * ray.xv + view.rotation.col(1) * ray.yv;
@@ -28,16 +28,17 @@ struct Renderer::Sample {
     measure();
   }
 
-  /// Height of its directions, the measure for its distance from the horizon.
+  /// Measures the extent: the range of the z components of its directions. Distances from the horizon are in
+  /// this unit.
   void measure() { extent = std::sqrt(along_u.z() * along_u.z() + along_v.z() * along_v.z()); }
 
-  /// Shears the directions so that ground of this slope along x becomes level.
+  /// Shears the directions, so that ground with this slope along x becomes level.
   void shear(float slope) {
     for (Eigen::Vector3f* v : {&direction, &along_u, &along_v}) v->z() -= slope * v->x();
     measure();
   }
 
-  /// The ground it covers.
+  /// The ground that the sample covers.
   GroundFootprint footprint(const Eigen::Vector3f& centre, float range, float fall) const {
     const Eigen::Vector2f slope = direction.head<2>() / fall;
     const Eigen::Vector2f u = range * (along_u.head<2>() + slope * along_u.z());
@@ -46,7 +47,7 @@ struct Renderer::Sample {
   }
 };
 
-/// A sample in axes sheared so that the ground it sees is level there.
+/// A sample in axes that are sheared so that its ground is level.
 struct Renderer::OnGround {
   Sample sample;
   float height;  ///< of the camera above that ground
@@ -71,9 +72,9 @@ Renderer::OnGround Renderer::onGround(const View& view, const Sample& sample) co
 
 float Renderer::ground(const View& view, const OnGround& on) const {
   const Sample& sample = on.sample;
-  // On the horizon itself: the ground as far as can be told apart from it.
+  // On the horizon the distance is limited, to where ground can just be told apart from the horizon.
   const float fall = std::max(-sample.direction.z(), 0.25f * sample.extent);
-  const float range = on.height / fall;  // along the direction, which is not normalised
+  const float range = on.height / fall;  // in units of the direction, which is not normalised
   const GroundFootprint footprint = sample.footprint(view.centre, range, fall);
   return scene_.ground(footprint, scene_.cover(footprint), range * sample.direction.norm());
 }
@@ -86,7 +87,7 @@ float Renderer::mixed(const View& view, const PixelRay& ray) const {
   float sum = 0;
   for (const PixelFilter::Sample& piece : filter_.samples()) {
     const Sample sample(view, ray, filter_.sampleSide(), piece.du, piece.dv);
-    // The horizon passes through samples: both sides count by their area.
+    // When the horizon passes through a sample, both sides count by their area.
     const OnGround on = onGround(view, sample);
     const float below = std::clamp(0.5f - on.sample.direction.z() / on.sample.extent, 0.0f, 1.0f);
     if (below > 0) sum += piece.weight * below * ground(view, on);
@@ -96,8 +97,8 @@ float Renderer::mixed(const View& view, const PixelRay& ray) const {
 }
 
 float Renderer::pixel(const View& view, const PixelRay& ray) const {
-  // One sample is exact enough for sky, and for one material that lies well below the horizon: there the
-  // perspective within its side moves its mean by less than 1 / (12 kFar) of the side.
+  // One sample is exact enough for sky. It is also enough for one material well below the horizon. There the
+  // perspective within the sample moves its mean by less than 1 / (12 kFar) of its side.
   constexpr float kFar = 16.0f;
   const Sample whole(view, ray, filter_.support(), 0.0f, 0.0f);
   const float even = filter_.equivalentSide() / filter_.support();

@@ -13,21 +13,21 @@
 
 namespace uav_landing {
 
-/// Draws what a camera sees: each sample's ray is cut with the ground exactly (its tangent, where it is
-/// curved), and the ground is averaged over the patch that the sample covers.
+/// Draws what a camera sees. Each sample's ray is intersected with the ground exactly; where the ground is
+/// curved, with its tangent. The grey level is the mean over the patch of ground that the sample covers.
 class Renderer {
  public:
-  /// image: its supersampling and blur count.
+  /// image: its supersampling and blur are used.
   Renderer(Scene scene, std::vector<StandingObject> objects, const SimulatedImageParameters& image,
            GroundProfile profile = GroundProfile());
 
-  /// Grey levels as 32-bit floats, of the camera's size. pose: of the rectified left camera, also for the
-  /// right.
+  /// Writes grey levels as 32-bit floats, in the camera's size. pose: that of the rectified left camera, also
+  /// for the right camera.
   void render(const SimulatedCamera& camera, const CameraPose& pose, cv::Mat& image) const;
-  /// The same for one part of a picture that is there already.
+  /// The same for one part of an existing image.
   void render(const SimulatedCamera& camera, const CameraPose& pose, const cv::Rect& part,
               cv::Mat& image) const;
-  /// 1 sigma of the lens's blur that is still to be done, px.
+  /// 1 sigma of the lens's blur that remains to be applied, px.
   double blurLeft() const { return filter_.blurLeft(); }
 
  private:
@@ -38,7 +38,7 @@ class Renderer {
   float pixel(const View& view, const PixelRay& ray) const;
   float mixed(const View& view, const PixelRay& ray) const;
   float ground(const View& view, const OnGround& ground) const;
-  /// share: of the sample's sides that counts.
+  /// share: part of the sample's sides that counts.
   float sky(const Sample& sample, float share = 1) const;
 
   Scene scene_;

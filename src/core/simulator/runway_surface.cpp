@@ -44,7 +44,7 @@ RunwaySurface::RunwaySurface(const SimulatedRunwayParameters& p)
 }
 
 void RunwaySurface::addArrowShafts(const SimulatedRunwayParameters& p) {
-  constexpr double kPitch = 60, kShaft = 25, kFree = 5;  // m; the last arrow ends this far from the threshold
+  constexpr double kPitch = 60, kShaft = 25, kFree = 5;  // m; the last arrow ends kFree before the threshold
   const auto half = static_cast<float>(0.5 * p.centre_line_width);
   for (double end = -kFree; end - kShaft >= -p.displaced_threshold; end -= kPitch)
     marks_.push_back({{static_cast<float>(end - kShaft), static_cast<float>(end)}, {{-half, half}}});

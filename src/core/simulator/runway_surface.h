@@ -7,8 +7,8 @@
 
 namespace uav_landing {
 
-/// Which part of a small piece of ground is runway and which part is paint. A mark is a product of an
-/// interval along and one across the runway, so the area covered of an axis-aligned rectangle is exact.
+/// Tells which part of a small piece of ground is runway and which part is paint. A mark is the product of an
+/// interval along the runway and one across it. So the covered area of an axis-aligned rectangle is exact.
 class RunwaySurface {
  public:
   explicit RunwaySurface(const SimulatedRunwayParameters& parameters);
@@ -17,7 +17,7 @@ class RunwaySurface {
   struct Cover {
     float runway;  ///< share of the patch on the runway's surface, paint included
     float paint;   ///< share of the patch that is painted
-    /// One material alone.
+    /// True when the patch is of one material.
     bool pure() const { return (runway == 0.0f || runway == 1.0f) && (paint == 0.0f || paint == 1.0f); }
   };
   Cover cover(const Patch& patch) const;
@@ -28,7 +28,7 @@ class RunwaySurface {
   struct Interval {
     float from, to;
   };
-  /// A mark: rectangles of the same interval along the runway.
+  /// A mark consists of rectangles with the same interval along the runway.
   struct Mark {
     Interval along;
     std::vector<Interval> across;
@@ -39,7 +39,7 @@ class RunwaySurface {
 
   float length_, displaced_, half_width_;
   float centre_half_width_, centre_start_, dash_, period_;
-  std::vector<Mark> marks_;  ///< of the near half; the far half mirrors it
+  std::vector<Mark> marks_;  ///< of the near half; the far half is its mirror image
 };
 
 }  // namespace uav_landing

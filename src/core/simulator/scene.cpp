@@ -43,7 +43,7 @@ float Scene::ground(const GroundFootprint& footprint, const RunwaySurface::Cover
   const GroundPatch& patch = footprint.box;
   float grey = 0;
   if (cover.runway > 0) {
-    // Paint fills the surface's pores: half the texture.
+    // Paint fills the surface's pores, so only half of the texture remains.
     const float texture = static_cast<float>(surface_.runway_contrast) *
                           groundTexture(runway_tile_, patch, surface_.runway_grain);
     const float bare = static_cast<float>(surface_.runway_brightness) * std::max(1.0f + texture, 0.0f);
@@ -66,8 +66,8 @@ float Scene::ground(const GroundFootprint& footprint, const RunwaySurface::Cover
 }
 
 float Scene::sky(const Eigen::Vector3f& direction, float extent) const {
-  // A layer of clouds overhead, seen by a camera below it: what lies at elevation e is 1 / tan(e) away. The
-  // small constant keeps the horizon at a finite distance, as the curved Earth does.
+  // The sky is a layer of clouds above the camera: a cloud at the elevation e is 1 / tan(e) away. The small
+  // constant keeps the horizon at a finite distance, as the curved Earth does.
   const float up = std::max(direction.z(), 0.0f);
   const float range = 1.0f / (up + 0.08f);
   constexpr float kTexels = 40.0f;

@@ -9,7 +9,7 @@
 
 namespace uav_landing {
 
-/// How bright the ground and the sky are, in grey levels, averaged over what one sample sees. The ground is
+/// Brightness of the ground and the sky in grey levels, averaged over the area of one sample. The ground is
 /// the plane z = 0 of the runway frame.
 class Scene {
  public:
@@ -21,10 +21,11 @@ class Scene {
   bool even(const GroundFootprint& footprint, const RunwaySurface::Cover& cover) const {
     return cover.pure() && (cover.runway == 1.0f || scenery_.even(footprint));
   }
-  /// A piece of ground with this cover at this distance from the camera (for the haze).
+  /// Grey level of a piece of ground with this cover. distance: from the camera, m, for the haze.
   float ground(const GroundFootprint& footprint, const RunwaySurface::Cover& cover, float distance) const;
 
-  /// Sky in a unit direction of the runway frame; extent: angle the sample covers, rad.
+  /// Grey level of the sky in a unit direction of the runway frame. extent: angle that the sample covers,
+  /// rad.
   float sky(const Eigen::Vector3f& direction, float extent) const;
 
  private:

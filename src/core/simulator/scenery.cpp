@@ -58,13 +58,13 @@ Scenery::Scenery(const SimulatedSceneryParameters& p, const SimulatedRunwayParam
 }
 
 bool Scenery::even(const GroundFootprint& footprint) const {
-  // In any frame the footprint's corners lie within a box that is this much larger.
+  // In any frame, the footprint's corners lie within a box that is larger by this factor.
   constexpr float kToCorners = 1.41422f;
   const GroundFootprint around = footprint.scaled(kToCorners);
   for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
     const LayerCover cover = (*layer)->cover(around);
     if (!cover.even) return false;
-    if (cover.share == 1) return true;  // it hides what is below
+    if (cover.share == 1) return true;  // it hides the layers below
   }
   return true;
 }

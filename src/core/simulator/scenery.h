@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// What lies on the ground around the runway: layers, the later ones over the earlier ones.
+/// The scenery around the runway. It is made of layers, the later ones over the earlier ones.
 class Scenery {
  public:
   Scenery() = default;
@@ -20,7 +20,7 @@ class Scenery {
   bool empty() const { return layers_.empty(); }
   /// True when a single sample of this ground is exact.
   bool even(const GroundFootprint& footprint) const;
-  /// What a piece of ground shows of it.
+  /// What a piece of ground shows of the scenery.
   struct Shown {
     float grey = 0;  ///< light of all layers, in grey levels
     float bare = 1;  ///< share of the ground that no layer covers
@@ -28,7 +28,7 @@ class Scenery {
   Shown shown(const GroundFootprint& footprint) const;
 
  private:
-  std::vector<std::shared_ptr<const GroundLayer>> layers_;  ///< the lowest first
+  std::vector<std::shared_ptr<const GroundLayer>> layers_;  ///< the lowest one first
   std::shared_ptr<const NoiseTile> tile_;
   float grain_ = 1;
 };

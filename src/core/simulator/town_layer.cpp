@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-/// The frame at the corner of a rectangle whose middle is given.
+/// The frame at the corner of a rectangle that is given by its middle.
 GroundFrame cornerOf(const SimulatedTownParameters& p) {
   const GroundFrame middle(p.x, p.y, p.direction_deg);
   GroundFrame corner = middle;
@@ -63,7 +63,7 @@ TownLayer::TownLayer(const SimulatedTownParameters& p, uint64_t seed)
       const float y =
           across_.plotFrom(j) + random.uniform(0.3f, 0.7f) * (across_.plot - width) + 0.5f * width;
       const double brightness = p.roof_brightness + p.roof_spread * random.uniform(-1.0, 1.0);
-      const double slope = random.uniform(-0.2, 0.2);  // one half of it faces the sun
+      const double slope = random.uniform(-0.2, 0.2);  // one half of the roof faces the sun
       const bool ridge_along = random.uniform(0, 2) == 0;
       for (int half = 0; half < 2; ++half) {
         const float side = half == 0 ? -0.25f : 0.25f;
@@ -88,7 +88,7 @@ TownLayer::Roofs TownLayer::roofs(const GroundPatch& patch) const {
   const int last_i = along_.plotAt(patch.x + 0.5f * patch.length);
   const int first_j = across_.plotAt(patch.y - 0.5f * patch.width);
   const int last_j = across_.plotAt(patch.y + 0.5f * patch.width);
-  constexpr int kMost = 200;  // plots; more of them, far away, show their mean
+  constexpr int kMost = 200;  // number of plots; more of them, far away, show their mean
   if ((last_i - first_i + 1) * (last_j - first_j + 1) > kMost) {
     const float blocks = (1 - along_.streets(patch.x - 0.5f * patch.length, patch.x + 0.5f * patch.length)) *
                          (1 - across_.streets(patch.y - 0.5f * patch.width, patch.y + 0.5f * patch.width));
@@ -125,7 +125,7 @@ LayerCover TownLayer::cover(const GroundFootprint& footprint) const {
   const float streets = 1 - (1 - along_.streets(near, far)) * (1 - across_.streets(low, high));
   const Roofs roofs = this->roofs(patch);
   const float garden = std::max(1 - streets - roofs.share, 0.0f);
-  constexpr float kAll = 0.9999f;  // but for rounding
+  constexpr float kAll = 0.9999f;  // all, except for rounding
   const bool even = share == 1 && (streets > kAll || garden == 1 || roofs.one);
   const float sum = streets + roofs.share + garden;
   return {share, (streets * street_brightness_ + roofs.light + garden * garden_brightness_) / sum, contrast_,

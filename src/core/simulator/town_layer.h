@@ -8,8 +8,8 @@
 
 namespace uav_landing {
 
-/// A grid of streets with blocks between them. A block is divided into plots, and on most of these lies a
-/// roof: two halves of different grey levels with the ridge between them.
+/// A grid of streets with blocks between them. A block is divided into plots. On most plots there is a roof:
+/// two halves of different grey levels with the ridge between them.
 class TownLayer : public GroundLayer {
  public:
   TownLayer(const SimulatedTownParameters& town, uint64_t seed);
@@ -17,15 +17,15 @@ class TownLayer : public GroundLayer {
   LayerCover cover(const GroundFootprint& footprint) const override;
 
  private:
-  /// Along one axis of the town: a street, a block of plots, a street, and so on.
+  /// The pattern along one axis of the town: a street, a block of plots, a street, and so on.
   struct Grid {
     float street, period, plot;
-    int plots;  ///< in a block
-    int count;  ///< plots in all
+    int plots;  ///< number in a block
+    int count;  ///< number in the town
     Grid(double street, double block, double plot, double whole);
     float plotFrom(int index) const;
     int plotAt(float s) const;
-    /// Share of streets between two places.
+    /// Share of streets in an interval.
     float streets(float from, float to) const;
   };
   struct Rectangle {
@@ -36,7 +36,7 @@ class TownLayer : public GroundLayer {
     bool built;
     Rectangle halves[2];
   };
-  /// What the roofs between two plots, both included, put on a patch.
+  /// What the roofs on a range of plots, both ends included, add to a patch.
   struct Roofs {
     float share = 0, light = 0;
     bool one = false;
@@ -48,7 +48,7 @@ class TownLayer : public GroundLayer {
   Grid along_, across_;
   float street_brightness_, garden_brightness_, contrast_;
   float mean_roofs_ = 0,
-        mean_light_ = 0;     ///< of the blocks' area: share of roofs, and their grey level times it
+        mean_light_ = 0;     ///< mean over the blocks' area: share of roofs, and their grey level times it
   std::vector<Roof> roofs_;  ///< [index along * plots across + index across]
 };
 

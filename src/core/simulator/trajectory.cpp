@@ -12,9 +12,9 @@ namespace {
 constexpr double kRadiansPerDegree = boost::math::constants::degree<double>();
 constexpr double kTwoPi = boost::math::constants::two_pi<double>();
 
-/// Integral of (cos, sin) of an angle that goes from a to b at a steady rate over this time.
+/// Integral of (cos, sin) of an angle that changes from a to b at a constant rate. duration: of the change.
 Eigen::Vector2d arc(double a, double b, double duration) {
-  // sinc of half the difference: exact, and good when a and b are equal.
+  // sinc of half the difference is exact, also when a and b are equal.
   const double half = 0.5 * (b - a), middle = 0.5 * (a + b);
   const double sinc = std::abs(half) < 1e-9 ? 1.0 : std::sin(half) / half;
   return duration * sinc * Eigen::Vector2d(std::cos(middle), std::sin(middle));
@@ -44,7 +44,7 @@ Trajectory::Trajectory(const SimulatedPathParameters& path, const SimulatedWobbl
 }
 
 double Trajectory::Wobble::at(double t) const {
-  // Together at most the amplitude.
+  // The sum of both sines never exceeds the amplitude.
   const double angle = kTwoPi * t / period;
   return amplitude * (std::sin(angle + phase) + 0.4 * std::sin(2.7 * angle + fast_phase)) / 1.4;
 }
@@ -62,7 +62,7 @@ Eigen::Vector2d Trajectory::advance(double t) const {
 }
 
 double Trajectory::lostToGust(double t) const {
-  // Integral of speed (1 - cos(2 pi t / duration)) / 2.
+  // The integral of speed (1 - cos(2 pi t / duration)) / 2.
   const double in_gust = std::clamp(t - gust_.start, 0.0, gust_.duration);
   const double period = gust_.duration / kTwoPi;
   return 0.5 * gust_.speed * (in_gust - period * std::sin(in_gust / period));

@@ -16,7 +16,7 @@ WaterLayer::WaterLayer(const SimulatedWaterParameters& p)
       beach_brightness_(p.beach_brightness) {}
 
 WaterLayer::Bank WaterLayer::bank(float along) const {
-  // Two sines, so that no two bends are alike; together they stay within the wave.
+  // With two sines no two bends are alike. Together they stay within the wave.
   constexpr float kSlow = 0.7f, kFast = 0.3f, kRatio = 2.7f;
   const float k = 2 * static_cast<float>(M_PI) / wave_length_, phase = k * along;
   return {wave_ * (kSlow * std::sin(phase) + kFast * std::sin(kRatio * phase)),
@@ -27,7 +27,7 @@ LayerCover WaterLayer::cover(const GroundFootprint& footprint) const {
   const GroundPatch patch = footprint.in(frame_);
   const float reach = wave_ + beach_ + 0.5f * patch.width;
   if (patch.y < -reach || patch.y > width_ + reach) return {};
-  // Ground that is as long as the bends shows their mean, and is wider by them.
+  // A patch as long as the bends shows their mean, and reaches farther across by their amplitude.
   const float detail = std::clamp(1.5f - 2.0f * patch.length / wave_length_, 0.0f, 1.0f);
   const Bank near = bank(patch.x);
   const float across = patch.y - detail * near.across;

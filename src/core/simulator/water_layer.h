@@ -13,7 +13,7 @@ class WaterLayer : public GroundLayer {
   LayerCover cover(const GroundFootprint& footprint) const override;
 
  private:
-  /// How far the near bank lies to the left of its straight line, and how fast that grows along it.
+  /// How far the near bank lies to the left of its straight line, and the derivative of that along the line.
   struct Bank {
     float across, slope;
   };
