@@ -11,10 +11,10 @@
 
 namespace uav_landing {
 
-/// The whole chain for one pair after another, as the nodelets run it.
+/// The whole chain, for one pair after another, as the nodelets run it.
 class Pipeline {
  public:
-  /// left, right: see workingPair(). Fails when parameters.rig does not accept the cameras, and when a mask
+  /// left, right: see workingPair(). Fails when parameters.rig does not accept the cameras, or when a mask
   /// that it names cannot be used.
   static Expected<Pipeline> create(const CameraCalibration& left, const CameraCalibration& right,
                                    const Parameters& parameters);
@@ -27,8 +27,9 @@ class Pipeline {
     Timings parts;   ///< of the parts of all stages
     Timings stages;  ///< of the stages: rectify, stereo_depth, approach_angle, kalman_height
   };
-  /// left, right: raw mono8 of the size that the calibrations announce; with another size all results are
-  /// failures. stamp: of the left image, s. skew: right minus left, s. imu: of this pair.
+  /// left, right: raw mono8 of the size that the calibrations announce. With another size all results are
+  /// failures. stamp: of the left image, s. skew: stamp of the right image minus that of the left one, s.
+  /// imu: of this pair.
   const Output& process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0,
                         const AttitudePrior& imu = {});
 

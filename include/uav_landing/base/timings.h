@@ -20,7 +20,7 @@ class Timings {
   std::vector<std::pair<std::string, double>> parts_;
 };
 
-/// Adds the time of its scope to one part.
+/// Measures the time of its scope and adds it to one part.
 class ScopedTimer {
  public:
   ScopedTimer(Timings& timings, const char* part)

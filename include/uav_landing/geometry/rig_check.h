@@ -8,9 +8,10 @@
 
 namespace uav_landing {
 
-// A camera_info can be complete and still not belong to the images: it is for another image size, or its
-// baseline is in millimetres. No image shows that: heights look right and are wrong by a factor. So values
-// that are unlikely for a camera are refused, or warned about.
+// A camera_info can be complete and still not belong to the images. It may be for another image size, or its
+// baseline may be in millimetres. No image shows that: heights look right and are wrong by a factor. So
+// values that are unlikely for a camera are refused, or give a warning.
+//
 // The offset of a principal point is |K[2] - width / 2| / width, and |K[5] - height / 2| / height, in pixels
 // of the full resolution, without ROI or binning. For a K that is s times too large it is |s - 1| / 2. P is
 // not tested, because rectification may put its principal point anywhere.
@@ -23,7 +24,7 @@ constexpr double kShortestLikelyBaseline = 0.01, kLongestLikelyBaseline = 10.0;
 /// failure names the field, and the parameter that lets it through.
 Failure checkPrincipalPoint(const CameraCalibration& calibration, const RigParameters& limits);
 
-/// As makeStereoRig(left, right), and refuses what is beyond the limits.
+/// The same as makeStereoRig(left, right), and refuses what is beyond the limits.
 Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCalibration& right,
                                   const RigParameters& limits);
 

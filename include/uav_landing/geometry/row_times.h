@@ -10,7 +10,8 @@
 
 namespace uav_landing {
 
-/// How one camera reads its raw images, as the driver delivers them. A raw row v of `rows` is exposed at
+/// Describes how a camera reads its raw images, as the driver delivers them. A raw row v of `rows` is exposed
+/// at
 ///   t(v) = stamp + ((v + 1/2) / rows - stamp_row) time.
 struct Readout {
   double time = 0;         ///< s, from the first line to the last; negative: the last one comes first
@@ -18,27 +19,29 @@ struct Readout {
   RowDirection direction = RowDirection::kRows;
 };
 
-/// Readout of the left and the right camera that the stages work with (see workingPair()), by the parameters.
-/// In a rig upside down the left one is the camera that is named right. Nothing is carried by a time that is
-/// not given.
+/// Readout by the parameters, for the left and the right camera that the stages work with (see
+/// workingPair()). In a rig that is mounted upside down, the left one is the camera that is named right. A
+/// time that is not given counts as 0.
 Readout leftReadout(const RigParameters& parameters);
 Readout rightReadout(const RigParameters& parameters);
-/// A readout of 1 s where no time is given, which tells what an unknown one does. Else a global shutter.
+/// A readout of 1 s when the time has to be estimated. It shows the effect of the unknown time. Otherwise a
+/// global shutter.
 Readout unknownReadout(const RigParameters& parameters);
 
-/// When the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a pixel
-/// to its raw row. In a rig upside down the first row is at the bottom. The default is a global shutter.
+/// Tells when the pixels of a rectified image are exposed. Lens, rectification, ROI and binning lead from a
+/// pixel to its raw row. In a rig that is mounted upside down the first row is at the bottom. The default is
+/// a global shutter.
 class RowTimes {
  public:
   RowTimes() = default;
-  /// calibration: already checked.
+  /// calibration: must have been checked.
   RowTimes(const CameraCalibration& calibration, const Readout& readout);
 
-  /// Global shutter: nothing has to be carried to the stamp.
+  /// True for a global shutter: nothing has to be carried to the stamp.
   bool atOnce() const { return time_ == 0; }
   /// Time from the stamp to the exposure of a rectified pixel, s.
   double at(double u, double v) const { return atOnce() ? 0 : time_ * shareAt(u, v); }
-  /// (t0, tu, tv) of the plane t0 + tu u + tv v that fits these times best: s, s/px, s/px.
+  /// (t0, tu, tv) of the plane t0 + tu u + tv v that fits these times best; s, s/px, s/px.
   const Eigen::Vector3d& plane() const { return plane_; }
   /// Time from the first line to the last, s; negative when the last one comes first.
   double readoutTime() const { return time_; }
@@ -52,22 +55,23 @@ class RowTimes {
   Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
 };
 
-/// Delay of the right camera's rows after the left one's, s. size: of the rectified images. If only lenses
-/// and rectification make a difference, as in any rig, it is that in the middle; otherwise the largest one.
+/// Delay of the right camera's rows after the left one's, s. size: of the rectified images. When only lenses
+/// and rectification make a difference, as in any rig, the delay is that in the middle. Otherwise it is the
+/// largest one.
 double laterRows(const RowTimes& left, const RowTimes& right, const cv::Size& size);
 
-/// Refuses a readout time that is longer than the time between the images. It is then in other units, or that
-/// of another mode of the sensor.
+/// Refuses a readout time that is longer than the time between the images. Such a time is in other units, or
+/// belongs to another mode of the sensor.
 class ReadoutCheck {
  public:
   explicit ReadoutCheck(const RowTimes& times, const RowTimes& right);
-  /// Call it for the pairs in the order of their stamps, s.
+  /// Call it with the stamps of the pairs, in their order, s.
   Failure follow(double stamp);
   void reset() { stamps_.clear(); }
 
  private:
   double longest_;             // readout time of either camera, s
-  std::deque<double> stamps_;  // the last ones
+  std::deque<double> stamps_;  // the last stamps
 };
 
 }  // namespace uav_landing

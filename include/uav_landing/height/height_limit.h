@@ -5,9 +5,8 @@
 
 namespace uav_landing {
 
-/// Tells when a height (m, m^2) is too uncertain to be valid: its 3 sigma exceed the larger of
-/// min_height_error and max_height_error times the height, or it is not above the ground. No failure
-/// otherwise.
+/// A failure when a height (m) with this variance (m^2) is too uncertain to be valid, or not above the
+/// ground. Its 3 sigma must not exceed the larger of min_height_error and max_height_error times the height.
 Failure tooUncertain(double height, double variance, const KalmanHeightParameters& parameters);
 
 }  // namespace uav_landing

@@ -17,23 +17,27 @@ struct GreyRange {
 };
 /// For example "values 0 to 1023 of 65535 become black to white".
 std::string toText(const GreyRange& range);
-/// What to say when values exceed the given bits of a GreyRangeFinder.
+/// Message for values that exceed the given bits of a GreyRangeFinder.
 std::string exceededText(int bits);
 
-/// Finds the range of values that a camera uses: one of 10, 12 or 14 bits, or a thermal camera, whose scene
-/// needs only a small part of its bits. Both cameras have the same range, so that they stay comparable.
-/// The values between the 0.1 % and the 99.9 % quantile of both images are taken; the median over the first
-/// pairs counts. If this range is at least a sixteenth of what its bits can hold, the result is the range of
-/// these bits. Otherwise it is the range plus a quarter of it on both sides. From then on it stays. It grows
-/// only when more than 1 % of an image's values are outside in five consecutive pairs, as the scene has
-/// become brighter. Images without content (a closed shutter, a broken transfer) do not count.
+/// Finds the range of values that a camera uses. The camera may have 10, 12 or 14 bits, or be a thermal
+/// camera, whose scene needs only a small part of its bits. Both cameras get the same range, so that they
+/// stay comparable.
+///
+/// For each pair, the range reaches from the 0.1 % to the 99.9 % quantile of both images. The median over the
+/// first pairs counts. If this range is at least a sixteenth of what its bits can hold, the result is the
+/// range of these bits. Otherwise the result is the range plus a quarter of it on both sides.
+///
+/// From then on the range stays. It grows only when the scene becomes brighter: more than 1 % of an image's
+/// values are outside in five consecutive pairs. Images without content (a closed shutter, a broken transfer)
+/// do not count.
 class GreyRangeFinder {
  public:
-  /// bits: used bits, from the lowest one on; 0: to be found.
+  /// bits: used bits, counted from the lowest one; 0: they are found.
   explicit GreyRangeFinder(int bits);
 
-  /// left, right: the values of a pair, CV_16U, any number of channels. Empty when an image has 8 bits or
-  /// cannot be used.
+  /// left, right: the values of a pair, CV_16U, any number of channels. Pass an empty image when it has 8
+  /// bits or cannot be used.
   const GreyRange& follow(const cv::Mat& left, const cv::Mat& right);
   const GreyRange& range() const { return range_; }
   /// Whether more than 1 % of an image's values were ever beyond the given bits.
@@ -51,13 +55,13 @@ class GreyRangeFinder {
   void learn(const std::vector<cv::Mat>& images);
   void grow(const std::vector<cv::Mat>& images);
 
-  static constexpr double kFewest = 16;  // values from black to white; fewer are noise
+  static constexpr double kFewest = 16;  // values from black to white; a smaller range is noise
 
   int bits_;
   GreyRange range_;
   std::vector<double> lows_, highs_;  // of the first pairs
-  GreyRange wider_;                   // that all pairs need whose values are outside, in this row of pairs
-  int outside_ = 0;                   // such pairs in a row
+  GreyRange wider_;                   // range that fits all pairs of the current row of outside pairs
+  int outside_ = 0;                   // outside pairs in a row
   bool exceeded_ = false;
 };
 

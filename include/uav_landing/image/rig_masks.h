@@ -12,7 +12,7 @@ namespace uav_landing {
 /// The usable pixels of one camera's raw images, as a person has drawn them.
 struct RawMask {
   cv::Mat usable;         ///< mono8, nonzero: usable; empty: all are
-  std::string parameter;  ///< that names the file: rig/left_mask
+  std::string parameter;  ///< parameter that names the file, such as rig/left_mask
   std::string file;
 };
 
@@ -20,10 +20,10 @@ struct RigMasks {
   RawMask left, right;
 };
 
-/// Reads the files that the parameters name. It refuses a file that does not exist, is no image, does not
-/// have one channel of 8 bits, or leaves less than a tenth of the image. The failure names the parameter and
-/// the file. The masks are those of the working pair: see workingPair() for a rig that is mounted upside
-/// down.
+/// Reads the files that the parameters name. It refuses a file that does not exist, is no image, or does not
+/// have one channel of 8 bits. It also refuses a mask that leaves less than a tenth of the image. The failure
+/// names the parameter and the file. The masks are those of the working pair: see workingPair() for a rig
+/// that is mounted upside down.
 Expected<RigMasks> loadRigMasks(const RigParameters& parameters);
 
 /// Refuses a mask whose size is not that of the images that the camera delivers, with ROI and binning.

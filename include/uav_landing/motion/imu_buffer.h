@@ -19,24 +19,27 @@ struct ImuSample {
   std::optional<Eigen::Matrix3d> angular_velocity_covariance;  ///< rad^2/s^2; none: not known
 };
 
-/// The last minute of an inertial sensor's messages. It gives attitude and rotation at the stamps of images.
+/// Keeps the messages of an inertial sensor over the last minute. It gives attitude and rotation at the
+/// stamps of images.
 class ImuBuffer {
  public:
   explicit ImuBuffer(const ApproachAngleParameters& parameters) : parameters_(parameters) {}
 
-  /// Adds a message. One that is slightly late is put in its place, and one with a repeated stamp is ignored.
-  /// A stamp more than a second back means that the clock was set back, so earlier messages are forgotten.
+  /// Adds a message. A slightly late one is put in its place, and one with a repeated stamp is ignored. A
+  /// stamp that is more than a second back means that the clock was set back, so earlier messages are
+  /// forgotten.
   void add(const ImuSample& sample);
   void clear() { samples_.clear(); }
   bool empty() const { return samples_.empty(); }
   double newest() const { return samples_.back().stamp; }  ///< s; not while empty
-  /// Whether there is a message at or after an image of this stamp (imu_delay taken into account).
+  /// Whether there is a message at or after the image of this stamp, with imu_delay taken into account.
   bool covers(double stamp) const;
 
-  /// Attitude at the image of this stamp, and the rotation since the image before. The attitude is
-  /// interpolated between the neighbours in time, or carried on from the newest message for at most
-  /// imu_max_gap. The rotation follows from the angular velocity or, without one, from the attitudes.
-  /// camera_from_imu: rotation to the rectified left camera's optical frame.
+  /// Attitude at the image of this stamp, and the rotation since the image before. camera_from_imu: rotation
+  /// to the optical frame of the rectified left camera.
+  ///
+  /// The attitude is interpolated between the neighbours in time, or carried on from the newest message for
+  /// at most imu_max_gap. The rotation follows from the angular velocity or, without one, from the attitudes.
   AttitudePrior at(double stamp, std::optional<double> before, const Eigen::Matrix3d& camera_from_imu) const;
 
  private:
@@ -47,7 +50,7 @@ class ImuBuffer {
   Eigen::Matrix3d rateCovariance(const ImuSample& sample) const;
 
   ApproachAngleParameters parameters_;
-  std::deque<ImuSample> samples_;  // by stamp
+  std::deque<ImuSample> samples_;  // in the order of their stamps
 };
 
 }  // namespace uav_landing

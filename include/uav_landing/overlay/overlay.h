@@ -8,17 +8,20 @@
 
 namespace uav_landing {
 
-// Pictures of what the stages found, for people. Pure functions: images are rectified mono8 of the rig's
-// size, and the pictures are new BGR8 images. Results that are missing (NaN, empty) are not drawn.
+// Images for people that show what the stages found. The functions are pure. Input images are rectified mono8
+// of the rig's size, and the results are new BGR8 images. Missing results (NaN, empty) are not drawn.
 
-/// Factor by which an image of this width is enlarged. It is the parameter, or for 0 the smallest that makes
-/// the picture at least 640 pixels wide.
+/// Factor by which an image of this width is enlarged: the parameter or, for 0, the smallest one that makes
+/// the result at least 640 pixels wide.
 int overlayScale(int width, const OverlayParameters& parameters);
 
-/// The left image with lines (those through the vanishing point bright, others dim), vanishing point, horizon
-/// of the stereo plane and of the fused ground normal, focus of expansion, and matches coloured by disparity
-/// (those off the plane dim). Below it is a strip of instruments: height, sink rate, approach angle,
-/// attitude, status and reason. The image itself is the top left (scale * size) part.
+/// The left image with everything that was found:
+/// - lines, those through the vanishing point bright and others dim, and the vanishing point;
+/// - horizons of the stereo plane and of the fused ground normal, and the focus of expansion;
+/// - matches coloured by disparity, those off the plane dim.
+///
+/// Below the image is a strip of instruments: height, sink rate, approach angle, attitude, status and reason.
+/// The image itself is the top left (scale * size) part.
 cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepthResult& stereo,
                     const ApproachAngleResult& approach, const LandingResult& landing,
                     const OverlayParameters& parameters);
@@ -27,8 +30,8 @@ cv::Mat drawOverlay(const StereoRig& rig, const cv::Mat& left, const StereoDepth
 cv::Mat drawLines(const cv::Mat& image, const ApproachAngleResult::View& view,
                   const OverlayParameters& parameters);
 
-/// Harris corners in both views, left and right side by side, each match joined by a line (the paper's Fig.
-/// 5). The right view begins at column scale * width.
+/// Harris corners in both views side by side, with a line for each match (the paper's Fig. 5). The right view
+/// begins at column scale * width.
 cv::Mat drawMatches(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                     const StereoDepthResult& stereo, const OverlayParameters& parameters);
 

@@ -5,7 +5,7 @@
 
 namespace uav_landing {
 
-/// What is wrong with a number that is not in the range of its parameter (or NaN), behind its name.
+/// Text that follows a parameter's name when its number is out of range or NaN.
 template <class Number>
 std::string outOfRange(Number given, double min, double max, const char* unit) {
   std::ostringstream text;

@@ -4,7 +4,7 @@ namespace uav_landing {
 
 // visit(): see parameters.h.
 
-/// The overlay picture (nodelet overlay).
+/// The overlay image (nodelet overlay).
 struct OverlayParameters {
   int scale = 0;
 

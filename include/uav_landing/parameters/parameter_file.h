@@ -7,12 +7,12 @@
 
 namespace uav_landing {
 
-/// Reads a config file: a map of sections (see Parameters). The failure begins with the path. Files that it
-/// names relative to its own folder have their full path then.
+/// Reads a config file: a map of sections (see Parameters). A failure begins with the path. File names that
+/// are relative to the config file's folder become full paths.
 Expected<Parameters> loadParameterFile(const std::string& path);
 Expected<Parameters> parseParameters(const std::string& yaml_text, const std::string& name);
 
-/// Gives the files that the parameters name relative to this config file their full path.
+/// Turns file names that are relative to this config file's folder into full paths.
 void resolveFiles(const std::string& config_file, RigParameters& parameters);
 
 /// Markdown table of all parameters with defaults, ranges, units and meanings (docs/parameters.md).

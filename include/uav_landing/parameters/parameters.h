@@ -9,14 +9,16 @@
 
 namespace uav_landing {
 
-// Every parameter of the project has its one home, in the headers above: name, default, range, unit and
-// meaning. The struct is what the code reads; visit() is the table from which YAML loading, the ROS parameter
-// server, the range check and docs/parameters.md are made. A visitor has number(name, value, min, max, unit,
-// meaning) for int and double, flag(name, value, meaning) and choice(name, enum value, {names in enum order},
-// meaning).
+// Every parameter of the project is defined once, in the headers above, with its name, default, range, unit
+// and meaning. The code reads the struct. YAML loading, the ROS parameter server, the range check and
+// docs/parameters.md are made from visit(). A visitor has these functions:
+//   number(name, value, min, max, unit, meaning) for int and double,
+//   flag(name, value, meaning) for bool,
+//   text(name, value, meaning) for strings,
+//   choice(name, enum value, {names in enum order}, meaning).
 
-/// One parameter set for the whole chain. What the stages share and what each has of its own: each member is
-/// a section of config/*.yaml.
+/// One parameter set for the whole chain: what the stages share, and what each one has of its own. Each
+/// member is a section of config/*.yaml.
 struct Parameters : SharedParameters {
   RectifyParameters rectify;
   StereoDepthParameters stereo_depth;

@@ -2,8 +2,8 @@
 
 namespace uav_landing {
 
-/// Pixels of the image for each corner, by default: windows of the usual radius, with what smoothing adds to
-/// them, then hardly overlap where half of the image is ground.
+/// Default number of image pixels for each corner. Where half of the image is ground, windows of the usual
+/// radius then hardly overlap, even with the margin that smoothing adds.
 constexpr int kUsualPixelsPerCorner = 300;
 
 }  // namespace uav_landing

@@ -10,11 +10,11 @@ namespace uav_landing {
 
 // visit(): see parameters.h.
 
-/// The direction in which the sensor reads the lines of a raw picture.
+/// The direction in which the sensor reads the lines of a raw image.
 enum class RowDirection { kRows, kColumns };
 
-/// What is known of the cameras besides their calibration, for all stages: limits of what is believed of
-/// that, how well it is known, how the cameras are mounted, which pixels see the ground, and when their rows
+/// Knowledge about the cameras besides their calibration, for all stages. It has limits for the calibration
+/// and how well it is known, how the cameras are mounted, which pixels see the ground, and when their rows
 /// are exposed.
 struct RigParameters {
   double max_principal_point_offset = 0.2;
@@ -22,8 +22,8 @@ struct RigParameters {
   double baseline_stddev = 0.0005;
   bool upside_down = false;
   int bits = 0;
-  std::string left_mask, right_mask;  ///< files, see rig_masks.h; empty: none
-  /// See row_times.h. NaN: not given; for the right camera: as for the left one.
+  std::string left_mask, right_mask;  ///< file names, see rig_masks.h; empty: none
+  /// See row_times.h. NaN: not given. For the right camera this means the same as for the left one.
   double readout_time = std::numeric_limits<double>::quiet_NaN();
   double right_readout_time = std::numeric_limits<double>::quiet_NaN();
   bool estimate_readout_time = false;
@@ -80,7 +80,7 @@ struct RigParameters {
              "portrait whose driver turns the picture. Times are then from left to right");
   }
 
-  /// What no camera has.
+  /// Refuses what no camera has.
   Failure check() const {
     if (bits == 0 || bits >= 8) return {};
     return {Reason::kInputInvalid, "rig/bits: " + std::to_string(bits) + ", expected 0 or 8 to 16 bits"};

@@ -9,7 +9,7 @@ namespace uav_landing {
 
 // visit(): see parameters.h.
 
-/// What charts say of the runway, for all stages.
+/// The runway as charts describe it, for all stages.
 struct RunwayParameters {
   double width = 0, length = 0;  ///< m; 0: unknown
   double side_stripe_inset = 0;  ///< m
@@ -34,12 +34,12 @@ struct RunwayParameters {
            "that meet are not believed");
   }
 
-  /// Stripes lie inside the width by at most this, m.
+  /// Largest distance of the side stripes from the edges of the runway's width, m.
   double largestInset() const {
     return side_stripe_inset > 0 ? side_stripe_inset : std::min(0.03 * width, 1.25);
   }
 
-  /// What cannot be true of any runway.
+  /// Refuses what no runway can have.
   Failure check() const {
     std::ostringstream problem;
     if (length > 0 && length < width)

@@ -16,15 +16,15 @@ namespace uav_landing {
 /// "; did you mean X?" for the nearest of the names, or "" when none is near.
 std::string suggestName(const std::string& word, const std::vector<std::string>& names);
 
-/// Where a key belongs that this section does not have: it has moved, or is a section that all stages share.
-/// "" when that is not known.
+/// Tells where a key belongs that this section does not have: it has moved, or it is in a section that all
+/// stages share. "" when that is not known.
 std::string whereItBelongs(const std::string& section, const std::string& key);
 
 /// Checks that a node is a map (or empty) with every key once. section: "" for the whole file.
 Failure checkMap(const YAML::Node& node, const std::string& section);
 
-/// The visitor (see parameters.h) that takes a parameter struct's values from one YAML map. Values that the
-/// map does not give stay; the first failure stays. text() is for plain strings.
+/// The visitor (see parameters.h) that reads a parameter struct from one YAML map. Values that the map does
+/// not give stay as they are. The first failure is kept. text() is for plain strings.
 class SectionLoader {
  public:
   SectionLoader(const YAML::Node& node, std::string section) : node_(node), section_(std::move(section)) {}
@@ -58,7 +58,7 @@ class SectionLoader {
     refuse(name, "'" + given + "' is not a choice, expected " + all);
   }
 
-  /// The first thing that was wrong, keys that no parameter asked for included.
+  /// The first failure. Keys that no parameter asked for are failures, too.
   Failure finish() const;
 
  private:
@@ -87,7 +87,8 @@ class SectionLoader {
   Failure failure_;
 };
 
-/// Parameters of a section that contradict each other; a section that may have some has a check() of its own.
+/// Checks a section for parameters that contradict each other. A section that may have some has a check() of
+/// its own.
 template <class ParameterStruct, class = void>
 struct SectionCheck {
   static Failure of(const ParameterStruct&) { return {}; }
@@ -97,10 +98,12 @@ struct SectionCheck<ParameterStruct, std::void_t<decltype(std::declval<const Par
   static Failure of(const ParameterStruct& parameters) { return parameters.check(); }
 };
 
-/// Reads one section's values into a parameter struct (defaults stay where nothing is given). The failure
-/// names the parameter with its section, the value and what was expected: a key that does not exist (with
-/// the nearest name that does, or where it belongs), a value of another type, out of range, or not one of the
-/// choices, or contradicts another one. The parameters are then as before.
+/// Reads the values of one section into a parameter struct; defaults stay where nothing is given. A failure
+/// names the parameter with its section, the value and what was expected. In case of a failure the parameters
+/// stay as they were. The following values are refused:
+/// - a key that does not exist; the message has the nearest name that does, or where the key belongs;
+/// - a value of another type, out of range, or not one of the choices;
+/// - a value that contradicts another one.
 template <class ParameterStruct>
 Failure loadSection(const YAML::Node& node, const std::string& section, ParameterStruct& parameters) {
   const Failure failure = checkMap(node, section);

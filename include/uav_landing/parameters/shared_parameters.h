@@ -5,8 +5,8 @@
 
 namespace uav_landing {
 
-/// What several stages read. Each member is a section of its own in config/*.yaml, beside those of the
-/// stages.
+/// Parameters that several stages read. Each member is a section of its own in config/*.yaml, beside those of
+/// the stages.
 struct SharedParameters {
   RigParameters rig;
   RunwayParameters runway;

@@ -6,7 +6,7 @@
 
 namespace uav_landing {
 
-/// Writes a section's parameters (see parameters.h) as a table of Markdown below a heading, a row for each.
+/// Writes the parameters of a section (see parameters.h) as a Markdown table below a heading, one row each.
 class TableWriter {
  public:
   TableWriter(std::ostream& out, const std::string& section) : out_(out) {

@@ -2,9 +2,9 @@
 
 namespace uav_landing {
 
-/// Matching windows are (2 r + 1) squared; the largest r for which there is memory, pixels.
+/// A matching window has (2 r + 1) squared pixels. This is the largest r for which there is memory, pixels.
 constexpr int kLargestWindowRadius = 15;
-/// The default, for which loops over windows are unrolled.
+/// The default radius. Loops over windows of this size are unrolled.
 constexpr int kUsualWindowRadius = 5;
 
 }  // namespace uav_landing

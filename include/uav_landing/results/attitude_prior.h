@@ -7,15 +7,15 @@
 
 namespace uav_landing {
 
-/// What an inertial sensor knows of one pair beforehand, in the rectified left camera's optical frame. NaN
-/// where it says nothing.
+/// What an inertial sensor knows about a pair beforehand, in the optical frame of the rectified left camera.
+/// Unknown numbers are NaN.
 struct AttitudePrior {
   Failure failure{Reason::kNotYet, "no imu message"};  ///< why there is no normal
-  /// Normal of level ground, unit, down: the direction of gravity.
+  /// Unit normal of level ground, pointing down: the direction of gravity.
   Eigen::Vector3d normal = Eigen::Vector3d::Constant(std::nan(""));
   Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Constant(std::nan(""));  ///< rad^2, rank 2
-  double duration = std::nan("");  ///< of the rotation, s: back to the pair before
-  /// Rotation vector of R, x_now = R x_then for what is at rest. rad.
+  double duration = std::nan("");  ///< time of the rotation, s: since the pair before
+  /// Rotation vector of R, rad. A point at rest moves as x_now = R x_then.
   Eigen::Vector3d rotation = Eigen::Vector3d::Constant(std::nan(""));
   Eigen::Matrix3d rotation_covariance = Eigen::Matrix3d::Constant(std::nan(""));  ///< rad^2
 

@@ -7,15 +7,15 @@
 
 namespace uav_landing {
 
-/// A test of one source of knowledge against the others on one pair: what they differ by, normalised by what
-/// they may differ by. The ratio is compared with a chi-square limit, so that the rate of false alarms is
+/// A test of one source of knowledge against the others on one pair: their difference, normalised by the
+/// variance that it may have. The ratio is compared with a chi-square limit. So the rate of false alarms is
 /// known as far as the variances are true.
 struct TestResult {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   std::string name;
   double difference = kNone;  ///< in the test's own unit (docs/integrity.md)
-  double variance = kNone;    ///< that the difference has without a fault, unit^2
+  double variance = kNone;    ///< of the difference without a fault, unit^2
   double ratio = kNone;       ///< squared normalised difference; NaN when the test was not possible
   double limit = kNone;       ///< chi-square limit of the ratio
   int consecutive_failures = 0;
@@ -24,7 +24,8 @@ struct TestResult {
   bool failed() const { return ratio > limit; }
 };
 
-/// Limit that the sum of squares of so many independent standard normal errors exceeds with this probability.
+/// Limit that the sum of squares of this many independent standard normal errors exceeds with this
+/// probability.
 double chiSquareLimit(double false_alarm_rate, int degrees_of_freedom);
 
 /// Factor k for which a normal error exceeds k sigma, to either side, with this probability.
@@ -33,7 +34,8 @@ double normalQuantile(double probability);
 /// "tilt image_regions", or "" when none failed.
 std::string failedTests(const std::vector<TestResult>& tests);
 
-/// Page of all tests: what each compares, its unit, its limit and what follows (docs/integrity_tests.md).
+/// Page of all tests, with what each compares, its unit, its limit and the consequence
+/// (docs/integrity_tests.md).
 std::string integrityTestPage();
 
 }  // namespace uav_landing

@@ -21,36 +21,36 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 struct RigRotation {
   Eigen::Vector3d w = Eigen::Vector3d::Constant(kUnknown);           ///< rectified axes, rad
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);  ///< rad^2
-  int count = 0;                                                     ///< corners it was measured by
+  int count = 0;                                                     ///< number of corners that measured it
 
   bool known() const { return w.allFinite() && covariance.allFinite(); }
-  /// What vertical disparities tell: (rx, rz), rad, whatever ry is.
+  /// The part that vertical disparities show, whatever ry is: (rx, rz), rad.
   Eigen::Vector2d pitchAndRoll() const { return {w.x(), w.z()}; }
-  /// Of that, rad^2.
+  /// Covariance of pitchAndRoll(), rad^2.
   Eigen::Matrix2d pitchAndRollCovariance() const {
     return (Eigen::Matrix2d() << covariance(0, 0), covariance(0, 2), covariance(2, 0), covariance(2, 2))
         .finished();
   }
 };
 
-/// Where the right camera is from the left one, against its calibration: at b (1, t.x, t.y), rectified axes
-/// (right, down, forward). Other than 0 for images that were not taken at the same time, or with a focal
-/// length that is not as calibrated.
+/// Place of the right camera against its calibration: it is at b (1, t.x, t.y) from the left one, in
+/// rectified axes (right, down, forward). It differs from 0 when images were not taken at the same time, or
+/// when a focal length is not as calibrated.
 struct BaselineDirection {
-  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down, forward over the baseline, rad
+  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down and forward, over the baseline
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);  ///< rad^2
 
   bool known() const { return t.allFinite() && covariance.allFinite(); }
 };
 
-/// Readout time of cameras by what moves in the images. Unknown where it is not estimated.
+/// Readout time of the cameras, estimated from what moves in the images. Not known unless it is estimated.
 struct ReadoutEstimate {
   double time = kUnknown;      ///< s, from the first line to the last
   double variance = kUnknown;  ///< s^2; an error is the same in all pairs
 
   bool known() const { return variance > 0; }
 };
-/// What to do about one that is certain and not that of a global shutter; else empty.
+/// Advice for an estimate that is certain and not that of a global shutter; else empty.
 std::string adviceOn(const ReadoutEstimate& readout);
 
 /// Result of the stereo branch (paper 3.1) for one pair. Mirrors StereoDepth.msg.
@@ -62,47 +62,52 @@ struct StereoDepthResult {
     double disparity_stddev = kUnknown;  ///< pixels, of the match itself
     bool on_plane = false;               ///< agrees with the ground plane
   };
-  double stamp = 0;  ///< seconds, of the left image
+  double stamp = 0;  ///< of the left image, s
   Failure failure;   ///< set when there is no plane
-  int corners = 0;   ///< corners looked for in the right image
+  int corners = 0;   ///< number of corners looked for in the right image
   std::vector<Point> points;
   GroundPlane plane;
-  /// Share of the plane's covariance that comes from vertical disparities, nearly the same in every pair,
-  /// 1/m^2.
+  /// Share of the plane's covariance that comes from vertical disparities, 1/m^2. It is nearly the same in
+  /// every pair.
   Eigen::Matrix3d row_covariance = Eigen::Matrix3d::Zero();
-  /// Where rows have times: how fast g changes by the pairs before (1/m/s), with which it was carried to the
-  /// stamp, and its derivative by that rate, s. Zero where all rows are exposed at once. Where no readout
-  /// time is given nothing was carried, and the derivative is that of a readout of 1 s.
+  /// With row times: plane_rate is how fast g changes according to the pairs before, 1/m/s. It carried g to
+  /// the stamp. plane_by_rate is the derivative of g by that rate, s. Both are zero when all rows are exposed
+  /// at once. When the readout time is estimated, nothing was carried, and the derivative is that of a
+  /// readout of 1 s.
   Eigen::Vector3d plane_rate = Eigen::Vector3d::Zero();
   Eigen::Matrix3d plane_by_rate = Eigen::Matrix3d::Zero();
-  /// Share of the rest of it, without the bias of disparities, that is no noise of the images, above 0 to 1:
-  /// some of that is the same in the next pairs. Unknown without direct refinement.
+  /// Takes the plane's covariance without row_covariance and without the bias of disparities. This is the
+  /// share of it that is not noise of the images, above 0 and up to 1. Part of it is the same in the next
+  /// pairs. Not known without direct refinement.
   double lasting_share = kUnknown;
-  /// Tangent of the surface straight below the camera, for the height: the plane is that of the surface
-  /// ahead. Not known where too little of the ground is seen.
+  /// Tangent of the surface straight below the camera, for the height. The plane is that of the surface
+  /// ahead. Not known when too little of the ground is seen.
   GroundPlane below;
-  /// Mean change of the surface's slope over distance, positive in a sag, 1/m, and its variance, 1/m^2;
-  /// known where below is.
+  /// Mean change of the surface's slope over distance, 1/m, positive in a sag, and its variance, 1/m^2. Known
+  /// when below is.
   double curvature = kUnknown, curvature_variance = kUnknown;
-  double residual_stddev = kUnknown;   ///< of the points on the plane, pixels of disparity
-  double surface_variance = kUnknown;  ///< of the surface ahead about the plane, unbiased (may be < 0), m^2
-  bool from_search = false;            ///< found without a plane from the previous pair
-  double skew = 0;                     ///< stamp of right minus left image, seconds
-  /// What vertical disparities say of the rig, of this pair alone; random errors only.
+  double residual_stddev = kUnknown;  ///< of the points on the plane, pixels of disparity
+  /// Variance of the surface ahead about the plane, unbiased (may be < 0), m^2.
+  double surface_variance = kUnknown;
+  bool from_search = false;  ///< the plane was found without that of the previous pair
+  double skew = 0;           ///< stamp of right minus left image, seconds
+  /// Rotation of the rig by the vertical disparities of this pair alone. It has only random errors.
   RigRotation vertical_rotation;
-  /// What they say of the baseline, of this pair alone; with the errors that all pairs may have.
+  /// The baseline by the vertical disparities of this pair alone. Errors that all pairs may have are
+  /// included.
   BaselineDirection baseline_direction;
-  /// Share of the corners matched along the rows that are found when they may move across the rows as well:
-  /// wrong matches mostly are not. Unknown where nothing was measured.
+  /// Share of the corners matched along the rows that are found again when they may also leave the row. Wrong
+  /// matches mostly are not. Not known when nothing was measured.
   double row_agreement = kUnknown;
-  /// 1 sigma of the constant disparity error that the plane's covariance has in it, pixels.
+  /// 1 sigma of the constant disparity error that the plane's covariance contains, pixels.
   double disparity_bias_stddev = 0;
   /// 1 sigma of the vertical disparities that the calibration's lenses leave, pixels.
   double row_bias_stddev = 0;
-  /// Share of the image blocks over the ground that look alike in both images and lie on one plane; unknown
+  /// Share of the image blocks over the ground that look alike in both images and lie on one plane. Not known
   /// without direct refinement.
   double photometric_agreement = kUnknown;
-  /// An image is the very one of the pair before, bit by bit: sensors have noise, a frozen driver has not.
+  /// The image is the same as in the pair before, bit by bit. Sensors have noise, but a frozen driver does
+  /// not.
   bool left_repeated = false, right_repeated = false;
 };
 
@@ -123,29 +128,29 @@ struct ApproachAngleResult {
     Failure failure;
     double duration = kUnknown;  ///< s
     int matches = 0, inliers = 0;
-    /// Rotation vector w of R = exp(w): x_now = R (x_then - c) with c the movement, see t. rad.
+    /// Rotation vector w of R = exp(w), rad. A point at rest moves as x_now = R (x_then - c), with c the
+    /// movement of the camera.
     Eigen::Vector3d rotation = Eigen::Vector3d::Constant(kUnknown);
-    /// Camera motion expressed in the current frame, over the current height: t / h.
+    /// Movement of the camera in the current frame, over the current height: t / h.
     Eigen::Vector3d translation_over_height = Eigen::Vector3d::Constant(kUnknown);
     Matrix6d covariance = Matrix6d::Constant(kUnknown);  ///< of (rotation, translation_over_height)
     double angle = kUnknown;           ///< approach angle over the interval, rad, positive descending
     double angle_variance = kUnknown;  ///< rad^2, includes the normal's
-    /// Ground normal, unit, and its covariance (rad^2, rank 2) by what moves in the image: independent of
-    /// stereo but for the depth of points off the plane. Unknown where that does not tell it.
+    /// Ground normal by what moves in the image, unit, and its covariance (rad^2, rank 2). It is independent
+    /// of stereo except for the depth of points off the plane. Unknown when the motion does not show it.
     Eigen::Vector3d normal = Eigen::Vector3d::Constant(kUnknown);
     Eigen::Matrix3d normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   };
-  /// Position over the runway, of this pair alone: frames before only tell which edges are the runway's.
+  /// Position over the runway, of this pair alone. Earlier frames only tell which edges are the runway's.
   struct Runway {
     Failure failure;                                     ///< set when the centre line is not known
     double y = kUnknown, y_variance = kUnknown;          ///< camera left of the centre line, over h
     double width = kUnknown, width_variance = kUnknown;  ///< between the outermost edges, over h
     Failure threshold_failure;                           ///< set when the threshold is not seen
-    double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h: negative before it
+    double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h; negative before it
     double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
   };
-  /// Where the camera is over the runway by the runway's outline in the picture and its size in charts: see
-  /// sighting.h.
+  /// Position over the runway by the runway's outline in the image and its size in charts (sighting.h).
   struct Sight {
     Failure failure;  ///< set when the outline is not seen, or gives no position
     /// Past the threshold, left of the centre line, above the plane of the runway's surface; m, m^2.
@@ -153,8 +158,8 @@ struct ApproachAngleResult {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
     double yaw = kUnknown, yaw_variance = kUnknown;        ///< left of the landing direction, rad, rad^2
     double width = kUnknown, width_variance = kUnknown;    ///< of the runway's surface, m, m^2
-    double length = kUnknown, length_variance = kUnknown;  ///< the same
-    /// The height with one element left out: the chart's width, its length, the ground's normal; m, m^2.
+    double length = kUnknown, length_variance = kUnknown;  ///< the same for the length, m, m^2
+    /// The height without one of the elements: the chart's width, its length, the ground's normal; m, m^2.
     Eigen::Vector3d height_without = Eigen::Vector3d::Constant(kUnknown);
     Eigen::Vector3d variance_without = Eigen::Vector3d::Constant(kUnknown);
     /// Size of the surface by stereo, over the chart's; unknown without stereo.
@@ -167,37 +172,38 @@ struct ApproachAngleResult {
   /// covariance, rad^2. Independent of stereo.
   Eigen::Vector3d vanishing_direction = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d vanishing_covariance = Eigen::Matrix3d::Constant(kUnknown);
-  /// Chance that this direction is that of something else: a street, a field, a shore. 0 to 1; its covariance
-  /// is that of the right one.
+  /// Probability that this direction belongs to something else: a street, a field, a shore. 0 to 1. The
+  /// covariance of the direction holds if it is the runway's.
   double other_runway_probability = 1;
   /// Ground normal from the vanishing points alone (level rig, roll variance large), left frame; rad^2.
   Eigen::Vector3d n_vp = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_vp_covariance = Eigen::Matrix3d::Constant(kUnknown);
-  /// Ground normal fused from stereo and the vanishing points: what the angles here refer to. Left frame;
-  /// rad^2.
+  /// Ground normal fused from stereo and the vanishing points, in the left frame, and its covariance, rad^2.
+  /// The angles here refer to it.
   Eigen::Vector3d n = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d n_covariance = Eigen::Matrix3d::Constant(kUnknown);
   Motion step;    ///< from the previous frame
-  Motion window;  ///< over up to angle_window seconds; its angle is the path's now (angle_smoothing)
+  Motion window;  ///< over up to angle_window s; its angle is the current one of the path (angle_smoothing)
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);  ///< of the step, px, px^2
   Eigen::Matrix2d foe_covariance = Eigen::Matrix2d::Constant(kUnknown);
   Runway runway;
   Sight sight;
-  /// By the pairs before; all numbers of this pair are corrected by it and claim its error.
+  /// Estimate by the pairs before. All numbers of this pair are corrected by it, and their claims contain its
+  /// error.
   ReadoutEstimate readout;
-  /// What an inertial sensor said beforehand; the slope of the ground is in the normal's covariance.
+  /// Prior of an inertial sensor. The slope of the ground is in the normal's covariance.
   AttitudePrior imu;
 };
 
 enum class Status { kSearching = 0, kTracking = 1, kCoasting = 2, kLost = 3 };
 const char* toString(Status status);
 
-/// Where a height comes from.
+/// Source of a height.
 enum class HeightOrigin { kNone, kStereo, kWidth, kGeometry, kPrediction };
 /// For example "geometry"; "" for kNone.
 const char* toString(HeightOrigin origin);
 
-/// The estimate for one pair. Mirrors LandingEstimate.msg. All of the left rectified camera.
+/// The estimate for one pair, of the left rectified camera. Mirrors LandingEstimate.msg.
 struct LandingResult {
   double stamp = 0;
   Status status = Status::kSearching;
@@ -209,25 +215,25 @@ struct LandingResult {
   double raw_height = kUnknown, raw_height_variance = kUnknown;  ///< measured on this pair alone
   double points_height = kUnknown;  ///< eqs (4), (5) averaged over the points on the plane, m
   double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< up, m/s
-  /// Below the ground's horizontal, rad, rad^2; raw: of the last step alone.
+  /// Angle of the path below the ground's horizontal, rad, rad^2; raw: of the last step alone.
   double approach_angle = kUnknown, approach_angle_variance = kUnknown;
   double raw_approach_angle = kUnknown, raw_approach_angle_variance = kUnknown;
-  /// Positive nose up, right side down, and to the left of the runway; rad, rad^2.
+  /// Positive with the nose up, the right side down, and to the left of the runway; rad, rad^2.
   double pitch = kUnknown, pitch_variance = kUnknown;
   double roll = kUnknown, roll_variance = kUnknown;
   double yaw = kUnknown, yaw_variance = kUnknown;  ///< unknown until the runway direction is certain
   Failure yaw_failure;                             ///< why the yaw is not known
-  double other_runway_probability = 1;         ///< chance that the direction seen is not the runway's, 0 to 1
+  double other_runway_probability = 1;  ///< probability that the direction seen is not the runway's, 0 to 1
   double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
-  /// Of the point above the plane of the runway's surface, m, m^2; unknown until the runway is found.
+  /// Height of the point above the plane of the runway's surface, m, m^2. Unknown until the runway is found.
   double height_above_runway = kUnknown, height_above_runway_variance = kUnknown;
   bool height_above_runway_known = false;                  ///< its protection level is within its limit
   double height_above_runway_protection_level = kUnknown;  ///< m; holds for a wrong chart, too
-  double height_above_runway_limit = kUnknown;             ///< m, what that may be
-  /// Of the height above the runway or, where there is none, of the height.
+  double height_above_runway_limit = kUnknown;             ///< largest protection level that is tolerated, m
+  /// Source of the height above the runway, or of the height when there is none above the runway.
   HeightOrigin height_origin = HeightOrigin::kNone;
-  Failure runway_failure;  ///< in what the runway is not that of the chart
+  Failure runway_failure;  ///< how the runway contradicts the chart
   void forgetHeightAboveRunway() {
     height_above_runway = height_above_runway_variance = kUnknown;
     height_above_runway_protection_level = height_above_runway_limit = kUnknown;
@@ -240,7 +246,7 @@ struct LandingResult {
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m
   double width_height = kUnknown, width_height_variance = kUnknown;  ///< from the runway's width, m, m^2
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
-  /// Mean of the last step, left camera frame now, m/s, rad/s; unknown where no step is believed.
+  /// Mean of the last step, in the left camera's frame now, m/s, rad/s. Unknown when no step is believed.
   Eigen::Vector3d velocity = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Constant(kUnknown);
   Matrix6d twist_covariance = Matrix6d::Constant(kUnknown);      ///< of both, velocity first
@@ -252,9 +258,9 @@ struct LandingResult {
   int resets = 0;                             ///< filter resets since start
   RigRotation rig_rotation;                   ///< unknown when rig_watch is off
   double height_protection_level = kUnknown;  ///< m, see solution_separation.h
-  double height_alert_limit = kUnknown;       ///< m, what the protection level may be
-  std::string protection_source;              ///< what the protection level is because of
-  std::vector<TestResult> tests;              ///< of the sources against each other; empty when switched off
+  double height_alert_limit = kUnknown;       ///< largest protection level that is tolerated, m
+  std::string protection_source;              ///< source that gives the protection level
+  std::vector<TestResult> tests;  ///< tests of the sources against each other; empty when switched off
 };
 
 }  // namespace uav_landing

@@ -6,8 +6,8 @@
 
 namespace uav_landing {
 
-/// What is known to be true of one frame, of the rectified left camera; kUnknown (NaN) where it is not known.
-/// The approach angle, the focus of expansion and the speed are of the step from the previous frame.
+/// True values of one frame, of the rectified left camera; kUnknown (NaN) when not known. The approach angle,
+/// the focus of expansion and the speed belong to the step from the previous frame.
 struct Truth {
   double height = kUnknown;          ///< above the surface below the camera, m
   double approach_angle = kUnknown;  ///< of the chord from the previous position, positive descending, rad

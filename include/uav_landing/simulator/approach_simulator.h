@@ -15,7 +15,7 @@ namespace uav_landing {
 /// A simulated approach, frame by frame. The same parameters give the same frames, in any order.
 class ApproachSimulator {
  public:
-  /// The failure is what is wrong with the parameters; its detail names section and parameter.
+  /// Fails when a parameter is wrong. The detail names the section and the parameter.
   static Expected<ApproachSimulator> create(const SimulatorParameters& parameters);
 
   struct Frame {
@@ -26,13 +26,13 @@ class ApproachSimulator {
   int frames() const;
   Frame frame(int index) const;
 
-  /// The light on the two sensors for one frame. Rendering it is the costly part of the frame.
+  /// The light on the two sensors for one frame. To render it is the costly part of a frame.
   struct Light {
     int index = 0;
-    cv::Mat left, right;  ///< grey levels before the rest of the lens blur, gain and noise; 32-bit float
+    cv::Mat left, right;  ///< grey levels before gain, noise and the rest of the lens blur; 32-bit float
   };
   Light light(int index) const;
-  /// The frame that sensors with this noise (1 sigma, grey levels) make of this light.
+  /// The frame that sensors with this noise (1 sigma, grey levels) make from this light.
   Frame expose(const Light& light, double noise) const;
 
   double timeOf(int index) const;

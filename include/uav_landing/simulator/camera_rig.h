@@ -9,8 +9,9 @@
 
 namespace uav_landing {
 
-/// The ray of one raw pixel, in the axes of the rectified left camera: direction (x, y, 1) of its centre, and
-/// the change of this direction to the next pixel along the row (u) and the column (v).
+/// The ray of one raw pixel, in the axes of the rectified left camera. (x, y, 1) is the direction of its
+/// centre. The other numbers are the change of this direction to the next pixel along the row (u) and along
+/// the column (v).
 struct PixelRay {
   float x, y;
   float xu, yu;
@@ -24,14 +25,14 @@ struct SimulatedCamera {
   std::vector<PixelRay> rays;     ///< true rays, row by row
 };
 
-/// The two cameras with lenses, and the rectification of the pair (Bouguet's, by cv::stereoRectify), which
-/// gives R and P. Both rectified cameras have the same axes, and the right one is offset_x along their x.
-/// Only the real right camera differs from that, by the calibration error.
+/// The two cameras with lenses, and the rectification of the pair (Bouguet's method, by cv::stereoRectify),
+/// which gives R and P. Both rectified cameras have the same axes, and the right one is offset_x along their
+/// x. Only the real right camera differs from that, by the calibration error.
 struct CameraRig {
   SimulatedCamera left, right;
 };
 
-/// The rig of these parameters. It fails when a lens folds back within the image.
+/// Makes the rig of these parameters. It fails when a lens folds back within the image.
 Expected<CameraRig> makeCameraRig(const SimulatorParameters& parameters);
 
 }  // namespace uav_landing

@@ -9,19 +9,19 @@
 
 namespace uav_landing {
 
-/// Rotation to the rectified left camera's optical frame from the simulated sensor's axes.
+/// Rotation from the simulated sensor's axes to the optical frame of the rectified left camera.
 Eigen::Matrix3d opticalFromImu();
 
-/// An inertial sensor that is fixed to the rig, message by message: attitude and angular velocity with
-/// constant and random errors. Its axes are forward, left and up of the rectified left camera, apart from an
-/// error of its mounting that nobody knows.
+/// An inertial sensor that is fixed to the rig. Its messages have attitude and angular velocity with constant
+/// and random errors. Its axes are forward, left and up of the rectified left camera, apart from an unknown
+/// error of its mounting.
 class SimulatedImu {
  public:
   SimulatedImu(const SimulatedImuParameters& parameters, const Trajectory& trajectory, uint64_t seed);
 
-  /// Number of messages from the start to this many seconds after it, both included; 0 without a sensor.
+  /// Number of messages in this many seconds from the start, both ends included; 0 without a sensor.
   int count(double duration) const;
-  /// Stamps are seconds since the start, late by the delay.
+  /// The message with this index. Stamps are seconds since the start; the delay makes them late.
   ImuSample sample(int index) const;
 
  private:

@@ -7,8 +7,8 @@
 
 namespace uav_landing {
 
-/// Reads config/simulator/*.yaml: a map of sections (see SimulatorParameters). The failure begins with the
-/// path and names section and parameter.
+/// Reads config/simulator/*.yaml: a map of sections (see SimulatorParameters). A failure begins with the path
+/// and names the section and the parameter.
 Expected<SimulatorParameters> loadSimulatorParameterFile(const std::string& path);
 Expected<SimulatorParameters> parseSimulatorParameters(const std::string& yaml_text, const std::string& name);
 

@@ -6,13 +6,13 @@
 
 namespace uav_landing {
 
-// Every parameter of the simulator: name, default, range, unit and meaning, for the same visitor as
+// All parameters of the simulator, with name, default, range, unit and meaning. The visitor is that of
 // uav_landing/parameters/parameters.h. config/simulator/full_scale.yaml explains how they work together. The
 // defaults are a full-scale approach seen by an ideal rig. Grey levels are those of the 8-bit image before
 // gain and offset.
 
-/// Common parameters of both cameras (section image). A rolling shutter exposes its rows one after the other:
-/// the middle of row v of the raw image at stamp + ((v + 0.5) / height - stamp_row) readout_time.
+/// Common parameters of both cameras (section image). A rolling shutter exposes its rows one after the other.
+/// The middle of row v of the raw image is exposed at stamp + ((v + 0.5) / height - stamp_row) readout_time.
 struct SimulatedImageParameters {
   enum class RowDirection { kRows, kColumns };
 
@@ -185,9 +185,9 @@ struct SimulatedSurfaceParameters {
   }
 };
 
-/// The ground's height along the runway, z(x): a straight slope, a parabola as the transition to another
-/// slope, and that slope, with a hill on it. It is the same all across, and 0 at the threshold (section
-/// profile).
+/// The ground's height along the runway, z(x) (section profile). A straight slope, a parabola and another
+/// straight slope follow each other, with a hill on them. The height is the same all across, and 0 at the
+/// threshold.
 struct SimulatedProfileParameters {
   double slope_before_deg = 0, slope_after_deg = 0;
   double change_start = 0, change_length = 0;
@@ -265,8 +265,8 @@ struct SimulatedPathParameters {
   }
 };
 
-/// Disturbances of the path and the attitude. Each is a sum of two sines with random phases: one with the
-/// period, and one that is 2.7 times as fast and 0.4 times as large (section wobble).
+/// Disturbances of the path and the attitude (section wobble). Each is a sum of two sines with random phases.
+/// One has the period. The other one is 2.7 times as fast and 0.4 times as large.
 struct SimulatedWobbleParameters {
   double roll_deg = 3, roll_period = 4;
   double pitch_deg = 0.7, pitch_period = 3;
@@ -303,7 +303,7 @@ struct SimulatedGustParameters {
 };
 
 /// Vibration of the whole rig about the left camera: one sine about each axis, with random phases (section
-/// vibration). The truth's attitude and the inertial sensor contain it.
+/// vibration). The true attitude and the inertial sensor contain it.
 struct SimulatedVibrationParameters {
   double frequency = 50;
   double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
@@ -348,7 +348,7 @@ struct SimulatedImuParameters {
   }
 };
 
-/// What makes runs differ from each other (section random).
+/// Makes runs differ from each other (section random).
 struct SimulatedRandomParameters {
   int seed = 1;
 
@@ -358,7 +358,7 @@ struct SimulatedRandomParameters {
   }
 };
 
-/// One parameter set for a simulated approach; each member is a section of config/simulator/*.yaml.
+/// One parameter set for a simulated approach. Each member is a section of config/simulator/*.yaml.
 struct SimulatorParameters {
   SimulatedImageParameters image;
   SimulatedCameraParameters left_camera, right_camera;
@@ -375,7 +375,7 @@ struct SimulatorParameters {
   SimulatedImuParameters imu;
   SimulatedRandomParameters random;
 
-  /// Images of this size for both cameras, px, with this focal length and the principal points in their
+  /// Sets the size of the images and the focal length of both cameras, px, with the principal points in the
   /// middle.
   void setPictures(int width, int height, double f) {
     image.width = width;

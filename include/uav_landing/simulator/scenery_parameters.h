@@ -2,12 +2,12 @@
 
 namespace uav_landing {
 
-// The surroundings of the runway, element by element. Each is a section of its own, and does not exist by
+// The surroundings of the runway, element by element. Each one is a section of its own, and does not exist by
 // default. Directions are in the runway frame: x along the landing direction from the threshold, y left. A
-// direction of 0 is the landing direction, 90 is to the left. Later elements lie on top of earlier ones.
+// direction of 0 is the landing direction, and 90 is to the left. Later elements lie on top of earlier ones.
 
-/// A patchwork of fields with borders and crop rows (section fields). It does not exist with a length or
-/// width of 0.
+/// A patchwork of fields with borders and crop rows (section fields). There is none when its length or width
+/// is 0.
 struct SimulatedFieldsParameters {
   double x = 0, y = 0, direction_deg = 0;
   double length = 0, width = 0;
@@ -37,7 +37,7 @@ struct SimulatedFieldsParameters {
 };
 
 /// Water between two wavy banks (sections river and shore). Its near bank follows a straight line through (x,
-/// y), and the water lies to the left of that line. It does not exist with a width of 0.
+/// y), and the water lies to the left of that line. There is none when its width is 0.
 struct SimulatedWaterParameters {
   double x = 0, y = 0, direction_deg = 0;
   double width = 0;
@@ -61,8 +61,8 @@ struct SimulatedWaterParameters {
   }
 };
 
-/// A grid of streets with plots between them, most with a house (section town). It does not exist with a
-/// length or width of 0.
+/// A grid of streets with plots between them, most with a house (section town). There is none when its length
+/// or width is 0.
 struct SimulatedTownParameters {
   double x = 0, y = 0, direction_deg = 0;
   double length = 0, width = 0;
@@ -94,8 +94,8 @@ struct SimulatedTownParameters {
   }
 };
 
-/// Mown grass around the runway, over fields, water and town (section grass_strip). It does not exist with a
-/// side of 0.
+/// Mown grass around the runway, over fields, water and town (section grass_strip). There is none when its
+/// side is 0.
 struct SimulatedGrassStripParameters {
   double side = 0, end = 60;
 
@@ -106,7 +106,7 @@ struct SimulatedGrassStripParameters {
   }
 };
 
-/// A straight paved strip with lines (sections road and taxiway). It does not exist with a length or width of
+/// A straight paved strip with lines (sections road and taxiway). There is none when its length or width is
 /// 0.
 struct SimulatedStripParameters {
   double x = 0, y = 0, direction_deg = 0;
@@ -133,8 +133,8 @@ struct SimulatedStripParameters {
   }
 };
 
-/// A second runway with the surface and markings of the first one, below it (section crossing_runway). It
-/// does not exist with a length or width of 0.
+/// A second runway with the surface and markings of the first one, below it (section crossing_runway). There
+/// is none when its length or width is 0.
 struct SimulatedCrossingParameters {
   double x = 500, y = 0, direction_deg = 60;
   double length = 0, width = 0;
@@ -149,8 +149,8 @@ struct SimulatedCrossingParameters {
   }
 };
 
-/// The aircraft's own nose and a post of its window, always at the same place of each camera's raw image
-/// (section own_frame).
+/// The aircraft's own nose and a post of its window (section own_frame). They are always at the same place of
+/// each camera's raw image.
 struct SimulatedOwnFrameParameters {
   double nose_height = 0, nose_width = 0.5;
   double nose_left = 0.6, nose_right = 0.4;

@@ -14,8 +14,8 @@ struct CameraPose {
   Attitude attitude;
 };
 
-/// Straight glide, flare with a steady change of the path's angle, then straight again. Wobble, a gust and
-/// vibration are added. It is also defined between the frames and before the start.
+/// A straight glide, a flare with a constant rate of the path's angle, then a straight path again. Wobble, a
+/// gust and vibration are added. The path is also defined between the frames and before the start.
 class Trajectory {
  public:
   Trajectory(const SimulatedPathParameters& path, const SimulatedWobbleParameters& wobble,
@@ -33,11 +33,11 @@ class Trajectory {
     double amplitude, period, phase, fast_phase;
     double at(double t) const;
   };
-  /// Distance forward and down after t seconds without wobble, m.
+  /// Distance forward and down that was flown after t seconds without wobble, m.
   Eigen::Vector2d advance(double t) const;
   /// Height lost by the gust after t seconds, m.
   double lostToGust(double t) const;
-  /// What the vibration adds to the attitude.
+  /// Attitude that the vibration adds.
   Attitude vibrationAt(double t) const;
 
   SimulatedPathParameters path_;
@@ -48,8 +48,8 @@ class Trajectory {
   Attitude vibration_phase_;
 };
 
-/// Truth of a frame from its pose and that of the previous frame, dt seconds before (null for the first). K:
-/// of the rectified left camera.
+/// Truth of a frame from its pose and that of the previous frame. previous: null for the first frame. dt: s
+/// between the two. K: of the rectified left camera.
 Truth truthOf(const CameraPose& pose, const CameraPose* previous, double dt, const Eigen::Matrix3d& K);
 
 }  // namespace uav_landing

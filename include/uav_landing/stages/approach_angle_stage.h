@@ -11,8 +11,8 @@
 
 namespace uav_landing {
 
-/// Monocular branch for one pair (paper 2): lines, vanishing points, ground normal, motion, FOE, angle. Keeps
-/// the images of the last angle_window seconds, the path so far, and what is known of the runway.
+/// Monocular branch for one pair (paper 2): lines, vanishing points, ground normal, motion, FOE, angle. It
+/// keeps the images of the last angle_window seconds, the path so far, and what is known about the runway.
 class ApproachAngleStage {
  public:
   ApproachAngleStage(const RigModel& rig, const ApproachAngleParameters& parameters,
@@ -20,9 +20,9 @@ class ApproachAngleStage {
   ~ApproachAngleStage();
   ApproachAngleStage(ApproachAngleStage&&) noexcept;
 
-  /// left, right: rectified mono8 of the rig's size. stereo: result of the same pair; ignored when use_stereo
-  /// is false. imu: of the same pair; ignored when use_imu is false. A stamp that does not increase makes the
-  /// stage forget the past.
+  /// left, right: rectified mono8 of the rig's size. stereo: result of the same pair, ignored when use_stereo
+  /// is false. imu: of the same pair, ignored when use_imu is false. When the stamp does not increase, the
+  /// stage forgets the past.
   ApproachAngleResult process(double stamp, const cv::Mat& left, const cv::Mat& right,
                               const StereoDepthResult& stereo, const AttitudePrior& imu = {});
   void reset();

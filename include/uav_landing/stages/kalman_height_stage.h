@@ -23,12 +23,13 @@ class KalmanHeightStage {
   KalmanHeightStage(KalmanHeightStage&&) noexcept;
   KalmanHeightStage& operator=(KalmanHeightStage&&) noexcept;
 
-  /// stereo, approach: results of the same pair. The filter is reset (reason time_jump) by a stamp that does
-  /// not increase or that jumps ahead by more than reset_timeout, and by a clock that was set in between.
+  /// stereo, approach: results of the same pair. The filter is reset (reason time_jump) when the stamp does
+  /// not increase, or when it jumps ahead by more than reset_timeout. It is also reset when the clock was set
+  /// in between.
   LandingResult process(const StereoDepthResult& stereo, const ApproachAngleResult& approach);
-  /// Result when no pair came for max_age: status lost, nothing valid. stamp: of now, s.
+  /// Result when no pair came for max_age: the status is lost, and nothing is valid. stamp: the time now, s.
   LandingResult timeout(double stamp);
-  /// Forgets everything but the count of resets.
+  /// Forgets everything except the count of resets.
   void reset();
   const Timings& timings() const;
 

@@ -13,22 +13,22 @@ namespace uav_landing {
 class CornerMatcher;
 
 /// Stereo branch for one pair (paper 3.1): Harris corners, matching along the row, eq (3), ground plane. It
-/// keeps the plane of the previous pair to predict where to search. It also keeps vertical disparities of
-/// some twenty pairs, rows of the last images to recognise repeated ones, and the part of the left image that
-/// does not move with the ground.
+/// keeps the plane of the previous pair to predict where to search. It also keeps the vertical disparities of
+/// some twenty pairs, and rows of the last images to recognise repeated ones. And it keeps the part of the
+/// left image that does not move with the ground.
 class StereoDepthStage {
  public:
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters);
-  /// With another matcher than the one along rows (src/core/stereo/matching/corner_matcher.h).
+  /// Uses another matcher than the one along rows (src/core/stereo/matching/corner_matcher.h).
   StereoDepthStage(const RigModel& rig, const StereoDepthParameters& parameters,
                    std::unique_ptr<CornerMatcher> matcher);
   ~StereoDepthStage();
   StereoDepthStage(StereoDepthStage&&) noexcept;
 
-  /// left, right: rectified mono8 of the rig's size. skew: stamp of right minus left, s. A stamp that does
-  /// not increase starts the search anew.
+  /// left, right: rectified mono8 of the rig's size. skew: stamp of the right image minus that of the left
+  /// one, s. When the stamp does not increase, the search starts anew.
   StereoDepthResult process(double stamp, const cv::Mat& left, const cv::Mat& right, double skew = 0);
-  /// As newly made.
+  /// Makes the stage as new.
   void reset();
   /// Share of the left image that does not move with the ground, such as the aircraft's nose. The next pair
   /// has no corners there.
