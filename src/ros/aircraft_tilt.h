@@ -17,10 +17,12 @@ inline double cosTilt(const Eigen::Matrix3d& runway_from_frame) { return runway_
 double tiltInDegrees(double cos_tilt);
 
 /// Tests whether the axes of the rig's frames can be right: the aircraft's up axis has to be within 60
-/// degrees of the vertical. A camera with a body frame (forward-left-up, forward-right-down) as frame_id
-/// turns this axis, and the lever arm, by about 90 degrees. The mounting alone shows that, with the rectified
-/// camera taken as level. So it is found before an attitude is known, and however far the camera looks down.
-/// The estimated attitude counts only while something is valid, as a wrong attitude has a reason of its own.
+/// degrees of the vertical. A wrong frame_id of the camera, one that is a body frame (forward-left-up,
+/// forward-right-down), turns this axis and the lever arm by about 90 degrees.
+///
+/// The mounting alone shows that, with the rectified camera taken as level. So the mistake is found before an
+/// attitude is known, however far the camera looks down. The estimated attitude counts only while something
+/// is valid, because a wrong attitude has a reason of its own.
 /// rectified_from_child: rotation of the frame that is estimated into the rectified left camera.
 /// left_frame: frame_id of the left camera_info.
 Failure wrongTilt(const RigFrames::Child& child, const Eigen::Matrix3d& rectified_from_child,

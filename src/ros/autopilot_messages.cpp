@@ -25,7 +25,7 @@ double cosTiltOf(const geometry_msgs::PoseWithCovarianceStamped& pose) {
   return cosTilt(runway_from_aircraft.linear());
 }
 
-// Angles count from east to the left, headings from north to the right.
+// Angles count from east to the left, but headings count from north to the right.
 Eigen::Isometry3d enuFromRunway(const AutopilotParameters& parameters) {
   const double angle = M_PI / 2 - parameters.runway_heading_deg * M_PI / 180;
   return Eigen::Isometry3d(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));

@@ -37,31 +37,35 @@ struct AutopilotParameters {
 };
 
 /// The reading of a range finder that looks along the aircraft's down axis: height over the cosine of the
-/// tilt. An autopilot multiplies by this cosine again. pose: of the aircraft, forward-left-up. None without a
-/// height, above max_range, below the ground, or tilted by more than 60 degrees.
+/// tilt. An autopilot multiplies by this cosine again. pose: of the aircraft, forward-left-up. There is no
+/// range without a height, above max_range, below the ground, or with a tilt of more than 60 degrees.
 std::optional<sensor_msgs::Range> autopilotRange(const sensor_msgs::Range& height,
                                                  const geometry_msgs::PoseWithCovarianceStamped& pose,
                                                  const AutopilotParameters& parameters);
 
-/// Why autopilotRange() has none.
+/// Says why autopilotRange() has none.
 std::string whyNoRange(const sensor_msgs::Range& height, const geometry_msgs::PoseWithCovarianceStamped& pose,
                        const AutopilotParameters& parameters);
 
-/// The pose in the axes east, north, up, covariance included. None in four cases: without the runway's
-/// heading; when a number is not finite or the covariance not positive definite; when the place is not known
-/// well enough; when it is tilted by more than 60 degrees, as this is a camera, whose z axis is forward.
+/// The pose in the axes east, north, up, with its covariance. There is none in four cases:
+/// - the runway's heading is not known;
+/// - a number is not finite, or the covariance is not positive definite;
+/// - the place is not known well enough;
+/// - the tilt is more than 60 degrees: this is the pose of a camera, whose z axis is forward.
 std::optional<geometry_msgs::PoseWithCovarianceStamped> autopilotPose(
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
 /// The aircraft's own motion (twist, in its axes) in the axes east, north, up. The uncertainty of the
-/// attitude is turned as well. None in four cases: without the runway's heading; before the runway's
-/// direction is seen (yaw known to 0.1 rad, 1 sigma); when a number is not finite or the covariance not
-/// positive definite; when tilted by more than 60 degrees.
+/// attitude is turned as well. There is none in four cases:
+/// - the runway's heading is not known;
+/// - the runway's direction has not been seen (yaw known to 0.1 rad, 1 sigma);
+/// - a number is not finite, or the covariance is not positive definite;
+/// - the tilt is more than 60 degrees.
 std::optional<geometry_msgs::TwistWithCovarianceStamped> autopilotVelocity(
     const geometry_msgs::TwistWithCovarianceStamped& twist,
     const geometry_msgs::PoseWithCovarianceStamped& pose, const AutopilotParameters& parameters);
 
-/// Why autopilotVelocity() has none, for a runway with a heading.
+/// Says why autopilotVelocity() has none, for a runway with a heading.
 std::string whyNoVelocity(const geometry_msgs::PoseWithCovarianceStamped& pose);
 
 /// Whether the runway's heading is given; otherwise only the range is sent.

@@ -13,8 +13,8 @@ namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
 
-/// How an encoding is read. OpenCV's names tell the number of channels but not which they are. Most drivers
-/// that use them have a grey or a blue-green-red image.
+/// How an encoding is read. OpenCV's names tell the number of channels but not which ones they are. Most
+/// drivers that use them have a grey or a blue-green-red image.
 struct Encoding {
   const char* name;
   const char* like;  // the name that cv_bridge knows it by
@@ -63,7 +63,7 @@ const Encoding* encodingOf(const sensor_msgs::Image& image) {
   return found == std::end(kEncodings) ? nullptr : found;
 }
 
-/// What is wrong with the message; "": nothing.
+/// Returns what is wrong with the message; "" when nothing is.
 std::string checkImage(const sensor_msgs::Image& image, const cv::Size& expected) {
   std::ostringstream problem;
   const Encoding* encoding = encodingOf(image);

@@ -18,15 +18,15 @@ Expected<cv_bridge::CvImageConstPtr> toMono8(const sensor_msgs::ImageConstPtr& i
                                              const CameraCalibration& calibration, const std::string& topic,
                                              const GreyRange& range = {});
 
-/// The grey range of a recording's pairs, for both images. When a stamp goes back, the recording is another
-/// one or the cameras have restarted, so the range is found anew.
+/// The grey range of a recording's pairs, for both images. When a stamp goes back, this is another recording,
+/// or the cameras have restarted. Then the range is found anew.
 class PairGreyRange {
  public:
   /// bits: see GreyRangeFinder.
   explicit PairGreyRange(int bits) : finder_(bits), bits_(bits) {}
 
-  /// Takes a pair. One that does not have 16 bits, or that cannot be used, leaves the range as it is. Returns
-  /// what a person should know, each message once; mostly nothing.
+  /// Takes a pair. A pair that does not have 16 bits, or that cannot be used, leaves the range as it is.
+  /// Returns a message for people, each one once; mostly nothing.
   std::string follow(const sensor_msgs::ImageConstPtr& left, const CameraCalibration& left_camera,
                      const sensor_msgs::ImageConstPtr& right, const CameraCalibration& right_camera);
   const GreyRange& range() const { return finder_.range(); }

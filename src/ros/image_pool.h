@@ -12,10 +12,10 @@ namespace uav_landing {
 /// Image messages whose memory is used again when nobody holds them any more. Thread safe.
 class ImagePool {
  public:
-  /// At most this many unused messages are kept.
+  /// kept: largest number of unused messages.
   explicit ImagePool(size_t kept) : store_(std::make_shared<Store>(kept)) {}
 
-  /// A message to fill in; its contents are left over from before.
+  /// A message to fill in. Its old contents are still there.
   boost::shared_ptr<sensor_msgs::Image> take() {
     std::unique_ptr<sensor_msgs::Image> image = store_->take();
     // The deleter holds the store, because subscribers may keep a message longer than the pool lives.

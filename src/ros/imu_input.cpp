@@ -19,7 +19,7 @@ bool absent(const Covariance& covariance) { return covariance[0] == -1; }
 std::optional<Eigen::Matrix3d> known(const Covariance& covariance) {
   const Eigen::Matrix3d given =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(covariance.data());
-  // Also when there is a NaN.
+  // False also when there is a NaN.
   if (!(given.array().abs() <= kMostVariance).all() || !(given.diagonal().array() > 0).all())
     return std::nullopt;
   const Eigen::Matrix3d symmetric = 0.5 * (given + given.transpose());

@@ -14,9 +14,8 @@
 namespace uav_landing {
 
 /// The sample of a message, and what is wrong with the message. As in sensor_msgs/Imu, a covariance that
-/// begins with -1 means that the field does not exist. A covariance of zeros means that it is unknown, and so
-/// does an impossible one. Values that cannot be used are missing from the sample, and the failure names
-/// them.
+/// begins with -1 means that the field does not exist. A covariance of zeros, or an impossible one, means
+/// that it is unknown. Values that cannot be used are missing from the sample, and the failure names them.
 struct ImuReading {
   ImuSample sample;
   Failure failure;
@@ -24,22 +23,22 @@ struct ImuReading {
 };
 ImuReading toReading(const sensor_msgs::Imu& message);
 
-/// Messages of an inertial sensor and its mounting, for the pairs of left cameras that may change. Not thread
-/// safe.
+/// Messages of an inertial sensor and its mounting. It serves the pairs; their left camera may change. Not
+/// thread safe.
 class ImuInput {
  public:
   explicit ImuInput(const ApproachAngleParameters& parameters) : buffer_(parameters), frames_("", "") {}
 
-  /// A message of /tf_static.
+  /// Takes a message of /tf_static.
   void addTransforms(const tf2_msgs::TFMessage& message) { frames_.add(message, true); }
-  /// A message of /tf. It is not used, but the failure names it when the static transform is missing.
+  /// Takes a message of /tf. It is not used, but the failure names it when the static transform is missing.
   void addMovingTransforms(const tf2_msgs::TFMessage& message) { frames_.add(message, false); }
   /// Adds a message and returns what is wrong with it.
   Failure add(const sensor_msgs::Imu& message);
   /// Whether there is a message at or after an image of this stamp.
   bool covers(const ros::Time& stamp) const { return buffer_.covers(stamp.toSec()); }
 
-  /// Attitude and rotation for the next pair. left_frame: of the left camera as it is mounted.
+  /// Attitude and rotation for the next pair. left_frame: frame of the left camera as it is mounted.
   /// rectified_from_left: R of camera_info.
   AttitudePrior at(const ros::Time& stamp, const std::string& left_frame,
                    const Eigen::Matrix3d& rectified_from_left);

@@ -95,7 +95,7 @@ void addRunway(const std_msgs::Header& header, double length, double width, std:
   markers.insert(markers.end(), {surface, outline, centre});
 }
 
-/// Straight on along the approach angle, down to the ground.
+/// Draws the straight path along the approach angle, down to the ground.
 Marker glidePath(const std_msgs::Header& header, double line, const LandingResult& estimate,
                  const Eigen::Vector3d& position, const Eigen::Vector2d& direction) {
   Marker glide = marker(header, kGlidePath, Marker::LINE_LIST, line, colour(1.0F, 0.8F, 0.1F));
@@ -137,9 +137,9 @@ bool hasEllipsoid(const NodeParameters& parameters, const DrawnAircraft& aircraf
   return aircraft.stddev.maxCoeff() < parameters.drawn_runway_length / 6;
 }
 
-/// Ellipsoid of the position's three sigma, ellipsoid_scale times larger, drawn as the three ellipses about
-/// its axes, so that it hides nothing. No axis is longer than one unit, because the axis along the runway
-/// would leave the view.
+/// Ellipsoid of the position's three sigma, ellipsoid_scale times larger. Three ellipses about its axes are
+/// drawn, so that it hides nothing. No axis is longer than one unit, because the axis along the runway would
+/// leave the view.
 Marker ellipsoid(const std_msgs::Header& header, double unit, const NodeParameters& parameters,
                  const DrawnAircraft& aircraft) {
   Marker shape =
@@ -233,7 +233,7 @@ LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& p
     markers.push_back(silhouette(header, kSpan * unit, *aircraft));
     markers.push_back(ellipsoid(header, unit, parameters, *aircraft));
   } else {
-    // Without this rviz would go on showing them at the aircraft's last place.
+    // Without this, rviz would go on showing them at the aircraft's last place.
     for (const Identity& shown : {kGlidePath, kAircraft, kUncertainty}) {
       markers.push_back(marker(header, shown, Marker::CUBE, 0, {}));
       markers.back().action = Marker::DELETE;

@@ -19,20 +19,23 @@ struct DrawnAircraft {
   Eigen::Matrix3d runway_from_camera;  ///< rectified left camera, optical axes
 };
 
-/// What rviz shows besides the images.
+/// Everything that rviz shows besides the images.
 struct LandingScene {
   visualization_msgs::MarkerArray markers;
-  /// Runway frame to landing_view, the frame of the view in rviz/landing.rviz. It is level and lies behind,
-  /// right of and above the aircraft. Its distance is a number of heights, so that near and far look the
-  /// same.
+  /// Transform from the runway frame to landing_view, the frame of the view in rviz/landing.rviz. It is level
+  /// and lies behind, right of and above the aircraft. Its distance is a number of heights, so that near and
+  /// far look the same.
   geometry_msgs::TransformStamped view;
 };
 
-/// Draws the scene: outline and centre line of the runway, path flown, aircraft with the ellipsoid of three
-/// sigma (ellipsoid_scale times larger, limited by the height), straight path ahead down to the ground, and
-/// the numbers as text. All but the runway grow with the height. header: stamp of the image, runway frame.
+/// Draws the scene: outline and centre line of the runway, path flown, aircraft, ellipsoid, path ahead, and
+/// the numbers as text. The ellipsoid has three sigma of the position, ellipsoid_scale times larger and
+/// limited by the height. The path ahead is straight and ends on the ground. Everything except the runway
+/// grows with the height.
+/// header: stamp of the image, runway frame.
 /// aircraft: if there is none, only runway, path and text are drawn, and the other markers are removed.
-/// direction: of flight over the ground. runway_width: as measured, m; unknown: as in the parameters.
+/// direction: of flight over the ground.
+/// runway_width: as measured, m; unknown: as in the parameters.
 LandingScene drawLanding(const std_msgs::Header& header, const NodeParameters& parameters,
                          const LandingResult& estimate, const std::optional<DrawnAircraft>& aircraft,
                          const Eigen::Vector2d& direction, const std::deque<Eigen::Vector3d>& track,

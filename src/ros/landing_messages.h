@@ -20,7 +20,7 @@ geometry_msgs::PoseWithCovarianceStampedPtr poseMessage(const std_msgs::Header& 
                                                         const Eigen::Isometry3d& pose,
                                                         const Matrix6d& covariance);
 
-/// frame: the frame that moves, in whose axes the twist is.
+/// frame: the moving frame. The twist is in its axes.
 geometry_msgs::TwistWithCovarianceStampedPtr twistMessage(const ros::Time& stamp, const std::string& frame,
                                                           const BodyTwist& twist);
 

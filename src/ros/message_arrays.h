@@ -2,7 +2,7 @@
 
 namespace uav_landing {
 
-// Vectors and matrices of results in the arrays of messages, row major.
+// Copies vectors and matrices of results to the arrays of messages and back, row major.
 
 template <class Vector, class Array>
 void toArray(const Vector& vector, Array& array) {

@@ -4,7 +4,7 @@
 
 namespace uav_landing {
 
-/// docs/node_parameters.md: the private parameters that are in no config file.
+/// Text of docs/node_parameters.md: the private parameters that are in no config file.
 std::string nodeParameterTable();
 
 }  // namespace uav_landing

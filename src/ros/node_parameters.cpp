@@ -13,8 +13,8 @@
 namespace uav_landing {
 namespace {
 
-/// A plain value. Lists and maps become an empty list, because no parameter is one, and those of the
-/// parameter server may be nested without end.
+/// Converts a plain value. Lists and maps become an empty list, because no parameter is one. On the parameter
+/// server they may also be nested without end.
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeBoolean:
@@ -34,8 +34,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
 }
 
 /// Whether the parameter belongs to somebody else. Plugins of image_transport write theirs below the
-/// nodelet's name as well, as maps under the topic's name or their own, and these outlive the nodelet. None
-/// of our parameters is a map.
+/// nodelet's name as well. These are maps under the topic's name or their own, and they outlive the nodelet.
+/// None of our parameters is a map.
 bool isForeign(const std::string& section, const std::string& name, const XmlRpc::XmlRpcValue& value,
                const std::vector<std::string>& own) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeStruct &&

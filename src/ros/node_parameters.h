@@ -77,9 +77,9 @@ struct NodeParameters {
   }
 };
 
-/// Reads a nodelet's private parameters: the keys of NodeParameters, and the section's own (see
-/// uav_landing/parameters/parameters.h). Parameters that are not given keep their defaults. The failure names
-/// the parameter, or what is wrong with the config_file.
+/// Reads a nodelet's private parameters: the keys of NodeParameters, and those of the section (see
+/// uav_landing/parameters/parameters.h). Parameters that are not given keep their defaults. A failure names
+/// the parameter, or says what is wrong with the config_file.
 template <class Section>
 Failure loadParameters(const ros::NodeHandle& private_handle, const std::string& section, Section& parameters,
                        NodeParameters& node_parameters);
@@ -90,7 +90,7 @@ Failure loadParameters(const ros::NodeHandle& private_handle, const std::string&
 Failure resolveFiles(const NodeParameters& node_parameters, RigParameters& parameters);
 
 /// Reads the parameters rig/* and runway/* that all nodelets of a namespace share. Defaults and failure as
-/// above.
+/// for loadParameters().
 Failure loadSharedParameters(const ros::NodeHandle& handle, SharedParameters& parameters);
 
 }  // namespace uav_landing

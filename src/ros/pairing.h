@@ -23,9 +23,11 @@ namespace uav_landing {
 
 /// Pairs messages by their stamps (header.stamp), with message_filters. Messages come by plain calls, so it
 /// serves subscriptions and bags. Repeated, late and missing (0) stamps are dropped. A stamp that goes back
-/// farther clears everything that waits (StampOrder). The same message object twice counts once: roscpp may
-/// have linked a foreign publisher in this process twice (see stage_nodelet.cpp). Thread safe. The callback
-/// runs in the thread of the add() that completed the set, without the lock.
+/// farther clears everything that waits (StampOrder).
+///
+/// The same message object counts once when it comes twice, because roscpp may have linked a foreign
+/// publisher in this process twice (see stage_nodelet.cpp). Thread safe. The callback runs in the thread of
+/// the add() that completed the set, without the lock.
 template <class... Messages>
 class Pairing {
  public:
@@ -33,8 +35,8 @@ class Pairing {
   using Pointer = boost::shared_ptr<const std::tuple_element_t<kInput, std::tuple<Messages...>>>;
   using Callback = std::function<void(const boost::shared_ptr<const Messages>&...)>;
 
-  /// topics: one name per input, for complaint(). queue_size of the parameters limits the number of messages
-  /// that wait.
+  /// topics: one name per input, for complaint(). The parameter queue_size limits the number of messages that
+  /// wait.
   Pairing(const RectifyParameters& parameters, const std::vector<std::string>& topics, Callback callback)
       : parameters_(parameters),
         callback_(std::move(callback)),
@@ -82,7 +84,7 @@ class Pairing {
     const std::lock_guard<std::mutex> lock(mutex_);
     return watch_.jumps();
   }
-  /// Why nothing was paired since the last call; "" when something was. See InputWatch::complaint().
+  /// Says why nothing was paired since the last call; "" when something was. See InputWatch::complaint().
   std::string complaint() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return watch_.complaint();

@@ -47,10 +47,11 @@ class PairsInFlight {
   /// A stage begins to listen; it stops when the consumer is destroyed.
   static std::unique_ptr<Consumer> join(const std::string& topic);
 
+  /// rectify has handed on the pair of this stamp.
   void handedOn(const ros::Time& stamp);
-  /// Waits until every stage has fewer than this many pairs to do, at most for the timeout. Returns whether
-  /// this is so. When a stage finishes nothing for a second, pairs that it has had for as long count as lost
-  /// on their way.
+  /// Waits until every stage has fewer than this many pairs to do, but not longer than the timeout. Returns
+  /// whether this is so. When a stage finishes nothing for a second, the pairs that it has had for a second
+  /// count as lost on their way.
   bool waitUntilBelow(size_t limit, std::chrono::milliseconds timeout);
 
  private:

@@ -8,21 +8,21 @@
 namespace uav_landing {
 namespace {
 
-constexpr int kMostRepetitions = 4;  // of one pair; more are those of a frozen camera
+constexpr int kMostRepetitions = 4;  // of one pair; a camera that repeats more often is frozen
 constexpr int kSure = 2;             // images in a row that came equally often
-// Noise alone is at 1.0. After the sharpening over three rows that cameras do, it is at 1.4 at most: its
-// second difference has 4^2 / (2 + sqrt(2))^2. Fields half a pixel apart are above 1.6, those farther apart
+// Noise alone is at 1.0. Cameras sharpen over three rows, and then it is at 1.4 at most: its second
+// difference has 4^2 / (2 + sqrt(2))^2. Fields half a pixel apart are above 1.6, and those farther apart are
 // above 2.
 constexpr double kAlternating = 1.5;
 constexpr uint64_t kSaidAt = 3;         // repetitions
-constexpr int kLooks = 6, kEnough = 5;  // of the images looked at
+constexpr int kLooks = 6, kEnough = 5;  // of the images that were looked at
 
 bool same(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::ImageConstPtr& before) {
   return before && image->data == before->data && image->width == before->width;
 }
 
-/// Whether an image is black or saturated; it then equals the previous one whatever the driver does. Pixels
-/// are compared, not bytes, which differ within a pixel of 16 bits or of colours.
+/// Whether an image is black or saturated. Such an image equals the previous one whatever the driver does.
+/// Pixels are compared, because bytes differ within a pixel of 16 bits or of colours.
 bool uniform(const sensor_msgs::ImageConstPtr& image) {
   const size_t pixel = std::max<size_t>(1, image->width > 0 ? image->step / image->width : 1);
   if (pixel >= image->data.size()) return true;

@@ -10,7 +10,7 @@
 namespace uav_landing {
 namespace {
 
-/// Covariance of (height, roll, pitch) by the errors of the plane.
+/// Covariance of (height, roll, pitch) due to the errors of the plane.
 Eigen::Matrix3d ofPlane(const GroundPlane& plane) {
   const Eigen::Vector3d n = plane.normal();
   const double h = plane.height(), level2 = n.x() * n.x() + n.y() * n.y();

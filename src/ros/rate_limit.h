@@ -6,7 +6,7 @@
 
 namespace uav_landing {
 
-/// Lets at most so many messages per second pass, by their stamps. A message may come a quarter of a period
+/// Lets at most this many messages per second pass, by their stamps. A message may come a quarter of a period
 /// early, and the next ones make up for it. Otherwise jitter of the stamps would remove every second message
 /// of a camera that is just as fast as allowed.
 class RateLimit {

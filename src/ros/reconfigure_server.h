@@ -28,7 +28,8 @@ class ReconfigureDescription {
   dynamic_reconfigure::ConfigDescription description_;
 };
 
-/// Takes the values of a request; parameters that it does not name stay. node: name for the warnings.
+/// Reads the values of a request. Parameters that it does not name stay as they are. node: name for the
+/// warnings.
 class ReconfigureRequestReader {
  public:
   ReconfigureRequestReader(const dynamic_reconfigure::Config& request, const std::string& node)
@@ -46,9 +47,9 @@ class ReconfigureRequestReader {
   const std::string& node_;
 };
 
-/// The server side of dynamic_reconfigure for a parameter struct, from the same visit() that reads and
-/// documents it. A value out of range becomes the nearest one in range, as clients expect, with a warning.
-/// Topics and service are private names of the handle. Callbacks run where those of the handle do.
+/// The server side of dynamic_reconfigure for a parameter struct. It uses the same visit() that reads and
+/// documents the struct. A value out of range becomes the nearest one in range, as clients expect, with a
+/// warning. Topics and service are private names of the handle. Callbacks run where those of the handle do.
 template <class Parameters>
 class ReconfigureServer {
  public:

@@ -15,7 +15,7 @@ constexpr double kUnitTolerance = 0.001;  // of a quaternion's length
 
 constexpr char kAircraft[] = "base_link";
 
-/// tf2 knows frames without a leading slash.
+/// Returns the name without the leading slash, as tf2 knows frames.
 std::string stripped(const std::string& frame) { return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame; }
 
 /// Rejects what tf2 lets pass: lengths that are not numbers, and quaternions that are not quite of unit
@@ -74,7 +74,7 @@ RigFrames::Child RigFrames::find(const std::string& left_frame) const {
       camera.complaint = whyUnknown(left, base, "") + ": the left camera is estimated";
     return camera;
   }
-  // The frame is not the root of the tree. Unless it is asked to, the estimate does not change such a tree.
+  // The frame is not the root of the tree. The estimate changes such a tree only if base_frame asks for it.
   if (has_parent && base_frame_.empty()) return camera;
   Child child;
   child.frame = base;
@@ -105,7 +105,7 @@ std::string RigFrames::whyUnknown(const std::string& left, const std::string& fr
   return otherwise;
 }
 
-/// "parent -> child" of the first transform between two frames that is only on /tf; "": there is none.
+/// "parent -> child" of the first transform between two frames that is only on /tf; "" when there is none.
 std::string RigFrames::movingLink(const std::string& a, const std::string& b) const {
   const std::vector<std::string> from_a = towardsRoot(a), from_b = towardsRoot(b);
   const auto common = std::find_first_of(from_a.begin(), from_a.end(), from_b.begin(), from_b.end());

@@ -24,13 +24,13 @@ class RigFrames {
  public:
   struct Child {
     std::string frame;
-    /// Child frame seen from the left camera as it is mounted (its optical frame): x_left = T x_child. None:
-    /// the child is the rectified left camera itself.
+    /// Pose of the child frame in the optical frame of the left camera as it is mounted: x_left = T x_child.
+    /// None: the child is the rectified left camera itself.
     std::optional<Eigen::Isometry3d> left_from_child;
     bool may_broadcast = true;  ///< the frame has a name and no other parent
     Failure failure;            ///< why the configured base frame is not known (yet)
     std::string complaint;      ///< why it may be another frame than intended, for the log; "": it is not
-    /// base_frame names the left camera's own frame, which has the axes of a camera.
+    /// True when base_frame names the left camera's own frame, which has the axes of a camera.
     bool is_left_camera = false;
     /// Whether the frame should have the axes of an aircraft: forward, left, up.
     bool isAircraft() const { return left_from_child.has_value() && !is_left_camera; }
@@ -39,15 +39,16 @@ class RigFrames {
   /// base_frame: the configured one, or "" for base_link if static tf knows it.
   RigFrames(const std::string& base_frame, const std::string& runway_frame);
 
-  /// A message of /tf_static or /tf; of the latter only the names of connected frames are used. Transforms
-  /// with lengths or rotations that are not numbers are ignored.
+  /// Takes a message of /tf_static or /tf. Of the latter only the names of connected frames are used.
+  /// Transforms with lengths or rotations that are not numbers are ignored.
   void add(const tf2_msgs::TFMessage& message, bool is_static);
 
   /// left_frame: frame_id of the left camera.
   Child find(const std::string& left_frame) const;
   /// x_left = T x_frame for any frame that static tf connects with the left camera; none if it does not.
   std::optional<Eigen::Isometry3d> leftFrom(const std::string& left_frame, const std::string& frame) const;
-  /// Why leftFrom() has nothing: a frame without a name, a transform that is on /tf, else the text given.
+  /// Says why leftFrom() has nothing: a frame without a name, a transform that is on /tf, or else the given
+  /// text.
   Failure whyNotConnected(const std::string& left_frame, const std::string& frame,
                           const std::string& otherwise) const;
 
@@ -66,7 +67,7 @@ class RigFrames {
   const std::string base_frame_, runway_frame_;
   mutable std::mutex mutex_;
   tf2::BufferCore static_transforms_;
-  std::map<std::string, Link> parents_;  // of every frame on tf, without our own transform
+  std::map<std::string, Link> parents_;  // of every frame on tf, except our own transform
   std::set<std::string> names_;          // of all frames
 };
 

@@ -36,8 +36,8 @@ class RigWatch {
 template <class Stage>
 class RigStage {
  public:
-  /// Calls work(stage, left, right), with the images as mono8. The failure is what is wrong with the cameras
-  /// or the images; the topics are for its text. make(rig model): makes a stage for the rig with these masks.
+  /// Calls work(stage, left, right), with the images as mono8. make(rig model): makes a stage for the rig
+  /// with these masks. A failure says what is wrong with the cameras or the images, and names the topics.
   template <class Make, class Work>
   auto run(const sensor_msgs::ImageConstPtr& left, const std::string& left_topic,
            const sensor_msgs::CameraInfo& left_info, const sensor_msgs::ImageConstPtr& right,
@@ -68,7 +68,7 @@ class RigStage {
   }
 
  private:
-  // What is wrong with the cameras; without a failure there is a stage.
+  // Returns what is wrong with the cameras. Without a failure there is a stage.
   template <class Make>
   Failure prepare(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right,
                   const RigMasks& masks, const RigParameters& parameters, Make&& make) {

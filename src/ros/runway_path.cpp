@@ -9,13 +9,13 @@ namespace uav_landing {
 namespace {
 
 constexpr double kStartStddev = 1000;  // m: a finite number for "not known"
-// Error of the speed that does not average out, 1 sigma as a share of the speed: while it is seen, and after
-// that.
+// Error of the speed that does not average out, 1 sigma as a share of the speed: first while the motion is
+// seen, then while it is not.
 constexpr double kSpeedError = 0.05, kOldSpeedError = 1;
 constexpr size_t kTrackPoints = 2000;
 constexpr double kTrackSpacing = 0.02;  // of the height
-constexpr double kMaxStart = 100;       // heights, as a path that hardly descends meets the ground far away
-constexpr int kMeanOf = 20;             // widths of the runway
+constexpr double kMaxStart = 100;  // heights, because a path that hardly descends meets the ground far away
+constexpr int kMeanOf = 20;        // number of widths in the mean
 
 }  // namespace
 

@@ -16,18 +16,19 @@ namespace uav_landing {
 /// What a nodelet did since the last diagnostics: rates, times, failures. Thread safe.
 class StageReport {
  public:
-  /// One pair was served. stamp: of its left image. compute_ms: time that it took. reason: why there is no
-  /// result, or "".
+  /// Counts a pair that was served. stamp: of its left image. compute_ms: time that it took. reason: why
+  /// there is no result, or "".
   void served(const ros::Time& stamp, double compute_ms, const std::string& reason);
-  /// A pair was dropped because newer ones were waiting.
+  /// Counts pairs that were dropped because newer ones were waiting.
   void dropped(uint64_t count = 1);
-  /// All warnings that hold from now on. Returns those that are new.
+  /// Sets all warnings that hold from now on. Returns those that are new.
   std::vector<std::string> warned(const std::vector<std::string>& warnings);
-  /// An input could not be used. problem: what is wrong with it.
+  /// Counts an input that could not be used. problem: what is wrong with it.
   void refused(const std::string& problem);
 
-  /// Writes summary and values for the time since the last call, and starts anew. inputs: counts of what is
-  /// paired here. subscribed: time since the inputs were subscribed, s; none when nobody wants the output.
+  /// Writes summary and values for the time since the last call, and starts anew.
+  /// inputs: counts of what is paired here.
+  /// subscribed: time since the inputs were subscribed, s; none when nobody wants the output.
   void write(diagnostic_updater::DiagnosticStatusWrapper& status,
              const std::vector<InputWatch::Input>& inputs, std::optional<double> subscribed);
 

@@ -6,8 +6,8 @@
 
 namespace uav_landing {
 
-/// Seconds from then to now. (now - then).toSec() throws when they are more than 68 years apart, and foreign
-/// stamps may be.
+/// Seconds from then to now. (now - then).toSec() throws when the two are more than 68 years apart. Stamps of
+/// other publishers may be.
 inline double secondsBetween(const ros::Time& then, const ros::Time& now) {
   constexpr int64_t kSecond = 1000000000;
   int64_t seconds = static_cast<int64_t>(now.sec) - then.sec;
