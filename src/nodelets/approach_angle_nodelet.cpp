@@ -17,9 +17,10 @@ namespace uav_landing {
 /// Vanishing points, ground normal, focus of expansion and approach angle.
 /// Parameters: ApproachAngleParameters and the common ones of NodeParameters.
 /// Subscribes {left,right}/{image_rect, camera_info} of rectify and, unless use_stereo is false,
-/// stereo_depth, while somebody wants the output. Unless use_imu is false, it subscribes the topic of
-/// parameter imu (sensor_msgs/Imu) and /tf_static (its mounting; /tf only to say what is missing there).
-/// While somebody publishes on this topic, a pair waits up to imu_wait for the message after it.
+/// stereo_depth. It does so while somebody wants the output.
+/// Unless use_imu is false, it subscribes the topic of parameter imu (sensor_msgs/Imu). It also subscribes
+/// /tf_static for the sensor's mounting, and /tf only to say what is missing there. While somebody publishes
+/// on the topic of the imu, a pair waits up to imu_wait for the message after it.
 /// Publishes approach_angle (ApproachAngle): one message per pair, also without an angle.
 class ApproachAngleNodelet : public StageNodelet {
  public:
@@ -37,7 +38,7 @@ class ApproachAngleNodelet : public StageNodelet {
   static constexpr uint32_t kImuQueue = 1000;
   static constexpr double kPatience = 0.5;  // s, with recorded data
 
-  /// A pair that waits for the imu, and the time since when it does.
+  /// A pair that waits for the imu. since: when it began to wait.
   struct Waiting {
     ros::Time stamp;
     ros::WallTime since;
@@ -72,7 +73,7 @@ class ApproachAngleNodelet : public StageNodelet {
     tf_subscriber_ = getNodeHandle().subscribe<tf2_msgs::TFMessage>(
         "/tf", 100,
         [this](const tf2_msgs::TFMessageConstPtr& m) { guard([&] { imu_->addMovingTransforms(*m); }); });
-    // Recorded data should be used completely, so pairs wait longer.
+    // Recorded data is to be used completely, so pairs wait longer.
     wait_ = ros::WallDuration(node_.drop_frames ? parameters_.imu_wait : kPatience);
     wait_timer_ = getNodeHandle().createWallTimer(
         wait_, [this](const ros::WallTimerEvent&) { release(); }, true, false);
@@ -139,7 +140,7 @@ class ApproachAngleNodelet : public StageNodelet {
     release();
   }
 
-  // Pairs go on in order, each when the imu message after it has arrived.
+  // Pairs go on in their order. Each one waits for the imu message after it.
   void take(const ros::Time& stamp, std::function<void()> pair) {
     waiting_.push_back({stamp, ros::WallTime::now(), std::move(pair)});
     release();
@@ -198,7 +199,7 @@ class ApproachAngleNodelet : public StageNodelet {
     publisher_.publish(boost::make_shared<ApproachAngle>(toMessage(result, left->header, compute_ms)));
   }
 
-  // The log says once what to do about it.
+  // The log gives this advice once.
   void noteReadout(const ReadoutEstimate& readout) {
     readout_ = readout;
     const std::string advice = advised_ ? "" : adviceOn(readout);
@@ -230,7 +231,7 @@ class ApproachAngleNodelet : public StageNodelet {
   ros::WallDuration wait_;
   ros::WallTimer wait_timer_;
   bool imu_silent_ = false;                      // no message came while the last pair waited
-  bool imu_heard_ = false, imu_unused_ = false;  // since the last complaint; by the last pair
+  bool imu_heard_ = false, imu_unused_ = false;  // heard since the last complaint; unused by the last pair
   std::string imu_reason_;                       // of the last pair
   std::string imu_use_ = "no pair yet";          // by the last pair, for the diagnostics
 };

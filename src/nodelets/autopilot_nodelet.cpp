@@ -54,7 +54,7 @@ class AutopilotNodelet : public StageNodelet {
     feed<0, sensor_msgs::Range>("height", *pairing_, subscribers_);
     feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *pairing_, subscribers_);
     feed<1, geometry_msgs::PoseWithCovarianceStamped>("pose", *movements_, subscribers_);
-    // Last, because it goes to one pairing only: whoever sees it connected knows that all are.
+    // This comes last, because it goes to one pairing only. Whoever sees it connected knows that all are.
     feed<0, geometry_msgs::TwistWithCovarianceStamped>("twist", *movements_, subscribers_);
   }
   void unsubscribe() override {
@@ -73,7 +73,7 @@ class AutopilotNodelet : public StageNodelet {
     complainOf("no velocity sent for", velocity_);
   }
 
-  /// Messages of one kind since the last complaint.
+  /// Messages of one kind that were sent since the last complaint.
   struct Sent {
     bool lately = false;
     std::string why_not;  // reason for the last one that was not sent

@@ -24,18 +24,18 @@
 
 namespace uav_landing {
 
-/// Height by reconstruction and Kalman filter, the landing estimate, and what is made of it.
+/// Height by reconstruction and Kalman filter, the landing estimate, and the messages that are made from it.
 /// Parameters: KalmanHeightParameters; base_frame, runway_frame, publish_tf, drawn_runway_width,
 /// drawn_runway_length, ellipsoid_scale, drop_frames and the common ones of NodeParameters.
 /// Subscribes stereo_depth, approach_angle and {left,right}/camera_info; without publish_tf only while
 /// somebody wants the output. Subscribes /tf_static (lever arm) and /tf (parents of frames).
 /// Publishes:
-/// - landing_estimate (LandingEstimate): one message per pair. Without a pair for max_age, one with status
-/// LOST (not when drop_frames is false, as recorded pairs do not grow old).
-/// - height (Range): NaN while not valid.
+/// - landing_estimate (LandingEstimate): one message per pair. When no pair came for max_age, one message
+/// with status LOST. This is not so when drop_frames is false, because recorded pairs do not grow old.
+/// - height (Range): NaN while it is not valid.
 /// - pose (PoseWithCovarianceStamped) and tf runway_frame -> child: while the height is valid.
 /// - twist (TwistWithCovarianceStamped) of the child in its own axes: while the height is valid and the
-/// motion known.
+/// motion is known.
 /// - markers (MarkerArray) and tf runway_frame -> landing_view: while somebody subscribes markers.
 class KalmanHeightNodelet : public StageNodelet {
  public:
@@ -121,7 +121,7 @@ class KalmanHeightNodelet : public StageNodelet {
       NODELET_WARN("%s: /use_sim_time is set and nobody publishes /clock", getName().c_str());
   }
 
-  /// The estimate may be valid nevertheless, so this is not said every time.
+  /// The estimate may be valid nevertheless, so this is not logged every time.
   void complainOfFrames() {
     const std::lock_guard<std::mutex> lock(rig_mutex_);
     if (frame_reminder_.due(frame_complaint_))
@@ -191,8 +191,8 @@ class KalmanHeightNodelet : public StageNodelet {
     return rig_failure_;
   }
 
-  /// Returns the estimate published: it is that of the child frame, and not valid when its transform is
-  /// missing.
+  /// Publishes the estimate and returns it. It is that of the child frame, and not valid when its transform
+  /// is missing.
   LandingResult publish(const StereoDepth& stereo, double compute_ms, const LandingResult& camera,
                         const GroundPlane& plane, const ApproachAngleResult::Motion& step,
                         const sensor_msgs::CameraInfo& left_info) {
@@ -249,7 +249,7 @@ class KalmanHeightNodelet : public StageNodelet {
 
   void broadcast(const std_msgs::Header& header, const std::string& child_frame,
                  const Eigen::Isometry3d& runway_from_child) {
-    // One transform per stamp, as the pairing drops repeated stamps.
+    // There is one transform per stamp, because the pairing drops repeated stamps.
     if (!node_.publish_tf || !runway_from_child.matrix().allFinite()) return;
     geometry_msgs::TransformStamped transform = tf2::eigenToTransform(runway_from_child);
     transform.header = header;
@@ -258,14 +258,15 @@ class KalmanHeightNodelet : public StageNodelet {
   }
 
   static bool clockIsMissing() { return ros::Time::isSimTime() && ros::Time::now().isZero(); }
-  /// ROS time, or the machine's time while /use_sim_time is set and nobody publishes /clock.
+  /// Returns ROS time, or the machine's time while /use_sim_time is set and nobody publishes /clock.
   static ros::Time now() {
     if (!clockIsMissing()) return ros::Time::now();
     const ros::WallTime wall = ros::WallTime::now();
     return {wall.sec, wall.nsec};
   }
 
-  /// When no pair came for max_age, publishes that there is no estimate, once per max_age of the clock.
+  /// When no pair came for max_age, publishes that there is no estimate. It does so once per max_age of the
+  /// clock.
   void checkAge() {
     if (clockIsMissing() && last_stamp_.isZero()) return;  // a bag may be about to begin
     const ros::Time now = KalmanHeightNodelet::now();
@@ -274,8 +275,8 @@ class KalmanHeightNodelet : public StageNodelet {
     if (now < last_timeout_) last_timeout_ = now;
     if (now - std::max(last_pair_, last_timeout_) < max_age) return;
     last_timeout_ = now;
-    // The stamp is in the clock of the images, which may differ from this machine's clock. The sum would
-    // throw for a stamp at the end of the range.
+    // The stamp is in the clock of the images, which may differ from this machine's clock. For a stamp at the
+    // end of the range the sum would throw.
     const ros::Duration age = now - last_pair_;
     const bool own_clock = !last_stamp_.isZero() && last_stamp_ < ros::TIME_MAX - age;
     const ros::Time stamp = own_clock ? last_stamp_ + age : now;
@@ -300,7 +301,7 @@ class KalmanHeightNodelet : public StageNodelet {
     if (marker_publisher_.getNumSubscribers() > 0) {
       LandingScene scene = drawLanding(header, node_, lost, std::nullopt, Eigen::Vector2d::Zero(),
                                        path_.track(), path_.runwayWidth());
-      // The images may have another clock: tf would then ignore their older transforms.
+      // The images may have another clock. tf would then ignore their older transforms.
       if (!own_clock) scene.view.header.stamp = ros::Time(0, 1);
       show(scene);
     }

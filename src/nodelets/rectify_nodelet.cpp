@@ -33,6 +33,7 @@ namespace uav_landing {
 /// the left image and the frames of the cameras. The time reference contains the stamp of the right image
 /// (the skew). A pair with an unusable image or calibration is dropped, and the log says what is wrong with
 /// it.
+///
 /// camera_info is passed on as it came, with two exceptions (see workingPair()). For a rig that is mounted
 /// upside down, left and right are exchanged, and camera_info is that of the rectified pair turned upright.
 /// For a slanted baseline, it is that of the levelled pair.
@@ -91,8 +92,8 @@ class RectifyNodelet : public StageNodelet {
     worker_ = std::thread([this] { work(); });
   }
 
-  // Subscribing with a transport that is not installed would throw in any thread in which a subscriber
-  // connects.
+  // A transport that is not installed is refused here. Otherwise subscribing would throw, in any thread in
+  // which a subscriber connects.
   void checkTransport() {
     const std::vector<std::string> there = transport_->getLoadableTransports();
     if (std::find(there.begin(), there.end(), "image_transport/" + node_.image_transport) == there.end())
@@ -180,7 +181,7 @@ class RectifyNodelet : public StageNodelet {
         if (!job_came_.wait_for(lock, milliseconds(100), [this] { return stopping_ || !jobs_.empty(); }))
           continue;
       }
-      // It waits before it takes the job, so that it takes the newest one.
+      // Wait before taking the job, so that it is the newest one.
       if (!in_flight_->waitUntilBelow(kPairsInFlight, milliseconds(100))) continue;
       Job job;
       {
@@ -223,8 +224,8 @@ class RectifyNodelet : public StageNodelet {
   }
 
   /// Makes the working pair of new cameras. Calibrations that do not make a pair are passed on as they are,
-  /// and the stages behind say what is wrong. But an upside-down pair stops here, because they would take it
-  /// for another one.
+  /// and the stages behind say what is wrong. But an upside-down pair stops here, because those stages would
+  /// take it for another one.
   void followCameras(const sensor_msgs::CameraInfo& left, const sensor_msgs::CameraInfo& right) {
     if (!cameras_.changed(left, right)) return;
     const bool exchanged = shared_.rig.upside_down;
@@ -251,8 +252,8 @@ class RectifyNodelet : public StageNodelet {
       refuse(view, failure);
       return nullptr;
     }
-    // The image is checked before the rectifier is made, because maps of a size that no image has would fill
-    // the memory.
+    // The image is checked before the rectifier is made. Maps of a size that no image has would fill the
+    // memory.
     const auto mono = toMono8(raw, calibration, view.topic, range_.range());
     if (!mono) {
       refuse(mono.error().detail);

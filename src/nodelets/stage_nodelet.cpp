@@ -8,10 +8,12 @@ namespace {
 
 constexpr double kRepeatAfter = 60;  // s, after which the same complaint is logged again
 
-// Held by the nodelet that advertises or subscribes. While one thread subscribes a topic and waits for the
-// master's answer, another one may advertise it. roscpp then links the two in both calls, because neither
-// looks for an existing link (TopicManager), and every message comes twice. It is locked after a nodelet's
-// own mutex. It must not be held while waiting for callbacks, so unsubscribe() does not lock it.
+// A nodelet holds this mutex while it advertises or subscribes. While one thread subscribes a topic and waits
+// for the master's answer, another one may advertise it. roscpp then links the two in both calls, because
+// neither looks for an existing link (TopicManager). Every message would come twice.
+//
+// It is locked after a nodelet's own mutex. It must not be held while waiting for callbacks, so unsubscribe()
+// does not lock it.
 std::mutex topics_mutex;
 
 }  // namespace
@@ -39,7 +41,7 @@ void StageNodelet::onInit() {
     report_.write(status, inputs(), subscribedFor());
     describe(status);
   });
-  // Wall time, because a ROS clock that stands still is one of the problems to report.
+  // Wall time is used, because a ROS clock that stands still is one of the problems to report.
   ros::NodeHandle& handle = getNodeHandle();
   complaint_timer_ = handle.createWallTimer(ros::WallDuration(node_.complaint_period),
                                             [this](const ros::WallTimerEvent&) { complain(); });
@@ -51,7 +53,8 @@ void StageNodelet::onInit() {
         NODELET_INFO("%s: reset", getName().c_str());
         return true;
       });
-  // Not in this thread, because a callback must not run while its subscriber is still being stored.
+  // This does not run in this thread, because a callback must not run while its subscriber is still being
+  // stored.
   start_timer_ = handle.createWallTimer(
       ros::WallDuration(0.001), [this](const ros::WallTimerEvent&) { updateSubscription(); }, true);
 }
@@ -138,7 +141,7 @@ void StageNodelet::complain() {
   const std::vector<InputWatch::Input> counts = inputs();
   const std::string shortage = missing.empty() ? InputWatch::shortage(counts, inputs_before_) : "";
   inputs_before_ = counts;
-  // Its numbers change all the time, so it is logged once for the same topics.
+  // The numbers change all the time, so a shortage is logged once for the same topics.
   if (shortage_reminder_.due(shortage.substr(std::min(shortage.find("stamps"), shortage.size()))))
     NODELET_WARN("%s: %s", getName().c_str(), shortage.c_str());
   complainMore();

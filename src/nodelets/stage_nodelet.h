@@ -30,11 +30,11 @@ constexpr char kLandingEstimate[] = "landing_estimate";
 /// between stages.
 constexpr uint32_t kStageQueue = 20;
 
-/// Tells when a complaint that lasts has to be logged again.
+/// Tells when a lasting complaint has to be logged again.
 class Reminder {
  public:
-  /// True for a complaint that differs from the last call's, or that was logged a minute ago. "": there is
-  /// none.
+  /// True for a complaint that differs from that of the last call, or that was logged more than a minute ago.
+  /// "": there is no complaint.
   bool due(const std::string& complaint);
 
  private:
@@ -42,37 +42,40 @@ class Reminder {
   ros::WallTime said_;
 };
 
-/// Common part of all nodelets of the chain. Parameters, also those of rig and runway, are checked before
-/// anything is subscribed. Inputs are subscribed while somebody wants the output. A missing input is named in
-/// the log. It has diagnostics. No exception leaves a callback. Topics between nodelets of one process are
-/// linked once.
+/// Common part of all nodelets of the chain.
+/// - Parameters, also those of rig and runway, are checked before anything is subscribed.
+/// - Inputs are subscribed while somebody wants the output. The log names a missing input.
+/// - It publishes diagnostics.
+/// - No exception leaves a callback.
+/// - Topics between nodelets of one process are linked once.
 class StageNodelet : public nodelet::Nodelet {
  protected:
-  /// section: of the parameters; also the name in the diagnostics.
+  /// section: name of the parameters' section, and in the diagnostics.
   explicit StageNodelet(const char* section) : section_(section) {}
 
-  /// Loads the parameters, creates what needs them, and advertises with onConnection(). Only one nodelet of a
-  /// process at a time runs this function or subscribe(), so neither may wait for callbacks or for other
+  /// Loads the parameters, makes what needs them, and advertises with onConnection(). Only one nodelet of a
+  /// process at a time runs this function or subscribe(). So neither may wait for callbacks or for other
   /// nodelets.
   virtual void setUp() = 0;
   /// Whether somebody wants the output.
   virtual bool wanted() const = 0;
-  /// Both run in the callbacks' thread; unsubscribe() also in the thread that destroys the nodelet.
+  /// Both run in the callbacks' thread. unsubscribe() also runs in the thread that destroys the nodelet.
   virtual void subscribe() = 0;
   virtual void unsubscribe() = 0;
-  /// Counts per input, and why nothing was paired since the last call ("" when something was).
+  /// Counts for each input, and the reason why nothing was paired since the last call ("" when something
+  /// was).
   virtual std::vector<InputWatch::Input> inputs() const = 0;
   virtual std::string complaint() = 0;
   /// Further lines for the log, once per complaint_period.
   virtual void complainMore() {}
-  /// Service ~reset: forgets everything from earlier pairs; messages that wait to be paired stay. Runs like a
-  /// callback.
+  /// Service ~reset. Forgets everything from earlier pairs, but keeps messages that wait to be paired. Runs
+  /// like a callback.
   virtual void forget() {}
-  /// Further values for the diagnostics; called by a timer.
+  /// Adds further values to the diagnostics. Called by a timer.
   virtual void describe(diagnostic_updater::DiagnosticStatusWrapper&) {}
 
-  /// Reads the shared parameters into shared_, and the private parameters, also into node_. Throws with the
-  /// parameter's name, so that the nodelet is not loaded.
+  /// Reads the shared parameters into shared_, those of ROS into node_, and returns those of the section.
+  /// Throws with the parameter's name, so that the nodelet is not loaded.
   template <class Section>
   Section loadParametersOrThrow() {
     const Failure shared_failure = loadSharedParameters(getNodeHandle(), shared_);
@@ -85,14 +88,14 @@ class StageNodelet : public nodelet::Nodelet {
     return parameters;
   }
 
-  /// The masks of rig/left_mask and rig/right_mask. Call it after loadParametersOrThrow(); it throws in the
+  /// The masks of rig/left_mask and rig/right_mask. Call it after loadParametersOrThrow(). It throws in the
   /// same way.
   RigMasks loadMasksOrThrow();
 
-  /// Throws the exception of setUp() after logging it.
+  /// Logs the problem, and throws the exception of setUp().
   [[noreturn]] void refuseToLoad(const std::string& problem);
 
-  /// For publishers: subscribes and unsubscribes as subscribers come and go.
+  /// For publishers: subscribes and unsubscribes the inputs as subscribers come and go.
   ros::SubscriberStatusCallback onConnection();
   void updateSubscription();
 
@@ -105,7 +108,7 @@ class StageNodelet : public nodelet::Nodelet {
       refuse(error.what());
     }
   }
-  /// The result of a stage. If it cannot be computed at all, it is a failure, because every pair has a
+  /// Computes the result of a stage. When this throws, the result is a failure, because every pair has a
   /// message.
   template <class Result, class Work>
   static Result attempt(Work&& work) {
@@ -119,16 +122,17 @@ class StageNodelet : public nodelet::Nodelet {
     }
     return result;
   }
-  /// Counts an input that cannot be used, and logs why, at most once per complaint_period.
+  /// Counts an input that cannot be used, and logs the reason, at most once per complaint_period.
   void refuse(const std::string& problem);
 
   /// Logs a failure that a person has to correct (wrong input, cameras swapped), as refuse() does.
   void warnOf(const Failure& failure);
 
-  /// Warnings about the calibrations from now on: in the diagnostics as long as they hold, in the log once.
+  /// Sets the warnings about the calibrations from now on. The diagnostics show them as long as they hold,
+  /// the log shows them once.
   void warnOfRig(const std::vector<std::string>& warnings);
 
-  /// Pairing of the nodelets behind rectify, which has already dropped late messages.
+  /// Parameters of pairing for the nodelets behind rectify, which has already dropped late messages.
   static RectifyParameters exactPairing() {
     RectifyParameters parameters;
     parameters.queue_size = kStageQueue;
@@ -151,7 +155,7 @@ class StageNodelet : public nodelet::Nodelet {
         ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
   }
 
-  /// Every destructor must call it first; no callback runs afterwards.
+  /// Every destructor must call it first. No callback runs afterwards.
   void stop();
 
   NodeParameters node_;

@@ -19,8 +19,8 @@ namespace uav_landing {
 /// Exit status of all programs. kMostLeftOut: finished, but most images could not be used.
 enum ExitStatus { kDone = 0, kInputUnusable = 1, kWrongUsage = 2, kMostLeftOut = 3 };
 
-/// What is wrong with the command line, to follow the program's name. A misspelt option comes with the
-/// nearest existing one, also when the misspelling leaves a required option missing.
+/// Describes what is wrong with the command line, to follow the program's name. A misspelt option comes with
+/// the nearest existing one, also when the misspelling leaves a required option missing.
 inline std::string usageMessage(const CLI::App* app, const CLI::Error& error) {
   std::string problem = error.what();
   const bool unexpected = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
@@ -41,8 +41,8 @@ inline std::string usageMessage(const CLI::App* app, const CLI::Error& error) {
   return app->get_name() + ": " + problem + "\nRun with --help for more information.\n";
 }
 
-/// Parses the command line, --version included. Returns an exit status when there is nothing left to do: help
-/// was asked for, or the usage was wrong. Everything is written by then.
+/// Parses the command line, --version included. Returns an exit status when nothing is left to do, because
+/// help was asked for or the usage was wrong. Everything is written by then.
 inline std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
   app.add_flag_callback(
       "--version",
@@ -66,7 +66,7 @@ inline int inputUnusable(const CLI::App& app, const std::string& message) {
   return kInputUnusable;
 }
 
-/// Does a program's work, which returns a Failure or throws, and returns the exit status. file: name for
+/// Runs the program's work, which returns a Failure or throws. Returns the exit status. file: name for
 /// exceptions that do not name their file; "" when the text is enough.
 template <class Work>
 int exitStatusOf(const CLI::App& app, const std::string& file, Work&& work) {

@@ -17,7 +17,7 @@ class BagBytes {
   virtual void copy(uint64_t from, size_t count, void* to) const = 0;
 };
 
-/// The bytes of a file. It reads only what is asked for, but neighbouring bytes together. Throws
+/// The bytes of a file. Only those asked for are read, but neighbouring bytes together. Throws
 /// std::runtime_error when the file cannot be read.
 class FileBytes : public BagBytes {
  public:

@@ -12,8 +12,8 @@
 namespace uav_landing {
 
 /// Bytes of a message, for roscpp to read from. roscpp takes as much memory as the length of a text or
-/// sequence says, up to gigabytes. So each length is first compared with the bytes that are left. Throws
-/// ros::serialization::StreamOverrunException.
+/// sequence says, which may be gigabytes. So each length is first compared with the bytes that are left.
+/// Throws ros::serialization::StreamOverrunException.
 class MessageBytes : public ros::serialization::Stream {
  public:
   static constexpr ros::serialization::StreamType stream_type = ros::serialization::stream_types::Input;

@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// What pairing needs to know of a message.
+/// What pairing needs to know about a message.
 struct MessageStamp {
   int64_t stamp;  ///< header.stamp, ns; 0: none
   size_t place;   ///< index among all messages of the recording
@@ -41,9 +41,9 @@ struct PairPlan {
   bool approximate = false;
   double max_skew = 0;  ///< s
 
-  /// Why there is no pair.
+  /// Says why there is no pair.
   std::string complaint() const;
-  /// What a person should know of messages without a partner, one line each.
+  /// Messages for people about messages without a partner, one line each.
   std::vector<std::string> notes() const;
   /// Whether more than half of a camera's images are in no pair.
   bool mostLeftOut() const;
@@ -52,7 +52,7 @@ struct PairPlan {
 using StereoStamps = std::array<std::vector<MessageStamp>, 4>;
 
 /// Pairs by header.stamp, whatever the order of the messages. Stamps are equal or, with approximate_sync,
-/// those of two images that are each other's nearest within max_skew. An image takes the camera_info of its
+/// those of two images that are each other's nearest within max_skew. An image takes the camera_info with its
 /// own stamp, else the last one before it, else the first one.
 PairPlan planPairs(const StereoStamps& messages, const std::array<std::string, 4>& topics,
                    const RectifyParameters& parameters);

@@ -16,9 +16,9 @@ struct StampEpochs {
   int jumps = 0;  ///< times that the clock was set back
 };
 
-/// A message that comes after newer ones is late when it fills a gap between earlier stamps. A clock that was
-/// set back gives stamps among those that exist already; so does a recording of a loop. stamps: ns, 0 is
-/// none. max_late: s, of RectifyParameters.
+/// Sorts stamps by clock. A message that comes after newer ones is late when it fills a gap between earlier
+/// stamps. A clock that was set back gives stamps among existing ones, and so does a recording of a loop.
+/// stamps: ns, 0 is none. max_late: s, of RectifyParameters.
 StampEpochs stampEpochs(const std::vector<int64_t>& stamps, double max_late);
 
 }  // namespace uav_landing

@@ -20,17 +20,18 @@
 namespace uav_landing {
 
 /// Reads the image pairs of a recording, and an inertial sensor. A recording is one bag, or the parts of a
-/// split one. A first pass reads the stamps; the second one reads the images in the order of the pairs. So
+/// split one. A first pass reads the stamps. The second one reads the images in the order of the pairs. So
 /// the order in the bag does not matter, and only one pair is in memory.
 class StereoBagReader {
  public:
-  /// Throws std::runtime_error with a message for the user when a file cannot be opened as a bag. camera:
-  /// namespace of the cameras without a slash in front. imu: topic, which may be missing in the bag; "":
-  /// none. Topics that were recorded without a slash in front are found, too.
+  /// Throws std::runtime_error with a message for the user when a file cannot be opened as a bag. Topics that
+  /// were recorded without a slash in front are found, too.
+  /// camera: namespace of the cameras without a slash in front.
+  /// imu: topic, which may be missing in the bag; "": none.
   StereoBagReader(const std::vector<std::string>& paths, const std::string& camera, const std::string& imu);
 
-  /// Which topic is missing or has another type, what the bag contains instead, and the command that can read
-  /// it. imu_needed: the topic of the inertial sensor must exist, too.
+  /// Says which topic is missing or has another type, what the bag contains instead, and which command can
+  /// read it. imu_needed: the topic of the inertial sensor must exist, too.
   Failure checkTopics(bool imu_needed) const;
   /// Whether there are messages of the inertial sensor.
   bool hasImu() const;

@@ -22,13 +22,13 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
 /// frame_id of a simulated or converted camera: slashes of the namespace become underscores.
 std::string opticalFrame(const std::string& camera, const std::string& side);
 
-/// Writes image pairs with their truth to a bag, as if a stereo camera's driver was recorded:
-/// /CAMERA/{left,right}/{image_raw,camera_info}, /truth/landing_estimate, and an inertial sensor on
-/// /imu/data, if there is one. It writes to "<path>.active"; finish() renames this file, and without finish()
-/// it is removed.
+/// Writes image pairs with their truth to a bag, as if the driver of a stereo camera was recorded. The topics
+/// are /CAMERA/{left,right}/{image_raw,camera_info} and /truth/landing_estimate, and /imu/data if there is an
+/// inertial sensor. It writes to "<path>.active". finish() renames this file, and without finish() it is
+/// removed.
 class StereoBagWriter {
  public:
-  /// Opens the bag; throws rosbag::BagException when that is not possible. camera: namespace, without slashes
+  /// Opens the bag. Throws rosbag::BagException when that is not possible. camera: namespace, without slashes
   /// at the ends.
   StereoBagWriter(const std::string& path, const std::string& camera, const sensor_msgs::CameraInfo& left,
                   const sensor_msgs::CameraInfo& right);
@@ -38,8 +38,8 @@ class StereoBagWriter {
 
   /// left, right: raw mono8.
   void write(const ros::Time& stamp, const cv::Mat& left, const cv::Mat& right, const Truth& truth);
-  /// Writes a message of the inertial sensor on /imu/data, and its mounting on /tf_static once. stamp: of the
-  /// message. left_from_imu: rotation to the left camera's optical frame, as it is mounted.
+  /// Writes a message of the inertial sensor on /imu/data, and once its mounting on /tf_static. stamp: of the
+  /// message. left_from_imu: rotation to the optical frame of the left camera as it is mounted.
   void writeImu(const ros::Time& stamp, const ImuSample& sample, const Eigen::Matrix3d& left_from_imu);
   void finish();
 

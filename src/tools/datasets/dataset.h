@@ -12,10 +12,10 @@
 
 namespace uav_landing {
 
-/// A dataset folder: left/*.png, right/*.png (mono8), left.yaml, right.yaml (ROS camera calibration files)
-/// and frames.csv. This has the columns stamp_s, left, right, and truth columns that are blank or missing
-/// when unknown: height_m, approach_angle_deg, foe_u_px, foe_v_px, speed_m_s, pitch_deg, roll_deg, yaw_deg,
-/// x_m, y_m.
+/// A frame of a dataset folder. The folder has left/*.png and right/*.png (mono8), left.yaml and right.yaml
+/// (ROS camera calibration files), and frames.csv. The columns of frames.csv are stamp_s, left, right, and
+/// the truth: height_m, approach_angle_deg, foe_u_px, foe_v_px, speed_m_s, pitch_deg, roll_deg, yaw_deg, x_m,
+/// y_m. Columns of the truth are blank or missing when it is unknown.
 struct DatasetFrame {
   ros::Time stamp;
   std::string left, right;  ///< paths of the images

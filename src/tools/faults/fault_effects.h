@@ -24,7 +24,7 @@ void band(cv::Mat& image, double phase);
 /// Haze that grows with the distance of the ground.
 void night(cv::Mat& image, uint64_t seed);
 
-/// Gives every pixel that sees the ground another grey level: paint(x, y, grey), with x, y on the ground in
+/// Gives every pixel that sees the ground another grey level, by paint(x, y, grey). x, y: on the ground in
 /// the runway frame, m.
 using GroundPaint = std::function<double(double x, double y, double grey)>;
 void paintGround(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose,

@@ -49,7 +49,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     // Without a pair nothing is published. The last estimate gets as old as max_age at most, and is then
     // lost.
     if (!pair.delivered) continue;
-    // Stamps are sorted out as where images are paired.
+    // Stamps are checked in the same way as where images are paired.
     if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
     const bool exchanged = parameters.rig.upside_down;
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, exchanged ? pair.right : pair.left,

@@ -14,12 +14,13 @@ double bound(double variance, double tolerated) { return std::max(kSigmas * std:
 }  // namespace
 
 // An angle has no protection level. Its bound is a number of standard deviations that a normal error exceeds
-// once in 1.7 million frames; no campaign has a hundred thousand. A smaller error is not misleading when the
-// monitor of a glide path may leave it unnoticed: a tenth of its 3 degrees (ICAO Annex 10, volume I,
-// 3.1.5.7).
+// once in 1.7 million frames. No campaign has a hundred thousand.
+//
+// A smaller error is not misleading when the monitor of a glide path may leave it unnoticed. This is a tenth
+// of its 3 degrees (ICAO Annex 10, volume I, 3.1.5.7).
 double FaultScore::angleBound(double variance) { return bound(variance, 0.3 * kDegree); }
 
-// Half a degree moves an aircraft by a metre in the last hundred.
+// Half a degree moves an aircraft by a metre over the last hundred.
 double FaultScore::yawBound(double variance) { return bound(variance, 0.5 * kDegree); }
 
 void FaultScore::take(const LandingResult& landing, const FaultTruth& truth, bool is_faulted,
@@ -80,7 +81,7 @@ void FaultScore::takeAngle(const LandingResult& landing, double true_angle, bool
 // An unknown yaw is not finite.
 void FaultScore::takeYaw(const LandingResult& landing, double true_yaw, bool is_faulted) {
   if (!std::isfinite(true_yaw) || !std::isfinite(landing.yaw)) return;
-  // The shorter way round.
+  // The shorter way round the circle.
   const double error = std::abs(std::remainder(landing.yaw - true_yaw, 2 * M_PI));
   const double ratio = error / yawBound(landing.yaw_variance);
   const bool misleads = !(ratio <= 1);

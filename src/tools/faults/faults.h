@@ -16,7 +16,7 @@ struct Delivery {
   bool delivered = true;
 };
 
-/// What a fault knows of the run.
+/// What a fault knows about the run.
 struct FaultRun {
   const Flight& flight;
   int onset = 0;  ///< first frame with the fault
@@ -33,7 +33,7 @@ struct Fault {
   std::function<void(FaultRun&, int, Delivery&)> spoil;
   /// Wrong calibration, for the whole run; empty: none.
   std::function<void(CameraCalibration&, CameraCalibration&)> calibrate;
-  /// Another scene, for the whole run; empty: none. Only when simulated.
+  /// Other scene, for the whole run; empty: none. Only when simulated.
   std::function<void(SimulatorParameters&)> build;
   /// A scene that changes at the onset, s since the first pair; empty: none. Only when simulated.
   std::function<void(SimulatorParameters&, double onset)> disturb;
@@ -42,7 +42,7 @@ struct Fault {
   /// Other parameters of the chain, for the whole run; empty: none.
   std::function<void(Parameters&)> tell = {};
 
-  /// Whether it is there from the first pair on.
+  /// Whether the fault is there from the first pair on.
   bool wholeRun() const { return calibrate || build || from_first; }
 };
 

@@ -38,8 +38,8 @@ struct SimulatedFlight {
   Flight flight;
 };
 
-/// A rig and heights for a small image: 320 x 240 with a baseline of 2 m is as good as 640 x 480 with 1 m.
-/// scenery: around the runway, or null. Over scenery the flight is higher, so that more of it is in view.
+/// Draws a rig and heights for a small image: 320 x 240 with a baseline of 2 m is as good as 640 x 480 with 1
+/// m. Over scenery the flight is higher, so that more of it is in view. scenery: around the runway, or null.
 SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
                                const SceneryKind* scenery = nullptr);
 /// Null when the scene is in the aircraft's way.

@@ -76,8 +76,8 @@ class Campaign {
   }
 
  private:
-  /// Start of the faults: late enough for the chain to have settled, early enough to see what happens after a
-  /// restart.
+  /// Start of the faults. It is late enough for the chain to have settled, and early enough to see what
+  /// happens after a restart.
   struct Chance {
     Chance(const FaultCombination& faults, uint64_t seed, int frames) : hash(seed) {
       for (const char letter : nameOf(faults)) hash = hash * 31 + static_cast<unsigned char>(letter);

@@ -24,8 +24,9 @@ namespace uav_landing {
 /// again when they change.
 class OfflineChain {
  public:
-  /// camera: namespace, for messages. with_imu: messages of an inertial sensor will come, and pairs wait for
-  /// them. complain: receives what the user should know, once per problem.
+  /// camera: namespace, for messages.
+  /// with_imu: messages of an inertial sensor will come, and pairs wait for them.
+  /// complain: gets what the user should know, once per problem.
   OfflineChain(const Parameters& parameters, const std::string& camera, bool with_imu,
                std::vector<std::unique_ptr<PairSink>>& sinks,
                std::function<void(const std::string&)> complain);

@@ -7,8 +7,8 @@
 
 namespace uav_landing {
 
-/// Counts how many pairs were valid, and why the others were not: "161 pairs, 158 valid: not_yet 3", the most
-/// frequent reason first. A line before it lists the tests that failed.
+/// Counts how many pairs were valid, and why the others were not. It writes "161 pairs, 158 valid: not_yet
+/// 3", with the most frequent reason first. A line before it lists the tests that failed.
 class PairCount : public PairSink {
  public:
   explicit PairCount(std::ostream& out) : out_(out) {}

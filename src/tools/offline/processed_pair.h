@@ -19,8 +19,8 @@ struct ProcessedPair {
   const Pipeline::Output& output;
 };
 
-/// Something that is made from the pairs of a bag. take() and finish() throw std::exception with a message
-/// for the user when they cannot write.
+/// Makes something from the pairs of a bag. take() and finish() throw std::exception with a message for the
+/// user when they cannot write.
 class PairSink {
  public:
   virtual ~PairSink() = default;

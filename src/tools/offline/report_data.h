@@ -12,9 +12,9 @@
 namespace uav_landing {
 
 /// Writes what `evaluate --report` needs besides the estimates, in one folder. timing.csv has stamp_s and,
-/// for each part of the stages, its time in ms; overlay is the time to draw the picture. Pictures of five
-/// frames are spread over the bag: lines_left_N.png, lines_right_N.png (the paper's Figure 4), matches_N.png
-/// (Figure 5), overlay_N.png.
+/// for each part of the stages, its time in ms. Its column overlay is the time to draw the image. Images of
+/// five frames are spread over the bag: lines_left_N.png, lines_right_N.png (the paper's Figure 4),
+/// matches_N.png (Figure 5), overlay_N.png.
 class ReportData : public PairSink {
  public:
   /// Makes the folder. pairs: expected number, to choose the frames.

@@ -11,20 +11,20 @@
 
 namespace uav_landing {
 
-/// Publishes image pairs as the driver of two triggered cameras does, and the clock of their stamps:
-/// /CAMERA/{left,right}/{image_raw,camera_info}, /truth/landing_estimate, /clock. Sets /use_sim_time. Needs
-/// ros::init() and a master. The clock never runs ahead of the images: when they come late, time passes more
-/// slowly.
+/// Publishes image pairs as the driver of two triggered cameras does, and the clock of their stamps. The
+/// topics are /CAMERA/{left,right}/{image_raw,camera_info}, /truth/landing_estimate and /clock. Sets
+/// /use_sim_time. Needs ros::init() and a master. The clock never runs ahead of the images: when they come
+/// late, time passes more slowly.
 class LiveCameras {
  public:
   /// speed: largest number of seconds of the clock per second.
   LiveCameras(const std::string& camera, const sensor_msgs::CameraInfo& left,
               const sensor_msgs::CameraInfo& right, double speed);
 
-  /// Waits until both cameras have a subscriber and all subscribers known to the master are connected, so
-  /// that nobody misses the first pairs. For the latter it waits at most twenty seconds, because a subscriber
-  /// may have died. The clock stands at start. False when ROS was shut down; throws when nobody subscribes
-  /// for ten minutes.
+  /// Waits until both cameras have a subscriber and all subscribers known to the master are connected. So
+  /// nobody misses the first pairs. For the latter it waits at most twenty seconds, because a subscriber may
+  /// have died. The clock stands at start. False when ROS was shut down; throws when nobody subscribes for
+  /// ten minutes.
   bool waitForSubscribers(const ros::Time& start);
   /// Sets the clock.
   void setClock(const ros::Time& now);

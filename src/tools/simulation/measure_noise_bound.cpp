@@ -151,9 +151,9 @@ std::vector<Patch> groundPatches(const Scenery& scenery) {
   return patches;
 }
 
-/// Share of the information that is left when the texture is unknown as well. At a frequency with the power
-/// S, two noisy views agree as if there were S / (S + N) of the texture in each. Of S / 2N, S^2 / (N (2 S +
-/// N)) is left (the delay between two receivers: Knapp, Carter, 1976).
+/// Share of the information that remains when the texture is unknown as well. At a frequency with the power
+/// S, two noisy views agree as if each had the share S / (S + N) of the texture. Of S / 2N, S^2 / (N (2 S +
+/// N)) remains (the delay between two receivers: Knapp, Carter, 1976).
 double shareOfUnknownTexture(const Patch& patch, double noise) {
   double known = 0, unknown = 0;
   for (size_t i = 0; i < patch.power.size(); ++i) {
@@ -163,8 +163,9 @@ double shareOfUnknownTexture(const Patch& patch, double noise) {
   return known > 0 ? unknown / known : 0;
 }
 
-/// Smallest covariances of g that an unbiased estimator can have: with known gradients of the texture, and
-/// with the two images only. Gain and offset between the images are unknown.
+/// Smallest covariances of g that an unbiased estimator can have. known: when the gradients of the texture
+/// are known. unknown: with the two images only. Gain and offset between the images are not known in either
+/// case.
 struct Bounds {
   Eigen::Matrix3d known, unknown;
 };

@@ -22,17 +22,17 @@ struct CalibrationPrior {
 };
 CalibrationPrior calibrationPrior(const Parameters& parameters, double focal_length);
 
-// A random full-scale flight: runway, marks, light, both sensors, path, attitude and wobble are drawn. The
+// Random full-scale flights: runway, marks, light, both sensors, path, attitude and wobble are drawn. The
 // seed decides everything.
 
-/// A short piece of a glide that ends near this height, m, with as many frames as asked for, at 20 Hz. The
+/// A short piece of a glide at 20 Hz, with this many frames, that ends near this height (m). The
 /// calibration's errors are also drawn, from what the estimator expects of them. imu: an inertial sensor
-/// flies along; everything else is the same with it.
+/// flies along. Everything else stays the same with it.
 SimulatorParameters drawSnippet(uint64_t seed, double height, int frames, const Parameters& parameters,
                                 bool imu = false);
-/// Changes the slope of a snippet's ground once, as the estimator expects it: slope_change_deg over 100 m,
-/// with the shares and probabilities of surface_profile.h; mostly it stays flat. The place lies between 100 m
-/// before the end of the snippet and 300 m beyond it. The height over the ground there stays.
+/// Changes the slope of a snippet's ground once, as the estimator expects it: by slope_change_deg over 100 m,
+/// with the shares and probabilities of surface_profile.h. Mostly the ground stays flat. The place lies
+/// between 100 m before the end of the snippet and 300 m beyond it. The height over the ground there stays.
 void bendGround(uint64_t seed, const Parameters& parameters, SimulatorParameters& snippet);
 /// Puts scenery around the runway of a snippet or an approach. Each element has its own chance, and its place
 /// and size are drawn. Everything else stays as it was.
@@ -50,7 +50,7 @@ void drawRollingShutter(uint64_t seed, SimulatorParameters& flight);
 /// Shakes the rig at 15 to 120 Hz, by at most 0.2 degrees, and less at higher frequencies. An inertial sensor
 /// that flies along becomes fast enough to follow. Everything else stays as it was.
 void drawVibration(uint64_t seed, SimulatorParameters& flight);
-/// An approach from 60 m down to the end of the flare, with a gust on half of them and an exact calibration.
+/// An approach from 60 m down to the end of the flare, with an exact calibration. Half of them have a gust.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
 
 }  // namespace uav_landing

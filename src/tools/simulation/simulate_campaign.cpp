@@ -31,8 +31,8 @@ T orThrow(Expected<T>&& value, uint64_t seed) {
   throw std::runtime_error("seed " + std::to_string(seed) + ": " + value.error().message());
 }
 
-/// Runs one flight at several noise levels; the view of the cameras is rendered once. visit(sample, frame's
-/// truth, output) is called for every frame and noise level.
+/// Runs one flight at several noise levels. The view of the cameras is rendered once. For every frame and
+/// noise level it calls visit(sample, frame's truth, output).
 template <class Visitor>
 void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vector<double>& noise,
          CampaignCsv::Sample sample, Visitor&& visit) {
