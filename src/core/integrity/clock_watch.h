@@ -8,7 +8,7 @@
 namespace uav_landing {
 
 /// Notices a clock that was set between two pairs. The stamps then tell another time than the distance that
-/// the camera moved, and that distance belongs to a whole number of frame periods.
+/// the camera moved, and that distance belongs to one frame period or a few.
 ///
 /// An aircraft's speed hardly changes from pair to pair. So the distance since the pair before, over the
 /// speed of the last steps, is the time that has really passed. Three other events do not look like a clock

@@ -17,7 +17,7 @@ constexpr double kLength = 0.5;        // of the strip that one pair is asked ab
 constexpr double kSpacing = 0.1;       // between patches
 constexpr double kLargestGap = 0.5;    // largest distance between two patches with continuous ground
 constexpr double kMostOff = 0.15;      // largest difference between ground and plane
-constexpr double kLeastMotion = 1e-3;  // since the pair before: a shorter one has no direction
+constexpr double kLeastMotion = 1e-3;  // shortest path that has a direction
 // Share of the path that remains on the next pair, as in a mean of five pairs.
 constexpr double kPathKept = 0.8;
 constexpr double kLongestStep = 5;  // longest possible step, over the mean step of the path

@@ -23,8 +23,8 @@ class GroundMemory {
   /// Carries the ground along over a step whose motion is not known, at the usual speed. T: s. Once the next
   /// motion is known, the mean of the speeds before and after replaces that speed. R: rotation since the pair
   /// before as far as it is known. turn_stddev: 1 sigma of its pitch and roll, rad. normal: of the ground
-  /// before, if known. doubted: only the rotation is doubted. After some steps in a row that are not doubted
-  /// but unknown, the memory is empty.
+  /// before, if known. doubted: only the rotation is doubted. After several unknown steps in a row the memory
+  /// is emptied; steps whose rotation alone is doubted do not count.
   void coast(const Eigen::Matrix3d& R, double turn_stddev, double T,
              const std::optional<Eigen::Vector3d>& normal = std::nullopt, bool doubted = false);
   /// Corrects the rotation in pitch and roll over such steps, by the ground's normal now. turn_stddev: its 1
@@ -51,7 +51,7 @@ class GroundMemory {
     double information = 0;  // of all looks at its height, if their errors were independent, 1/m^2
     double reach = 0;        // distance to this side that the strip covers, m
     int looks = 1;           // pairs that have seen it
-    double drift = 0;        // variance of its place by unknown steps, m^2
+    double drift = 0;        // variance of its height by unknown steps, m^2
     double flown = 0;        // distance flown since the first look, m
     void add(const Patch& look);
     double variance() const;  // of its height, m^2

@@ -16,7 +16,8 @@ class PairTests {
   /// gate: in sigmas.
   PairTests(double false_alarm_rate, double gate);
 
-  /// Adds one difference with its variance. Ignored unless both are finite and the variance is positive.
+  /// Adds one difference with its variance. It is ignored unless the difference is finite and the variance
+  /// positive.
   void add(IntegrityTest test, double difference, double variance);
   /// The same when only positive differences are wrong.
   void addOneSided(IntegrityTest test, double difference, double variance);

@@ -30,9 +30,9 @@ inline FaultySource faultySource(ImageRegion region) {
 ///   |h - h_i| + k sigma_i
 /// of the truth, except with the probability that belongs to k: integrity_risk over the prior probability of
 /// the fault. The separation is the observed one and not the threshold of a detector. So the bound holds for
-/// faults that are too small to be detected, too. The level is the largest bound over all sources. It also
-/// covers a scale error common to all heights, which no source here can show; its size is bounded by
-/// assumption.
+/// faults that are detected and for those that are too small to be detected. The level is the largest bound
+/// over all sources. It also covers a scale error common to all heights, which no source here can show; its
+/// size is bounded by assumption.
 class SolutionSeparation {
  public:
   explicit SolutionSeparation(const KalmanHeightParameters& parameters);

@@ -11,7 +11,7 @@ namespace uav_landing {
 /// the camera is frozen. This holds even if noise or light change every image.
 class SpeedMemory {
  public:
-  /// max_deceleration: of the aircraft, m/s^2.
+  /// max_deceleration: largest one of the aircraft, m/s^2.
   explicit SpeedMemory(double max_deceleration) : max_deceleration_(max_deceleration) {}
 
   /// Missing part of the distance that the camera must have moved at least, and its variance.
@@ -25,7 +25,7 @@ class SpeedMemory {
   /// Learns from a step. agrees: result of the test.
   ///
   /// The known speed falls no faster than the aircraft can slow down, whatever the step says. Otherwise a
-  /// very uncertain step would agree, and make the next, shorter one agree.
+  /// step that is so uncertain that it agrees would make the next, shorter one agree.
   ///
   /// A step that does not agree leaves the speed as it was, because the aircraft does not slow down while its
   /// images stand still. After that, as many steps in a row (up to three) must be long enough, whatever their

@@ -11,7 +11,7 @@ namespace uav_landing {
 /// from pair to pair. If it seems to, the durations between the stamps are wrong.
 class StampScatter {
  public:
-  /// acceleration: of the aircraft, m/s^2.
+  /// acceleration: by which the aircraft can change its speed, m/s^2.
   explicit StampScatter(double acceleration) : acceleration_(acceleration) {}
 
   /// follow() takes a step with its duration by the stamps. skip() is for a step that is not known.

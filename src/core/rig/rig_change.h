@@ -18,12 +18,12 @@ class RigChange {
 
     /// True for all but one in a thousand differences of pure noise.
     bool agrees() const;
-    /// The rotation is larger than noise can make it, and large enough to matter.
+    /// True when the difference is too large for noise, and large enough to matter.
     bool isLarge() const;
   };
   /// The difference to the mean of the pairs before. There is none for the first pairs.
   std::optional<Innovation> compare(const RigRotation& measured) const;
-  /// Learns from a pair. T: s since the pair before. agrees: result of compare().
+  /// Learns from a pair. T: s since the pair before. agrees: whether compare() found that it agrees.
   ///
   /// Pairs that do not agree are left out. After some seconds of them, the rotation is learned anew. A small
   /// change is accepted as soon as it has stayed the same for a second. This is safe when the images do not

@@ -272,7 +272,7 @@ struct ApproachAngleStage::Implementation {
   }
 
   // The runway's own slope and curve move its vanishing point up and down. Seen from above the runway is
-  // straight, and the yaw refers to that.
+  // straight, so this error is taken out of the covariance across. The yaw refers to this direction.
   void straightenPlan(ApproachAngleResult& result) const {
     if (!result.vanishing_direction.allFinite()) return;
     const Eigen::Vector3d across = result.n.cross(result.vanishing_direction).normalized();

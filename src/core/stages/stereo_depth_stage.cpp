@@ -38,7 +38,7 @@ struct StereoDepthStage::Implementation {
   PlaneTracker tracker;
   StereoLevel fine, coarse;
   LearnedFrame own_frame;
-  cv::Mat left_mask;  // of the fine level, without the aircraft's own frame
+  cv::Mat left_mask;  // of the fine level, before the aircraft's own frame is left out
   MatchImage left, right;
   RowAlignment rows;
   cv::Mat level_fine, level_coarse;  // right images whose rows were made level
@@ -107,7 +107,8 @@ struct StereoDepthStage::Implementation {
     own_frame.observe(stamp, left_image, corners.corners, on_ground);
   }
 
-  // The drift that the rows of the pair see. When no readout time is given, the drift at a readout of 1 s.
+  // The drift that the rows of the pair see. When the readout time has to be estimated, this is the drift at
+  // a readout of 1 s.
   PlaneDrift rowDrift() const {
     return {fine.drift.rate, model.left_unit_times.atOnce() ? fine.drift.times : &model.left_unit_times};
   }
