@@ -9,7 +9,7 @@
 namespace uav_landing {
 namespace {
 
-/// What to correct when the mounting turns the aircraft's up axis too far from the camera's.
+/// Advice when the mounting turns the aircraft's up axis too far from the camera's.
 std::string wrongMounting(const Eigen::Matrix3d& rectified_from_child, const std::string& left_frame) {
   // Upside down while the camera looks ahead: the aircraft's z axis is down, or the camera's y axis is up.
   const bool upside_down = rectified_from_child(1, 2) > kMinCosTilt;

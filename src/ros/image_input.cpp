@@ -13,8 +13,8 @@ namespace {
 
 namespace encodings = sensor_msgs::image_encodings;
 
-/// How an encoding is read. OpenCV's names tell the number of channels but not which ones they are. Most
-/// drivers that use them have a grey or a blue-green-red image.
+/// An encoding and how to read it. OpenCV's names tell the number of channels but not which ones they are.
+/// Most drivers that use them have a grey or a blue-green-red image.
 struct Encoding {
   const char* name;
   const char* like;  // the name that cv_bridge knows it by

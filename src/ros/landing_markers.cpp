@@ -28,7 +28,7 @@ constexpr double kLetters = 0.11, kLine = 0.012, kSpan = 0.6;
 constexpr double kLineSpacing = 1.0;  // of rviz, in heights of letters
 constexpr size_t kTextWidth = 42;     // letters; longer lines do not fit into the view
 
-/// How rviz tells markers apart.
+/// Name and number by which rviz tells markers apart.
 struct Identity {
   int id;
   const char* name;

@@ -13,7 +13,7 @@
 
 namespace uav_landing {
 
-/// What a nodelet did since the last diagnostics: rates, times, failures. Thread safe.
+/// Rates, times and failures of a nodelet since the last diagnostics. Thread safe.
 class StageReport {
  public:
   /// Counts a pair that was served. stamp: of its left image. compute_ms: time that it took. reason: why

@@ -24,7 +24,7 @@ constexpr double kShortestLikelyBaseline = 0.01, kLongestLikelyBaseline = 10.0;
 /// failure names the field, and the parameter that lets it through.
 Failure checkPrincipalPoint(const CameraCalibration& calibration, const RigParameters& limits);
 
-/// The same as makeStereoRig(left, right), and refuses what is beyond the limits.
+/// Makes the rig as makeStereoRig(left, right) does, and refuses what is beyond the limits.
 Expected<StereoRig> makeStereoRig(const CameraCalibration& left, const CameraCalibration& right,
                                   const RigParameters& limits);
 

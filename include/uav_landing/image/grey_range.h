@@ -42,7 +42,7 @@ class GreyRangeFinder {
   const GreyRange& range() const { return range_; }
   /// Whether more than 1 % of an image's values were ever beyond the given bits.
   bool exceeded() const { return exceeded_; }
-  /// Starts anew, as for another recording.
+  /// Starts anew, for another recording.
   void reset();
 
  private:

@@ -7,8 +7,8 @@
 
 namespace uav_landing {
 
-/// What an inertial sensor knows about a pair beforehand, in the optical frame of the rectified left camera.
-/// Unknown numbers are NaN.
+/// Knowledge of an inertial sensor about a pair, in the optical frame of the rectified left camera. Unknown
+/// numbers are NaN.
 struct AttitudePrior {
   Failure failure{Reason::kNotYet, "no imu message"};  ///< why there is no normal
   /// Unit normal of level ground, pointing down: the direction of gravity.

@@ -35,8 +35,8 @@ class PairTests {
 
  private:
   TestResult& of(IntegrityTest test) { return results_[static_cast<int>(test)]; }
-  /// Limit by the catalogue. degrees: degrees of freedom. count: number of tests of which this is the
-  /// largest.
+  /// Limit by the catalogue. degrees: degrees of freedom. count: number of tests whose largest difference is
+  /// tested.
   double limitOf(IntegrityTest test, int degrees = 1, int count = 1) const;
 
   double false_alarm_rate_, gate_;

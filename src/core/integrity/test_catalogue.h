@@ -7,7 +7,7 @@ namespace uav_landing {
 /// Step of the landing estimate in which a test is made (stages/kalman_height_stage.cpp).
 enum class TestStep { kGround, kPair, kTrack, kMemory };
 
-/// What follows from a failure.
+/// The consequence of a failure.
 enum class OnFailure {
   kReported,       ///< only reported
   kPairLeftOut,    ///< this pair gives no height

@@ -19,7 +19,7 @@ constexpr double kSteepest = 0.17;
 constexpr double kLargestRatio = 1e4;  // lengths over the height: runways are that long, steps are not
 constexpr double kShortestStep = 1e-4, kLongestStep = 3600;  // s
 constexpr double kLargestSkew = 0.1;                         // s, largest value of max_skew
-// In squares of the units below; larger ones only say "unknown" in numbers.
+// Largest variance, in squares of the units below. Larger ones only say "unknown" in numbers.
 constexpr double kLargestVariance = 1e9;
 constexpr double kLeastRelative = 1e-6;  // 1 sigma over the value: no camera sees better
 constexpr double kRounding = 1e-6;       // error of covariances that were calculated

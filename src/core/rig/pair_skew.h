@@ -23,9 +23,9 @@ Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g,
 GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
                      const ApproachAngleResult::Motion& step);
 
-/// Where the right camera seems to be, because it took its image `skew` seconds after the left one and had
-/// moved by then. step: the camera's motion, trusted to a fifth. Without a step the direction is 0, and its
-/// covariance allows for the speed of a small aircraft.
+/// Apparent direction of the baseline, because the right camera took its image `skew` seconds after the left
+/// one and had moved by then. step: the camera's motion, trusted to a fifth. Without a step the direction is
+/// 0, and its covariance allows for the speed of a small aircraft.
 BaselineDirection baselineOfSkew(const StereoRig& rig, const StereoDepthResult& stereo,
                                  const ApproachAngleResult::Motion& step);
 

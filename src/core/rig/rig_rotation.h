@@ -34,8 +34,8 @@ constexpr double kLensReach = 0.3;
 /// disparities do not show it.
 Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev);
 
-/// How the plane g that was fitted to these points' disparities changes with w: dg = A dw. Returns A, 1/m per
-/// rad. The points on the plane are weighted as in the fit (plane_fit.h). Returns zero when the points do not
+/// Derivative A of the plane g that was fitted to these points' disparities by w: dg = A dw, 1/m per rad. The
+/// points on the plane are weighted as in the fit (plane_fit.h). Returns zero when the points do not
 /// determine a plane.
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                                 const Eigen::Vector3d& g);

@@ -44,7 +44,7 @@ class RigRotationFilter {
   void setPrior(double bias_stddev, double row_bias_stddev);
   void updateVertical(const RigRotation& measured);
 
-  /// What else is known about the ground besides the stereo plane. What is not known is NaN.
+  /// Other sources for the ground's normal besides the stereo plane. Unknown numbers are NaN.
   struct Others {
     GroundDirection vanishing;
     /// The normal of level ground by an attitude sensor. Its covariance contains the ground's slope.
@@ -91,7 +91,7 @@ class RigRotationFilter {
     Eigen::Matrix3d kept;     // turns errors of the plane before into those of this one
     Eigen::Matrix3d lasting;  // share of the noise that the next frames have, too
   };
-  /// What the directions of one pair say about the state. They share the noise of the plane, so all are
+  /// Equations for the state from the directions of one pair. They share the noise of the plane, so all are
   /// solved at once.
   struct Equations {
     Eigen::MatrixXd rows{0, kSize}, tips{0, 3};

@@ -4,7 +4,7 @@
 
 namespace uav_landing {
 
-/// What a layer puts on a piece of ground.
+/// The part of a piece of ground that a layer covers, and its look.
 struct LayerCover {
   float share = 0;     ///< share of the ground that the layer covers
   float grey = 0;      ///< mean grey level of what it covers, without texture

@@ -20,7 +20,7 @@ class Scenery {
   bool empty() const { return layers_.empty(); }
   /// True when a single sample of this ground is exact.
   bool even(const GroundFootprint& footprint) const;
-  /// What a piece of ground shows of the scenery.
+  /// The scenery on a piece of ground, as the camera sees it.
   struct Shown {
     float grey = 0;  ///< light of all layers, in grey levels
     float bare = 1;  ///< share of the ground that no layer covers

@@ -36,7 +36,7 @@ class TownLayer : public GroundLayer {
     bool built;
     Rectangle halves[2];
   };
-  /// What the roofs on a range of plots, both ends included, add to a patch.
+  /// Share and light of the roofs that lie on a patch.
   struct Roofs {
     float share = 0, light = 0;
     bool one = false;

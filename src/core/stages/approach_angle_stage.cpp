@@ -31,7 +31,7 @@ struct SeenDirections {
   std::optional<Eigen::Vector3d> path, runway;
 };
 
-/// How an estimated readout time affects the ground's normal or plane, and the covariance without that
+/// Effect of an estimated readout time on the ground's normal or plane, and the covariance without that
 /// effect.
 struct DoubtByReadout {
   Eigen::Vector3d by_time = Eigen::Vector3d::Zero();  ///< 1/s for a normal, 1/m/s for a plane

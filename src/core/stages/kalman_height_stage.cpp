@@ -24,7 +24,7 @@
 namespace uav_landing {
 namespace {
 
-/// What is known from the pairs before. A new object knows nothing.
+/// All knowledge from the pairs before. A new object knows nothing.
 struct Parts {
   GroundEstimate ground;
   HeightMeasurement measurement;
@@ -51,7 +51,7 @@ struct Parts {
         runway(parameters, runway) {}
 };
 
-/// What a pair shows by itself, and what was expected.
+/// The ground and the height that a pair shows by itself, and the prediction for it.
 struct Look {
   HeightPrior prior;
   Ground ground;

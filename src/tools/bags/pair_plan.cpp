@@ -79,7 +79,8 @@ class Infos {
   }
 
  private:
-  /// For messages without a stamp: the last one before the image in the recording.
+  /// The camera_info for an image when messages have no stamp: the last one before the image in the
+  /// recording.
   std::optional<size_t> byPlace(size_t place) const {
     if (messages_.empty()) return std::nullopt;
     const auto after =

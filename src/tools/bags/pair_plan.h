@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// What pairing needs to know about a message.
+/// Properties of a message that pairing uses.
 struct MessageStamp {
   int64_t stamp;  ///< header.stamp, ns; 0: none
   size_t place;   ///< index among all messages of the recording

@@ -23,7 +23,7 @@ constexpr std::array<const char*, 4> kTypes = {"sensor_msgs/Image", "sensor_msgs
                                                "sensor_msgs/Image", "sensor_msgs/CameraInfo"};
 constexpr char kActive[] = ".active";
 
-/// With a slash in front.
+/// Returns the topic with a slash in front.
 std::string absolute(const std::string& topic) { return topic.rfind('/', 0) == 0 ? topic : "/" + topic; }
 
 void addTo(rosbag::View& view, const std::vector<std::unique_ptr<rosbag::Bag>>& bags,

@@ -30,7 +30,7 @@ std::string field(double value) {
 }  // namespace
 
 DatasetWriter::DatasetWriter(const std::string& folder) {
-  // Without a slash at the end, so that the temporary folder is beside it.
+  // The name has no slash at the end, so that the temporary folder is beside it.
   folder_ = fs::path(folder).has_filename() ? fs::path(folder) : fs::path(folder).parent_path();
   temporary_ = folder_.string() + ".active";
 }

@@ -16,7 +16,7 @@ struct Delivery {
   bool delivered = true;
 };
 
-/// What a fault knows about the run.
+/// Knowledge of a fault about the run.
 struct FaultRun {
   const Flight& flight;
   int onset = 0;  ///< first frame with the fault

@@ -132,7 +132,7 @@ class Campaign {
     std::string name = options_.dataset;
     while (!name.empty() && name.back() == '/') name.pop_back();
     name = name.substr(name.find_last_of('/') + 1);
-    // Without a fault the whole recording is flown, as pieces would have frames in common.
+    // Without a fault the whole recording is flown, because pieces would have frames in common.
     for (const FaultCombination& faults : choice_.combinations(seed))
       flyOne(faults == healthy ? recorded : part, name, faults, seed);
   }

@@ -1,5 +1,4 @@
-// The whole chain offline: reads the image pairs of a bag, and writes estimates, messages, timing and
-// pictures.
+// The whole chain offline: reads the image pairs of a bag, and writes estimates, messages, timing and images.
 
 #include <algorithm>
 #include <exception>

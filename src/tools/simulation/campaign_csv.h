@@ -16,7 +16,7 @@ class CampaignCsv {
  public:
   explicit CampaignCsv(const std::string& path);
 
-  /// What the frame belongs to.
+  /// The flight and the place in it that a frame belongs to.
   struct Sample {
     uint64_t seed = 0;
     double cell_height = kUnknown;  ///< m; unknown for a frame of an approach

@@ -119,7 +119,7 @@ void drawElements(Draw& draw, const Shares& share, SimulatorParameters& flight) 
   if (draw.chance(share.own_frame)) drawOwnFrame(draw, p.own_frame);
 }
 
-/// Before the threshold, and at most half as high as the flight over its top.
+/// Puts a hill before the threshold. It is at most half as high as the flight over its top.
 void drawHill(Draw& draw, SimulatorParameters& flight) {
   SimulatedProfileParameters& profile = flight.profile;
   const SimulatedPathParameters& path = flight.path;
