@@ -37,7 +37,7 @@ struct RigRotation {
 /// rectified axes (right, down, forward). It differs from 0 when images were not taken at the same time, or
 /// when a focal length is not as calibrated.
 struct BaselineDirection {
-  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down and forward, over the baseline
+  Eigen::Vector2d t = Eigen::Vector2d::Constant(kUnknown);           ///< down, forward over the baseline, rad
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);  ///< rad^2
 
   bool known() const { return t.allFinite() && covariance.allFinite(); }
@@ -76,9 +76,9 @@ struct StereoDepthResult {
   /// readout of 1 s.
   Eigen::Vector3d plane_rate = Eigen::Vector3d::Zero();
   Eigen::Matrix3d plane_by_rate = Eigen::Matrix3d::Zero();
-  /// Takes the plane's covariance without row_covariance and without the bias of disparities. This is the
-  /// share of it that is not noise of the images, above 0 and up to 1. Part of it is the same in the next
-  /// pairs. Not known without direct refinement.
+  /// Share of the plane's covariance that is not noise of the images, above 0 and up to 1. The covariance is
+  /// taken without row_covariance and without the bias of disparities. Part of this error is the same in the
+  /// next pairs. Not known without direct refinement.
   double lasting_share = kUnknown;
   /// Tangent of the surface straight below the camera, for the height. The plane is that of the surface
   /// ahead. Not known when too little of the ground is seen.

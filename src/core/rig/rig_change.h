@@ -26,8 +26,10 @@ class RigChange {
   /// Learns from a pair. T: s since the pair before. agrees: whether compare() found that it agrees.
   ///
   /// Pairs that do not agree are left out. After some seconds of them, the rotation is learned anew. A small
-  /// change is accepted as soon as it has stayed the same for a second. This is safe when the images do not
-  /// belong together as well: their error of the height is proportional to the rotation that they show.
+  /// change is accepted as soon as it has stayed the same for a second. This is safe even
+  /// when the images do not belong together: their error of the height is proportional to the rotation that
+  /// they show.
+  ///
   /// Returns true when the rig has another rotation from now on.
   bool learn(double T, const RigRotation& measured, bool agrees);
   /// The mean of what was learned, as one measurement of pitch and roll.
