@@ -7,8 +7,9 @@
 namespace uav_landing {
 
 /// A square of random texture that repeats without a seam, with mean 0 and variance 1. The mean over any
-/// axis-aligned rectangle takes one look-up. To that end, copies averaged over 2^i x 2^j texels are kept for
-/// all i and j (a rip-map). So ground that is seen at a grazing angle neither aliases nor blurs sideways.
+/// axis-aligned rectangle takes the same short time. To that end, copies averaged over 2^i x 2^j texels are
+/// kept for all i and j (a rip-map). So ground that is seen at a grazing angle neither aliases nor blurs
+/// sideways.
 class NoiseTile {
  public:
   static constexpr int kSize = 512;  ///< texels along a side

@@ -4,10 +4,10 @@
 
 namespace uav_landing {
 
-/// How a pixel weights the light around its centre before sampling. Usually the weight is even over the
-/// pixel. When the lens blurs enough, it is a tent of twice the width, which passes much less detail that is
-/// finer than pixels. If the image were blurred only after sampling, edges far ahead would alias and move
-/// differently from the scene.
+/// How a pixel weights the light around its centre before sampling. When the lens blurs little, the weight is
+/// even over the pixel. When it blurs enough, the weight is a tent of twice the width, which passes much less
+/// detail that is finer than pixels. If the image were blurred only after sampling, edges far ahead would
+/// alias and move differently from the scene.
 class PixelFilter {
  public:
   /// samples: number along each side of a pixel. blur: 1 sigma of the lens, px.
