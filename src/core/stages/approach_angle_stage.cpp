@@ -89,8 +89,9 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
-    sight(stamp, left, stereo, result);
-    if (waitsForPlane(stamp, stereo)) {
+    const bool waits = waitsForPlane(stamp, stereo);
+    sight(stamp, left, stereo, waits, result);
+    if (waits) {
       result.failure = {Reason::kNotYet,
                         "waiting for the ground plane: lines and motion follow one pair later"};
       nothingKnown(result);
@@ -138,7 +139,8 @@ struct ApproachAngleStage::Implementation {
   }
 
   // From afar the runway is seen before there is a plane by stereo.
-  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo,
+  // Its search waits while another one takes the time of the pair.
+  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo, bool waits,
              ApproachAngleResult& result) {
     ScopedTimer timer(timings, "runway_outline");
     if (repeated(stereo)) {
@@ -152,7 +154,7 @@ struct ApproachAngleStage::Implementation {
       ground.normal = {stereo.plane.normal(), stereo.plane.normalCovariance()};
     else if (!result.imu.failure && result.imu.normal.allFinite())
       ground.normal = {result.imu.normal, result.imu.normal_covariance};
-    result.sight = sighting.process(stamp, left, ground);
+    result.sight = sighting.process(stamp, left, ground, waits || (has_plane && tracker.needsSearch()));
   }
 
   // By the last motion over the last ground that is known.
