@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "far/sighting.h"
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "integrity/runway_identity.h"
-#include "motion/angle_by_foe.h"
-#include "motion/angle_normal.h"
-#include "motion/motion_corners.h"
-#include "motion/motion_tracker.h"
-#include "motion/readout_filter.h"
+#include "motion/path/angle_by_foe.h"
+#include "motion/path/angle_normal.h"
+#include "motion/path/motion_corners.h"
+#include "motion/path/motion_tracker.h"
+#include "motion/step/readout_filter.h"
 #include "results/result_check.h"
 #include "rig/plane_rate.h"
-#include "runway/runway_direction.h"
-#include "runway/runway_tracker.h"
+#include "runway/direction/runway_direction.h"
+#include "runway/position/runway_tracker.h"
 
 namespace uav_landing {
 namespace {
