@@ -15,7 +15,7 @@ inline uint64_t hashed(uint64_t seed) {
   return seed ^ (seed >> 31);
 }
 
-/// Uses cv::RNG instead of <random>, to get the same numbers with every standard library.
+/// Uses cv::RNG instead of the standard header `random`, to get the same numbers with every standard library.
 class Draw {
  public:
   explicit Draw(uint64_t seed) : random_(hashed(seed)) {}
