@@ -10,7 +10,7 @@
 
 namespace uav_landing {
 
-/// How uncertain an approach angle is because the ground may have another normal than the one used. Evidence
+/// Uncertainty of an approach angle because the ground may have another normal than the one used. Evidence
 /// comes from the vanishing point, the motion in the images, the rig and the previous pairs.
 class PathDoubt {
  public:

@@ -7,7 +7,7 @@
 
 namespace uav_landing {
 
-/// How uneven the surface ahead is, and how it bends towards the ground straight below.
+/// Unevenness of the surface ahead, and its bend towards the ground straight below.
 class SurfaceAhead {
  public:
   struct Shape {
@@ -20,10 +20,10 @@ class SurfaceAhead {
   /// follow_bend: use the tangent below; otherwise the plane itself is used.
   explicit SurfaceAhead(bool follow_bend) : follow_bend_(follow_bend) {}
 
-  /// For a pair with a plane. known: there is already a height. Until then each pair starts again.
+  /// Call it for a pair with a plane. known: there is already a height. Until then each pair starts again.
   Shape follow(const StereoDepthResult& stereo, const GroundPlane& plane, bool known);
-  /// For a pair without a plane. It keeps the shape of the last pair that had one, with a variance that grows
-  /// with time because other ground follows soon.
+  /// Call it for a pair without a plane. It keeps the shape of the last pair that had one. The variance grows
+  /// with time, because other ground follows soon.
   Shape carry(double stamp) const;
 
  private:

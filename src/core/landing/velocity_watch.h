@@ -15,7 +15,7 @@ class VelocityWatch {
 
   struct Verdict {
     Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< difference from the velocity of earlier steps, m/s
-    /// How wrong the approach angle may be because of steps that contradicted, rad. path_doubt holds as long
+    /// Possible error of the approach angle because of steps that contradicted, rad. path_doubt holds as long
     /// as such a step is in the sliding window; step_doubt belongs to this step.
     double path_doubt = 0, step_doubt = 0;
   };

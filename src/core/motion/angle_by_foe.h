@@ -19,8 +19,8 @@ struct StepFoe {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
 };
 /// tracker: its stepMatches() belong to this motion. motion: result of the tracker. normal: the ground normal
-/// that angles refer to. The focus stays unknown (kUnknown) when the step has no motion or the camera does
-/// not move forwards. In the form with the sliding window, step.failure then says why.
+/// that angles refer to. The focus stays unknown (kUnknown) when it cannot be found. In the form with the
+/// sliding window, step.failure then says why.
 StepFoe findStepFoe(const StereoRig& rig, const MotionTracker& tracker, const MotionTracker::Result& motion,
                     const GroundNormal& normal, const ApproachAngleParameters& parameters);
 

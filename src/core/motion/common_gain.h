@@ -18,7 +18,7 @@ struct CommonGain {
 };
 
 /// Fits a straight line to the means of the windows, now over then. Its slope is the gain; neither blur nor
-/// noise changes it. Windows more than three standard deviations off the line are left out. The variance does
+/// noise changes it. Windows more than three standard deviations off the line are rejected. The variance does
 /// not fall with the number of windows: errors often have a common cause, such as paint brighter than the
 /// camera can see.
 CommonGain commonGain(const std::vector<WindowMeans>& windows);

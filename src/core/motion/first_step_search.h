@@ -24,7 +24,7 @@ class FirstStepSearch {
   bool isAtOnce(const StepImages& step) const;
   /// Starts a new search with the next step.
   void restart();
-  /// Starts anew and forgets earlier searches, too. Use it when other images come next.
+  /// Starts a new search and forgets earlier ones, too. Use it when other images come next.
   void reset();
   /// Tells the search that its result was wrong. If it used the known rotation, the next search does without
   /// it, and the other way round.

@@ -10,7 +10,7 @@ namespace uav_landing {
 
 /// Corners of the stereo result, with inverse depths in units of one over the height. A corner on the plane
 /// has the plane's depth; any other has that of its own disparity. Corners off the plane with less than one
-/// pixel of disparity are left out.
+/// pixel of disparity are not used.
 std::vector<TrackedCorner> stereoCorners(const StereoRig& rig, const StereoDepthResult& stereo);
 
 /// Corners for use without stereo; all are assumed to lie on the ground. mask: where they may be. normal: of

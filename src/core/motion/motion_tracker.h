@@ -16,7 +16,7 @@
 
 namespace uav_landing {
 
-/// How it is known that corners lie on the ground.
+/// Evidence that corners lie on the ground.
 enum class GroundProof {
   kGiven,  ///< by disparity, or corners have a depth of their own, or it is assumed as in the paper
   kMotion  ///< not known beforehand: most corners must move like points of one plane
@@ -66,9 +66,10 @@ class MotionTracker {
   std::optional<RowMotion> lastMotion(double stamp) const;
   /// Keeps the image for the next step when no motion can be estimated to it.
   void skip(double stamp, const cv::Mat& left);
-  /// For an image that is the same as in the previous call. There is no step; the next one starts at the
-  /// stamp at which the image first came. The window keeps its motion, and its angle becomes less certain
-  /// with time. It fails when the image is older than angle_window or the stamp is not later.
+  /// Call it instead of process() for an image that is the same as in the previous call. There is no step;
+  /// the next one starts at the stamp at which the image first came. The window keeps its motion, and its
+  /// angle becomes less certain with time. It fails when the image is older than angle_window or the stamp is
+  /// not later.
   Result repeat(double stamp) const;
   void reset();
   /// Corners that the last process() followed to the previous frame, including those that contradict the

@@ -9,9 +9,9 @@ namespace uav_landing {
 /// Current approach angle from the angles of the last frame steps and of one chord over them.
 ///
 /// A chord over half a second is far more accurate than one step, but its angle is a quarter of a second old.
-/// How much the angle may have changed since is not known beforehand: a steady glide, a flare and gusts
-/// differ. So the path is modelled as a Gaussian process: a start angle plus the integral of a rate with a
-/// correlation time of one second.
+/// The change of the angle since then is not known beforehand: a steady glide, a flare and gusts differ. So
+/// the path is modelled as a Gaussian process: a start angle plus the integral of a rate with a correlation
+/// time of one second.
 ///
 /// There are several such models, each with another standard deviation of the rate. The weight of a model is
 /// its evidence: the likelihood of the recent measurements, with older ones gradually forgotten
@@ -37,8 +37,8 @@ class PathAngleFilter {
   };
   struct Estimate {
     double angle = 0;  ///< at the middle of the last step, rad
-    /// rad^2. After a step that is longer than usual, it also covers the change of the angle since that
-    /// middle.
+    /// rad^2. After a step that is longer than usual, it also covers the additional change of the angle since
+    /// that middle.
     double variance = 0;
     double rate_stddev = 0;  ///< of the rate in the model with the largest weight, rad/s
   };

@@ -94,7 +94,7 @@ void addLikelihoods(const Eigen::MatrixXd& M, const Eigen::VectorXd& scores, dou
   }
 }
 
-// What remains to say about the shake after motion and readout time are fitted as well as possible.
+// Sums for the shake that remain after motion and readout time are fitted as well as possible.
 struct Remainder {
   Eigen::MatrixXd rotation;
   Eigen::VectorXd score;

@@ -54,7 +54,7 @@ struct RowShake {
   double variance = 0;   ///< rad^2, of each axis
   Matrix9d information;  ///< information on the motion, reduced by the shake
   Vector9d step;         ///< change of the motion to the one that fits best with the shake
-  /// What to subtract from the sums of the readout time, when that is estimated. time_right applies after
+  /// Parts to subtract from the sums of the readout time, when that is estimated. time_right applies after
   /// `step`.
   double time_information = 0, time_right = 0;
   Vector9d time_with_motion = Vector9d::Zero();

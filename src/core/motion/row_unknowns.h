@@ -11,7 +11,7 @@
 
 namespace uav_landing {
 
-/// What may be wrong with a motion because rows are exposed one after the other.
+/// Possible errors of a motion, because rows are exposed one after the other.
 struct RowDoubt {
   const RowTimes* times = nullptr;  ///< row times, which allow for shake; null: all rows are exposed at once
   ShakeMemory* shake = nullptr;

@@ -18,7 +18,7 @@ struct MotionSearchMemory {
   MotionMemory motion;
 };
 
-/// How much time a search for the motion has, as other searches in the same pair need time, too.
+/// Time that a search for the motion has, as other searches in the same pair need time, too.
 enum class SearchTime {
   kAmple,  ///< no other search
   kShort,  ///< the runway is searched for, too
@@ -65,7 +65,7 @@ class StepMatching {
   /// matches that must agree.
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
                                     const std::vector<TemporalMatch>& matches, int fewest) const;
-  /// How similar the corners look to where the motion puts them; see likenessOverTime().
+  /// Similarity of the corners to the places where the motion puts them; see likenessOverTime().
   double likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,
                   const CameraMotion& motion) const;
   /// Coarse steps of a wide search, for a motion that is hardly known.

@@ -28,7 +28,7 @@ struct TemporalMatchOptions {
   RowsOverTime rows = {};
 };
 
-/// What matching computes from the corners' windows in one image alone. It is kept while that image is
+/// Properties of the corners' windows that follow from one image alone. They are kept while that image is
 /// matched with several others.
 class CornerTextures {
  public:
@@ -76,8 +76,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
                                          const TemporalMatchOptions& options, CornerTextures& textures,
                                          MatchingMemory& memory, std::vector<TemporalMatch> list = {});
 
-/// How similar the surroundings of the corners are to those of the places where the motion puts them then. It
-/// is the sum of their correlations, without any search. Corners that are out of view or have a negative
+/// Similarity between the surroundings of the corners and the places where the motion puts them then. It is
+/// the sum of their correlations, without any search. Corners that are out of view or have a negative
 /// correlation add nothing.
 double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,

@@ -17,7 +17,7 @@ struct GroundAxes {
   Eigen::Vector3d down;     ///< ground normal n, unit, left camera frame
   Eigen::Vector3d forward;  ///< landing direction within the ground, unit
   Eigen::Vector3d left;     ///< perpendicular to both, unit
-  /// Of small rotations of the axes about forward, left and down, rad^2.
+  /// Covariance of small rotations of the axes about forward, left and down, rad^2.
   Eigen::Matrix3d covariance;
 
   /// direction: vanishing direction of the runway. Only its part within the ground is used. The covariances
@@ -69,8 +69,8 @@ std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes
                                     double cx, double baseline);
 
 /// Edges that both views see at the same place on the ground, such as paint or the edge of the pavement. An
-/// object above the ground appears at two places and is left out. The same holds for lines that do not belong
-/// to one edge.
+/// object above the ground appears at two places, so it is rejected. The same holds for lines that do not
+/// belong to one edge.
 std::vector<GroundEdge> matchEdges(const GroundAxes& axes, const std::vector<GroundEdge>& left,
                                    const std::vector<GroundEdge>& right);
 

@@ -232,7 +232,7 @@ class Search {
     return point;
   }
 
-  // How clearly a point is that of a runway when nothing but the point itself says where the ground is.
+  // Margin of a point's runway when nothing but the point itself says where the ground is.
   double marginOnLevelGround(const View& view, const Found& found) const {
     const Eigen::Vector3d& p = found.point->direction;
     const RunwayPrior prior{normalFromVanishingPoint(*found.point, 0, 0).n,

@@ -216,7 +216,7 @@ class Search {
 
   /// Working memory for one centre after another.
   struct Memory {
-    // With their distance from the centre, in tolerances.
+    // Pairs with their distance from the centre, in tolerances.
     std::vector<std::pair<double, const MirroredPair*>> near;
     std::vector<char> used;    // per edge
     std::vector<uchar> apart;  // per pair: 1 when it is certainly too far away

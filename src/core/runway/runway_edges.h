@@ -10,12 +10,12 @@
 
 namespace uav_landing {
 
-/// Where the centre line is expected, and how far it may be from there, in multiples of the height.
+/// Expected place of the centre line, and its largest distance from there, in multiples of the height.
 struct ExpectedCentre {
   double centre = 0, tolerance = 0;
 };
 
-/// What is seen beside the runway. With it, a missing edge is evidence, too.
+/// The view beside the runway. With it, a missing edge is evidence, too.
 struct Outlook {
   const StereoRig& rig;
   const std::vector<GroundEdge>& edges;  ///< edges seen by at least one view

@@ -95,7 +95,7 @@ bool isLane(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
   return across > kMiddle && across < 0.5 - kSide && length > kLane * std::log(h.far / h.near);
 }
 
-/// What lies between the edges: evidence of marks, and the number of lines that no runway has.
+/// Lines between the edges: evidence of marks, and the number of lines that no runway has.
 struct Surface {
   double marks = 0;
   int astray = 0;

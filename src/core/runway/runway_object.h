@@ -28,7 +28,7 @@ struct RunwayHypothesis {
   double width() const { return left - right; }
 };
 
-/// What is known of the runway's direction before the lines are seen, in the frame of the view.
+/// Knowledge about the runway's direction before the lines are seen, in the frame of the view.
 struct RunwayPrior {
   Eigen::Vector3d normal;               ///< of the ground, unit, pointing down
   Eigen::Matrix3d normal_covariance;    ///< contains the runway's own slope against the ground, rad^2

@@ -12,7 +12,7 @@
 namespace uav_landing {
 
 /// The runway seen from above. A row (station) corresponds to one pixel of distance. The object refers to the
-/// image, mask, rig and axes, which must outlive it.
+/// image, the mask, the rig, the axes and the rows, which must outlive it.
 class TopView {
  public:
   static constexpr int kColumns = kLineSamples;  ///< samples across the runway

@@ -35,7 +35,7 @@ class RunwayTracker {
   ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
                                       const RunwayDirection& direction, double height,
                                       const StampMap& rows = {});
-  /// For a pair without any result. The motion of the next pair must begin at this one.
+  /// Call it for a pair without any result. The motion of the next pair must begin at this one.
   void skip(double stamp);
   void reset();
   /// Whether the pair before this stamp showed the runway at the same place as earlier pairs. Until then,
@@ -48,7 +48,7 @@ class RunwayTracker {
    public:
     /// scale: previous height over height now. motion: along the axis, over the height now.
     void predict(double scale, double motion, double variance);
-    /// Where the next measurement must be; nothing before the first one.
+    /// Range in which the next measurement must lie; nothing before the first one.
     std::optional<ExpectedCentre> expected(double slack) const;
     /// Adds a measurement. Returns whether earlier ones confirm it.
     bool update(double value, double variance, double slack);

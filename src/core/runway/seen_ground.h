@@ -21,7 +21,7 @@ struct SeenGround {
   double last_doubt = 0;         ///< chance that `last` was not the runway's direction
 };
 
-/// For both rectified views: maps to where their pixels would be with all rows exposed at the stamp.
+/// Maps of both rectified views to the places that pixels would have with all rows exposed at the stamp.
 struct ViewRows {
   StampMap left, right;
 };
