@@ -21,9 +21,8 @@ class LandingClock {
   };
   Time follow(double stamp);
   /// Detects that the clock was set since the previous pair. Then everything has to start again, and the
-  /// failure says why. Two things must show it: the distance that the camera moved corresponds to another
-  /// time than the stamps, and the height of this pair does so, too. The watch itself goes on, so that it
-  /// notices the next setting as well.
+  /// failure says why. The distance that the camera moved must fit another time than the stamps, and so must
+  /// the height of this pair. The watch itself goes on, so that it notices the next setting as well.
   Failure compare(const PairInput& in, const MeasuredHeight& pair, const HeightPrior& prior);
   /// s since the last pair; nothing before the first one.
   std::optional<double> since(double stamp) const;

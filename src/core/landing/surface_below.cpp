@@ -81,8 +81,8 @@ bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, c
   const double off = height * n.dot(t) + T * step.flight.state()[1];
   const double flight_variance =
       std::pow(kSlope, 2) * t.squaredNorm() + T * T * step.flight.covariance()(1, 1) / (height * height);
-  // A large variance of the step must not widen the gate beyond that of the flight so far: an uncertain step
-  // must not carry the ground.
+  // An uncertain step must not carry the ground. So its variance does not widen the gate beyond that of the
+  // flight so far.
   const double own_variance = std::min(n.dot(covariance * n), flight_variance);
   const double variance = height * height * (own_variance + flight_variance);
   return off * off <= std::pow(gate_, 2) * variance;

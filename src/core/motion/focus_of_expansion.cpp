@@ -37,7 +37,7 @@ void addLine(const Velocity& velocity, cv::Mat& counts) {
 }
 
 // The window's middle with a covariance. The scatter of the lines that pass nearby gives the covariance of
-// the point nearest to them; the square of that point's offset from the middle is added.
+// the point nearest to them. The square of that point's offset from the middle is added.
 Expected<FocusOfExpansion> windowWithCovariance(const std::vector<Velocity>& lines,
                                                 const Eigen::Vector2d& window) {
   constexpr double kNear = 4.0;

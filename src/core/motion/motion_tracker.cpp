@@ -226,9 +226,9 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
 std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
   std::vector<CameraMotion> predictions;
   if (!last_step_) return predictions;
-  // The same distance is more heights when the height is lower, so sinking lengthens the step. If the
-  // prediction ignored this, every step would be biased over ground with little but lines, because lines are
-  // found near the place where they are looked for.
+  // The same distance is more heights when the height is lower, so sinking lengthens the step. A prediction
+  // without this would bias every step over ground with little but lines. Lines are found near the place
+  // where they are looked for.
   const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
   const double times = duration / last_duration_;
   CameraMotion predicted = carriedOn(*last_step_, times);

@@ -22,11 +22,12 @@ struct ReadoutDoubt {
 /// ones. Null when all rows are exposed at once.
 const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt);
 
-/// Sets by_readout of the matches and moves them to where they would be with all rows exposed at the stamps,
-/// according to the estimated time (s). The whole shift is applied to the place then. The effect is linear in
-/// the readout time as long as that is much shorter than the step. unit: row times for a readout of 1 s.
-/// motion: of the step, as far as it is known. Call it again when the motion is known better; it takes back
-/// its earlier shift first.
+/// Sets by_readout of the matches. Then it moves the matches to where they would be with all rows exposed at
+/// the stamps, according to the estimated time (s). The whole shift is applied to the place then. The effect
+/// is linear in the readout time as long as that is much shorter than the step.
+///
+/// unit: row times for a readout of 1 s. motion: of the step, as far as it is known. Call it again when the
+/// motion is known better; it takes back its earlier shift first.
 void shiftByReadout(const StereoRig& rig, const RowsOverTime& unit, const CameraMotion& motion,
                     const Eigen::Vector3d& normal, double time, std::vector<TemporalMatch>& matches);
 

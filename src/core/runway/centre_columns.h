@@ -16,9 +16,9 @@ class CentreColumns {
   /// are common to all pairs.
   void add(double centre, double variance, const Eigen::Vector3d& by_rotation);
 
-  /// Marks the centres that are certainly more than `sigmas` standard deviations of the difference away from
-  /// one of them with 1, the others with 0. one: its index. spread: trace of the covariance of the rotations,
-  /// an upper bound for their effect.
+  /// Sets 1 for each centre that is certainly far from one of them: by more than `sigmas` standard deviations
+  /// of the difference. Sets 0 for the others. one: its index. spread: trace of the covariance of the
+  /// rotations, an upper bound for their effect.
   void markApart(std::ptrdiff_t one, double sigmas, double spread, uchar* apart) const;
 
  private:

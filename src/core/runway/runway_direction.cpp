@@ -133,12 +133,13 @@ class Search {
   }
 
   // Whether the right view may be searched only where the left view's lines lead. It then shows where these
-  // lines lie, but not which other lines exist. So four conditions must hold.
-  //
-  // A runway is already followed: otherwise half of a runway could pass for a whole one, because the edge
-  // that shows the error is not searched for. The point is certain and on the ground: a wrong one is exposed
-  // by lines that the right view finds on its own, as those meet elsewhere. The lines are found row by row
-  // and refined: the paper's Hough transforms, and lines without refinement, belong to each view alone.
+  // lines lie, but not which other lines exist. So these conditions must hold:
+  // - A runway is already followed. Otherwise half of a runway could pass for a whole one, because the edge
+  //   that shows the error is not searched for.
+  // - The left view's point is certain and on the ground. A wrong point would be exposed by lines that the
+  //   right view finds on its own, as those meet elsewhere.
+  // - Lines are found row by row and refined. The paper's Hough transforms, and lines without refinement,
+  //   belong to each view alone.
   bool isSure(const Expected<VanishingPoint>& point) const {
     return hasRunway() && point && point->coincidences <= kSure && isOnGround(*point) &&
            parameters_.hough_method == HoughMethod::kScanLines && parameters_.refine_lines;

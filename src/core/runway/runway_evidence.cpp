@@ -32,9 +32,9 @@ constexpr double kTelling = 1;  // least evidence of a line that counts as besid
 constexpr double kMostOff = 10;             // largest penalty for ground, path, or chart
 constexpr double kMostTurned = 6;           // largest penalty for a turn since the previous pair
 constexpr double kPathSigma = 3 * kDegree;  // 1 sigma between path and runway, from wind and corrections
-// Largest margin of a strip without marks that the path leads along. It stands for about one in a thousand
-// approaches. There a road has a direction as near to the path (6 of 60 degrees), it lies as near to its
-// side, and no runway is in view.
+// Largest margin of a strip without marks that the path leads along. In about one of a thousand approaches
+// such a strip is a road. That road is as near to the path in direction (6 of 60 degrees) and at the side,
+// and no runway is in view.
 constexpr double kBareStrip = 7.3;
 constexpr double kSteepest = 60 * kDegree;    // angle between path and runway above which nothing is known
 constexpr double kStepSigma = 0.7 * kDegree;  // 1 sigma of the camera's turn between pairs

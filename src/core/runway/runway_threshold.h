@@ -23,17 +23,17 @@ struct Threshold {
 /// runway's width. Marks of the touchdown zone are not like that.
 ///
 /// The threshold is the near edge of a bright line across the runway just before the bars, or the beginning
-/// of the pavement. When neither is seen, it lies up to 6 m before the bars of a full-size runway; this is
-/// scaled by the distance between the bars. The middle of that range is reported, and the systematic variance
-/// covers both of its ends.
+/// of the pavement. If neither is seen, the threshold of a full-size runway lies up to 6 m before the bars.
+/// On other runways the distance scales with that between the bars. The middle of that range is reported, and
+/// the systematic variance covers both of its ends.
 ///
 /// - image: left rectified, mono8.
 /// - mask: 255 where the image is valid.
 /// - memory: for rows seen from above.
 /// - rows: row times of the image.
 ///
-/// Fails with no_runway when there are no bars, when the ground before them is not in the image, or when
-/// something before them is not clearly a line.
+/// Fails with no_runway when there are no bars or the ground before them is not in the image. It also fails
+/// when something before the bars is not clearly a line.
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway,
                                   std::vector<LineGreys>& memory, const StampMap& rows = {});
