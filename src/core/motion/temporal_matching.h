@@ -34,8 +34,7 @@ class CornerTextures {
  public:
   /// Call it before another image or another window size.
   void clear() { windows_.clear(); }
-  /// Entry for a corner, by its place in the list of corners. A corner that is at another place in another
-  /// list shares nothing.
+  /// Entry for a corner by its place in a list. Lists with different corners at that place share nothing.
   OwnTexture& of(size_t place, const TrackedCorner& corner) {
     if (place >= windows_.size()) windows_.resize(place + 1);
     Window& window = windows_[place];

@@ -258,7 +258,7 @@ class Search {
   std::vector<GroundEdge> edges_;
   std::vector<MirroredPair> pairs_;
   CentreColumns columns_;  // of pairs_
-  // Variance of a centre from inexact paint, for the runway's width instead of the pair's own.
+  // Variance of a centre from inexact paint, for the width of the longest pair instead of the pair's own.
   double paint_ = 0;
 };
 

@@ -35,9 +35,10 @@ struct RunwayWidth {
 ///
 /// A runway is painted symmetrically. Each edge on its left has a counterpart on the right whose brighter
 /// side is the other one. The centre line is the one on which the largest length of edges agrees, with long
-/// edges among them. The runway's own edges are the outermost long ones. Sometimes one more long edge lies as
-/// far beyond one side of a pair, and none beyond the other. Then the pair is an edge and the centre line,
-/// and nothing is found unless the width is known.
+/// edges among them. The runway's own edges are the outermost long ones. A pair may also be an edge and the
+/// centre line of a wider runway. Then one more long edge lies beyond one side of the pair, at the distance
+/// of the pair's width, and none beyond the other side. In that case nothing is found unless the width is
+/// known.
 ///
 /// edges: along the runway on the ground. expected: from earlier pairs. outlook: or null.
 ///
