@@ -11,11 +11,11 @@
 namespace uav_landing {
 namespace {
 
-// 1 sigma of a plane's height over itself: with more, what is linear in its errors has no meaning, and any
-// direction seems to lie in it.
+// Largest 1 sigma of a plane's height, as a share of the height. Beyond it, linear error propagation has no
+// meaning, and any direction seems to lie in the plane.
 constexpr double kLargestRelative = 0.3;
 
-/// plane: with what the pair's skew adds to its covariance.
+/// plane: its covariance contains the effect of the pair's skew.
 Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) {
   if (stereo.failure) return stereo.failure;
   if (!plane.valid() || !plane.covariance.allFinite())
@@ -27,11 +27,13 @@ Failure missingPlane(const StereoDepthResult& stereo, const GroundPlane& plane) 
   return {};
 }
 
-/// Share of a pair's own error that is the same in the pairs of a second, as they see the same texture.
+/// Share of a pair's own error that is the same in all pairs of about one second, because they see the same
+/// texture.
 double lastingShare(const StereoDepthResult& stereo) {
-  // Of what is no noise, by the simulator's errors of one pair and of a dozen.
+  // Share of the errors that are not noise. It comes from the simulator: errors of single pairs compared with
+  // those of a dozen.
   constexpr double kLasting = 0.5;
-  constexpr double kOfMatches = 1.0 / 3;  // of all, where nobody knows what is noise
+  constexpr double kOfMatches = 1.0 / 3;  // of all errors, when it is not known which are noise
   return std::isfinite(stereo.lasting_share) ? kLasting * stereo.lasting_share : kOfMatches;
 }
 
@@ -61,7 +63,7 @@ Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known
     ground.normal = {ground.plane.normal(), ground.plane.normalCovariance()};
   }
   ground.rig_variance = rig_variance_;
-  if (!in.repeated()) averageNormal(in, ground);  // else the next motion is from the pair before
+  if (!in.repeated()) averageNormal(in, ground);  // else the next motion starts before it
   ground.turn_doubted = attitude_.doubtsTurn();
   ground.attitude_settled = attitude_.settled();
   return ground;
@@ -69,7 +71,7 @@ Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known
 
 void GroundEstimate::commit(bool believed, const std::optional<RigRotation>& turned) {
   if (turned) rig_rotation_.startAnew(*turned);
-  // Of images that do not belong together the rig learns nothing.
+  // Images that do not belong together teach nothing about the rig.
   rig_rotation_.settle(believed);
 }
 
@@ -81,7 +83,8 @@ void GroundEstimate::findPlane(const PairInput& in, bool rig_doubted, Ground& gr
   if (parameters_.rig_watch) {
     watchRig(in, rig_doubted, ground);
   } else {
-    // Only these are independent of the stereo plane; the fused normal of the approach angle contains it.
+    // Only these sources are independent of the stereo plane. The fused normal of the approach angle contains
+    // it.
     const RigRotationFilter::Others others = otherSources(in);
     if (others.vanishing.known()) fuseDirection(others.vanishing, ground);
     for (const GroundNormal& normal : {others.level, others.moving})
@@ -91,7 +94,7 @@ void GroundEstimate::findPlane(const PairInput& in, bool rig_doubted, Ground& gr
   rig_variance_ = GroundPlane{ground.plane.g, ground.common}.heightVariance();
 }
 
-// Turns the plane by a direction that lies in the ground.
+// Turns the plane so that it contains a direction which lies in the ground.
 void GroundEstimate::fuseDirection(const GroundDirection& direction, Ground& ground) const {
   const GroundPlane alone = ground.plane;
   const Eigen::Vector3d& p = direction.direction;
@@ -99,8 +102,8 @@ void GroundEstimate::fuseDirection(const GroundDirection& direction, Ground& gro
   ground.plane =
       fuseVanishingPoint(alone, p, direction.covariance, std::pow(parameters_.vanishing_point_gate, 2), &nis);
   if (ground.plane.g == alone.g) return;
-  // What the direction is wrong by is mostly the ground's own slope, or of the same images: the next pairs
-  // have the same.
+  // The error of the direction is mostly the ground's own slope, or comes from the same images. So the next
+  // pairs have it as well.
   const double variance = alone.g.dot(direction.covariance * alone.g);
   const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
@@ -122,7 +125,8 @@ void GroundEstimate::watchRig(const PairInput& in, bool rig_doubted, Ground& gro
   rig_rotation_.advance(stereo.stamp);
   rig_rotation_.setPrior(stereo.disparity_bias_stddev, stereo.row_bias_stddev);
   if (!rig_doubted) rig_rotation_.updateVertical(stereo.vertical_rotation);
-  // The rig's error is in the plane's covariance as a bias of all disparities; here it is a state of its own.
+  // The plane's covariance contains the rig's error as a bias of all disparities. Here the rig is a state of
+  // its own, so that part is taken out.
   GroundPlane without = ground.plane;
   without.covariance(2, 2) -= biasVariance(rig_, stereo.disparity_bias_stddev);
   const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);

@@ -8,37 +8,45 @@
 
 namespace uav_landing {
 
-/// What a pair, and those before, say of the ground.
+/// The ground as this pair and the previous ones show it.
 struct Ground {
   Failure failure;    ///< why the pair has no plane
-  GroundPlane plane;  ///< of the surface ahead, by all that is known; NaN when there is none
-  Eigen::Matrix3d common = Eigen::Matrix3d::Zero();  ///< share of its covariance that all pairs have
-  GroundPlane alone;                                 ///< by stereo, and by what was learned of the rig, alone
+  GroundPlane plane;  ///< of the surface ahead, from all sources; NaN when there is none
+  /// Part of the plane's covariance from errors that all pairs have in common.
+  Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
+  /// Plane from stereo alone, corrected by what was learned about the rig.
+  GroundPlane alone;
   Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
-  double rig_variance = 0;      ///< of the height, by the rig's rotation; without a plane as before, m^2
+  /// Variance of the height from the rig's rotation, m^2. Without a plane it keeps its last value.
+  double rig_variance = 0;
   SurfaceAhead::Shape surface;  ///< from the plane ahead to the ground below
-  GroundNormal normal;          ///< averaged over the pairs; set when the plane is valid
+  GroundNormal normal;          ///< averaged over pairs; set when the plane is valid
 
-  double tilt = kUnknown, tilt_ratio = kUnknown;  ///< against the pairs before: rad, squared and normalised
-  bool tilted = false;  ///< the plane contradicts those before: no height, speed or place by it
+  /// Angle to the normal of the previous pairs, rad, and the squared normalised difference.
+  double tilt = kUnknown, tilt_ratio = kUnknown;
+  /// The plane contradicts the previous pairs, so it gives no height, speed or position.
+  bool tilted = false;
   bool turn_doubted = false, attitude_settled = true;  ///< see AttitudeFilter
 
-  /// The averaged normal; without a plane otherwise.
+  /// The averaged normal, or `otherwise` when there is no plane.
   GroundNormal normalOr(const GroundNormal& otherwise) const { return plane.valid() ? normal : otherwise; }
-  /// Of the ground that positions refer to: by this pair, unless it is tilted; without a plane otherwise.
+  /// Normal of the ground for positions: that of this pair, the averaged one if the plane is tilted, or
+  /// `otherwise` when there is no plane.
   Eigen::Vector3d positionNormalOr(const Eigen::Vector3d& otherwise) const;
 };
 
-/// The ground ahead: the plane of a pair freed of the rig's rotation and fused with what else is known of the
-/// ground, its bend, and its normal averaged over the pairs.
+/// Estimates the ground ahead. It takes the plane of a pair, removes the effect of the rig's rotation and
+/// fuses the plane with other knowledge about the ground. It also gives the bend of the surface and the
+/// average of the normal over pairs.
 class GroundEstimate {
  public:
   GroundEstimate(const StereoRig& rig, const KalmanHeightParameters& parameters);
 
-  /// rig_doubted: the pair's vertical disparities say nothing of the rig. known: there is a height already.
+  /// Estimates the ground of one pair. rig_doubted: the pair's vertical disparities must not be used for the
+  /// rig. known: there is already a height.
   Ground propose(const PairInput& in, bool rig_doubted, bool known);
-  /// After the tests of the pair. believed: what it says of the rig is learned. turned: another rotation than
-  /// before is the rig's from now on.
+  /// Call it after the tests of the pair. believed: learn what this pair says about the rig. turned: new
+  /// rotation of the rig, from which learning starts again.
   void commit(bool believed, const std::optional<RigRotation>& turned);
   RigRotation rigRotation() const { return rig_rotation_.rotation(); }
 
@@ -54,7 +62,7 @@ class GroundEstimate {
   RigRotationFilter rig_rotation_;
   SurfaceAhead surface_;
   AttitudeFilter attitude_;
-  double rig_variance_ = 0;  // of the last height, m^2
+  double rig_variance_ = 0;  // for the last plane, m^2
 };
 
 }  // namespace uav_landing

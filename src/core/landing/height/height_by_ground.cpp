@@ -7,14 +7,14 @@
 namespace uav_landing {
 namespace {
 
-/// What eqs (4) and (5) are evaluated with.
+/// Arguments of eqs (4) and (5).
 struct Levelling {
   double theta, theta_variance, roll;  // rad, rad^2, rad
   bool only_on_plane;
 };
 
 Levelling levellingOf(const KalmanHeightParameters& parameters, const PairInput& in, const Ground& ground) {
-  // The paper to the letter: no roll, and a statistical average over every depth.
+  // Exactly as in the paper: no roll, and a statistical average over every depth.
   if (parameters.reconstruction_angle == ReconstructionAngle::kApproach)
     return {in.path().angle, in.path().angle_variance, 0, false};
   const Eigen::Vector3d n = ground.plane.normal();
@@ -37,13 +37,14 @@ void averagePoints(const StereoRig& rig, const PairInput& in, const Ground& grou
     measured.failure = {Reason::kTooFewMatches, text(averaged.points, " of at least 2 points to average")};
     return;
   }
-  // d height / d theta of eq (5) is the rotated depth: the same sum a quarter turn further.
+  // d height / d theta of eq (5) is the rotated depth, which is the same sum with theta a quarter turn
+  // larger.
   const double by_theta = average(levelling.theta + M_PI / 2).height;
   measured.height = averaged.height;
   measured.variance = averaged.variance + by_theta * by_theta * levelling.theta_variance;
-  // Depths of far points are too large on average, an angle of another meaning and matches off the ground
-  // make errors of their own, and the scatter knows nothing of it. What the average differs from the plane by
-  // is a measure of it, which the next pairs repeat.
+  // The scatter does not show all errors. Depths of far points are too large on average. The angle may have
+  // another meaning, and some matches are off the ground. The difference from the plane's height is a measure
+  // of these errors. They are the same in the next pairs.
   measured.errors.averaging = std::pow(averaged.height - ground.plane.height(), 2);
 }
 

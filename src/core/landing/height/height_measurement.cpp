@@ -7,14 +7,15 @@
 namespace uav_landing {
 namespace {
 
-// Within this share of the width, other edges may be taken for the runway's.
+// Other edges within this share of the width may be mistaken for the runway's.
 constexpr double kWidthTolerance = 0.02;
 
-/// Weighted mean of a height and the one by a known width, if they agree.
+/// Weighted mean of the height and the one from a known width, if they agree.
 void fuseWidth(const WidthHeight::Estimate& seen, MeasuredHeight& measured) {
-  constexpr double kAgreement = 3;  // sigma
+  constexpr double kAgreement = 3;  // standard deviations
   const double difference = measured.width_height - measured.height;
-  // The width knows nothing of the baseline, and is off stereo by what that is wrong by.
+  // A height from the width does not depend on the baseline. So the baseline's error is part of the
+  // difference.
   const double by_baseline = measured.errors.baselineVariance(measured.height);
   const double sum = seen.variance + measured.variance + by_baseline;
   if (difference * difference > kAgreement * kAgreement * sum) return;
@@ -56,19 +57,19 @@ void HeightMeasurement::commit(const PairInput& in, const Ground& ground, const 
   width_.learn(runway.width, runway.width_variance, measured.height - ground.surface.bend, measured.variance);
 }
 
-// Adds to the height's variance what it changes by between the stamp and the time of the images.
+// Adds the change of the height between the stamp and the true time of the images to the variance.
 void HeightMeasurement::followStamps(const PairInput& in, const HeightPrior& prior,
                                      MeasuredHeight& measured) {
   const std::optional<CameraStep> way = cameraStep(in.step(), prior.heightOr(measured.height));
   way ? stamps_.follow(*way) : stamps_.skip();
   const double duration = in.step().duration;
   if (!prior.known() || !(duration > 0)) return;
-  // A duration has the errors of two stamps in it.
+  // A duration contains the errors of two stamps.
   const double stamp_variance = 0.5 * stamps_.ofDuration() * duration * duration;
   measured.variance += std::pow(prior.filter.state()[1], 2) * stamp_variance;
 }
 
-// The second height, used where stereo has none or agrees.
+// The width gives a second height. It is used when stereo has none or agrees with it.
 void HeightMeasurement::useWidth(const ApproachAngleResult::Runway& runway, const Ground& ground,
                                  const HeightPrior& prior, MeasuredHeight& measured) {
   const double bend = ground.surface.bend;
@@ -76,14 +77,14 @@ void HeightMeasurement::useWidth(const ApproachAngleResult::Runway& runway, cons
   const bool by_stereo = !measured.failure && !ground.tilted;
   bool same = true;
   if (seen && prior.known() && prior.confirmed()) {
-    // What the width itself is wrong by does not tell whether it is that of the same edges.
+    // An error of the width itself does not tell whether the edges are still the same.
     const CommonVariance common = prior.filter.commonVariance();
-    // A learned width is wrong by what the baseline is, as the heights are.
+    // A learned width has the error of the baseline, as the heights have.
     const double by_baseline = width_.independent() ? common.baseline : 0;
     same = width_.isSame(runway.width, runway.width_variance, prior.filter.state()[0] - bend,
                          prior.filter.ownCovariance()(0, 0) + common.lasting + common.bend + by_baseline);
   }
-  // A known one is reported nevertheless: the fault may as well be the heights'.
+  // A known width is still reported, because the heights may be wrong instead.
   if (!same && !width_.independent()) seen.reset();
   if (seen) {
     measured.width_height = seen->height + bend;
@@ -91,7 +92,7 @@ void HeightMeasurement::useWidth(const ApproachAngleResult::Runway& runway, cons
   }
   measured.teaches_width = by_stereo && prior.confirmed();
   if (!seen || !same || !parameters_.fuse_width_height) return;
-  // What was refused for its tilt is the ground that the width was seen on, too.
+  // If the ground was rejected for its tilt, the width was seen on the same ground.
   if (!by_stereo && !ground.tilted && prior.confirmed()) {
     measured.failure = {};
     measured.height = measured.width_height;
@@ -108,7 +109,7 @@ void HeightMeasurement::leaveOutSources(const PairInput& in, const Ground& groun
                                         MeasuredHeight& measured) const {
   if (!parameters_.integrity_monitor || measured.failure || ground.tilted) return;
   SolutionSeparation::Measurement everything{measured.height, measured.variance, measured.common()};
-  // A height by the width has nothing in it of the stereo images but depends on what the edges are.
+  // A height from the width does not use the stereo images, but it depends on which edges were seen.
   if (measured.by_width) everything.common.width += std::pow(kWidthTolerance * measured.height / 3, 2);
   measured.without.fill(everything);
   if (measured.by_width || !ground.plane.valid()) return;
@@ -122,7 +123,7 @@ void HeightMeasurement::leaveOutSources(const PairInput& in, const Ground& groun
   stereo_alone.common.baseline = std::pow(baseline_stddev_ * stereo_alone.height, 2);
   stereo_alone.common.lasting +=
       GroundPlane{ground.alone.g, ground.alone_common}.heightVariance() - ground.rig_variance;
-  // The plane that is left has not been turned by the motion's normal either.
+  // The remaining plane was not turned by the motion's normal either.
   if (parameters_.fuse_motion_normal)
     measured.without[static_cast<int>(FaultySource::kMotion)] = stereo_alone;
   leaveOutRegions(in, ground, measured);

@@ -10,24 +10,26 @@
 
 namespace uav_landing {
 
-/// The height of the plane, or the average of eq (5) over the points; what the surface is wrong by included.
+/// Height from the ground plane, or the average of eq (5) over the points (parameter height_source). Its
+/// variance contains the errors of the surface. Fails as the ground does, or when there is nothing to
+/// average, or when the height is not above the ground.
 MeasuredHeight heightByGround(const StereoRig& rig, const KalmanHeightParameters& parameters,
                               const PairInput& in, const Ground& ground);
 
-/// The height by all that a pair has: the ground, the runway's width, and the time that the stamps leave
-/// open.
+/// Height of a pair from all its sources: the ground and the runway's width. It also accounts for errors of
+/// the stamps.
 class HeightMeasurement {
  public:
-  /// baseline_stddev: as a share of the baseline.
+  /// baseline_stddev: 1 sigma of the baseline's length, as a share of it.
   HeightMeasurement(const StereoRig& rig, const KalmanHeightParameters& parameters,
                     const RunwayParameters& runway = {}, double baseline_stddev = 0);
 
-  /// by_ground: of the same pair. The result is without a failure where the width alone gives a height.
+  /// by_ground: height of the same pair. The result has no failure when the width alone gives a height.
   MeasuredHeight propose(const PairInput& in, const Ground& ground, const MeasuredHeight& by_ground,
                          const HeightPrior& prior);
-  /// After the track's verdict: learns the runway's width from a height that was accepted.
+  /// Call it after the verdict of the track. It learns the runway's width from a height that was accepted.
   void commit(const PairInput& in, const Ground& ground, const MeasuredHeight& measured, bool accepted);
-  /// Of durations between stamps, over their squares.
+  /// Variance of the durations between stamps, divided by their squares.
   double durationVariance() const { return stamps_.ofDuration(); }
   bool widthKnown() const { return width_.independent(); }
 

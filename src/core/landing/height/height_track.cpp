@@ -69,7 +69,7 @@ void HeightTrack::follow(double stamp, const MeasuredHeight& measured, const Ver
                             rounded(measured.height - update.innovation), " m with 1 sigma of ",
                             rounded(std::sqrt(update.gate_variance)), " m")};
   if (confirmations_ < kConfirmations) {
-    // Two measurements that contradict each other, and nothing yet that says which one is wrong.
+    // Two measurements contradict each other, and nothing says which one is wrong. So the track starts again.
     lose();
     start(stamp, measured);
   }
@@ -119,8 +119,8 @@ void HeightTrack::judge(double stamp, TrackVerdict& verdict) const {
   verdict.height_variance =
       varianceFactor() * filter_.ownCovariance()(0, 0) + filter_.commonVariance().withBaseline();
   verdict.vertical_speed = filter_.state()[1];
-  // Motions are given as much as they scatter themselves; where heights alone tell the speed it scatters as
-  // they do.
+  // Speeds from the motion already entered the filter with their own scatter. When the heights alone give the
+  // speed, it scatters as they do.
   verdict.vertical_speed_variance =
       filter_.covariance()(1, 1) * (parameters_.use_motion ? 1 : varianceFactor());
   if (!verdict.confirmed) {
@@ -143,7 +143,7 @@ SolutionSeparation::Level HeightTrack::protectionLevel(
                             "surface_below");
 }
 
-// By which the filter's own variance is larger than what the pairs claim makes of it.
+// Ratio of the filter's real variance to the one that follows from the pairs' claims.
 double HeightTrack::varianceFactor() const { return parameters_.integrity_monitor ? scatter_.factor() : 1; }
 
 }  // namespace uav_landing

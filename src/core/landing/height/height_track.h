@@ -13,59 +13,59 @@
 
 namespace uav_landing {
 
-/// What the pairs before expect of this one.
+/// Expectation of the previous pairs for this one.
 struct HeightPrior {
   HeightFilter filter;  ///< predicted to the stamp of this pair
   int confirmations = 0;
 
   bool known() const { return filter.initialised(); }
-  /// The height expected or, without one, that of the pair, m.
+  /// The expected height, or the pair's own one when nothing is expected, m.
   double heightOr(double height) const { return known() ? filter.state()[0] : height; }
-  /// The height is one that can be believed: see HeightTrack::kConfirmations.
+  /// Whether the height is confirmed (see HeightTrack::kConfirmations).
   bool confirmed() const;
 };
 
-/// What the track says after a pair.
+/// Result of the track after one pair.
 struct TrackVerdict {
   explicit TrackVerdict(const HeightFilter& now) : filter(now) {}
 
   HeightFilter filter;
   Status status = Status::kSearching;
-  Failure rejection;                                             ///< the pair's height failed the gate
-  double innovation = kUnknown, innovation_variance = kUnknown;  ///< m, m^2
-  double gate_variance = kUnknown;                               ///< m^2, see HeightFilter::Update
-  double height = kUnknown, height_variance = kUnknown;          ///< filtered, m, m^2
+  Failure rejection;  ///< set when the pair's height failed the gate
+  double innovation = kUnknown, innovation_variance = kUnknown;          ///< m, m^2
+  double gate_variance = kUnknown;                                       ///< m^2, see HeightFilter::Update
+  double height = kUnknown, height_variance = kUnknown;                  ///< filtered, m, m^2
   double vertical_speed = kUnknown, vertical_speed_variance = kUnknown;  ///< up, m/s, m^2/s^2
-  Failure failure;  ///< why the filtered height may not be used
+  Failure failure;  ///< why the filtered height must not be used
   bool height_valid = false;
   bool confirmed = false;
-  bool outdated = false;  ///< pairs were left out, for longer than a height may be predicted
+  bool outdated = false;  ///< pairs were rejected for longer than a height may be predicted
   int consecutive_rejections = 0;
 
-  /// The test of the step: innovation.
+  /// Adds the only test of this step, `innovation`.
   void addTo(PairTests& tests) const;
 };
 
-/// The height over the pairs: the Kalman filter, eqs (6) to (8), with the filters that leave one source out,
-/// and when it is found, believed, predicted and lost.
+/// Follows the height over pairs with the Kalman filter of eqs (6) to (8), and with filters that each leave
+/// out one source. It decides when a height is found, confirmed, predicted and lost.
 class HeightTrack {
  public:
-  /// A height is believed after this many measurements in a row agreed: the first plane of a search can be
-  /// wrong, and nothing before it could tell.
+  /// Number of agreeing measurements in a row that confirm a height. The first plane of a search can be
+  /// wrong, and no earlier height could show it.
   static constexpr int kConfirmations = 3;
 
-  /// resets: how often a height was given up before.
+  /// resets: number of heights given up earlier.
   HeightTrack(const KalmanHeightParameters& parameters, int resets);
 
   HeightPrior predict(double T);
-  /// measured: of this pair, unless left_out. speed: vertical speed by the motion, NaN where it has none or
-  /// none is believed.
+  /// Adds a pair. measured: height of this pair; not used if left_out. speed: vertical speed from the motion,
+  /// NaN when there is none or it is not believed.
   TrackVerdict update(double stamp, const MeasuredHeight& measured, bool left_out,
                       const VerticalSpeed& speed);
-  /// Gives the height up, if there is one: nothing has been measured for too long.
+  /// Gives up the height, if there is one, because nothing was measured for too long.
   void lose();
-  /// Of the height (m, m^2) that update() gave. below: by the ground straight below, where that is known; one
-  /// more solution.
+  /// Protection level for the height (m, m^2) that update() returned. below: height above the ground straight
+  /// below, when it is known. It counts as one more solution.
   SolutionSeparation::Level protectionLevel(double height, double height_variance,
                                             const std::optional<GroundMemory::Below>& below) const;
   Status status() const;
@@ -85,7 +85,7 @@ class HeightTrack {
   HeightFilter filter_;
   SolutionSeparation separation_;
   InnovationScatter scatter_, speed_scatter_;
-  double last_accepted_ = 0;  // stamp of the last measurement that was believed, s
+  double last_accepted_ = 0;  // stamp of the last accepted measurement, s
   int confirmations_ = 0;
   int rejections_ = 0;  // in a row
   int resets_;

@@ -7,7 +7,7 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kTells = 2;  // sigma by which the height agrees better with the time that the way tells
+constexpr double kTells = 2;  // in sigmas: how much better the height must fit the other time
 
 }  // namespace
 
@@ -24,8 +24,8 @@ LandingClock::Time LandingClock::follow(double stamp) {
 }
 
 Failure LandingClock::compare(const PairInput& in, const MeasuredHeight& pair, const HeightPrior& prior) {
-  if (in.repeated()) return {};  // the next step has the time of both
-  // By the pair's own height: the one expected is that of the wrong time.
+  if (in.repeated()) return {};  // the next step covers the time of both
+  // The distance uses the pair's own height, because the expected one belongs to the wrong time.
   const std::optional<CameraStep> way = pair.failure ? std::nullopt : cameraStep(in.step(), pair.height);
   if (!way) {
     watch_.skip();
@@ -33,7 +33,7 @@ Failure LandingClock::compare(const PairInput& in, const MeasuredHeight& pair, c
   }
   const std::optional<double> by_way = watch_.follow(*way);
   if (!by_way || !prior.known()) return {};
-  // A way can be wrong, a period of a pattern too long for example. The height has to say the same.
+  // The distance can be wrong, for example by one period of a pattern. So the height must say the same.
   const double off = pair.height - prior.filter.state()[0];
   const double off_by_way = off - prior.filter.state()[1] * (*by_way - in.step().duration);
   const double sum = pair.variance + prior.filter.covariance()(0, 0);

@@ -8,22 +8,23 @@
 
 namespace uav_landing {
 
-/// The time between pairs: stamps that jump, and a clock that was set between two of them.
+/// Time between pairs. It detects stamps that jump, and a clock that was set between two pairs.
 class LandingClock {
  public:
-  /// reset_timeout: s, beyond which stamps have jumped ahead. gate: of heights, sigmas.
+  /// reset_timeout: longest time between pairs, s; beyond it the stamps have jumped. gate: for heights, in
+  /// standard deviations.
   LandingClock(double reset_timeout, double gate) : reset_timeout_(reset_timeout), gate_(gate) {}
 
   struct Time {
-    double T = 0;  ///< s since the pair before; 0 after a jump and for the first pair
-    Failure jump;  ///< everything has to start anew
+    double T = 0;  ///< s since the previous pair; 0 after a jump and for the first pair
+    Failure jump;  ///< set when everything has to start again
   };
   Time follow(double stamp);
-  /// Why everything has to start anew, if the clock was set since the pair before: the camera's way tells
-  /// another time than the stamps, and so does the height of the pair alone. The clock itself goes on: its
-  /// next step is to be noticed as well.
+  /// Detects that the clock was set since the previous pair. Then everything has to start again, and the
+  /// failure says why. The distance that the camera moved must fit another time than the stamps, and so must
+  /// the height of this pair. The watch itself goes on, so that it notices the next setting as well.
   Failure compare(const PairInput& in, const MeasuredHeight& pair, const HeightPrior& prior);
-  /// s since the last pair; none before the first one.
+  /// s since the last pair; nothing before the first one.
   std::optional<double> since(double stamp) const;
   void reset();
 

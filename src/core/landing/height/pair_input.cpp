@@ -28,7 +28,7 @@ PairInput::PairInput(const StereoRig& rig, const StereoDepthResult& given_stereo
       approach(checked(given_approach)),
       turn(turnOf(approach, fuse_imu)) {
   carryPlane(approach.step, approach.readout, stereo);
-  // Seen from where the camera was before.
+  // The repeated image shows the runway from the previous place of the camera.
   if (repeated())
     approach.runway.failure = approach.runway.threshold_failure =
         approach.sight.failure = {Reason::kInconsistent, toString(IntegrityTest::kRepeatedImage)};
@@ -48,7 +48,7 @@ std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step, do
   const Eigen::Vector3d& t = step.translation_over_height;
   const Eigen::Matrix3d covariance = step.covariance.bottomRightCorner<3, 3>();
   if (!t.allFinite() || !covariance.allFinite() || !(step.duration > 0) || !(height > 0)) return std::nullopt;
-  // Of any direction: the length of a vector that is nothing but noise has none.
+  // Uses the variance in all directions, because a vector that is only noise has no direction.
   return CameraStep{step.duration, t.norm() * height, height * height * covariance.trace()};
 }
 

@@ -10,7 +10,7 @@ SurfaceAhead::Shape SurfaceAhead::follow(const StereoDepthResult& stereo, const 
   followUnevenness(stereo.surface_variance, known);
   Shape shape{plane, 0, 0, unevenness_};
   if (follow_bend_ && stereo.below.valid()) {
-    // What corrects the plane of the surface ahead corrects the tangent likewise: both are of the same
+    // The corrections of the plane ahead apply to the tangent as well, because both come from the same
     // images.
     shape.below.g += stereo.below.g - stereo.plane.g;
     shape.bend = shape.below.height() - plane.height();
@@ -21,7 +21,7 @@ SurfaceAhead::Shape SurfaceAhead::follow(const StereoDepthResult& stereo, const 
 }
 
 SurfaceAhead::Shape SurfaceAhead::carry(double stamp) const {
-  constexpr double kLasts = 1;  // s, after which the bend may as well be none or twice as large
+  constexpr double kLasts = 1;  // s, after which the bend may as well be zero or twice as large
   Shape shape;
   shape.unevenness = unevenness_;
   if (!last_bend_) return shape;
@@ -39,8 +39,8 @@ void SurfaceAhead::followUnevenness(double surface_variance, bool known) {
   mean_ = before + share * (surface_variance - before);
   const double square = (surface_variance - before) * (surface_variance - mean_);
   scatter_ += share * (square - scatter_);
-  // Each pair's is the small difference of two large variances: of flat ground it scatters around zero. What
-  // is within its mean's own error is not believed, once there are enough of them to tell.
+  // The value of a pair is a small difference of two large variances. On flat ground it scatters around zero.
+  // So once there are enough pairs, only what exceeds the standard error of the mean counts.
   constexpr int kEnough = 5;
   const double error = pairs_ < kEnough ? 0 : std::sqrt(scatter_ / pairs_);
   unevenness_ = std::max(0.0, mean_ - error);

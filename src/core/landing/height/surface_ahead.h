@@ -7,21 +7,23 @@
 
 namespace uav_landing {
 
-/// How uneven the surface ahead is, and how it bends down to the ground straight below.
+/// Unevenness of the surface ahead, and its bend towards the ground straight below.
 class SurfaceAhead {
  public:
   struct Shape {
     GroundPlane below;         ///< tangent of the surface straight below
-    double bend = 0;           ///< its height less that of the plane ahead, m
+    double bend = 0;           ///< height of the tangent minus height of the plane ahead, m
     double bend_variance = 0;  ///< m^2
-    double unevenness = 0;     ///< variance of the surface about its plane as far as it is certain, m^2
+    /// Variance of the surface about its plane, as far as it is certain, m^2.
+    double unevenness = 0;
   };
-  /// follow_bend: the tangent below is wanted, else the plane itself is taken.
+  /// follow_bend: use the tangent below; otherwise the plane itself is used.
   explicit SurfaceAhead(bool follow_bend) : follow_bend_(follow_bend) {}
 
-  /// A pair with a plane. known: there is a height already; while there is none each pair begins anew.
+  /// Call it for a pair with a plane. known: there is already a height. Until then each pair starts again.
   Shape follow(const StereoDepthResult& stereo, const GroundPlane& plane, bool known);
-  /// A pair without a plane: as on the last one that had one, which is soon another ground.
+  /// Call it for a pair without a plane. It keeps the shape of the last pair that had one. The variance grows
+  /// with time, because other ground follows soon.
   Shape carry(double stamp) const;
 
  private:
@@ -32,9 +34,10 @@ class SurfaceAhead {
   };
   bool follow_bend_;
   std::optional<Bend> last_bend_;
-  double mean_ = 0, scatter_ = 0;  // of the surface's variance of the recent pairs, m^2, m^4
-  int pairs_ = 0;                  // that the mean is of
-  double unevenness_ = 0;          // m^2
+  // Mean of the surface's variance over recent pairs, m^2, and the variance of single pairs about it, m^4.
+  double mean_ = 0, scatter_ = 0;
+  int pairs_ = 0;          // number of pairs in the mean
+  double unevenness_ = 0;  // m^2
 };
 
 }  // namespace uav_landing

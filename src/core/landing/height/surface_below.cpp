@@ -9,12 +9,14 @@
 namespace uav_landing {
 namespace {
 
-// 1 sigma of pitch and roll since the pair before where no motion tells them but the ground's normals, rad.
+// 1 sigma of pitch and roll since the previous pair when only the ground's normals give them, rad.
 constexpr double kTurnByNormals = 0.1 * M_PI / 180;
-// 1 sigma by which a step may climb otherwise than the height does, of its length: the ground slopes.
+// 1 sigma of the difference between the step's climb and the height's change, as a share of the step's
+// length. The ground slopes.
 constexpr double kSlope = 0.05;
 
-/// A camera that hardly moves turns all the same, but an unusual turn is confirmed by nothing then.
+/// Whether the step gives the rotation. A camera that hardly moves may still turn, but then nothing confirms
+/// an unusual turn.
 bool knowsTurn(const ApproachAngleResult::Motion& step, double T) {
   return step.rotation.allFinite() &&
          (!step.failure || step.rotation.norm() <= aircraft::kUnusualTurnRate * T);
@@ -22,13 +24,13 @@ bool knowsTurn(const ApproachAngleResult::Motion& step, double T) {
 
 }  // namespace
 
-/// From the pair before to this one.
+/// The step from the previous pair to this one.
 struct SurfaceBelow::Step {
   double T;       // s
-  double height;  // above the plane ahead, which the motion is of, m
+  double height;  // above the plane ahead, which the motion refers to, m
   bool turn_known;
   Eigen::Matrix3d R;  // rotation, as far as it is known
-  bool believed;      // the pair's normal
+  bool believed;      // whether the pair's normal is believed
   std::optional<Eigen::Vector3d> normal_before;
   const HeightFilter& flight;
 };
@@ -66,8 +68,8 @@ void SurfaceBelow::carry(const PairInput& in, const Ground& ground, const Step& 
   if (step.believed) memory_.settleTurn(*last_normal_, kTurnByNormals);
 }
 
-// Whether a motion can be the way of the camera since the pair before: one wrong step would lift all that is
-// remembered.
+// Whether a motion can be the camera's way since the previous pair. A single wrong step would lift all
+// remembered ground.
 bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, const Step& step) const {
   const Eigen::Vector3d& t = motion.translation_over_height;
   const double T = step.T, height = step.height;
@@ -79,7 +81,8 @@ bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, c
   const double off = height * n.dot(t) + T * step.flight.state()[1];
   const double flight_variance =
       std::pow(kSlope, 2) * t.squaredNorm() + T * T * step.flight.covariance()(1, 1) / (height * height);
-  // A step that claims to know less than the flight so far is not one to carry the ground by.
+  // An uncertain step must not carry the ground. So its variance does not widen the gate beyond that of the
+  // flight so far.
   const double own_variance = std::min(n.dot(covariance * n), flight_variance);
   const double variance = height * height * (own_variance + flight_variance);
   return off * off <= std::pow(gate_, 2) * variance;
@@ -92,7 +95,8 @@ Eigen::Vector3d SurfaceBelow::normal(const PairInput& in, const Ground& ground) 
 
 std::optional<GroundMemory::Below> SurfaceBelow::below(double height, const Eigen::Vector3d& normal) const {
   std::optional<GroundMemory::Below> below = memory_.below(normal);
-  // Since the last pair that was not a picture once more.
+  // The remembered ground refers to the last pair without a repeated image, so the change of height since
+  // then is added.
   if (below && std::isfinite(height_)) below->height += height - height_;
   return below;
 }

@@ -10,19 +10,19 @@
 
 namespace uav_landing {
 
-/// The ground straight below, as it was when it was in view: carried along by the motion.
+/// Remembers the ground while it is in view, and carries it along with the motion until it is straight below.
 class SurfaceBelow {
  public:
-  /// gate: sigmas.
+  /// gate: in standard deviations.
   SurfaceBelow(const StereoRig& rig, double gate) : rig_(rig), gate_(gate) {}
 
-  /// Carries on the ground that was in view, and adds that of this pair. left_out: by a test. post: of the
-  /// pair.
+  /// Carries on the remembered ground and adds the ground of this pair. left_out: a test rejected the pair.
+  /// post: track after this pair.
   void follow(const PairInput& in, const Ground& ground, const MeasuredHeight& measured, bool left_out,
               const TrackVerdict& post);
-  /// Of the ground: by this pair, else that of the pairs before, carried on.
+  /// Ground normal of this pair, or that of the previous pairs carried on.
   Eigen::Vector3d normal(const PairInput& in, const Ground& ground) const;
-  /// The height above it, where the ground has this normal and the published height is this one, m.
+  /// Height above the remembered ground straight below, m. height: published. normal: of the ground.
   std::optional<GroundMemory::Below> below(double height, const Eigen::Vector3d& normal) const;
 
  private:
@@ -31,11 +31,11 @@ class SurfaceBelow {
   bool agreesWithFlight(const ApproachAngleResult::Motion& motion, const Step& step) const;
 
   StereoRig rig_;
-  double gate_;  // sigmas
+  double gate_;  // standard deviations
   GroundMemory memory_;
-  std::optional<double> stamp_;                 // up to which the ground has been carried on, s
+  std::optional<double> stamp_;                 // time to which the ground has been carried on, s
   double height_ = kUnknown;                    // at that time, m
-  std::optional<Eigen::Vector3d> last_normal_;  // of the ground on the pair before
+  std::optional<Eigen::Vector3d> last_normal_;  // ground normal of the previous pair
 };
 
 }  // namespace uav_landing

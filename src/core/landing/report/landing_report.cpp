@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-/// By which share of itself the depth of the points on the plane is another one, in units of the height,
-/// where the ground has the normal b instead of a.
+/// Relative change of the depth of the points on the plane, in units of the height, if the ground has the
+/// normal b instead of a.
 double depthChange(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
                    const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   double by_a = 0, by_b = 0;
@@ -24,16 +24,16 @@ double depthChange(const StereoRig& rig, const std::vector<StereoDepthResult::Po
   return by_a > 0 && by_b > 0 ? by_a / by_b - 1 : 0;
 }
 
-/// What the step does not know of the velocity's covariance. depth_change: by which share of itself lengths
-/// were changed.
+/// Part of the velocity's covariance that the step does not know. depth_change: relative change that was
+/// applied to lengths.
 Eigen::Matrix3d doubtOfVelocity(const PairInput& in, const PairVerdict& pair, const Eigen::Vector3d& velocity,
                                 double depth_change, double angle_variance) {
   Eigen::Matrix3d doubt = Eigen::Matrix3d::Zero();
-  // After a gap an aircraft may have become that fast, but a wrong step is as likely.
+  // After a gap the aircraft may really have become that fast, but a wrong step is as likely.
   if (pair.tests.result(IntegrityTest::kVelocity).ratio > AttitudeFilter::kDoubtful.squared())
     doubt += pair.velocity.change * pair.velocity.change.transpose();
   doubt += depth_change * depth_change * velocity * velocity.transpose();
-  // The vertical part is as uncertain as the angle by another normal.
+  // With another normal, the vertical part is as uncertain as the angle.
   const Eigen::Vector3d n = normalOfAngle(in.approach, in.step()).n;
   if (n.allFinite()) doubt += velocity.squaredNorm() * angle_variance * n * n.transpose();
   return doubt;
@@ -120,7 +120,7 @@ Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const
 
 CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
                           const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt) {
-  // Its lengths are by the depths of a normal that knows nothing of the rig's rotation.
+  // The lengths of the step come from depths of a normal that does not know the rig's rotation.
   const Eigen::Vector3d& n = in.approach.n;
   const bool another = ground.plane.valid() && n.allFinite();
   const double change = another ? depthChange(rig, in.stereo.points, n, ground.plane.normal()) : 0;

@@ -11,38 +11,40 @@
 
 namespace uav_landing {
 
-// From the values of the parts to the result that is published. Each fills its own fields.
+// These functions carry the results of the parts into the published result. Each fills its own fields.
 
-/// The first reason counts: later ones follow from it.
+/// Sets the failure unless there is one already: the first reason counts, as later ones follow from it.
 void addFailure(LandingResult& result, const Failure& failure);
-/// The height is not valid for this reason, if there is one.
+/// Makes the height invalid if there is a failure.
 void refuseHeight(LandingResult& result, const Failure& failure);
 
-/// Heights of the pair and of the track, status and counts.
+/// Reports the heights of the pair and of the track, the status and the counts.
 void reportHeight(const MeasuredHeight& measured, const PairVerdict& pair, const TrackVerdict& post,
                   LandingResult& result);
 
-/// Protection level with its source, and whether the height is not valid for it. below: see SurfaceBelow.
+/// Reports the protection level and its source. The height becomes invalid when the level exceeds the alert
+/// limit. below: see SurfaceBelow.
 void reportProtection(const HeightTrack& track, const std::optional<GroundMemory::Below>& below,
                       const KalmanHeightParameters& parameters, LandingResult& result);
 
-/// Approach angles with their variances.
+/// Reports the approach angles with their variances.
 void reportAngle(const PairInput& in, const Ground& ground, const PathDoubt& doubt,
                  const VelocityWatch::Verdict& velocity, LandingResult& result);
-/// Whether the angle is valid. refusal: what else speaks against it, if anything.
+/// Decides whether the angle is valid. refusal: other reason against it, if any.
 void judgeAngle(const PairInput& in, const Failure& refusal, double max_stddev_deg, LandingResult& result);
 
-/// What else than its own uncertainty speaks against an angle, the first reason first. otherwise: where no
-/// test of the pair refuses it.
+/// Reason against an angle besides its own uncertainty; the first one counts. otherwise: returned when no
+/// test of the pair refuses the angle.
 Failure refusalOf(const MeasuredHeight& measured, const PairVerdict& pair, const Failure& otherwise);
 
-/// Velocity and turn by the step since the pair before, with what the step itself does not know of them.
+/// Velocity and rate of turn from the step since the previous pair. The covariance contains errors that the
+/// step itself does not show.
 CameraTwist believedTwist(const StereoRig& rig, const PairInput& in, const Ground& ground,
                           const PairVerdict& pair, const LandingResult& result, const MotionDoubt& doubt);
 
 void reportTwist(const CameraTwist& twist, LandingResult& result);
 
-/// The rig's rotation. One that is certainly too large withdraws everything.
+/// Reports the rig's rotation. If it is certainly too large, height, angle and position become invalid.
 void reportRig(const RigRotation& rotation, double max_rotation_deg, LandingResult& result);
 
 }  // namespace uav_landing

@@ -12,7 +12,8 @@ namespace uav_landing {
 namespace {
 
 constexpr Sigmas kAgreement(5);
-// 1 sigma at most of what is told, as a share of the distance to the threshold, and m.
+// Largest 1 sigma of a reported position: a share of the distance to the threshold, but at least so many
+// metres.
 constexpr double kLargestX = 0.06, kLeastX = 12, kLargestY = 0.004, kLeastY = 1.5;
 
 struct Value {
@@ -36,7 +37,7 @@ void contradict(const char* what, const Value& near, const Value& outline, Landi
                                 rounded(near.value), " m: check runway/width and runway/length")};
 }
 
-/// near: by edges and threshold.
+/// near: from edges and threshold.
 Value handedOver(const char* name, const Value& near, const Value& outline, double largest_stddev,
                  LandingResult& result) {
   if (!outline.known()) return near;
@@ -80,7 +81,7 @@ void reportHeightAboveRunway(const TrackedPosition& outline, double bend, bool w
   const Value by_stereo{ahead.height, ahead.variance};
   Value by_outline;
   if (outline.known()) by_outline = {outline.position.z(), outline.variance.z()};
-  // What the slope of the ground before the runway adds to the height's own bound.
+  // Addition to the bound of the height, because the ground before the runway may slope.
   const double slope = normalQuantile(parameters.integrity_risk) *
                        std::sqrt(std::max(0.0, by_stereo.variance - result.height_variance));
   const double stereo_level = result.height_protection_level + slope;

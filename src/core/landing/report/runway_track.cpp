@@ -12,22 +12,23 @@ namespace uav_landing {
 namespace {
 
 constexpr double kAcceleration = 1.0;                  // m/s^2, along each axis
-constexpr double kForwardSpeed = 60, kOtherSpeed = 8;  // m/s, 1 sigma before anything is known
-// 1 sigma that all pairs have in common, by the texture of the ground and what is painted, as a share of the
-// distance for x and y and of the height for z.
+constexpr double kForwardSpeed = 60, kOtherSpeed = 8;  // m/s, 1 sigma before any measurement
+// 1 sigma of the error that all pairs have in common, from the ground's texture and the paint. It is a share
+// of the distance for x and y, and of the height for z.
 constexpr double kSystematicX = 0.012, kSystematicY = 0.0005, kSystematicZ = 0.012;
-// Whether stripes lie along the edges, which moves them in all pairs alike, is most of a variance.
+// Bounds of the common share of a measurement's variance. Most of it comes from the question whether stripes
+// lie along the edges, which moves the edges in all pairs alike.
 constexpr double kCommon = 0.7,
                  kMostCommon = 0.9;    // share of a measurement's variance, at least and at most
-constexpr double kSpeedError = 0.005;  // of the speed: by axes that are a little turned
-constexpr double kGate = 5;            // sigmas
-constexpr double kPatience = 12;       // s without the outline
-constexpr double kChartError = 0.10;   // of width and length
+constexpr double kSpeedError = 0.005;  // share of the speed, as the axes are slightly turned
+constexpr double kGate = 5;            // standard deviations
+constexpr double kPatience = 12;       // s without the outline after which the position is forgotten
+constexpr double kChartError = 0.10;   // share of width and length
 constexpr Sigmas kContradiction(3);    // between the height and the one without an element
 constexpr Sigmas kOtherSize(4);
-constexpr double kSameSize = 0.04;  // by which a size may differ from the chart's and be the same
-constexpr int kPersistent = 6;      // measurements in a row that are rejected, before they are believed
-constexpr int kAgreeing = 5;        // pairs in a row
+constexpr double kSameSize = 0.04;  // largest relative difference between sizes that count as the same
+constexpr int kPersistent = 6;      // rejected measurements in a row after which they are accepted
+constexpr int kAgreeing = 5;        // pairs with another size that contradict the chart
 
 }  // namespace
 
@@ -138,8 +139,8 @@ double RunwayTrack::protectionLevel() const {
       normalQuantile(std::min(1.0, parameters_.integrity_risk / parameters_.fault_probability));
   const double height = axes_[2].value(), stddev = std::sqrt(axes_[2].variance());
   const double distance = std::max(0.0, -axes_[0].value());
-  // h = v D (D + L) / (f L) with D in proportion to the width; the length and the outline's taper take up
-  // half of what that makes more than in proportion.
+  // h = v D (D + L) / (f L), with D in proportion to the width. If only the width is wrong, h grows faster
+  // than in proportion. Half of that excess is compensated by the length and the outline's taper.
   const double share = runway_.length > 0 ? distance / (distance + runway_.length) : 0;
   const double by_chart = kChartError * height * (1 + 0.5 * share);
   double level = std::max(factor * stddev, by_chart + fault_factor * stddev);

@@ -11,10 +11,10 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-// 1 sigma of the baseline's direction after a calibration, beside what its measurement claims, rad.
+// 1 sigma of the baseline's direction after a calibration, in addition to the claim of its measurement, rad.
 constexpr double kBaselineCalibration = 0.2 * kDegree;
 
-/// The ground's normal by stereo alone against one known from elsewhere.
+/// Tests the normal from stereo alone against one from another source.
 void testNormal(IntegrityTest test, const GroundPlane& plane, const GroundNormal& normal, PairTests& tests) {
   if (!plane.valid() || !normal.known()) return;
   const Eigen::Matrix<double, 3, 2> basis = tangents(plane.normal());
@@ -41,7 +41,8 @@ void testRegions(const MeasuredHeight& measured, PairTests& tests) {
     if (!without.known()) continue;
     ++count;
     const double d = without.height - measured.height;
-    // The whole has the rest in it, but the grey levels besides.
+    // The full height uses the other regions and, in addition, grey levels. So the variance without the
+    // region serves as that of the difference.
     const double allowed = without.variance;
     if (d * d <= worst * allowed) continue;
     worst = d * d / allowed;
@@ -57,7 +58,7 @@ void testWidth(const MeasuredHeight& measured, PairTests& tests) {
             measured.width_height_variance + measured.stereo_variance);
 }
 
-/// What else says how the ground lies, against stereo alone.
+/// Tests stereo alone against the other sources of the ground's direction.
 void testDirections(const PairInput& in, const Ground& ground, PairTests& tests) {
   const ApproachAngleResult& approach = in.approach;
   const GroundPlane& plane = ground.alone;
@@ -107,7 +108,7 @@ PairVerdict PairMonitor::check(const PairInput& in, const Ground& ground, const 
 
   const auto failed = tests.firstFailed(TestStep::kPair, OnFailure::kPairLeftOut);
   verdict.rig_believed = !failed;
-  // A picture once more has no angle of its own.
+  // A repeated image has no angle of its own.
   verdict.angle_refused = !in.repeated() && failed;
   if (!has_height || verdict.failure) return verdict;
   const std::string problem = problemOf(failed);
@@ -127,7 +128,8 @@ void PairMonitor::testRig(const PairInput& in, PairVerdict& verdict) {
     verdict.rig_turned = rig_change_.mean();
 }
 
-// Where the right camera is by the rows of the pair, against its place and the skew.
+// Tests the direction to the right camera, as the rows of this pair show it, against the calibration and the
+// skew.
 void PairMonitor::testBaseline(const PairInput& in, PairTests& tests) const {
   const BaselineDirection& measured = in.stereo.baseline_direction;
   const BaselineDirection by_skew = baselineOfSkew(rig_, in.stereo, in.step());
@@ -137,7 +139,7 @@ void PairMonitor::testBaseline(const PairInput& in, PairTests& tests) const {
             measured.covariance + by_skew.covariance + calibration);
 }
 
-// The way since the pair before against the speed on those before that.
+// Tests the distance since the previous pair against the speed in earlier steps.
 void PairMonitor::testStandstill(const PairInput& in, double height, PairTests& tests) {
   const std::optional<CameraStep> way = cameraStep(in.step(), height);
   if (!way) return speed_.skip(in.T);
@@ -146,7 +148,7 @@ void PairMonitor::testStandstill(const PairInput& in, double height, PairTests& 
   speed_.learn(*way, !tests.failed(IntegrityTest::kStandstill));
 }
 
-// Why a pair is left out, or "".
+// Returns why the pair is rejected, or "".
 std::string PairMonitor::problemOf(const std::optional<IntegrityTest>& failed) {
   if (failed) {
     failed_ = std::min(failed_ + 1, HeightTrack::kConfirmations);
@@ -159,7 +161,8 @@ std::string PairMonitor::problemOf(const std::optional<IntegrityTest>& failed) {
   }
   if (speed_.stands()) return "standstill: no motion has been seen since for long enough";
   if (failed_ == 0) return "";
-  // Among pairs of a lasting fault some pass by chance: as many in a row are asked for as failed.
+  // During a lasting fault, some pairs pass by chance. So as many passes in a row are required as pairs
+  // failed.
   if (++passed_ >= failed_) {
     failed_ = passed_ = 0;
     return "";

@@ -14,35 +14,35 @@
 
 namespace uav_landing {
 
-/// What the tests say of a pair.
+/// Result of the tests of a pair.
 struct PairVerdict {
   explicit PairVerdict(const PairTests& none) : tests(none) {}
 
-  PairTests tests;             ///< of the steps ground and pair
-  Failure failure;             ///< why a pair that has a height is left out
-  bool angle_refused = false;  ///< no angle that is made of this pair is believed either
-  /// The pair passed, but has been left out for those before it that failed.
+  PairTests tests;             ///< tests of the steps "ground" and "pair"
+  Failure failure;             ///< why a pair that has a height is rejected
+  bool angle_refused = false;  ///< whether angles from this pair must not be used either
+  /// The pair passed its tests, but is rejected because previous pairs failed.
   bool confirming = false;
-  bool rig_believed = true;               ///< what the pair says of the rig may be learned
-  std::optional<RigRotation> rig_turned;  ///< another rotation than before, the rig's from now on
+  bool rig_believed = true;               ///< whether the rig may be learned from this pair
+  std::optional<RigRotation> rig_turned;  ///< new rotation of the rig, valid from now on
   VelocityWatch::Verdict velocity;
 
   bool leftOut() const { return static_cast<bool>(failure); }
-  /// The sources agree on which part of the motion was downwards.
+  /// Whether the sources agree on the vertical direction of the motion.
   bool knowsDown() const {
     return !tests.failed(IntegrityTest::kVanishingPoint) && !tests.failed(IntegrityTest::kMotionNormal);
   }
 };
 
-/// Tests the sources of a pair against each other and against the pairs before. A failed test makes the pair
-/// give no height, as its line in the catalogue says (integrity/test_catalogue.h).
+/// Tests the sources of a pair against each other and against the previous pairs. What a failed test does is
+/// stated in the catalogue (integrity/test_catalogue.h): mostly, the pair gives no height.
 class PairMonitor {
  public:
   PairMonitor(const StereoRig& rig, const KalmanHeightParameters& parameters);
 
-  /// Whether the vertical disparities of a pair say nothing of the rig. Before check().
+  /// Whether the vertical disparities of a pair must not be used for the rig. Call it before check().
   bool doubtsRig(const RigRotation& measured) const { return rig_change_.doubts(measured); }
-  /// duration_variance: of durations between stamps, over their squares.
+  /// duration_variance: of durations between stamps, divided by their squares.
   PairVerdict check(const PairInput& in, const Ground& ground, const MeasuredHeight& measured,
                     const HeightPrior& prior, double duration_variance);
 
@@ -57,7 +57,8 @@ class PairMonitor {
   RigChange rig_change_;
   SpeedMemory speed_;
   VelocityWatch velocity_;
-  int failed_ = 0, passed_ = 0;  // pairs: failures before and passes since, up to three
+  // Pairs that failed, and pairs that passed since; each at most kConfirmations.
+  int failed_ = 0, passed_ = 0;
 };
 
 }  // namespace uav_landing

@@ -9,14 +9,14 @@
 namespace uav_landing {
 namespace {
 
-// Error that noise alone stays within with 95 %, squared and over its variance.
+// Limit of the squared normalised error that noise alone exceeds in 5 % of the cases.
 const double kCertain = chiSquareLimit(0.05, 1);
 
 double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
   return t.allFinite() ? t.dot(covariance * t) / t.squaredNorm() : covariance.trace();
 }
 
-/// The plane has turned against the pairs before, so that they say nothing of it.
+/// Whether the plane has turned against the previous pairs, so that they say nothing about it.
 bool hasTurned(const PairTests& tests) {
   return tests.result(IntegrityTest::kTilt).ratio > AttitudeFilter::kDoubtful.squared();
 }
@@ -42,9 +42,9 @@ double PathDoubt::variance(const PairInput& in, const Ground& ground,
   return variance;
 }
 
-// Variance of an angle that is measured against this normal, if the ground has the other one. The angle's
-// matches may have made up for the difference or not, so its part along the direction of motion counts as 1
-// sigma.
+// Variance of an angle that was measured against the normal `used`, if the ground has the other one. The
+// matches may or may not have compensated for the difference. So its part along the direction of motion
+// counts as 1 sigma.
 double PathDoubt::OtherNormal::angleVariance(const Eigen::Vector3d& used,
                                              const ApproachAngleResult::Motion& motion) const {
   const Eigen::Vector3d turn = normal - used, &t = motion.translation_over_height;
@@ -59,14 +59,15 @@ std::vector<PathDoubt::OtherNormal> PathDoubt::otherNormals(const PairInput& in,
   std::vector<OtherNormal> normals;
   const GroundPlane& plane = ground.plane;
   const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
-  // approach_angle knows nothing of the rig's rotation, nor of how well that is known.
+  // The stage approach_angle does not know the rig's rotation, nor how uncertain that is.
   if (!ground.tilted && rig_watch_ && plane.valid())
     normals.push_back({plane.normal(), plane.normalCovariance() - used.covariance, none, 1});
-  // Nor of the pairs before: a plane that turns against them within what a test allows is one of two.
+  // It does not know the previous pairs either. If the plane turned against them within the limit of a test,
+  // either may be right.
   if (plane.valid())
     normals.push_back({ground.normal.n, none,
                        ground.tilted ? none : kCertain * (ground.normal.covariance + used.covariance), 1});
-  // Of a plane and a vanishing point that contradict each other either may be right.
+  // If a plane and a vanishing point contradict each other, either may be right.
   const double doubt = by_vanishing_point_.probability(in.approach.stamp);
   if (doubt > 0) {
     const Eigen::Matrix3d covariance = by_vanishing_point_.variance() * Eigen::Matrix3d::Identity();
@@ -74,7 +75,7 @@ std::vector<PathDoubt::OtherNormal> PathDoubt::otherNormals(const PairInput& in,
     if (ground.alone.valid()) normals.push_back({ground.alone.normal(), none, none, doubt});
   }
   const double by_motion = by_motion_.probability(in.approach.stamp);
-  // Which of both the angle's matches have followed is not known: all of the difference counts.
+  // It is not known which of both normals the angle's matches followed, so the whole difference counts.
   if (by_motion > 0)
     normals.push_back(
         {used.n + by_motion_.turn(), by_motion_.variance() * Eigen::Matrix3d::Identity(), none, by_motion});
@@ -90,7 +91,8 @@ void PathDoubt::updateByVanishingPoint(const PairInput& in, const Ground& ground
   const ApproachAngleResult& approach = in.approach;
   const Eigen::Vector3d &n = approach.n, &p = approach.vanishing_direction;
   const bool leaps = vanishing_.leaps(in.approach.stamp, {p, approach.vanishing_covariance}, n, in.turn);
-  // One that contradicts by less has turned the normal itself.
+  // A jump that fails the test is no evidence. A smaller one is, because such a vanishing point has turned
+  // the normal itself.
   if (leaps && tests.failed(IntegrityTest::kVanishingPoint)) return;
   if (!ground.alone.valid() || !p.allFinite()) return;
   by_vanishing_point_.add(in.approach.stamp, tests.result(IntegrityTest::kVanishingPoint).ratio,

@@ -10,24 +10,24 @@
 
 namespace uav_landing {
 
-/// How far an approach angle is to be believed, as the ground may have another normal than it was measured
-/// against: by the vanishing point, by the images' motion, by the rig, by the pairs before.
+/// Uncertainty of an approach angle because the ground may have another normal than the one used. Evidence
+/// comes from the vanishing point, the motion in the images, the rig and the previous pairs.
 class PathDoubt {
  public:
   explicit PathDoubt(const KalmanHeightParameters& parameters);
 
-  /// Variance of the angle of this motion by other normals, rad^2. Before update() it has the doubt of the
-  /// pairs before alone.
+  /// Variance of this motion's angle from other possible normals, rad^2. Before update() it contains the
+  /// doubt of the previous pairs only.
   double variance(const PairInput& in, const Ground& ground, const ApproachAngleResult::Motion& motion) const;
-  /// Not of a picture that came once more. tests: of the pair.
+  /// Do not call it for a repeated image. tests: of this pair.
   void update(const PairInput& in, const Ground& ground, const PairTests& tests);
 
  private:
-  /// One that the ground may have instead of that which the approach angle is measured against.
+  /// A normal that the ground may have instead of the one in use.
   struct OtherNormal {
     Eigen::Vector3d normal;
-    Eigen::Matrix3d covariance;  // by which it is less certain than that, rad^2
-    Eigen::Matrix3d by_noise;    // of the difference, as far as that is expected, rad^2
+    Eigen::Matrix3d covariance;  // excess over that of the normal in use, rad^2
+    Eigen::Matrix3d by_noise;    // part of the difference that noise explains, rad^2
     double probability;
     double angleVariance(const Eigen::Vector3d& used, const ApproachAngleResult::Motion& motion) const;
   };
@@ -41,8 +41,8 @@ class PathDoubt {
   VanishingMemory vanishing_;
 };
 
-/// The normal that an angle of this motion is measured against: the one given with what the motion's own
-/// adds.
+/// Normal that an angle of this motion is measured against: the given one, averaged with the motion's own
+/// normal when that is known.
 GroundNormal normalOfAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion);
 
 }  // namespace uav_landing

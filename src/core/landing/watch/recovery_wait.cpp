@@ -10,16 +10,16 @@ Failure RecoveryWait::follow(double T, const PairVerdict& pair, const PairTests&
                              const TrackVerdict& post) {
   const bool sinks = tests.failed(IntegrityTest::kSinkRate);
   const bool rejected = pair.leftOut() || post.rejection;
-  // A pair that passes, but not as long as others failed, is left out and contradicts nothing.
+  // A pair that passes, but is rejected because others failed, contradicts nothing.
   const bool contradicted = (rejected && !pair.confirming) || sinks;
   Recovery::Pair kind = Recovery::Pair::kSilent;
   if (contradicted)
     kind = Recovery::Pair::kContradicts;
   else if ((pair.confirming || post.status == Status::kTracking) &&
-           !tests.failed(IntegrityTest::kVanishingPoint))  // says that what was contradicted is still wrong
+           !tests.failed(IntegrityTest::kVanishingPoint))  // else the fault is still there
     kind = Recovery::Pair::kAgrees;
-  // What is missing without a contradiction is no fault. Nor does anything say which of the first heights is
-  // wrong that contradict each other.
+  // A height that is missing without a contradiction is no fault. First heights that contradict each other
+  // are one, because nothing says which of them is wrong.
   const bool disputed = contradicted && !post.confirmed;
   recovery_.follow(std::min(T, max_age_), kind, post.outdated || disputed || sinks);
   if (!recovery_.pending()) return {};

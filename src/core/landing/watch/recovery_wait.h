@@ -6,7 +6,7 @@
 
 namespace uav_landing {
 
-/// No height after contradictions before nothing has contradicted for recovery_time.
+/// After contradictions, the height is not valid until nothing has contradicted it for recovery_time.
 class RecoveryWait {
  public:
   explicit RecoveryWait(const KalmanHeightParameters& parameters)
@@ -14,7 +14,8 @@ class RecoveryWait {
         needed_(parameters.recovery_time),
         recovery_(parameters.recovery_time) {}
 
-  /// Why the height is still waited for, if so. tests: all of the pair. T: s since the pair before.
+  /// Returns a failure while the height has to wait. T: s since the previous pair. tests: all tests of the
+  /// pair.
   Failure follow(double T, const PairVerdict& pair, const PairTests& tests, const TrackVerdict& post);
 
  private:

@@ -13,7 +13,7 @@ Failure SinkRateWatch::check(const PairInput& in, const Ground& ground, const He
   const std::optional<HeightMemory::Expected> before = memory_.expected();
   const HeightFilter& filter = post.filter;
   const double scale = before ? before->height : filter.initialised() ? filter.state()[0] : kUnknown;
-  // While normals contradict each other nobody knows which part of the motion was downwards.
+  // While normals contradict each other, the vertical part of the motion is not known.
   carry(in, ground, scale, doubt, !tests.failed(IntegrityTest::kTilt));
   const std::optional<HeightMemory::Expected> expected = memory_.expected();
   if (expected && filter.initialised())
@@ -38,7 +38,7 @@ void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scal
     speed = withDurations(verticalSpeed(in.step(), plane, scale, 0, 0, parameters_.acceleration_stddev),
                           doubt.duration_variance);
     velocity = in.step().translation_over_height.norm() * scale / in.step().duration;
-    // A normal that is doubted makes it as wrong as the angle.
+    // A doubtful normal makes the vertical speed as wrong as the angle.
     speed.variance += velocity * velocity * doubt.angle_variance;
   }
   if (in.T > 0) memory_.carry(in.T, speed.speed, speed.variance, velocity);

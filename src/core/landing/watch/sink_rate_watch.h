@@ -9,13 +9,13 @@
 
 namespace uav_landing {
 
-/// The published height against the one of before, carried on by the motion, which needs no stereo.
+/// Tests the published height against an earlier one, carried on by the motion. The motion needs no stereo.
 class SinkRateWatch {
  public:
   explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
 
-  /// Why the published height is not valid, if so. errors: of the pair's height. doubt: of its step. tests:
-  /// those made so far; sink_rate is added.
+  /// Returns why the published height is not valid, if so. errors: of the pair's height. doubt: of its step.
+  /// tests: those made so far; sink_rate is added.
   Failure check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
                 const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests);
 

@@ -18,7 +18,7 @@ VelocityWatch::Verdict VelocityWatch::follow(const PairInput& in, double height,
   if (step.failure || !(step.duration > 0) || !(height > 0) || !covariance.allFinite()) {
     velocity_.skip(in.T);
   } else if (step.rotation.norm() > aircraft::kUnusualTurnRate * step.duration) {
-    // A turn that may be a wrong one would turn the velocity, and contradict all that comes.
+    // If this turn is wrong, it would turn the velocity as well, and all later steps would contradict.
     velocity_.skip(step.duration);
   } else {
     const VelocityMemory::Step known{step.duration, rotationMatrix(step.rotation),
@@ -40,7 +40,7 @@ VelocityWatch::Verdict VelocityWatch::verdict() const {
 
 void VelocityWatch::compare(const PairInput& in, const VelocityMemory::Step& step, PairTests& tests,
                             Verdict& verdict) {
-  // After a gap windows are short at first.
+  // After a gap, windows are short at first.
   if (std::isfinite(in.approach.window.duration))
     window_ = std::min(std::max(in.approach.window.duration, window_ - in.T), longest_window_);
   const std::optional<VelocityMemory::Innovation> innovation = velocity_.follow(step);

@@ -6,23 +6,23 @@
 
 namespace uav_landing {
 
-/// The step since the pair before against the velocity on those before that. Only the angle is less certain
-/// for a contradiction: what is wrong in the direction of flight hardly changes a height.
+/// Tests the step since the previous pair against the velocity of earlier steps. A contradiction only makes
+/// the angle less certain, because an error in the direction of flight hardly changes a height.
 class VelocityWatch {
  public:
-  /// longest_window: s, of an approach angle.
+  /// longest_window: longest sliding window of an approach angle, s.
   explicit VelocityWatch(double longest_window) : longest_window_(longest_window) {}
 
   struct Verdict {
-    Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< against the pairs before, m/s
-    /// By how much the approach angle may be wrong for steps that contradicted, rad: of the path, which has
-    /// such a step in it for as long as the window is, and of the step alone.
+    Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< difference from the velocity of earlier steps, m/s
+    /// Possible error of the approach angle because of steps that contradicted, rad. path_doubt holds as long
+    /// as such a step is in the sliding window; step_doubt belongs to this step.
     double path_doubt = 0, step_doubt = 0;
   };
-  /// Not of a picture that came once more: the next step is over the time of both. height: m.
-  /// duration_variance: of durations between stamps, over their squares.
+  /// Tests the step of a pair. Do not call it for a repeated image, because the next step covers the time of
+  /// both. height: m. duration_variance: of durations between stamps, divided by their squares.
   Verdict follow(const PairInput& in, double height, double duration_variance, PairTests& tests);
-  /// Without a new step.
+  /// Verdict for a pair without a new step.
   Verdict verdict() const;
 
  private:
@@ -30,8 +30,9 @@ class VelocityWatch {
 
   double longest_window_;
   VelocityMemory velocity_;
-  double window_ = 0;  // of the angles of late, s
-  double doubt_ = 0;   // angle of the last steps that contradicted less the one expected, rad
+  double window_ = 0;  // recent length of the angle's window, s
+  // Angle of the last contradicting steps minus the expected one, absolute value, rad.
+  double doubt_ = 0;
 };
 
 }  // namespace uav_landing

@@ -5,8 +5,8 @@
 
 namespace uav_landing {
 
-/// Why the direction that the pair sees is not to be taken for the runway's; none where it may be. pair: what
-/// the tests say of it.
+/// Returns why the pair's direction must not be taken for the runway's; no failure when it may be. pair:
+/// result of its tests.
 Failure yawFailure(const PairInput& in, const PairVerdict& pair);
 
 }  // namespace uav_landing

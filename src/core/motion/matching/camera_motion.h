@@ -8,33 +8,35 @@
 
 namespace uav_landing {
 
-// Motion is scale-free here: lengths are in units of the height now, so that the ground plane is the unit
-// normal n (n.X = 1 on it) and t is t / h.
+// Motion has no scale here: the unit of length is the height now. So the ground plane is the unit normal n
+// (n.X = 1 on it), and the translation is t = translation / height.
 
-/// Camera motion from a frame then to the frame now: x_now = R x_then - t, t in the frame now.
+/// Camera motion from a frame then to the frame now: x_now = R x_then - t. The translation t is in the frame
+/// now.
 struct CameraMotion {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
 
-  /// Where the point on the ray r (third component 1) at inverse depth w was seen then, up to scale.
+  /// Direction in which a point was seen then, not normalised. The point lies on the ray r (third component
+  /// 1) at the inverse depth w.
   Eigen::Vector3d seenThen(const Eigen::Vector3d& r, double w) const { return R.transpose() * (r + w * t); }
 };
 
-/// The same motion for so many times as long.
+/// Extrapolates a motion to `times` its duration. Rotation and translation grow in proportion.
 inline CameraMotion carriedOn(const CameraMotion& motion, double times) {
   const Eigen::AngleAxisd turn(motion.R);
   return {Eigen::AngleAxisd(turn.angle() * times, turn.axis()).toRotationMatrix(), motion.t * times};
 }
 
-/// How the camera moves now if it has moved evenly over the duration (s) of that motion.
+/// Velocities of the camera now, if it moved evenly over the duration (s) of this motion.
 inline RowMotion evenMotion(const CameraMotion& motion, double duration) {
   return {rotationVector(motion.R) / duration, motion.t / duration};
 }
 
-/// Rotation from then to now that is known beforehand, of an inertial sensor.
+/// Rotation from then to now as an inertial sensor measured it, independent of the images.
 struct RotationPrior {
   Eigen::Matrix3d R;
-  Eigen::Matrix3d covariance;  ///< of its rotation vector, in the frame now, rad^2
+  Eigen::Matrix3d covariance;  ///< of the rotation vector of R, in the frame now, rad^2
 };
 
 }  // namespace uav_landing

@@ -8,8 +8,8 @@ namespace {
 
 class MeansLine {
  public:
-  // Least squares over the windows that are no more than limit (grey levels) off the line so far. False when
-  // they do not tell a line.
+  // Least squares over the windows that are within limit (grey levels) of the line so far. Returns false when
+  // they do not determine a line.
   bool fit(const std::vector<WindowMeans>& windows, double limit) {
     Sums sums;
     for (const WindowMeans& means : windows)

@@ -5,20 +5,22 @@
 
 namespace uav_landing {
 
-/// Mean grey levels of the windows around a corner.
+/// Mean grey levels of the two windows around one corner.
 struct WindowMeans {
   double now, then;
 };
 
-/// By what the image then is to be multiplied to be as bright as the one now.
+/// Factor that makes the image then as bright as the image now.
 struct CommonGain {
   double gain = 1;
-  double variance = std::numeric_limits<double>::infinity();  ///< without a limit when nothing tells it
+  /// Infinite when the windows do not determine the gain.
+  double variance = std::numeric_limits<double>::infinity();
 };
 
-/// The slope of the straight line through the windows' means, now over then, which neither blur nor noise
-/// changes; without those more than three stddevs off the line. Windows off the line are so for a cause that
-/// many share, as paint brighter than the camera can see: more of them tell the line no better.
+/// Fits a straight line to the means of the windows, now over then. Its slope is the gain; neither blur nor
+/// noise changes it. Windows more than three standard deviations off the line are rejected. The variance does
+/// not fall with the number of windows: errors often have a common cause, such as paint brighter than the
+/// camera can see.
 CommonGain commonGain(const std::vector<WindowMeans>& windows);
 
 }  // namespace uav_landing

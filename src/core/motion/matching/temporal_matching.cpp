@@ -16,35 +16,37 @@
 namespace uav_landing {
 namespace {
 
-// Whole shifts tried at full size around a place known to about a pixel.
+// Whole shifts that are tried at full size around a place known to about a pixel.
 constexpr int kFineSteps = 3;
-// Error of a match that its residuals do not show (interpolation, surface in the window not flat), pixels.
+// Error of a match that its residuals do not show, from interpolation and uneven ground in the window,
+// pixels.
 constexpr double kStddevFloor = 0.03;
-constexpr int kReach = 2;  // px, of smoothing and gradients beyond a window
-// Of the difference of a window's gain from the common one, what is taken out: one camera has seen both
-// windows. The rest is believed, as texture that is blurred differently from near and far really differs in
-// contrast.
+constexpr int kReach = 2;  // px beyond a window that smoothing and gradients reach
+// Share of a window's deviation from the common gain that is removed. One camera took both images, so most
+// gains should be equal. The rest is kept, because texture that is blurred differently from near and from far
+// really differs in contrast.
 constexpr double kHeldGain = 0.6;
-// By how much gains of windows differ from the common one, typically.
+// Typical deviation of a window's gain from the common one.
 constexpr double kGainScatter = 0.1;
-// Edges of what is brighter than the camera can see stand where their blur becomes white: with e times the
-// exposure they are farther out by about the blur's width, 1 sigma, pixels.
+// Shift of clipped edges when the exposure grows by the factor e, pixels. Such an edge stands where the blur
+// of a bright object reaches white, so it moves outwards by about 1 sigma of the blur.
 constexpr double kClippedShift = 1.0;
-// Windows that shrink or grow more than this (as areas) do not look alike any more.
+// Windows whose area changes by more than this no longer look alike.
 constexpr double kSmallestScale = 0.12, kLargestScale = 6.0;
 // A second peak at least this share of the best makes a match ambiguous.
 constexpr double kUniqueness = 0.92;
 
-// Appearance of the surroundings of a corner in the other image: at a distance d from it the affine one,
-// over 1 + perspective.d.
+// Appearance of a corner's surroundings in the other image. At a distance d from the corner it is the affine
+// one over 1 + perspective.d.
 struct LocalWarp {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Matrix2d warp = Eigen::Matrix2d::Identity();
   Eigen::Vector2d perspective = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d at_stamp = Eigen::Matrix2d::Identity();  // the warp, had all rows been exposed at once
+  Eigen::Matrix2d at_stamp = Eigen::Matrix2d::Identity();  // as if all rows were exposed at once
 };
 
-// Image of pixel x (full size) under the plane-induced homography now -> then; false when it lies behind.
+// Maps a pixel (full size) by the homography of a plane, from now to then. Fails when the point lies behind
+// the camera.
 class PointWarp {
  public:
   PointWarp(const StereoRig& rig, const CameraMotion& motion, const Eigen::Vector3d& plane)
@@ -66,7 +68,7 @@ class PointWarp {
   Eigen::Matrix3d H_;
 };
 
-// Says where corners are to be looked for, and touches the pixels there.
+// Predicts where to look for corners, and touches the pixels there so that they are in the cache in time.
 class Predictions {
  public:
   Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
@@ -86,9 +88,9 @@ class Predictions {
     rows_then_ = StampMap(rig.K(), *rows.times, rows.then, motion.R.transpose() * plane);
   }
 
-  // False when there is none.
+  // Returns false when there is no prediction.
   bool at(const TrackedCorner& corner, LocalWarp* local) const {
-    constexpr int kAround = 3;  // for interpolation and the steps of refinement
+    constexpr int kAround = 3;  // px, for interpolation and the steps of refinement
     const Eigen::Vector2d x(corner.u, corner.v);
     const bool seen = corner.on_plane
                           ? isSeen(corner, plane_, x, local)
@@ -101,7 +103,7 @@ class Predictions {
     return true;
   }
 
-  // Both places of a match as they would be had all rows been exposed at the stamps.
+  // Moves both places of a match to where they would be with all rows exposed at the stamps.
   void carryToStamps(TemporalMatch& match) const {
     if (rows_now_.changesNothing()) return;
     if (match.on_plane) {
@@ -119,7 +121,7 @@ class Predictions {
     return rows_now_.changesNothing() ? warp.at(x, local) : throughRows(corner, warp, x, local);
   }
 
-  // The place that a pixel has then, by the times of both rows.
+  // Place of a pixel in the image then, with the times of both rows.
   bool placeThen(const TrackedCorner& corner, const PointWarp& warp, const Eigen::Vector2d& x,
                  LocalWarp* local) const {
     const Eigen::Vector2d now =
@@ -131,7 +133,7 @@ class Predictions {
     return true;
   }
 
-  // As rows have times of their own the surroundings are sheared and stretched: by differences.
+  // Row times shear and stretch the surroundings of a corner. So the warp is computed from differences.
   bool throughRows(const TrackedCorner& corner, const PointWarp& warp, const Eigen::Vector2d& x,
                    LocalWarp* local) const {
     constexpr double kApart = 2;  // px
@@ -146,14 +148,14 @@ class Predictions {
     return true;
   }
 
-  // Times the height then, of a point at this pixel and inverse depth now.
+  // Inverse depth then, times the height then, of a point at this pixel with this inverse depth now.
   double inverseDepthThen(const Eigen::Vector2d& now, double inverse_depth) const {
     const Eigen::Vector3d seen = motion_.seenThen(rig_.ray(now.x(), now.y()), inverse_depth);
     return height_then_ * inverse_depth / seen.z();
   }
 
   void touchCoarsely(const Eigen::Vector2d& corner, const Eigen::Vector2d& there) const {
-    constexpr int kAround = 2;  // for interpolation
+    constexpr int kAround = 2;  // px, for interpolation
     const int factor = now_.factor, reach = radius_ + coarse_steps_ + kAround;
     touchWindow(now_.coarse, toCoarse(corner.x(), factor), toCoarse(corner.y(), factor), radius_, radius_);
     touchWindow(then_.coarse, toCoarse(there.x(), factor), toCoarse(there.y(), factor), reach, reach);
@@ -165,11 +167,11 @@ class Predictions {
   const CameraMotion& motion_;
   PointWarp plane_;
   int radius_, coarse_steps_;
-  double height_then_;  // over the height now
+  double height_then_;  // as a multiple of the height now
   StampMap rows_now_, rows_then_;
 };
 
-// Looks for corners where they are predicted.
+// Finds corners near their predicted places.
 class Follower {
  public:
   Follower(const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
@@ -181,13 +183,13 @@ class Follower {
         coarse_(now.coarse, then.coarse, options.window_radius),
         fine_(now.fine, then.fine, options.window_radius) {}
 
-  // Not converged when it is not found.
+  // Returns a refinement that has not converged when the corner is not found.
   PatchRefinement find(const TrackedCorner& corner, const LocalWarp& predicted, OwnTexture& own) {
     LocalWarp local = predicted;
     if (options_.coarse_steps > 0 && !searchCoarsely(corner, local)) return {};
     PatchRefinement refined = refine(corner, local.centre, local.warp, own);
     if (!isLike(refined)) {
-      // The prediction was not good enough for that after all.
+      // The prediction was not good enough for refinement alone.
       const PatchSearch::Best best = fine_.run(corner.u, corner.v, local.centre, local.warp, kFineSteps);
       if (!best.found || best.score < options_.min_zncc) return {};
       refined = refine(corner, best.position, local.warp, own);
@@ -198,8 +200,8 @@ class Follower {
   }
 
  private:
-  // The window at the coarse level is centred on a whole pixel near the corner; its displacement is what is
-  // carried over.
+  // At the coarse level, the window is centred on a whole pixel near the corner. Only its displacement is
+  // carried over to full size.
   bool searchCoarsely(const TrackedCorner& corner, LocalWarp& local) {
     const int factor = now_.factor;
     const Eigen::Vector2d centre(toCoarse(corner.u, factor), toCoarse(corner.v, factor));
@@ -226,10 +228,10 @@ class Follower {
   PatchSearch coarse_, fine_;
 };
 
-// Residuals of most windows are more than noise: ground that is not flat, interpolation. The noise is what
-// those that fit best have.
+// The residuals of most windows contain more than noise: uneven ground and interpolation. The windows that
+// fit best show the noise alone.
 double noiseVariance(MatchingMemory& memory) {
-  constexpr size_t kFit = 4;  // of so many, one
+  constexpr size_t kFit = 4;  // one in so many fits best
   std::vector<double>& residuals = memory.residuals;
   residuals.clear();
   for (const WindowOverTime& corner : memory.windows)
@@ -244,10 +246,10 @@ CommonGain commonGainOf(MatchingMemory& memory) {
   return commonGain(memory.means);
 }
 
-// memory: with the matches' windows.
+// Sets the covariances of the matches and corrects their places. memory: with the windows of the matches.
 void claim(const MatchImage& now, const MatchImage& then, int radius, MatchingMemory& memory,
            std::vector<TemporalMatch>& matches) {
-  // By an exposure that changes less, clipped edges move by less than a third of the floor.
+  // With a smaller change of exposure, clipped edges move by less than a third of kStddevFloor.
   constexpr double kLeastChange = 0.01;
   if (matches.empty()) return;
   const double noise = noiseVariance(memory);
@@ -258,8 +260,9 @@ void claim(const MatchImage& now, const MatchImage& then, int radius, MatchingMe
     TemporalMatch& match = matches[i];
     const WindowOverTime& window = memory.windows[i];
     const PatchRefinement::Claim claim = window.refinement.claim(noise);
-    // Windows are warped without perspective: over half a second near the ground it is some hundredths of a
-    // pixel, always to the same side, and thousandths of a degree of the approach angle.
+    // Windows are warped without perspective, so their places need a correction. Over half a second near the
+    // ground it is some hundredths of a pixel, always to the same side. In the approach angle it is
+    // thousandths of a degree.
     const double off = held * (window.refinement.evidence.gain - gain.gain);
     match.then += claim.by_perspective * window.perspective - off * claim.by_gain;
     double stddev = kStddevFloor;

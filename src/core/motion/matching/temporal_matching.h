@@ -13,25 +13,28 @@
 
 namespace uav_landing {
 
-/// When rows are exposed, and how the camera moves while they are. Without times all are at the stamp.
+/// Row times, and the velocities of the camera while rows are exposed. Without times all rows are exposed at
+/// the stamp.
 struct RowsOverTime {
   const RowTimes* times = nullptr;
-  RowMotion now, then;  ///< each in the frame and the height of its image
+  RowMotion now, then;  ///< each in its own image's frame and units of height
 };
 
 struct TemporalMatchOptions {
   int window_radius = 5;
   double min_zncc = 0.75;
-  int coarse_steps = 10;  ///< searched around the prediction at the coarse level; 0: the prediction is good
+  /// Distance of the search around the prediction at the coarse level; 0: the prediction is good enough.
+  int coarse_steps = 10;
   RowsOverTime rows = {};
 };
 
-/// What the windows of the corners of one image are by themselves, kept while it is matched with several.
+/// Properties of the corners' windows that follow from one image alone. They are kept while that image is
+/// matched with several others.
 class CornerTextures {
  public:
-  /// Before another image, or another size of the windows.
+  /// Call it before another image or another window size.
   void clear() { windows_.clear(); }
-  /// Of a corner by its place in a list. Lists that differ there share nothing.
+  /// Entry for a corner by its place in a list. Lists with different corners at that place share nothing.
   OwnTexture& of(size_t place, const TrackedCorner& corner) {
     if (place >= windows_.size()) windows_.resize(place + 1);
     Window& window = windows_[place];
@@ -43,37 +46,38 @@ class CornerTextures {
 
  private:
   struct Window {
-    int u = 0, v = 0;  // of the middle
+    int u = 0, v = 0;  // middle of the window
     OwnTexture own;
   };
   std::vector<Window> windows_;
 };
 
-/// A window that was found over time, with the perspective of the plane around it.
+/// A window that was found in the other image, with the perspective of the plane around it.
 struct WindowOverTime {
   PatchRefinement refinement;
   Eigen::Vector2d perspective;
 };
 
-/// Memory that matching over time works in.
+/// Working memory of matching over time.
 struct MatchingMemory {
   std::vector<WindowOverTime> windows;
   std::vector<double> residuals;
   std::vector<WindowMeans> means;
 };
 
-/// The paper's image velocity field: finds corners of the image now in the image then, with windows warped as
-/// the ground plane (unit normal n) and the predicted motion say. Both places of a match are where they would
-/// be had all rows been exposed at the stamps. textures: of the image now. list: one that is no longer
-/// needed, for its memory.
+/// The paper's image velocity field: finds corners of the image now in the image then. Windows are warped
+/// according to the ground plane (unit normal) and the predicted motion. Both places of a match are those
+/// that would be seen with all rows exposed at the stamps. textures: of the image now. list: a list that is
+/// no longer needed, for its memory.
 std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                                          const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                                          const Eigen::Vector3d& normal, const CameraMotion& predicted,
                                          const TemporalMatchOptions& options, CornerTextures& textures,
                                          MatchingMemory& memory, std::vector<TemporalMatch> list = {});
 
-/// How much the surroundings of the corners now look like those of where the motion puts them then: the sum
-/// of their correlations, without a search; what is not in view, or the other way round, adds nothing.
+/// Similarity between the surroundings of the corners and the places where the motion puts them then. It is
+/// the sum of their correlations, without any search. Corners that are out of view or have a negative
+/// correlation add nothing.
 double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
                         const Eigen::Vector3d& normal, const CameraMotion& motion,

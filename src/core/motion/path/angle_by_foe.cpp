@@ -8,7 +8,7 @@
 namespace uav_landing {
 namespace {
 
-/// Approach angle of the step from the focus as a pixel, as the paper does.
+/// Approach angle of the step from the focus as a pixel, as in the paper.
 void takeAngle(const StereoRig& rig, const GroundNormal& normal, AngleFormula formula, StepFoe& found) {
   const Eigen::Vector3d direction = rig.ray(found.foe.x(), found.foe.y());
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -21,8 +21,9 @@ void takeAngle(const StereoRig& rig, const GroundNormal& normal, AngleFormula fo
   found.step.angle_variance = approachAngleVariance(n, normal.covariance, direction, covariance);
 }
 
-/// Rotation left in the velocities moves all of their crossings, and eq (1) leaves out roll and drift: the
-/// scatter knows nothing of it. What the paper's forms differ from the motion by is a measure of it.
+/// Adds an error that the scatter of the velocities does not show. A rotation left in the velocities moves
+/// all of their crossings, and eq (1) ignores roll and drift. The difference between the paper's form and the
+/// motion is a measure of it.
 void claimDifference(const StereoRig& rig, const MotionTracker::Result& motion, StepFoe& found) {
   const Eigen::Vector2d off = found.foe - rig.project(motion.step_estimate->motion.t);
   found.covariance += off * off.transpose();

@@ -6,16 +6,21 @@
 
 namespace uav_landing {
 
-/// Whether the angle is that of the paper, from the focus of expansion as a pixel: of one step.
+/// Whether the parameters ask for one of the paper's forms. They take the angle of one step from the focus of
+/// expansion as a pixel.
 bool hasPaperForm(const ApproachAngleParameters& parameters);
 
-/// Focus of expansion of the last step, in pixels; in the paper's forms the step's angle by it as well.
+/// Focus of expansion of the last step, in pixels. In the paper's forms, also the step's angle that follows
+/// from it.
 struct StepFoe {
-  ApproachAngleResult::Motion step;  ///< the motion's, with the angle by the focus where that is asked for
+  /// As in the motion, but in the paper's forms the angle follows from the focus.
+  ApproachAngleResult::Motion step;
   Eigen::Vector2d foe = Eigen::Vector2d::Constant(kUnknown);
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Constant(kUnknown);
 };
-/// motion: of the tracker, which the matches are of. normal: that angles refer to.
+/// tracker: its stepMatches() belong to this motion. motion: result of the tracker. normal: the ground normal
+/// that angles refer to. The focus stays unknown (kUnknown) when it cannot be found. In the form with the
+/// sliding window, step.failure then says why.
 StepFoe findStepFoe(const StereoRig& rig, const MotionTracker& tracker, const MotionTracker::Result& motion,
                     const GroundNormal& normal, const ApproachAngleParameters& parameters);
 

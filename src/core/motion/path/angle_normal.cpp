@@ -20,7 +20,8 @@ GroundPlane withDirection(const GroundPlane& plane, const GroundDirection& vanis
 
 GroundNormal normalOf(const GroundPlane& plane) { return {plane.normal(), plane.normalCovariance()}; }
 
-/// The paper's level rig, or the roll that the stereo plane knows.
+/// Normal from the vanishing point: with the roll of the stereo plane when there is one, else that of the
+/// paper's level rig.
 std::optional<AngleNormal> byVanishingPoint(const NormalSources& sources) {
   const GroundDirection& vanishing = sources.vanishing;
   if (!vanishing.direction.allFinite()) return std::nullopt;
@@ -39,7 +40,7 @@ std::optional<AngleNormal> findAngleNormal(const NormalSources& sources,
   const AttitudePrior& imu = sources.imu;
   if (parameters.normal_source == NormalSource::kVanishingLine) return byVanishingPoint(sources);
   if (!sources.plane && !imu.hasNormal()) return byVanishingPoint(sources);
-  // An imu's normal is as a plane at the height of 1.
+  // The normal of an imu acts as a plane at the height 1.
   if (!sources.plane)
     return AngleNormal{normalOf(withDirection({imu.normal, imu.normal_covariance}, sources.vanishing)), {}};
   AngleNormal found;

@@ -8,19 +8,19 @@
 
 namespace uav_landing {
 
-/// What the ground's normal can be found from. Each may be missing.
+/// Sources of the ground normal. Each may be missing.
 struct NormalSources {
-  const GroundPlane* plane = nullptr;  ///< by stereo
-  GroundDirection vanishing;           ///< of the runway
-  GroundNormal level_rig;              ///< by the vanishing point, of a rig whose roll is hardly known
+  const GroundPlane* plane = nullptr;  ///< from stereo
+  GroundDirection vanishing;           ///< vanishing direction of the runway
+  GroundNormal level_rig;  ///< from the vanishing point alone, for a rig whose roll is hardly known
   const AttitudePrior& imu;
 };
 struct AngleNormal {
   GroundNormal normal;
-  Failure imu_failure;  ///< the imu contradicts the others and has been left out
+  Failure imu_failure;  ///< set when the imu contradicts the other sources and was rejected
 };
-/// The normal that approach angles refer to: of all sources, or as the paper has it (normal_source). None
-/// without any.
+/// Ground normal that approach angles refer to. By default it is fused from all sources; normal_source can
+/// ask for the paper's form instead. Returns nothing when there is no source.
 std::optional<AngleNormal> findAngleNormal(const NormalSources& sources,
                                            const ApproachAngleParameters& parameters);
 

@@ -7,14 +7,14 @@
 namespace uav_landing {
 namespace {
 
-// A velocity vector: it points away from the focus.
+// A velocity vector. It points away from the focus of expansion.
 struct Velocity {
   Eigen::Vector2d from, to;
 };
 
 std::vector<Velocity> velocities(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                  const Eigen::Matrix3d& R) {
-  // Shorter vectors have no direction.
+  // Shorter vectors have no reliable direction, pixels.
   constexpr double kShortest = 1.0;
   std::vector<Velocity> result;
   for (const TemporalMatch& match : matches) {
@@ -26,7 +26,7 @@ std::vector<Velocity> velocities(const StereoRig& rig, const std::vector<Tempora
   return result;
 }
 
-// Adds one to every pixel of the line through the whole image.
+// Adds one to each pixel of a line across the whole image.
 void addLine(const Velocity& velocity, cv::Mat& counts) {
   const Eigen::Vector2d along = (velocity.to - velocity.from).normalized() * (counts.cols + counts.rows);
   const Eigen::Vector2d a = velocity.to - along, b = velocity.to + along;
@@ -36,8 +36,8 @@ void addLine(const Velocity& velocity, cv::Mat& counts) {
   for (int i = 0; i < line.count; ++i, ++line) ++counts.at<ushort>(line.pos());
 }
 
-// The window with its covariance: that of the point nearest to the lines that pass close by, from their
-// scatter, and how far the window's middle is from that point.
+// The window's middle with a covariance. The scatter of the lines that pass nearby gives the covariance of
+// the point nearest to them. The square of that point's offset from the middle is added.
 Expected<FocusOfExpansion> windowWithCovariance(const std::vector<Velocity>& lines,
                                                 const Eigen::Vector2d& window) {
   constexpr double kNear = 4.0;

@@ -15,14 +15,16 @@ struct FocusOfExpansion {
   Eigen::Matrix2d covariance;  ///< pixels^2
 };
 
-/// Default: where the translation of the motion points. Fails with no_motion when it does not point ahead.
+/// Default form: the image point that the translation t points to. t_covariance: in the square of t's unit.
+/// Fails with no_motion when t does not point ahead.
 Expected<FocusOfExpansion> foeFromMotion(const StereoRig& rig, const Eigen::Vector3d& t,
                                          const Eigen::Matrix3d& t_covariance);
 
-/// The paper's form (2.3): every velocity vector is extended over the whole image, and the 3x3 window that
-/// most lines cross is the focus. Only one counting image, whatever the number of vectors. R: rotation from
-/// then to now to take out first (identity: the paper to the letter). Covariance: from the lines through the
-/// window, and how far its middle is from the point nearest to them.
+/// The paper's form (2.3). Every velocity vector is extended to a line over the whole image. The focus is the
+/// 3x3 window that most lines cross. One counting image is enough for any number of vectors. R: rotation from
+/// then to now that is removed first (identity: exactly as in the paper). The covariance contains the scatter
+/// of the lines near the window and the distance of its middle from the point nearest to them. Fails with
+/// no_motion when there are no velocities or the lines do not meet.
 Expected<FocusOfExpansion> foeSlidingWindow(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                             const Eigen::Matrix3d& R);
 

@@ -10,16 +10,16 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kSpan = 60;     // s kept: images may wait that long to be processed
-constexpr size_t kMost = 60000;  // samples kept
-constexpr double kLate = 1.0;    // s by which a message may be late
+constexpr double kSpan = 60;     // s kept, as images may wait that long to be processed
+constexpr size_t kMost = 60000;  // largest number of samples kept
+constexpr double kLate = 1.0;    // s, largest delay of a message
 constexpr double kSameStamp = 1e-7;
 
 Eigen::Quaterniond exponential(const Eigen::Vector3d& w) { return Eigen::Quaterniond(rotationMatrix(w)); }
 
 bool earlier(const ImuSample& sample, double t) { return sample.stamp < t; }
 
-/// Between two values, or none where one is missing.
+/// Interpolates between two values. Returns nothing when one of them is missing.
 template <class Value>
 std::optional<Value> between(const std::optional<Value>& a, const std::optional<Value>& b, double share) {
   if (!a || !b) return std::nullopt;
@@ -92,7 +92,7 @@ Failure ImuBuffer::missing(double t) const {
   return {Reason::kTimeout, text("no imu message within ", parameters_.imu_max_gap, " s around the image")};
 }
 
-// How the sensor has turned: product of the small rotations from sample to sample.
+// Rotation of the sensor: product of the small rotations from sample to sample.
 std::optional<Eigen::Quaterniond> ImuBuffer::integrate(const ImuSample& from, const ImuSample& to) const {
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
   const ImuSample* last = &from;
@@ -135,7 +135,7 @@ AttitudePrior ImuBuffer::at(double stamp, std::optional<double> before,
     turn = then->orientation->conjugate() * *now->orientation;
   if (!turn) return prior;
   prior.duration = stamp - *before;
-  // The sensor turns by this, so what is at rest turns the other way.
+  // The prior is the rotation of the scene in the camera, which is opposite to that of the sensor.
   prior.rotation = camera_from_imu * rotationVector(turn->conjugate().toRotationMatrix());
   prior.rotation_covariance =
       prior.duration * prior.duration * camera_from_imu * rateCovariance(*now) * camera_from_imu.transpose();

@@ -19,9 +19,10 @@ std::vector<TrackedCorner> stereoCorners(const StereoRig& rig, const StereoDepth
 std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& image, const cv::Mat& mask,
                                          const Eigen::Vector3d& normal,
                                          const ApproachAngleParameters& parameters, CornerMemory& memory) {
-  // Nearer the horizon than this (as a tangent) the ground hardly moves.
+  // The ground closer to the horizon than this (tangent of the angle) hardly moves.
   constexpr double kLeastSlope = 0.01;
-  // What is texture enough, matching decides; corners spread over the ground as for stereo.
+  // Almost any texture is accepted, because matching decides later. Corners are spread over the ground as for
+  // stereo.
   constexpr double kQuality = 1e-7, kDistance = 4.0, kHarris = 0.04;
   const Eigen::Vector3d slope = rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
   cv::Mat ground;

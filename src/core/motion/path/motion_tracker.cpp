@@ -17,24 +17,24 @@
 namespace uav_landing {
 namespace {
 
-// Images kept however close their stamps are: 0.5 s of 100 Hz.
+// Largest number of images kept, however close their stamps are: 0.5 s at 100 Hz.
 constexpr size_t kMostFrames = 50;
 
-// Images whose memory is taken when the chain is made: 0.5 s of 20 Hz. To get it from the system takes longer
-// than to fill it.
+// Number of images allocated at the start: 0.5 s at 20 Hz. Later it would take longer to get the memory from
+// the system than to fill it.
 constexpr size_t kUsualFrames = 12;
 
-// Of the height, that a step is predicted to sink.
+// Largest share of the height that a step is predicted to sink.
 constexpr double kMostSunk = 0.5;
 
-// Stamps may be off by this much for a frame still to be in the window, s.
+// Tolerance of stamps for a frame to count as within the window, s.
 constexpr double kWindowSlack = 0.05;
 
 double sineOfAngle(const MotionEstimate& estimate) {
   return estimate.normal.normalized().dot(estimate.motion.t.normalized());
 }
 
-// Of n.t/|t| by t and n.
+// Gradient of n.t/|t| by t and n.
 Eigen::Matrix<double, 6, 1> sineGradient(const MotionEstimate& estimate) {
   const Eigen::Vector3d& t = estimate.motion.t;
   const Eigen::Vector3d n = estimate.normal.normalized();
@@ -45,30 +45,30 @@ Eigen::Matrix<double, 6, 1> sineGradient(const MotionEstimate& estimate) {
   return gradient;
 }
 
-// The angle's variance by a covariance of t and n, which both enter asin(n.t/|t|).
+// Variance of the angle asin(n.t/|t|) from a covariance of t and n.
 double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
   const double sine = sineOfAngle(estimate);
   const Eigen::Matrix<double, 6, 1> gradient = sineGradient(estimate);
   return gradient.dot(covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
 }
 
-// What 1 sigma of a readout time that is not given does to the angle, rad.
+// Effect of 1 sigma of an estimated readout time on the angle, rad.
 double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& readout) {
   if (!readout.known()) return 0;
   const double by_time = sineGradient(estimate).dot(estimate.readout.by_time.tail<6>());
   return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
 }
 
-constexpr double kAnyAngle = 1;  // rad: 1 sigma where nothing is known
+constexpr double kAnyAngle = 1;  // rad: 1 sigma when nothing is known
 
-// Rows that shake move the angle by more than a small part of its error. By how much is known to a factor of
-// some only: matches do not tell slow shake from a motion.
+// Whether shaking rows move the angle by more than a small part of its error. The size of that effect is
+// known only roughly, because the matches cannot tell a slow shake from a motion.
 bool isShaken(const MotionEstimate& estimate, double angle_variance) {
   constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
   return angleVariance(estimate, estimate.of_shake) > kSmallPart * kSmallPart * angle_variance;
 }
 
-// Adds what a readout time that is not given makes of the estimate.
+// Adds the error of an estimated readout time to the covariances.
 void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
   if (!readout.known()) return;
   const ReadoutEffect& effect = estimate.readout;
@@ -77,14 +77,14 @@ void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
       readout.variance * effect.own_normal_by_time * effect.own_normal_by_time.transpose();
 }
 
-// The inertial sensor's rotation, when it is that of this step.
+// Rotation from the inertial sensor, if it covers exactly this step.
 std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
   constexpr double kStampRounding = 1e-3;
   if (!imu.hasRotation() || std::abs(imu.duration - duration) > kStampRounding) return std::nullopt;
   return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
 }
 
-// 1 sigma of the rate of the angle at least, as long as no new image tells it, rad/s.
+// Least 1 sigma of the rate of the angle while no new image shows it, rad/s.
 constexpr double kLeastRate = 1 * M_PI / 180;
 
 double largestEigenvalue(const Eigen::Matrix3d& matrix) {
@@ -222,12 +222,13 @@ void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal
   claimReadout(conditions.readout, *result.step_estimate);
 }
 
-// As the camera moved last, with the known rotation first.
+// The camera is predicted to move as before. If its rotation is known, a prediction with that comes first.
 std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
   std::vector<CameraMotion> predictions;
   if (!last_step_) return predictions;
-  // The same way is more heights from a lower height. What a prediction leaves out again and again would be a
-  // bias where little but lines is seen, which are found near where they are looked for.
+  // The same distance is more heights when the height is lower, so sinking lengthens the step. A prediction
+  // without this would bias every step over ground with little but lines. Lines are found near the place
+  // where they are looked for.
   const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
   const double times = duration / last_duration_;
   CameraMotion predicted = carriedOn(*last_step_, times);
@@ -255,7 +256,7 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     if (&then == &past_.back()) break;
     if (!then.since) continue;
     const CameraMotion& step = result.step_estimate->motion;
-    // Lengths change from units of the previous height to those of the height now.
+    // Lengths are converted from units of the previous height to units of the height now.
     const double unit = 1 + normal.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     const RowMotion motion = evenMotion(step, result.step.duration);
@@ -311,7 +312,7 @@ ApproachAngleResult::Motion MotionTracker::describe(
   return motion;
 }
 
-// The chord's angle is that of half its duration ago; the published one is that of now.
+// The chord's angle is half of its duration old. The published angle is the current one.
 void MotionTracker::smoothAngle(double stamp, Result& result) {
   if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
   if (!result.step_angle || !std::isfinite(result.step.angle_variance)) {
@@ -348,7 +349,7 @@ void MotionTracker::advance(Frame&& now, const Result& result) {
   last_window_ = result.window;
   last_step_ = result.unproven;
   if (result.step_estimate) last_step_ = result.step_estimate->motion;
-  // Wide searches, at the coarse level, are in the frame before only.
+  // Only the previous frame is searched widely, so older ones do not need the coarse level.
   if (!past_.empty() && past_.back().image.factor > 1) spare_coarse_ = std::move(past_.back().image.coarse);
   past_.push_back(std::move(now));
   const double oldest = past_.back().stamp - parameters_.angle_window - kWindowSlack;

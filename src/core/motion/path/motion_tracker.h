@@ -16,21 +16,23 @@
 
 namespace uav_landing {
 
-/// How it is known that corners lie on the ground.
+/// Evidence that corners lie on the ground.
 enum class GroundProof {
-  kGiven,  ///< by their disparities, or they have a depth of their own; or it is assumed, as in the paper
-  kMotion  ///< not beforehand: most of them have to move as the points of one plane do
+  kGiven,  ///< by disparity, or corners have a depth of their own, or it is assumed as in the paper
+  kMotion  ///< not known beforehand: most corners must move like points of one plane
 };
 
 struct StepConditions {
   GroundProof proof = GroundProof::kGiven;
   SearchTime time = SearchTime::kAmple;
-  ReadoutEstimate readout = {};                                 ///< where none is given
-  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();  ///< derivative of the ground's normal, 1/s
+  /// The readout time so far, when it has to be estimated.
+  ReadoutEstimate readout = {};
+  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();  ///< derivative of the ground normal, 1/s
 };
 
-/// Follows the motion of the left camera from frame to frame and over the last angle_window seconds.
-/// Keeps the images of that time, the motion since each of them, and the last step as the next prediction.
+/// Follows the motion of the left camera over each frame step and over the sliding window (angle_window). It
+/// keeps the images of that time and the motion since each of them. The last step is the prediction for the
+/// next one.
 class MotionTracker {
  public:
   MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters);
@@ -38,40 +40,48 @@ class MotionTracker {
   struct Result {
     ApproachAngleResult::Motion step, window;
     std::optional<MotionEstimate> step_estimate;
-    ReadoutEffect readout;                 ///< by the longest of both, which tells a readout time best
-    std::optional<CameraMotion> unproven;  ///< a step that may not be one over a plane
-    std::optional<PathAngleFilter::Measurement> step_angle, window_angle;  ///< as far as they have one
+    ReadoutEffect readout;  ///< of the frame step
+    /// Motion of the step when its corners failed to prove that they are on a plane.
+    std::optional<CameraMotion> unproven;
+    /// Approach angles as measurements for the filter, when there are any.
+    std::optional<PathAngleFilter::Measurement> step_angle, window_angle;
   };
 
-  /// normal: unit ground normal now with covariance (rank 2, without what a readout time makes of it);
-  /// corners: of the left image now, with depths in units of the height. imu: its rotation since the frame
-  /// before leads the search, helps where the corners leave the rotation uncertain, and makes up for half of
-  /// the corners; one that contradicts them is left out. Without a ground normal call skip(). Corners that
-  /// have to show by their motion that they are on the ground make a step fail (plane_unproven) when too few
-  /// do.
+  /// Estimates the motion from the earlier frames to this one.
+  /// - normal: unit ground normal now. Its covariance has rank 2 (rad^2) and leaves out the error by the
+  ///   readout time.
+  /// - corners: of the left image now, with depths in units of the height.
+  /// - imu: its rotation since the previous frame leads the search and helps when the corners leave the
+  ///   rotation uncertain. With it, half as many corners are enough. It is rejected when it contradicts them.
+  ///
+  /// When the corners have to prove the plane by their motion and too few do, the step fails with
+  /// plane_unproven. Without a ground normal, call skip() instead.
   Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
                  const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
                  Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
-  /// Whether there is an earlier image, but no motion up to it that would lead on.
+  /// Whether there is an earlier image but no motion up to it, so that the next step has no prediction.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
-  /// How the camera moved at the last stamp, as far as it is known and not long before this one.
+  /// Velocities of the camera at the last stamp. Nothing when they are not known or too old for this stamp
+  /// (s).
   std::optional<RowMotion> lastMotion(double stamp) const;
-  /// Keeps the image for the next step although nothing can be said about the motion to it.
+  /// Keeps the image for the next step when no motion can be estimated to it.
   void skip(double stamp, const cv::Mat& left);
-  /// The image is the very one of the call before: nothing of the motion since, the next step is from when
-  /// the image first came. The window's motion is what it was, its angle less certain the longer that was
-  /// ago, and after angle_window, or with a stamp before it, there is none.
+  /// Call it instead of process() for an image that is the same as in the previous call. There is no step;
+  /// the next one starts at the stamp at which the image first came. The window keeps its motion, and its
+  /// angle becomes less certain with time. It fails when the image is older than angle_window or the stamp is
+  /// not later.
   Result repeat(double stamp) const;
   void reset();
-  /// Corners followed to the frame before by the last process(), those that contradict the motion included.
+  /// Corners that the last process() followed to the previous frame, including those that contradict the
+  /// motion.
   const std::vector<TemporalMatch>& stepMatches() const { return step_matches_; }
 
  private:
   struct Frame {
     double stamp = 0;
     MatchImage image;
-    std::optional<CameraMotion> since;  ///< motion from then to now, when known
-    std::optional<RowMotion> motion;    ///< while its rows were exposed
+    std::optional<CameraMotion> since;  ///< motion from then to now, when it is known
+    std::optional<RowMotion> motion;    ///< velocities while its rows were exposed
   };
 
   using Corners = std::vector<TrackedCorner>;
@@ -91,22 +101,22 @@ class MotionTracker {
 
   StereoRig rig_;
   RowTimes times_, unit_times_;
-  cv::Mat mask_;  // left, eroded by the window
+  cv::Mat mask_;  // of the left image, eroded by the window
   ApproachAngleParameters parameters_;
   StepSearch search_;
   std::deque<Frame> past_;         // oldest first
-  std::vector<MatchImage> spare_;  // their memory is used again
+  std::vector<MatchImage> spare_;  // images no longer used, kept for their memory
   cv::Mat spare_coarse_;
-  std::vector<TemporalMatch> step_matches_, window_matches_;  // kept, as they are large
+  std::vector<TemporalMatch> step_matches_, window_matches_;  // kept for their memory
   CornerTextures textures_;                                   // of the image now
   MotionSearchMemory memory_;
   std::optional<CameraMotion> last_step_;
-  double last_duration_ = 0;  // s, of it
-  double last_sink_ = 0;      // in it, in heights at its end
+  double last_duration_ = 0;  // of last_step_, s
+  double last_sink_ = 0;      // n.t of last_step_, in heights at its end
   ShakeMemory step_shake_, window_shake_;
   PathAngleFilter filter_;
   ApproachAngleResult::Motion last_window_;
-  double last_rate_stddev_ = 0;  // of its angle, rad/s
+  double last_rate_stddev_ = 0;  // of the window's angle, rad/s
 };
 
 }  // namespace uav_landing

@@ -9,27 +9,29 @@
 namespace uav_landing {
 namespace {
 
-// Factor on a chord's variance: the noise of the image now is in the last step as well, that of the
-// first one in the first step. The chord says less of its own than it would if it shared nothing with them.
+// Factor on the variance of a chord. It shares the noise of its two images with the first and the last step,
+// so it contains less new information than an independent measurement.
 constexpr double kChordShared = 2;
 constexpr double kDegree = M_PI / 180;
-// Standard deviations of the rate of the angle, rad/s: from a steady glide to one that tells nothing.
+// Standard deviations of the rate of the angle, rad/s. They range from a steady glide to a rate that leaves
+// the angle open.
 constexpr std::array<double, 6> kRates = {0.03 * kDegree, 0.3 * kDegree, 1 * kDegree,
                                           3 * kDegree,    10 * kDegree,  30 * kDegree};
 constexpr double kCorrelationTime = 1.0;       // s, of the rate
-constexpr double kStartStddev = 45 * kDegree;  // of the angle before anything is known
-constexpr double kMemory = 2.0;          // s, after which a measurement hardly speaks for a model any more
+constexpr double kStartStddev = 45 * kDegree;  // of the angle before any measurement
+constexpr double kMemory = 2.0;  // s, after which a measurement has little weight in the choice of the model
 constexpr double kStampRounding = 1e-3;  // s
-constexpr size_t kMostSteps = 50;        // however short they are: the time taken grows with their cube
+constexpr size_t kMostSteps = 50;  // however short they are, as the computing time grows with the third power
 
-// Covariance of the angles of all steps by a rate with a stddev of 1 rad/s, from where the first one is.
+// Covariance of the angles of all steps relative to the first one, for a rate with a standard deviation of 1
+// rad/s.
 Eigen::MatrixXd unitCovariance(const std::vector<double>& middles) {
   const int n = static_cast<int>(middles.size());
   Eigen::MatrixXd rates(n, n), integral = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       rates(i, j) = std::exp(-std::abs(middles[i] - middles[j]) / kCorrelationTime);
-      // angle_i = start + sum over the gaps before i of rate x gap.
+      // angle_i = start + sum of rate x gap over the gaps before i.
       if (j < i) integral(i, j) = middles[j + 1] - middles[j];
     }
   }
@@ -39,10 +41,10 @@ Eigen::MatrixXd unitCovariance(const std::vector<double>& middles) {
 struct Posterior {
   double log_evidence = 0;  // of the newest measurements, given the earlier ones
   double mean = 0, variance = 0;
-  double by_readout = 0;  // of the mean
+  double by_readout = 0;  // effect on the mean
 };
 
-// Mean and variance of the models' posteriors; rate_stddev of the one with the most weight.
+// Mean and variance of the mixture of posteriors. rate_stddev: that of the model with the largest weight.
 PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& posteriors,
                                   const std::array<double, kRates.size()>& log_weights) {
   PathAngleFilter::Estimate estimate;
@@ -67,19 +69,19 @@ PathAngleFilter::Estimate mixture(const std::array<Posterior, kRates.size()>& po
 
 }  // namespace
 
-// What the steps and the chord say of the angles of all steps: y = H angles + noise. The chord is the last
-// row.
+// Measurement equations y = H angles + noise for the angles of all steps. Each step has a row; the chord has
+// the last one.
 struct PathAngleFilter::Equations {
-  std::vector<double> middles;  // of the steps, s
+  std::vector<double> middles;  // stamps of the middles of the steps, s
   Eigen::MatrixXd H;
   Eigen::VectorXd y;
   Eigen::MatrixXd noise;
-  Eigen::VectorXd by_readout;  // one error in all
-  double reference = 0;        // that y is relative to, rad
-  bool has_chord = false;      // one that is a measurement of its own
+  Eigen::VectorXd by_readout;  // one error, common to all rows
+  double reference = 0;        // subtracted from y, rad
+  bool has_chord = false;      // whether the chord is a measurement of its own
 };
 
-// Those of them that are measurements, as every model needs them.
+// The equations that are measurements, prepared for all models.
 class PathAngleFilter::Regression {
  public:
   explicit Regression(const Equations& all)
@@ -96,20 +98,22 @@ class PathAngleFilter::Regression {
     noise_ += kStartStddev * kStartStddev * by_start_ * by_start_.transpose();
   }
 
-  // Gaussian posterior of the last angle under one model. earlier: how many of the measurements are.
+  // Gaussian posterior of the last angle under one model. earlier: number of measurements that are not new.
   Posterior condition(double rate_stddev, Eigen::Index earlier) const {
     constexpr double kStart = kStartStddev * kStartStddev;
     const double rate = rate_stddev * rate_stddev;
     const Eigen::LLT<Eigen::MatrixXd> llt(rate * of_rate_ + noise_);
-    Eigen::MatrixXd solved(rows_, 2);  // the measurements, and what they have in common with the last angle
+    Eigen::MatrixXd solved(rows_, 2);  // the measurements, and their covariance with the last angle
     solved << y_, rate * with_last_ + kStart * by_start_;
     llt.matrixL().solveInPlace(solved);
     Posterior posterior;
     posterior.mean = solved.col(1).dot(solved.col(0));
     posterior.variance = rate * variance_of_last_ + kStart - solved.col(1).squaredNorm();
-    // What it does to the mean: differences of the measurements by it are too small to tell the error itself.
+    // Effect on the mean. It differs so little between the measurements that they cannot determine the error
+    // itself.
     if (!by_readout_.isZero(0)) posterior.by_readout = solved.col(1).dot(llt.matrixL().solve(by_readout_));
-    // As the Cholesky factor of the covariance of all begins with that of the earlier ones.
+    // The Cholesky factor of the covariance of all measurements begins with that of the earlier ones. So the
+    // evidence of the new ones stands at its end.
     const Eigen::Index newest = rows_ - earlier;
     posterior.log_evidence = -0.5 * solved.col(0).tail(newest).squaredNorm() -
                              llt.matrixLLT().diagonal().tail(newest).array().log().sum();
@@ -119,12 +123,13 @@ class PathAngleFilter::Regression {
  private:
   Eigen::Index rows_;
   Eigen::VectorXd y_, by_readout_;
-  Eigen::MatrixXd noise_;  // with that of where the path starts
-  // By a rate of 1 rad/s: variance of the last angle, covariances of the measurements with it and of these.
+  Eigen::MatrixXd noise_;  // with the uncertainty of the start
+  // For a rate of 1 rad/s: variance of the last angle, covariances of the measurements with it, and
+  // covariance of the measurements.
   double variance_of_last_;
   Eigen::VectorXd with_last_;
   Eigen::MatrixXd of_rate_;
-  Eigen::VectorXd by_start_;  // of the measurements, by the angle at the start
+  Eigen::VectorXd by_start_;  // derivatives of the measurements by the angle at the start
 };
 
 void PathAngleFilter::reset() {
@@ -168,15 +173,15 @@ PathAngleFilter::Equations PathAngleFilter::equations(const Measurement& chord) 
   variance[n] = kChordShared * chord.variance;
   by_normal[n] = chord.by_normal;
   all.by_readout[n] = chord.by_readout;
-  // How far the errors by the normals of single pairs are the same nobody knows, but none has less of it than
-  // what it has in common with another: differences of two never tell the normal.
+  // Nobody knows how much the errors of the pairs' normals have in common. They are taken to share as much as
+  // the smaller one has. So differences of two measurements cannot reduce the error of the normal.
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) all.noise(i, j) = std::pow(std::min(by_normal[i], by_normal[j]), 2);
   all.noise.diagonal() += variance;
-  // A chord that is the step itself, or spans steps that are not known, is no measurement of its own.
+  // A chord is no additional measurement when it is the step itself, or when some of its steps are missing.
   all.has_chord = chord.duration > step.duration + kStampRounding &&
                   std::abs(covered - chord.duration) < 0.5 * step.duration;
-  // Angles relative to the newest, so that the wide prior of the start does not cost digits.
+  // Angles are relative to the newest one, so that the wide prior of the start does not cost digits.
   all.reference = all.has_chord ? chord.angle : step.angle;
   all.y.array() -= all.reference;
   return all;
@@ -198,7 +203,7 @@ PathAngleFilter::Estimate PathAngleFilter::update(double stamp, const Measuremen
   for (double& weight : log_weights_) weight -= largest;
   Estimate estimate = mixture(posteriors, log_weights_);
   estimate.angle += all.reference;
-  // Of the middle of the step: as long ago as usual, or longer after a gap.
+  // The estimate is the angle at the middle of the step. After a gap that is longer ago than usual.
   shortest_ = std::min(shortest_, step.duration);
   estimate.variance += std::pow(estimate.rate_stddev * 0.5 * (step.duration - shortest_), 2);
   return estimate;

@@ -22,14 +22,14 @@
 namespace uav_landing {
 namespace {
 
-// Where so many of the matches that tell a motion are close to the start, a quite different one has fewer.
+// If this share of the telling matches is close to the start, a very different motion would have fewer.
 constexpr double kMostlyClose = 0.8;
 constexpr int kFewestTelling = 20;
-// Share of what matches claim that they are taken to be wrong by at least, however well they agree: what is
-// the same all over the image no residual shows.
+// Least share of their claimed standard deviations that matches are given, however well they agree. An error
+// that is the same all over the image shows in no residual.
 constexpr double kLeastScale = 0.5;
 
-// Rotation and translation that carry three matches exactly, by two Newton steps with the normal held.
+// Finds the rotation and translation that fit three matches exactly: two Newton steps with the normal fixed.
 bool solveTriple(MotionRows& triple, MotionState& state) {
   for (int iteration = 0; iteration < 2; ++iteration) {
     triple.linearise(state);
@@ -69,32 +69,34 @@ MotionState bestByConsensus(const MotionState& start, MotionMemory& memory) {
   return best;
 }
 
-// Adds a rotation known beforehand to the normal equations: as a perturbation of Q on the left.
+// Adds a known rotation to the normal equations, as a perturbation of Q on the left.
 void addRotation(const RotationPrior& prior, const MotionState& state, MotionNormal& sums) {
   const Eigen::Matrix3d information = (state.Q * prior.covariance * state.Q.transpose()).inverse();
   sums.information.topLeftCorner<3, 3>() += information;
   sums.right.head<3>() += information * rotationVector(prior.R.transpose() * state.Q.transpose());
 }
 
-// The prior's covariance has rank 2; along the normal itself nothing may change, because it sets the scale.
+// The prior's covariance has rank 2. The normal must not change along itself, because its length sets the
+// scale.
 Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) {
   constexpr double kFixed = 1e-6;
   return (covariance + kFixed * kFixed * (Eigen::Matrix3d::Identity() + normal * normal.transpose()))
       .inverse();
 }
 
-// The normal that was found with a prior, and what it is by the matches alone.
+// Ground normal from the matches alone, relative to the one that was found with a prior.
 struct OwnNormal {
-  Eigen::Matrix3d covariance;         // of independent matches
-  Eigen::Matrix<double, 6, 3> by_it;  // rotation and translation by the normal, as the matches tie them
-  Eigen::Vector3d step;               // from the normal found
+  Eigen::Matrix3d covariance;  // if matches are independent
+  // Derivatives of rotation and translation by the normal, as the matches tie them.
+  Eigen::Matrix<double, 6, 3> by_it;
+  Eigen::Vector3d step;  // from the normal that was found with the prior
 };
 
-// information: of the matches of rotation, translation and normal. by_prior: its right side at the normal
-// found.
+// information: from the matches, on rotation, translation and normal. by_prior: right side from the prior, at
+// the normal that was found.
 std::optional<OwnNormal> freedOfPrior(const Matrix9d& information, const Eigen::Vector3d& normal,
                                       const Eigen::Vector3d& by_prior) {
-  constexpr double kLeast = 1.0;  // 1/rad^2: a stddev of a rad says nothing
+  constexpr double kLeast = 1.0;  // 1/rad^2: a standard deviation of 1 rad says nothing
   OwnNormal own;
   own.by_it = -information.topLeftCorner<6, 6>().ldlt().solve(information.topRightCorner<6, 3>());
   const Eigen::Matrix3d left =
@@ -114,9 +116,9 @@ double overlapFactor(const std::vector<TemporalMatch>& matches) {
   return windows.factor();
 }
 
-// What matches of a part of the image share, with the residuals that they have at their own normal. factor:
-// by which own.covariance is larger than that of independent matches. last: step to the motion found from
-// where the rows were linearised.
+// Extra covariance, because matches in one part of the image share errors. It uses the residuals at the
+// matches' own normal. factor: ratio of own.covariance to that of independent matches. last: step from the
+// point of linearisation to the motion that was found.
 Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                const MotionRows& rows, const std::vector<char>& inliers, const OwnNormal& own,
                                double factor, const Vector9d& last) {
@@ -134,8 +136,8 @@ Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalM
   return clusters.shared();
 }
 
-// What is known of the motion when the normal given says nothing: it may be wrong by the rig in every pair
-// alike, which would be taken for a time. information: with the prior.
+// Covariance of the motion with the given normal almost ignored. The rig may make that normal wrong in the
+// same way in every pair, and such an error would look like a readout time. information: with the prior.
 Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& normal,
                                 const Eigen::Matrix3d& prior) {
   constexpr double kAnySlope = 0.02;  // rad
@@ -145,8 +147,8 @@ Matrix9d covarianceWithoutPrior(Matrix9d information, const Eigen::Vector3d& nor
   return information.ldlt().solve(Matrix9d::Identity());
 }
 
-// The time as one unknown more, by the Schur complement. A longer time adds to the residuals, so that what
-// is missing to it is what takes them away. by_prior: right side of the normal equations by the prior.
+// Estimates the time as one more unknown by the Schur complement. Residuals grow with the time, so the
+// missing part of the time is the one that removes them. by_prior: right side from the prior.
 void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen::Vector3d& by_prior,
               ReadoutEffect& effect) {
   const Vector9d by_time = without_prior * sums.with_motion;
@@ -154,20 +156,20 @@ void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen
   effect.score = -sums.right - by_time.tail<3>().dot(by_prior);
 }
 
-// The motion that fits best, with the state of its last iteration.
+// The motion that fits best, and the state of the last iteration.
 struct Fitted {
   MotionState state, linearised;
   Vector9d step;         // from linearised to state
-  Matrix9d information;  // with the prior
-  double factor = 1;     // by which variances are larger than rows say
+  Matrix9d information;  // prior included
+  double factor = 1;     // factor by which variances are larger than the rows claim
 };
 
-// The ground's normal as it was given.
+// The given ground normal as a prior.
 struct GivenNormal {
   Eigen::Vector3d n;
   Eigen::Matrix3d information;
 
-  // Right side of the normal equations by it.
+  // Contribution to the right side of the normal equations.
   Eigen::Vector3d pull(const MotionState& state) const { return information * (n - state.n); }
 };
 
@@ -188,7 +190,7 @@ Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const Give
                                            " matches agree, at least " + std::to_string(min_matches) +
                                            " needed"});
     }
-    // Matches that agree better than they claim may be as good as that (the variance factor a posteriori).
+    // Matches that agree better than they claim are trusted more (variance factor a posteriori).
     fitted.factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
     sums.information /= fitted.factor;
     sums.right /= fitted.factor;
@@ -242,7 +244,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   }
   result.motion = {state.Q.transpose(), state.t};
   result.normal = state.n;
-  // Perturbations of Q on the left (frame then) to those of R on the left (frame now): -R w.
+  // Converts perturbations of Q on the left (frame then) to those of R on the left (frame now): -R w.
   Matrix9d turn = Matrix9d::Identity();
   turn.topLeftCorner<3, 3>() = -state.Q.transpose();
   result.covariance = turn * covariance * turn.transpose();

@@ -13,48 +13,56 @@
 
 namespace uav_landing {
 
-/// What a readout time that is not given does to a motion by the matches, and what these say of it.
+/// Effect of an unknown readout time on a motion (derivatives by that time), and what the matches say about
+/// the time.
 struct ReadoutEffect {
-  Eigen::Matrix<double, 9, 1> by_time = Eigen::Matrix<double, 9, 1>::Zero();  ///< of R, t and normal, per s
-  Eigen::Vector3d own_normal_by_time = Eigen::Vector3d::Zero();               ///< 1/s
-  double information = 0;                                                     ///< 1/s^2
-  double score = 0;  ///< information times what is missing to the time, 1/s
+  Eigen::Matrix<double, 9, 1> by_time = Eigen::Matrix<double, 9, 1>::Zero();  ///< of (R, t, normal), 1/s
+  Eigen::Vector3d own_normal_by_time = Eigen::Vector3d::Zero();               ///< of own_normal, 1/s
+  double information = 0;                                                     ///< on the readout time, 1/s^2
+  double score = 0;  ///< information times (true time - time in use), 1/s
 };
 
-/// Motion with the ground normal that fits both the prior and the matches.
+/// Motion and ground normal that fit the prior and the matches together.
 struct MotionEstimate {
   CameraMotion motion;
   Eigen::Vector3d normal;
-  /// Of (rotation vector of R, in the frame now; t; normal). The normal's scale is fixed.
+  /// Covariance of the rotation vector of R (in the frame now), t and the normal, in this order. The normal
+  /// keeps its length.
   Eigen::Matrix<double, 9, 9> covariance;
-  /// Share of it that comes from the error of the normal that was given.
+  /// Part of the covariance that comes from the error of the given normal.
   Eigen::Matrix<double, 9, 9> of_normal;
-  /// The ground's normal by the matches (and the rotation known beforehand) alone, and its covariance (rank
-  /// 2, rad^2), independent of the one that was given but for where it is linearised, and of stereo but for
-  /// the depth of points off the plane; not finite where the matches do not tell it. Unlike the motion's,
-  /// its covariance is larger where parts of the image are wrong together.
+  /// Ground normal from the matches alone, and from the rotation prior when there is one. Its covariance has
+  /// rank 2, rad^2. It depends on the given normal only through the point of linearisation, and on stereo
+  /// only through the depth of points off the plane. Not finite when the matches do not determine it. Unlike
+  /// that of the motion, its covariance grows when the matches of one part of the image are wrong together.
   Eigen::Vector3d own_normal = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Matrix3d own_normal_covariance = Eigen::Matrix3d::Constant(kUnknown);
   ReadoutEffect readout;
-  /// Share of it that comes from rotations while rows are exposed, see RowShake; 0 where there are none.
+  /// Part of the covariance that comes from rotations while rows are exposed (see RowShake); 0 without them.
   Eigen::Matrix<double, 9, 9> of_shake = Eigen::Matrix<double, 9, 9>::Zero();
   std::vector<char> inliers;
   int inlier_count = 0;
 };
 
-/// Robust motion: RANSAC over triples, but where most of the matches are close to the start, then
-/// Gauss-Newton with redescending weights over rotation, translation and normal, the latter with its prior
-/// covariance (rank 2), and with the rotation prior when there is one. Covariances are less than the matches
-/// claim where these agree better (the variance factor a posteriori of least squares), and more where their
-/// windows overlap. Fixed
-/// seed. Rows that shake (RowShake) are unknowns besides, where the matches show them. Fails when fewer than
-/// min_matches agree.
+/// Robust estimate of the motion from the ground normal and the matches.
+///
+/// RANSAC over triples of matches finds a start. It is skipped when most of the matches are close to the
+/// given one. Gauss-Newton with redescending weights then solves for rotation, translation and normal. The
+/// given normal enters as a prior with its covariance (rank 2, rad^2), and so does the rotation prior when
+/// there is one.
+///
+/// Matches that agree better than they claim reduce the covariances (variance factor a posteriori). Windows
+/// that overlap enlarge them. Where the matches show that rows shake (RowShake), the shake is an additional
+/// unknown. Deterministic: the random numbers have a fixed seed.
+///
+/// start: motion to begin with. Fails with too_few_matches when there are fewer than min_matches (or four),
+/// and with motion_inconsistent when fewer than min_matches agree or they do not determine the motion.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
                                         int min_matches, MotionMemory& memory,
                                         const RotationPrior* rotation = nullptr, const RowDoubt& doubt = {});
-/// The same with memory of its own.
+/// The same, without shaking rows and with working memory of its own.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                                         const Eigen::Vector3d& normal,
                                         const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,

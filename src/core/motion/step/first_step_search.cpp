@@ -11,11 +11,11 @@
 namespace uav_landing {
 namespace {
 
-// Shares of the height that a step may lead ahead. What is between them, rotation and sinking is left to the
-// search for each corner.
+// Speeds ahead per step, in heights. The search for each corner covers the speeds between them, rotation and
+// sinking.
 constexpr std::array<double, 9> kSpeeds = {0.0, 0.03, 0.07, 0.13, 0.22, 0.35, 0.55, 0.8, 1.1};
-// So many are tried in a pair, and so many compared, by the time that there is: as much as lets the pair take
-// less than three times as long as one with nothing to search for.
+// Numbers of speeds tried and compared in one pair. They keep a pair below three times the duration of a pair
+// without any search.
 size_t guessedIn(SearchTime time) {
   return time == SearchTime::kAmple ? kSpeeds.size() : time == SearchTime::kShort ? 3 : 1;
 }
@@ -23,11 +23,12 @@ size_t comparedIn(SearchTime time) {
   return time == SearchTime::kAmple ? 4 : time == SearchTime::kShort ? 3 : 2;
 }
 
-// In how many searches in a row that few corners agree with all of them are compared.
+// When few corners agree in search after search, all are compared in one of this many searches.
 constexpr int kUnsureInterval = 10;
 
 constexpr size_t kGuessCorners = 60;
-constexpr size_t kComparedCorners = 250;  // half as many took a wrong speed over hardly anything but lines
+// With half as many, the comparison chose a wrong speed over ground with little but lines.
+constexpr size_t kComparedCorners = 250;
 
 CameraMotion ahead(const Eigen::Vector3d& normal, const Eigen::Matrix3d& R, double speed) {
   return {R, speed * (Eigen::Vector3d::UnitZ() - normal.z() * normal).normalized()};
@@ -60,7 +61,7 @@ bool FirstStepSearch::isAtOnce(const StepImages& step) const {
 void FirstStepSearch::fail() { with_rotation_ = !with_rotation_; }
 
 std::optional<CameraMotion> FirstStepSearch::advance(const StepMatching& matching, const StepImages& step) {
-  if (step.duration > kRarePairs) clear();  // what was found before a gap leads nowhere
+  if (step.duration > kRarePairs) clear();  // what was found before a gap is too old
   const bool at_once = isAtOnce(step);
   if (compared_.empty()) {
     size_t time = at_once ? kSpeeds.size() : guessedIn(step.time);
@@ -102,13 +103,13 @@ bool FirstStepSearch::isUnsure() {
     unsure_ = 0;
     return false;
   }
-  // To compare takes as long as many pairs do: where nothing can be seen, not after each search.
+  // A comparison takes the time of many pairs. Where nothing can be seen, not every search may end with one.
   return unsure_++ % kUnsureInterval == 0;
 }
 
-// Lines along the runway look alike wherever along them they are looked for, so that they agree with any
-// speed, the more of them the slower it is; how much all corners look alike tells which one is right. Only
-// what is of the same pair can be compared, so the best one is looked at again in each.
+// Lines along the runway look the same everywhere along themselves. Their corners agree with any speed, and
+// more of them with slow ones. The similarity of all corners shows which speed is right. Similarities can be
+// compared within one pair only, so each pair also looks at the best one so far.
 void FirstStepSearch::compare(const StepMatching& matching, const StepImages& step, size_t count) {
   const std::vector<TrackedCorner> some = thinned(step.corners, kComparedCorners);
   const std::optional<Candidate> before = std::exchange(alike_, std::nullopt);
@@ -131,7 +132,8 @@ void FirstStepSearch::compare(const StepMatching& matching, const StepImages& st
 CameraMotion FirstStepSearch::follow(const StepMatching& matching, const StepImages& step,
                                      const std::vector<TrackedCorner>& corners,
                                      const CameraMotion& start) const {
-  constexpr int kFollowed = 3;  // times from where the last one led: it falls short of what is right by half
+  // Number of repetitions from the last result, as each one covers only half of the way to the right motion.
+  constexpr int kFollowed = 3;
   CameraMotion motion = start;
   std::vector<TemporalMatch> matches;
   for (int time = 0; time < kFollowed; ++time) {

@@ -7,30 +7,31 @@
 
 namespace uav_landing {
 
-/// The motion of a step of which nothing is known but the ground: straight ahead over it at several speeds,
-/// that with which most corners agree.
+/// Finds the motion of a frame step when nothing but the ground is known. It tries several speeds straight
+/// ahead over the ground and takes the one that most corners agree with.
 ///
-/// That takes as long as several pairs whose motion is known. So each pair tries some of the speeds, on its
-/// own images: from one pair to the next the motion is nearly the same.
+/// A complete search takes as long as several pairs whose motion is known. So each pair tries only some of
+/// the speeds, on its own images. This works because the motion is nearly the same from one pair to the next.
 class FirstStepSearch {
  public:
-  /// at_once: all speeds in the first pair, however long it takes.
+  /// at_once: try all speeds in the first pair, however long it takes.
   explicit FirstStepSearch(bool at_once) : at_once_(at_once) {}
 
-  /// Goes on with this step. The motion of this step after the last speed; before that nothing.
+  /// Continues the search with this step. Returns this step's motion once all speeds have been tried, before
+  /// that nothing.
   std::optional<CameraMotion> advance(const StepMatching& matching, const StepImages& step);
   /// Whether this step has time for all speeds.
   bool isAtOnce(const StepImages& step) const;
-  /// Begins anew with the next step.
+  /// Starts a new search with the next step.
   void restart();
-  /// Forgets earlier searches, too. The next step is of other images.
+  /// Starts a new search and forgets earlier ones, too. Use it when other images come next.
   void reset();
-  /// What was found leads nowhere. The next search does without a rotation known beforehand if this one
-  /// had it, and the other way round.
+  /// Tells the search that its result was wrong. If it used the known rotation, the next search does without
+  /// it, and the other way round.
   void fail();
 
  private:
-  // A motion, and of how long a step.
+  // A motion with the duration of its step, s.
   struct Candidate {
     CameraMotion motion;
     double duration;
@@ -39,21 +40,21 @@ class FirstStepSearch {
   void clear();
   Eigen::Matrix3d rotation(const StepImages& step) const;
   void guess(const StepMatching& matching, const StepImages& step, double speed);
-  bool isUnsure();  // so that all corners have to be compared
+  bool isUnsure();  // few corners agree with the best guess, and it is time to compare all of them
   void compare(const StepMatching& matching, const StepImages& step, size_t count);
   CameraMotion follow(const StepMatching& matching, const StepImages& step,
                       const std::vector<TrackedCorner>& corners, const CameraMotion& start) const;
   std::optional<CameraMotion> end(const StepImages& step);
 
   bool at_once_;
-  bool with_rotation_ = true;        // where one is known
-  size_t guessed_ = 0;               // speeds
-  double share_ = 0;                 // of the corners that agree with the best
-  std::optional<Candidate> best_;    // of the guesses
-  std::vector<Candidate> compared_;  // in the order in which all corners are compared; empty before that
-  size_t next_ = 0;                  // of them
-  std::optional<Candidate> alike_;   // of those before, with which corners look most alike
-  int unsure_ = 0;                   // searches in a row that few corners agreed with
+  bool with_rotation_ = true;        // use the known rotation, when there is one
+  size_t guessed_ = 0;               // number of speeds tried
+  double share_ = 0;                 // share of the corners that agree with best_
+  std::optional<Candidate> best_;    // best guess so far
+  std::vector<Candidate> compared_;  // candidates for the comparison, in their order; empty until it begins
+  size_t next_ = 0;                  // next candidate to compare
+  std::optional<Candidate> alike_;   // the compared candidate under which the corners look most alike
+  int unsure_ = 0;                   // successive searches that few corners agreed with
 };
 
 }  // namespace uav_landing

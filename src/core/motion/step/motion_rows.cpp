@@ -38,7 +38,7 @@ MotionState MotionState::apply(const Vector9d& step) const {
   return {rotationMatrix(step.head<3>()) * Q, t + step.segment<3>(3), n + step.tail<3>()};
 }
 
-// Larger memory is kept and only what fills the columns up is set: the rest is written by all that follows.
+// Memory never shrinks. Only the padding of the columns is set here; the callers write the rest.
 void MotionRows::resize(size_t count) {
   count_ = count;
   padded_ = wholeDoubleLanes(count);
@@ -94,7 +94,7 @@ void MotionRows::linearise(const MotionState& state) {
   for (size_t i = count_; i < padded_; ++i) outputs_[kRaySquares * padded_ + i] = kRayBehind;
 }
 
-// Robust size of the residuals over their stddevs.
+// Robust size of the residuals over their standard deviations.
 double MotionRows::residualScale() {
   const double *squares = &outputs_[kRaySquares * padded_], *ratios = &outputs_[kRayRatio * padded_];
   ratios_.resize(count_);

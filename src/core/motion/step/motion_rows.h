@@ -12,61 +12,66 @@
 
 namespace uav_landing {
 
-/// How well a motion is supported: votes weighted by closeness, and how many matches it fits well. Telling
-/// are matches that know both of their coordinates; others, as along a line, fit nearly any motion well.
+/// Support of a motion: votes weighted by closeness, and the number of matches that it fits well. A match is
+/// telling when both of its coordinates are certain. Other matches, for example along a line, fit nearly any
+/// motion well.
 using MotionSupport = RaySupport;
 
-/// Sums of the normal equations by (rotation, t, n).
+/// Sums of the normal equations. The unknowns are rotation, translation and normal, in this order.
 struct MotionNormal {
   Matrix9d information = Matrix9d::Zero();
   Vector9d right = Vector9d::Zero();
-  int count = 0;              // of the matches with a weight
-  double residual_scale = 1;  // robust size of the residuals over their stddevs
+  int count = 0;              // matches with a weight
+  double residual_scale = 1;  // robust size of the residuals over their standard deviations
 };
 
-/// Sums of what one unknown more does to the residuals, and they with it: that unknown is a time.
+/// Sums of the normal equations for one more unknown, a time: its products with the motion, with itself, and
+/// with the residuals.
 struct SumsByTime {
   Vector9d with_motion = Vector9d::Zero();
   double information = 0, right = 0;
 };
 
-/// The least squares problem of a camera's motion: for each match two residuals (pixels) where it was then
-/// less where the motion puts it, by columns, so that four matches are worked on at once. Keeps its memory.
+/// The least squares problem of a camera's motion. Each match has two residuals: its place in the image then
+/// minus the place that the motion predicts, in pixels. Data is stored by columns, so that four matches are
+/// computed at once. The object keeps its memory between uses.
 class MotionRows {
  public:
-  /// Distance, in pixels, by which a match may miss a motion in the consensus step.
+  /// Distance by which a match may miss a motion in the consensus step, pixels.
   static constexpr double kTolerance = 2.0;
 
   void assign(const StereoRig& rig, const std::vector<TemporalMatch>& matches);
   size_t size() const { return count_; }
-  /// The problem of these three alone.
+  /// Takes only these three matches of another problem.
   void assign(const MotionRows& all, const std::array<size_t, 3>& chosen);
 
   MotionSupport support(const MotionState& state) const;
 
-  /// Residuals and Jacobians at a state. The two rows of a match are made independent of each other (LDL' of
-  /// its covariance), each with its precision.
+  /// Computes residuals and Jacobians at a state. The two rows of a match are made independent of each other
+  /// (LDL' of the match's covariance), and each has its precision.
   void linearise(const MotionState& state);
 
-  /// Sums with Tukey weights of the residuals, taken as large as their median says, but at least as claimed.
-  /// inliers: which matches have a weight. After linearise().
+  /// Sums up the normal equations with Tukey weights. Standard deviations are scaled up when the median of
+  /// the residuals is larger than the matches claim, and never down. inliers: receives 1 for each match with
+  /// a weight. Call it after linearise().
   MotionNormal accumulate(std::vector<char>& inliers);
 
-  /// What one match adds to the right side of the normal equations after one step more. After accumulate().
+  /// Contribution of one match to the right side of the normal equations, after one more step. Call it after
+  /// accumulate().
   Vector9d score(size_t match, const Vector9d& step) const;
 
-  /// later: the same matches as they are a time (s) later, linearised at the same state. The residuals are
-  /// those after one step more. After accumulate().
+  /// Sums for the unknown time. later: the same matches with a readout time that is longer by `seconds`,
+  /// linearised at the same state. The residuals are those after one more step. Call it after accumulate().
   SumsByTime sumsByTime(const MotionRows& later, double seconds, const Vector9d& step) const;
 
-  /// Sums of nodes over the rows after one step more, of those that have matches beside them. shares: of the
-  /// readout at which the matches are exposed. later: as above, or null where the readout time is no unknown.
-  /// After accumulate().
+  /// Sums for the nodes of a rotation over the rows, after one more step. Returns only nodes that have
+  /// matches beside them. shares: times of the matches as a share of the readout. later: as above, or null
+  /// when the readout time is no unknown. Call it after accumulate().
   std::vector<RowNode> rowNodes(const std::vector<double>& shares, const Vector9d& step,
                                 const MotionRows* later, double seconds) const;
 
-  /// Rotation and translation that take away the residuals of three matches, the normal held; not finite when
-  /// one lies behind the camera. After linearise().
+  /// Rotation and translation that bring the residuals of three matches to zero while the normal stays fixed.
+  /// Not finite when one of the matches lies behind the camera. Call it after linearise().
   Eigen::Matrix<double, 6, 1> solveExactly() const;
 
  private:
@@ -75,11 +80,12 @@ class MotionRows {
 
   Eigen::Vector4d camera_ = Eigen::Vector4d::Zero();  // fx, fy, cx, cy
   size_t count_ = 0, padded_ = 0;
-  std::vector<double> inputs_, outputs_;  // by columns of padded_, as seen_rays.h has them
+  std::vector<double> inputs_, outputs_;  // columns of padded_ values, see seen_rays.h
   std::vector<double> ratios_;
 };
 
-/// Memory that a fit works in: all matches, the three that are drawn, and those of another readout time.
+/// Working memory of a fit: all matches, and a second problem for the three drawn ones or for another readout
+/// time.
 struct MotionMemory {
   MotionRows all, drawn;
   std::vector<TemporalMatch> shifted;

@@ -5,10 +5,11 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kLeastOnPlane = 0.7;  // of the corners that can be told from noise
-constexpr double kLeastContrast = 6;   // grey levels, 1 sigma in a window: three times a usual sensor's noise
-constexpr int kFewest = 10;            // corners that can be told from noise
-constexpr int kRadius = 4;             // of the window, px
+constexpr double kLeastOnPlane = 0.7;  // share of the corners that stand out from noise
+// Grey levels, 1 sigma in a window: three times the noise of a usual sensor.
+constexpr double kLeastContrast = 6;
+constexpr int kFewest = 10;  // corners that stand out from noise
+constexpr int kRadius = 4;   // of the window, px
 
 bool hasContrast(const cv::Mat& image, const cv::Point& corner) {
   const cv::Rect window(corner.x - kRadius, corner.y - kRadius, 2 * kRadius + 1, 2 * kRadius + 1);

@@ -8,15 +8,16 @@
 
 namespace uav_landing {
 
-/// Why corners may not be those of one plane; none when their motion shows that they are.
+/// Tests whether the corners lie on one plane. Returns no failure when their motion shows that they do, else
+/// plane_unproven.
 ///
-/// Without stereo nothing else tells. In a street, or in front of houses, a part of the corners always agrees
-/// on some motion over some plane, and its angle is off by tens of degrees. So of all corners that can be
-/// told from noise seven in ten have to be found where the motion over the plane puts them. Over runways,
-/// grass and water nine in ten are; in streets less than half.
+/// Without stereo there is no other proof. In a street, or in front of houses, some of the corners always
+/// agree on a motion over some plane, and its angle is wrong by tens of degrees. So the test takes all
+/// corners with more contrast than noise has. Seven in ten of them must be found where the motion over the
+/// plane puts them. Over runways, grass and water nine in ten are; in streets it is less than half.
 ///
-/// image: of the corners, smoothed or not. corners: all that were looked for, on the ground if it is a plane.
-/// matches: those that were followed, with what the estimate says of each.
+/// image: the one with the corners, smoothed or not. corners: all that were looked for, as if on the ground.
+/// matches: those that were followed. estimate: the motion that was estimated from these matches.
 Failure doubtOfPlane(const cv::Mat& image, const std::vector<TrackedCorner>& corners,
                      const std::vector<TemporalMatch>& matches, const MotionEstimate& estimate);
 

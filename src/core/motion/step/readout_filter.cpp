@@ -6,14 +6,14 @@
 namespace uav_landing {
 namespace {
 
-// Successive pairs see the same ground with the same errors, by what is not flat of it and by lenses: all of
-// that time count as one.
+// Successive pairs see the same ground with the same errors, from lenses and from ground that is not flat. So
+// all pairs within this time count as one.
 constexpr double kCorrelationTime = 4.0;  // s
-// 1 sigma of what lenses and ground that is not flat make of every step alike, s.
+// 1 sigma of the error that lenses and uneven ground cause in every step alike, s.
 constexpr double kLastingStddev = 0.0015;
-// Squared normalised innovation beyond which a step counts less.
+// Squared normalised innovation above which a step has less weight.
 constexpr double kLimit = 9;
-// Probability of a global shutter from which on nothing is corrected.
+// Nothing is corrected when the probability of a global shutter is above this.
 constexpr double kMostDoubt = 0.1;
 
 double varianceBy(double information) { return 1 / information + kLastingStddev * kLastingStddev; }
@@ -30,7 +30,7 @@ void ReadoutFilter::learn(const ReadoutEffect& effect, double duration) {
   time_ += share * effect.information * missing / information_;
 }
 
-// The density at 0 afterwards over that beforehand is what the steps say for a global shutter.
+// The ratio of the densities at 0, after and before the steps, is the evidence for a global shutter.
 double ReadoutFilter::globalProbability() const {
   const double before = varianceBy(1 / (kPriorStddev * kPriorStddev)), variance = varianceBy(information_);
   const double odds = kGlobalBeforehand / (1 - kGlobalBeforehand) * std::sqrt(before / variance) *

@@ -5,27 +5,29 @@
 
 namespace uav_landing {
 
-/// Readout time of the cameras where none is given, from what it does to matches over time. There are two
-/// hypotheses: a global shutter, with 0, and a rolling one, whose time is one constant, by Bayes from step to
-/// step. What a camera sees that hardly moves has no information and changes nothing.
+/// Estimates the readout time of the cameras from its effect on matches over time, when no time is given.
+/// There are two hypotheses: a global shutter, whose time is 0, and a rolling shutter, whose time is an
+/// unknown constant. Bayes' rule updates them with each step. A camera that hardly moves gives no
+/// information, so the estimate stays as it is.
 class ReadoutFilter {
  public:
-  /// 1 sigma of a rolling shutter's time before anything is known, s: 5 to 35 ms, either way.
+  /// 1 sigma of a rolling shutter's time before any measurement, s. It covers 5 to 35 ms in both directions.
   static constexpr double kPriorStddev = 0.02;
-  /// Probability of a global shutter then: less than the share of these, as a claim that is too narrow does
-  /// more harm than one that is too wide.
+  /// Probability of a global shutter before any measurement. Global shutters are more frequent than this. A
+  /// low value is safer, because too narrow a claim does more harm than too wide a one.
   static constexpr double kGlobalBeforehand = 0.2;
 
-  /// effect: of a motion up to a pair, corrected by the estimate before. duration: since the pair before, s.
+  /// effect: of a motion up to this pair, which was corrected with the estimate so far. duration: time since
+  /// the previous pair, s.
   void learn(const ReadoutEffect& effect, double duration);
-  /// The time by which to correct: 0 unless a global shutter is improbable, so that nothing is done to one
-  /// by the estimate's noise. The variance is the mean square of what the true time may be off from it, by
-  /// both hypotheses.
+  /// Readout time to correct with. It is 0 unless a global shutter is improbable, so that noise of the
+  /// estimate does not disturb images of a global shutter. The variance is the mean squared difference from
+  /// the true time over both hypotheses.
   ReadoutEstimate estimate() const;
   double globalProbability() const;
 
  private:
-  double time_ = 0;  // of a rolling shutter
+  double time_ = 0;  // of the hypothesis "rolling shutter", s
   double information_ = 1 / (kPriorStddev * kPriorStddev);
 };
 

@@ -3,9 +3,10 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kApart = 1e-3;  // s, of the readout that derivatives are taken over
+constexpr double kApart = 1e-3;  // s, readout time for the difference quotients
 
-// The rows of a readout of 1 s see a motion that is slower by kApart as those of kApart see the motion.
+// With a readout of 1 s, a camera that moves kApart times as fast has the same shifts as one with a readout
+// of kApart at full speed.
 RowMotion slowed(const RowMotion& motion) { return {kApart * motion.w, kApart * motion.v}; }
 
 }  // namespace

@@ -8,14 +8,14 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: less does not matter
+constexpr double kLeastStddev = 2e-4, kMostStddev = 1e-2;  // rad: a smaller shake does not matter
 constexpr int kFewestNodes = 4;
-// Logarithm of the ratio of likelihoods from which on there is shake.
+// Least logarithm of the likelihood ratio at which shake is found.
 constexpr double kLeastLikelihood = 100;
-// Share of what is known of it that is left at the next pair.
+// Share of the remembered likelihoods that is left at the next pair.
 constexpr double kKept = 0.95;
 
-/// The nodes as one system, by three unknowns each.
+/// The nodes as one linear system with three unknowns each.
 struct NodeSystem {
   Eigen::MatrixXd rotation, with_motion;
   Eigen::VectorXd score, with_time, shares;
@@ -40,10 +40,10 @@ struct NodeSystem {
     }
   }
 
-  // Root L of the covariance L L' of shakes of unit variance about a frequency.
+  // Root L of the covariance L L' of a shake of unit variance around one frequency.
   Eigen::MatrixXd root(double cycles) const {
-    constexpr double kAlike = 0.5;  // cycles: the frequency is known to a third
-    constexpr double kOwn = 1e-3;   // of each node alone, so that the root exists
+    constexpr double kAlike = 0.5;  // cycles, so the frequency is known to a third
+    constexpr double kOwn = 1e-3;   // independent part of each node, so that the root exists
     const Eigen::Index n = shares.size();
     Eigen::MatrixXd covariance(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
@@ -61,7 +61,8 @@ struct NodeSystem {
   }
 };
 
-// By which variances of matches are larger than they claim, by what they differ from any shake.
+// Factor by which the matches' variances are larger than they claim, from the residuals that no shake
+// explains.
 double noiseBeside(const std::vector<RowNode>& nodes, const NodeSystem& system) {
   constexpr double kAnything = 1;  // rad
   double squares = 0, count = 0;
@@ -75,7 +76,8 @@ double noiseBeside(const std::vector<RowNode>& nodes, const NodeSystem& system) 
   return count > n ? std::max(1.0, left / (count - n)) : 1;
 }
 
-// The scores in the axes of their own covariance M: each has the variance d + variance d^2.
+// Works in the axes of the scores' own covariance M. There a score has the variance d + variance d^2, with
+// the eigenvalue d and the variance of the shake.
 void addLikelihoods(const Eigen::MatrixXd& M, const Eigen::VectorXd& scores, double noise,
                     std::array<double, ShakeMemory::kStddevs>& likelihoods) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(M);
@@ -92,7 +94,7 @@ void addLikelihoods(const Eigen::MatrixXd& M, const Eigen::VectorXd& scores, dou
   }
 }
 
-// What is left to say of the shake when motion and readout time fit as well as they can.
+// Sums for the shake that remain after motion and readout time are fitted as well as possible.
 struct Remainder {
   Eigen::MatrixXd rotation;
   Eigen::VectorXd score;
@@ -106,7 +108,7 @@ Remainder remainderOf(const NodeSystem& system, const Matrix9d& information, con
   with_all.leftCols<9>() = system.with_motion;
   Eigen::Matrix<double, 10, 1> right = Eigen::Matrix<double, 10, 1>::Zero();
   if (timed) {
-    // A longer time adds to the residuals.
+    // Residuals grow with the readout time, so its terms have the opposite sign.
     all(9, 9) = time.information;
     all.topRightCorner<9, 1>() = -time.with_motion;
     all.bottomLeftCorner<1, 9>() = -time.with_motion.transpose();
@@ -118,10 +120,10 @@ Remainder remainderOf(const NodeSystem& system, const Matrix9d& information, con
           system.score - with_all * solver.solve(right)};
 }
 
-// (N + K^-1)^-1 with K = L L' is L (1 + L' N L)^-1 L'.
+// Eliminates the shake. With K = L L', (N + K^-1)^-1 is L (1 + L' N L)^-1 L'.
 RowShake takenOut(const NodeSystem& system, const Matrix9d& information, double noise,
                   const ShakeMemory::Size& size) {
-  // The size is the mean of three axes. One may have all of it.
+  // The size is the mean of three axes, but one axis may have all of it.
   const Eigen::MatrixXd root = std::sqrt(3.0) * size.stddev * system.root(size.cycles);
   const Eigen::Index n = root.rows();
   const Eigen::LDLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +

@@ -8,34 +8,37 @@
 
 namespace uav_landing {
 
-/// What matches say of a rotation that the camera has beside its motion at one time of the readout. Between
-/// two such times it is linear. Sums of the normal equations, after the motion that fits all matches.
+/// A rotation of the camera in addition to its motion, at one time within the readout; it is linear between
+/// two such nodes. The node holds the sums of the normal equations from the matches, after the motion that
+/// fits them best.
 struct RowNode {
-  static constexpr int kInReadout = 16;  ///< vibration is nearly linear in one part
+  /// Nodes in a readout. Vibration is nearly linear between two of them.
+  static constexpr int kInReadout = 16;
 
-  double share = 0;                                     ///< of the readout
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();   ///< information on it
-  Eigen::Matrix3d with_next = Eigen::Matrix3d::Zero();  ///< product with the node below it
+  double share = 0;                                     ///< time of the node as a share of the readout
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();   ///< information on the rotation
+  Eigen::Matrix3d with_next = Eigen::Matrix3d::Zero();  ///< product with the rotation of the next node
   Eigen::Matrix<double, 3, 9> with_motion = Eigen::Matrix<double, 3, 9>::Zero();
-  Eigen::Vector3d with_time = Eigen::Vector3d::Zero();  ///< with a readout time that is not given
-  Eigen::Vector3d score = Eigen::Vector3d::Zero();      ///< right side
-  double squares = 0;  ///< of the residuals over their stddevs from here to the next node, weighted
-  int count = 0;       ///< of matches there
+  Eigen::Vector3d with_time = Eigen::Vector3d::Zero();  ///< product with an estimated readout time
+  Eigen::Vector3d score = Eigen::Vector3d::Zero();      ///< right side of the normal equations
+  double squares = 0;  ///< weighted sum of squared residuals over their stddevs, up to the next node
+  int count = 0;       ///< number of matches up to the next node
 };
 
-/// What the pairs of about a second say of the shake's size: a pair alone does not see it in every phase.
+/// Remembers what the pairs of about one second say about the size of the shake. One pair is not enough,
+/// because it sees the vibration in one phase only.
 class ShakeMemory {
  public:
-  /// Cycles of vibration in a readout, and standard deviations of the rotation, that are looked for (rad).
+  /// Hypotheses: cycles of vibration in one readout, and standard deviations of the rotation, rad.
   static constexpr std::array<double, 6> kCycles = {0.4, 0.7, 1.1, 1.7, 2.6, 4};
   static constexpr int kStddevs = 21;
   static double stddev(int k);
 
   struct Size {
     double stddev = 0, cycles = 0;
-    double likelihood = 0;  ///< ratio to that without shake, its logarithm
+    double likelihood = 0;  ///< logarithm of the likelihood ratio to no shake
   };
-  /// Logarithms of the ratios for one pair, by cycles and stddevs.
+  /// Logarithms of the likelihood ratios for one pair. Indices: cycles, then standard deviations.
   using Likelihoods = std::array<std::array<double, kStddevs>, kCycles.size()>;
   void add(const Likelihoods& pair);
   Size likeliest() const;
@@ -44,31 +47,32 @@ class ShakeMemory {
   Likelihoods sums_ = {};
 };
 
-/// Rotations of the camera while rows are exposed, as random numbers of one variance that are alike at times
-/// that are close: vibration through a rolling shutter. They are unknowns beside the motion, and taken out of
-/// its normal equations.
+/// Rotations of the camera while rows are exposed, as vibration causes them with a rolling shutter. They are
+/// random numbers of one variance, and similar at times that are close. They are additional unknowns and are
+/// eliminated from the normal equations of the motion.
 struct RowShake {
   double variance = 0;   ///< rad^2, of each axis
-  Matrix9d information;  ///< on the motion, less what the shake hides
-  Vector9d step;         ///< to the motion that fits best with it
-  /// By how much sums with a readout time that is not given are less, its right side after that step.
+  Matrix9d information;  ///< information on the motion, reduced by the shake
+  Vector9d step;         ///< change of the motion to the one that fits best with the shake
+  /// Parts to subtract from the sums of the readout time, when that is estimated. time_right applies after
+  /// `step`.
   double time_information = 0, time_right = 0;
   Vector9d time_with_motion = Vector9d::Zero();
 
   bool found() const { return variance > 0; }
 };
 
-/// What a readout time that is not given has to do with a motion, by the sums of the normal equations, about
-/// the motion that fits without it.
+/// Normal equations of a readout time that is estimated: sums at the motion that fits best without it.
 struct TimeUnknown {
   Vector9d with_motion = Vector9d::Zero();
-  double information = 0;  ///< with that beforehand, 1/s^2
+  double information = 0;  ///< prior included, 1/s^2
   double right = 0;
 };
 
-/// information: of the motion, with priors. time: one unknown more, which is no shake. What no such rotation
-/// explains is the matches' noise, however little they claim. Found is only what is far beyond that, with the
-/// pairs before.
+/// Looks for shake in the nodes of one pair. Any part of the residuals that no rotation can explain counts as
+/// noise of the matches, even if they claim less. Shake is found only when it is far beyond that noise over
+/// this pair and the previous ones. information: on the motion, priors included. time: another unknown, which
+/// must not be taken for shake.
 RowShake findRowShake(const std::vector<RowNode>& nodes, const Matrix9d& information, const TimeUnknown& time,
                       ShakeMemory& memory);
 

@@ -5,10 +5,9 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kApart = 1e-3;  // s, of readout times, by whose difference derivatives are taken
+constexpr double kApart = 1e-3;  // s, difference of readout times for the derivatives
 
-/// The matches as they are at a readout time that is longer by kApart, about the state that the others were
-/// last linearised at.
+/// The same matches with a readout time that is longer by kApart, linearised at the same state.
 const MotionRows& laterRows(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
                             const MotionState& state, MotionMemory& memory) {
   memory.shifted = matches;

@@ -11,28 +11,28 @@
 
 namespace uav_landing {
 
-/// What rows that are exposed one after the other do to a motion.
+/// Possible errors of a motion, because rows are exposed one after the other.
 struct RowDoubt {
-  const RowTimes* times = nullptr;  ///< of rows that may shake; null: all are exposed at once
+  const RowTimes* times = nullptr;  ///< row times, which allow for shake; null: all rows are exposed at once
   ShakeMemory* shake = nullptr;
-  /// How the normal given follows a readout time that is not given, 1/s.
+  /// Derivative of the given normal by a readout time that is estimated, 1/s.
   Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();
 };
 
-/// What rows that are exposed one after the other leave open beside a motion.
+/// Additional unknowns of a motion, because rows are exposed one after the other.
 struct RowUnknowns {
-  bool has_time = false;  ///< a readout time is estimated: matches have by_readout
-  SumsByTime by_time;     ///< of the time, less what the shake hides
+  bool has_time = false;  ///< whether a readout time is estimated, so that matches have by_readout
+  SumsByTime by_time;     ///< sums of the readout time, reduced by the shake
   RowShake shake;
 };
 
-/// A motion as its iterations end.
+/// State of a fit after its last iteration.
 struct FittedRows {
-  const MotionRows& rows;         ///< linearised there
-  const MotionState& linearised;  ///< where that is
-  const Vector9d& step;           ///< from there to the motion
-  const Matrix9d& information;    ///< on the motion, with priors
-  double factor;                  ///< by which variances are larger than rows say
+  const MotionRows& rows;         ///< linearised at `linearised`
+  const MotionState& linearised;  ///< state before the last step
+  const Vector9d& step;           ///< from `linearised` to the result
+  const Matrix9d& information;    ///< on the motion, priors included
+  double factor;                  ///< factor by which variances are larger than the rows claim
 };
 
 RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatch>& matches,

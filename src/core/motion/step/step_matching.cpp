@@ -11,7 +11,7 @@
 namespace uav_landing {
 namespace {
 
-// The rotation that the matches want is one that the prior allows.
+// Whether the prior allows the rotation that the matches show.
 bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
   static const double gate = chiSquareLimit(1e-3, 3);
   const Eigen::Vector3d off = rotationVector(estimate.motion.R * prior.R.transpose());
@@ -63,7 +63,7 @@ RowsOverTime StepMatching::rowsBy(const StepImages& step, const RowTimes* times,
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,
                                                 const std::vector<TemporalMatch>& matches, int fewest) const {
   if (step.rotation != nullptr) {
-    // Three of the six unknowns are known already.
+    // The prior already gives three of the six unknowns.
     const int needed = std::max(kFewestScouts, fewest / 2);
     const Expected<MotionEstimate> aided =
         estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.memory.motion,

@@ -12,38 +12,39 @@
 
 namespace uav_landing {
 
-/// Memory that a search works in, kept from image to image.
+/// Working memory of a search, kept from image to image.
 struct MotionSearchMemory {
   MatchingMemory matching;
   MotionMemory motion;
 };
 
-/// What else is looked for in a pair, so that a search for its motion has more or less time.
+/// Time that a search for the motion has, as other searches in the same pair need time, too.
 enum class SearchTime {
-  kAmple,  ///< nothing
-  kShort,  ///< the runway
-  kLeast   ///< the ground and the runway
+  kAmple,  ///< no other search
+  kShort,  ///< the runway is searched for, too
+  kLeast   ///< the ground and the runway are searched for, too
 };
 
-/// Two images of the left camera, and what is known of the later one.
+/// Two images of the left camera, and what is known about the later one.
 struct StepImages {
   const MatchImage &now, &then;
-  double duration;                            ///< between the two, s
+  double duration;                            ///< time between the two images, s
   const std::vector<TrackedCorner>& corners;  ///< of the image now
   CornerTextures& textures;
   MotionSearchMemory& memory;
-  Eigen::Vector3d normal;                   ///< of the ground, unit, now
-  Eigen::Matrix3d normal_covariance;        ///< rank 2
-  const RotationPrior* rotation = nullptr;  ///< of an inertial sensor; may be none
-  bool regular = false;                     ///< is hardly longer than the one before, see Steadiness
+  Eigen::Vector3d normal;                   ///< unit ground normal now
+  Eigen::Matrix3d normal_covariance;        ///< rank 2, rad^2
+  const RotationPrior* rotation = nullptr;  ///< from an inertial sensor; null: not known
+  bool regular = false;  ///< the prediction still holds: hardly longer than the last step (see Steadiness)
   SearchTime time = SearchTime::kAmple;
-  const RowTimes* times = nullptr;          ///< of the left image's rows
-  ShakeMemory* shake = nullptr;             ///< of steps
-  ReadoutDoubt doubt = {};                  ///< where these are not given
-  std::optional<RowMotion> rows_then = {};  ///< how the camera moved then, if that is known
+  const RowTimes* times = nullptr;          ///< row times of the left image
+  ShakeMemory* shake = nullptr;             ///< memory of the shake over frame steps
+  ReadoutDoubt doubt = {};                  ///< when the readout time is not given
+  std::optional<RowMotion> rows_then = {};  ///< velocities of the camera then, when they are known
 };
 
-/// Follows corners over a step from where a motion puts them, and estimates the motion from them.
+/// Follows corners over a step, starting where a motion predicts them, and estimates the motion from the
+/// matches.
 class StepMatching {
  public:
   /// Fewest matches that make a motion good enough to search from.
@@ -52,29 +53,30 @@ class StepMatching {
   /// mask: of the left image, eroded by the window.
   StepMatching(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters);
 
-  /// coarse_steps: searched to both sides of the prediction at the coarse level; 0: it is good. list: one
-  /// that is no longer needed, for its memory.
+  /// Matches the corners. coarse_steps: how far to search around the prediction at the coarse level; 0: the
+  /// prediction is good enough. list: a list that is no longer needed, for its memory.
   std::vector<TemporalMatch> match(const StepImages& step, const std::vector<TrackedCorner>& corners,
                                    const CameraMotion& predicted, int coarse_steps,
                                    std::vector<TemporalMatch> list = {}) const;
-  /// For a readout time that is not given, by the motion of the step.
+  /// Shifts the matches by the estimated readout time, if no time is given. motion: of the step.
   void shiftByReadout(const StepImages& step, const CameraMotion& motion,
                       std::vector<TemporalMatch>& matches) const;
-  /// With the rotation that is known beforehand, where there is one that the matches do not contradict.
-  /// fewest: matches that make a motion.
+  /// Estimates the motion. The known rotation takes part unless the matches contradict it. fewest: number of
+  /// matches that must agree.
   Expected<MotionEstimate> estimate(const StepImages& step, const CameraMotion& start,
                                     const std::vector<TemporalMatch>& matches, int fewest) const;
-  /// How much the corners look like what a motion leads to; see likenessOverTime().
+  /// Similarity of the corners to the places where the motion puts them; see likenessOverTime().
   double likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,
                   const CameraMotion& motion) const;
-  /// Coarse steps of a search for what is hardly known.
+  /// Coarse steps of a wide search, for a motion that is hardly known.
   int wideSteps() const;
 
   const StereoRig& rig() const { return rig_; }
 
  private:
   TemporalMatchOptions options(const StepImages& step, const CameraMotion& predicted, int coarse_steps) const;
-  /// While rows are exposed the camera moves as the predicted motion says.
+  /// Row times and velocities for matching. While rows are exposed, the camera moves as the predicted motion
+  /// says.
   RowsOverTime rowsBy(const StepImages& step, const RowTimes* times, const CameraMotion& predicted) const;
 
   StereoRig rig_;

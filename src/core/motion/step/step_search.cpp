@@ -9,11 +9,11 @@
 namespace uav_landing {
 namespace {
 
-// Share of the followed corners that must agree with a motion that grew from the last one.
+// Least share of the followed corners that must agree with a motion grown from a prediction.
 constexpr double kLeastShare = 0.35;
 
-// By how much the prediction is off at any corner, pixels, see Steadiness: refinement finds what is within
-// two.
+// Largest errors of the prediction at any corner, pixels (see Steadiness). Refinement alone finds corners
+// within two pixels.
 constexpr double kSteadyOff = 0.75, kMostOff = 1.0;
 
 double shareOf(const MotionEstimate& estimate, const StepImages& step) {
@@ -48,7 +48,7 @@ Expected<MotionEstimate> StepSearch::find(const StepImages& step,
     return matching_.estimate(step, found->motion, matches, min_matches_);
   }
   if (step.times == nullptr || step.times->atOnce()) return found;
-  // Rows were carried to the stamps by the motion of before, which this one is not quite.
+  // Rows were carried to the stamps with the predicted motion, which is not exactly the one that was found.
   matches = matching_.match(step, step.corners, found->motion, 0, std::move(matches));
   return matching_.estimate(step, found->motion, matches, min_matches_);
 }
@@ -69,14 +69,14 @@ Expected<MotionEstimate> StepSearch::findMotion(const StepImages& step,
     return followed;
   }
   steadiness_.lose();
-  // What it takes to see that a step is none of those expected leaves no time beside other searches.
+  // The failed predictions have used up the time of this pair if it has other searches, too.
   const bool late = step.time != SearchTime::kAmple && !predictions.empty() && !first_.isAtOnce(step);
   return late ? stillSearching() : findFirst(step, matches);
 }
 
 Expected<MotionEstimate> StepSearch::findFirst(const StepImages& step, std::vector<TemporalMatch>& matches) {
   Expected<MotionEstimate> found = stillSearching();
-  // With the rotation that is known, and then without it.
+  // First with the known rotation, then without it.
   const int most = step.rotation != nullptr && first_.isAtOnce(step) ? 2 : 1;
   for (int time = 0; time < most; ++time) {
     const std::optional<CameraMotion> start = first_.advance(matching_, step);
@@ -100,7 +100,7 @@ Expected<MotionEstimate> StepSearch::followSteadily(const StepImages& step, cons
   return found;
 }
 
-// By how much the prediction put any of the corners that agree wrongly, pixels.
+// Largest error of the prediction over the corners that agree, pixels.
 double StepSearch::farthestOff(const StepImages& step, const CameraMotion& predicted,
                                const MotionEstimate& found, const std::vector<TemporalMatch>& matches) const {
   double farthest = 0;
@@ -118,11 +118,11 @@ double StepSearch::farthestOff(const StepImages& step, const CameraMotion& predi
 
 Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const CameraMotion& predicted,
                                                 std::vector<TemporalMatch>& matches) const {
-  // A search for some corners makes the prediction good enough for a narrow one for all. Mostly the camera
-  // moves on as it did, so a small one comes first.
+  // A search for a few corners improves the prediction, so that a narrow search is enough for all. The camera
+  // mostly moves on as before, so a small search comes first.
   constexpr size_t kScouts = 60;
   constexpr int kSmallSteps = 3;
-  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // share of the scouts, and of those matched
+  constexpr double kEnough = 0.2, kAgreeing = 0.6;  // shares of the scouts, and of the matched ones
   const std::vector<TrackedCorner> scouts = thinned(step.corners, kScouts);
   CameraMotion start = predicted;
   const int wide = matching_.wideSteps();

@@ -10,26 +10,27 @@
 
 namespace uav_landing {
 
-/// Finds the motion from one image to the next: from where the last one leads, or without any idea of it.
+/// Finds the motion from one image to the next, either from predictions or without any.
 class StepSearch {
  public:
   /// mask: of the left image, eroded by the window.
   StepSearch(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters);
 
-  /// predictions: motions to try first. matches: the corners followed, those that contradict the motion
-  /// included; its memory is used again.
+  /// Finds the motion of the step. predictions: motions to try first, the best one first. matches: receives
+  /// the corners that were followed, including those that contradict the motion; its memory is reused. Fails
+  /// with not_yet while a search over several pairs goes on.
   Expected<MotionEstimate> find(const StepImages& step, const std::vector<CameraMotion>& predictions,
                                 std::vector<TemporalMatch>& matches);
-  /// The next step does not begin where this one ended.
+  /// Call it when the next step does not begin where this one ended.
   void interrupt() { first_.restart(); }
-  /// Other images come next: what earlier searches found does not matter.
+  /// Call it when other images come next. It forgets earlier searches.
   void reset() {
     first_.reset();
     steadiness_.lose();
   }
 
  private:
-  /// By a narrow search for all corners at once; fails unless what it finds is as predicted.
+  /// Follows all corners at once with a narrow search. Fails when the result differs from the prediction.
   Expected<MotionEstimate> followSteadily(const StepImages& step, const CameraMotion& predicted,
                                           std::vector<TemporalMatch>& matches);
   double farthestOff(const StepImages& step, const CameraMotion& predicted, const MotionEstimate& found,
@@ -38,7 +39,7 @@ class StepSearch {
                                       std::vector<TemporalMatch>& matches) const;
   Expected<MotionEstimate> findMotion(const StepImages& step, const std::vector<CameraMotion>& predictions,
                                       std::vector<TemporalMatch>& matches);
-  /// With nothing known of it; fails as long as the search for it goes on in other pairs.
+  /// Searches for a motion that is not known at all. Fails while the search has to go on in the next pairs.
   Expected<MotionEstimate> findFirst(const StepImages& step, std::vector<TemporalMatch>& matches);
   bool isGood(const Expected<MotionEstimate>& estimate, const std::vector<TemporalMatch>& matches) const;
 

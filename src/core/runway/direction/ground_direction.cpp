@@ -12,21 +12,21 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kLeastExtent = 0.25;  // log(far / near) of a line that counts
-constexpr double kLeastSum = 1.5;      // of the extents of both views
-constexpr double kLeastMargin = 1.4;   // over any other direction
+constexpr double kLeastExtent = 0.25;  // least log(far / near) of a line that counts
+constexpr double kLeastSum = 1.5;      // least sum of log(far / near) over both views
+constexpr double kLeastMargin = 1.4;   // ratio to any other direction
 constexpr Sigmas kGate(3);
-constexpr double kStraight = 0.03 * kDegree;    // 1 sigma by which edges of one runway are not parallel
-constexpr double kLargestStddev = 1 * kDegree;  // of a line that counts
-constexpr double kLeastSpread = 0.3;            // heights between the outermost of one view
+constexpr double kStraight = 0.03 * kDegree;    // 1 sigma by which the edges of one runway are not parallel
+constexpr double kLargestStddev = 1 * kDegree;  // of a line's direction, for lines that count
+constexpr double kLeastSpread = 0.3;            // heights between the outermost lines of one view
 
-/// A line on the ground.
+/// A line on the ground with its direction.
 struct Direction {
   size_t view, index;
-  double azimuth, variance;   // to the left of the axis, rad; variance of the line in the image alone
+  double azimuth, variance;   // left of the axis, rad; variance from the image alone
   Eigen::Vector2d by_normal;  // derivatives by rotations of the normal about forward and about left
   double extent;
-  double lateral;  // where it passes the camera, in heights
+  double lateral;  // left of the camera where the line passes it, in heights
 };
 
 class Finder {
@@ -90,7 +90,7 @@ class Finder {
   }
 
  private:
-  /// Of a line on the ground, given by the plane through it and the camera.
+  /// Azimuth of a line on the ground. plane: normal of the plane through the line and the camera.
   double azimuth(const Eigen::Vector3d& plane, const Eigen::Vector3d& normal) const {
     Eigen::Vector3d along = plane.cross(normal);
     if (along.dot(forward_) < 0) along = -along;

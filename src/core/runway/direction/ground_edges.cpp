@@ -10,11 +10,12 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kSameEdge = 3;            // sigma between measurements of one edge
-constexpr double kLeastTolerance = 0.003;  // of the distance from the camera to the edge, in the same
-constexpr double kBorder = 16;             // px
-constexpr double kAlong = 3;               // sigma between the direction of a line and that of the runway
-constexpr double kStraight = 0.5;  // px, 1 sigma by which an edge in the picture is not a straight line
+constexpr double kSameEdge = 3;  // standard deviations between measurements of one edge
+// Least tolerance as a share of the distance from the camera to the edge.
+constexpr double kLeastTolerance = 0.003;
+constexpr double kBorder = 16;  // px from the image's border
+constexpr double kAlong = 3;    // standard deviations between the direction of a line and that of the runway
+constexpr double kStraight = 0.5;  // px, 1 sigma by which an edge in the image is not straight
 
 double distanceOf(double lateral) { return std::sqrt(1 + lateral * lateral); }
 
@@ -26,21 +27,21 @@ bool isSame(const GroundAxes& axes, const GroundEdge& a, const GroundEdge& b) {
   return std::abs(a.lateral - b.lateral) <= tolerance;
 }
 
-/// One view's lines on the ground.
+/// The lines of one view on the ground.
 class View {
  public:
   View(const StereoRig& rig, const GroundAxes& axes, double cx, double baseline)
       : rig_(rig),
         axes_(axes),
         cx_(cx),
-        // The right camera is lower when the rig is rolled, and stands to the right.
+        // The right camera stands to the right. When the rig is rolled, it is also lower or higher.
         height_(1 - baseline * axes.down.x()),
         place_(baseline * axes.forward.x(), baseline * axes.left.x()) {}
 
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const {
     return {(pixel.x() - cx_) / rig_.fx, (pixel.y() - rig_.cy) / rig_.fy, 1};
   }
-  /// Nearest and farthest end, forward of the left camera; nothing when the line reaches the horizon or lies
+  /// Nearest and farthest end, forward of the left camera. Nothing when the line reaches the horizon or lies
   /// behind the camera.
   std::optional<std::pair<double, double>> ends(const LineSegment& line) const {
     const Eigen::Vector3d a = ray(line.a), b = ray(line.b);
@@ -49,7 +50,7 @@ class View {
     if (std::min(at_a, at_b) <= 0) return std::nullopt;
     return std::minmax(at_a, at_b);
   }
-  /// Whether the lower end of the line is not at the picture's border.
+  /// Whether the near end of the line is away from the image's border.
   bool beginsInside(const LineSegment& line) const {
     const Eigen::Vector3d a = ray(line.a), b = ray(line.b);
     const Eigen::Vector2d& end = onGround(a).x() < onGround(b).x() ? line.a : line.b;
@@ -96,11 +97,10 @@ class View {
   const StereoRig& rig_;
   const GroundAxes& axes_;
   double cx_, height_;
-  Eigen::Vector2d place_;  // of the camera, forward and left of the left one
+  Eigen::Vector2d place_;  // place of the camera, forward and left of the left one
 };
 
-/// Both measurements of one edge, weighted by their variances. The places from where to where it is seen are
-/// left as they are in a.
+/// Mean of two measurements of one edge, weighted by their variances. The ends are those of a.
 GroundEdge mean(const GroundEdge& a, const GroundEdge& b) {
   GroundEdge edge = a;
   const double weight = a.variance / (a.variance + b.variance);
@@ -111,7 +111,7 @@ GroundEdge mean(const GroundEdge& a, const GroundEdge& b) {
   return edge;
 }
 
-/// Indices of the edges that both views see at the same place.
+/// Pairs of indices of the edges that both views see at the same place.
 std::vector<std::pair<size_t, size_t>> sameEdges(const GroundAxes& axes, const std::vector<GroundEdge>& left,
                                                  const std::vector<GroundEdge>& right) {
   std::vector<std::pair<size_t, size_t>> same;
@@ -180,7 +180,7 @@ std::vector<char> linesAlong(const StereoRig& rig, const GroundAxes& axes,
     LineSegment line = lines[i];
     line.angle_stddev = std::hypot(line.angle_stddev, kStraight / line.length());
     const EdgePiece piece = view.piece(line);
-    const Eigen::Vector2d by_rotation(piece.lateral, 1);  // of the slope, about left and down
+    const Eigen::Vector2d by_rotation(piece.lateral, 1);  // of the slope, by rotations about left and down
     const double variance =
         piece.covariance(1, 1) + by_rotation.dot(axes.covariance.bottomRightCorner<2, 2>() * by_rotation);
     if (piece.slope * piece.slope <= kAlong * kAlong * variance) along[i] = 1;

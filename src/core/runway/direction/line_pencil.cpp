@@ -12,9 +12,9 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kLeastCrossing = 3 * kDegree;  // in the picture
-constexpr double kAcross = 12 * kDegree;        // from the horizon, in the picture
-constexpr double kLeastChance = 1e-4;           // no line says more
+constexpr double kLeastCrossing = 3 * kDegree;  // least angle between two lines in the image
+constexpr double kAcross = 12 * kDegree;        // largest angle to the horizon in the image
+constexpr double kLeastChance = 1e-4;           // limit, so that no single line says more than this
 
 Eigen::Vector2d directionOf(const Eigen::Vector3d& line) {
   return Eigen::Vector2d(line.y(), -line.x()).normalized();

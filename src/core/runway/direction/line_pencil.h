@@ -9,34 +9,36 @@
 
 namespace uav_landing {
 
-/// Where a line lies on the ground, in heights of the camera: left of the camera, nearest and farthest end.
+/// Place of a line on the ground in heights of the camera: lateral position (left is positive), nearest and
+/// farthest end.
 struct LinePlace {
   double lateral = 0, near = 0, far = 0;
 };
 
-/// The lines of a view on ground that has a direction in it, by line.
+/// The lines of a view on a ground that contains a given direction, one entry per line.
 struct LinePencil {
-  std::vector<std::optional<LinePlace>> places;  ///< none above the horizon of this ground
-  std::vector<char> passes;                      ///< the line vanishes in the direction
-  std::vector<double> evidence;  ///< log-likelihood ratio that it does so not by chance; 0 if it does not
+  std::vector<std::optional<LinePlace>> places;  ///< nothing for lines above the horizon of this ground
+  std::vector<char> passes;                      ///< 1 if the line vanishes in this direction
+  /// Log-likelihood ratio that the line does not pass there by chance; 0 if it does not pass.
+  std::vector<double> evidence;
 };
 
-/// Lines of a view, and the rays to them.
+/// The lines of a view, with the rays to them.
 class GroundLines {
  public:
-  /// normal: of the ground, unit, frame of the view. Refers to the lines.
+  /// normal: of the ground, unit, frame of the view. The object refers to the lines, which must outlive it.
   GroundLines(const VanishingLines& lines, const Eigen::Vector3d& normal);
 
   int count() const { return lines_.count(); }
-  /// Where two lines meet, as a unit vector towards +z; nothing when a runway does not vanish there, or when
-  /// the lines are nearly parallel in the picture.
+  /// Meeting point of two lines as a unit vector towards +z. Nothing when no runway can vanish there, or when
+  /// the lines are nearly parallel in the image.
   std::optional<Eigen::Vector3d> meeting(int i, int j) const;
-  /// Whether the line may run along a runway, and whether it may be of a threshold.
+  /// Whether the line may run along a runway, and whether it may belong to a threshold.
   bool isAhead(int i) const { return ahead_[static_cast<size_t>(i)] != 0; }
   bool isAcross(int i) const { return across_[static_cast<size_t>(i)] != 0; }
   /// Whether the line is brighter on its left than on its right.
   bool isBrighterLeft(int i) const { return lines_[i].line.x() < 0; }
-  /// The ground turned until it has a direction in it. direction: unit, towards +z.
+  /// Axes of the ground, turned until it contains this direction. direction: unit, towards +z.
   GroundAxes axesAlong(const Eigen::Vector3d& direction) const;
   std::optional<LinePlace> place(const GroundAxes& axes, int i) const;
   LinePencil pencil(const GroundAxes& axes) const;

@@ -13,7 +13,7 @@ std::vector<RoughSegment> linesInRightView(const StereoRig& rig, const SeenGroun
   };
   std::vector<RoughSegment> moved;
   moved.reserve(lines.size());
-  // The side that is brighter stays: lines of the ground do not turn by more than a right angle.
+  // The brighter side stays the same, because lines of the ground turn by less than a right angle.
   for (const LineSegment& line : lines) moved.push_back({seen(line.a), seen(line.b), line.line.head<2>()});
   return moved;
 }

@@ -8,8 +8,8 @@
 
 namespace uav_landing {
 
-/// Where the right rectified view sees lines of the left one that are on the ground. Ends may lie outside the
-/// image.
+/// Predicts where the right rectified view sees lines of the left one, if they are on the ground. Ends may
+/// lie outside the image.
 std::vector<RoughSegment> linesInRightView(const StereoRig& rig, const SeenGround& ground,
                                            const std::vector<LineSegment>& lines);
 

@@ -19,15 +19,16 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr double kSure = 1e-3;  // expected coincidences of a point that is not there by chance
-constexpr Sigmas kGate(3);      // between a point and the ground
-// 1 sigma between the two, beyond which they say little of each other.
+constexpr double kSure = 1e-3;  // largest number of expected coincidences of a point that is certain
+constexpr Sigmas kGate(3);      // between a vanishing point and the ground
+// With a larger 1 sigma between them, the point and the ground say little about each other.
 constexpr double kVague = 0.4 * kDegree;
-constexpr Sigmas kPulled(5);                 // between the points of all lines and of the runway's
-constexpr double kEnough = 0.5;              // of the lines through the other view's point
-constexpr double kAnyGround = 2 * kDegree;   // 1 sigma of the ground's slope along the runway, without stereo
-constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it is of
-const double kBeyondDoubt = -std::log(kLargestDoubt);  // least margin of one that counts against stereo
+constexpr Sigmas kPulled(5);     // between the points of all lines and of the runway's lines
+constexpr double kEnough = 0.5;  // share of the lines through the other view's point
+// 1 sigma of the ground's slope along the runway when there is no stereo.
+constexpr double kAnyGround = 2 * kDegree;
+constexpr double kSameRunway = 1 * kDegree;  // between a vanishing point and the runway that it belongs to
+const double kBeyondDoubt = -std::log(kLargestDoubt);  // least margin of a runway that may contradict stereo
 constexpr double kClear = 3;                           // least lead of a runway that outweighs other lines
 
 Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
@@ -36,7 +37,7 @@ Eigen::Matrix3d viewK(const StereoRig& rig, bool is_left) {
   return K;
 }
 
-// What lines are looked for in.
+// A view with all that is needed to search for its lines.
 struct View {
   const cv::Mat& image;
   const cv::Mat& mask;
@@ -44,15 +45,15 @@ struct View {
   const StampMap& rows;
 };
 
-// What is found in a view: its lines, the same freed of what blur does to stripes as far as the vanishing
-// point depends on them, and that.
+// Result of one view. straight: the lines without the effect of blur on stripes as far as the vanishing point
+// depends on it, and at the stamp.
 struct Found {
   std::vector<LineSegment> lines, straight;
   Expected<VanishingPoint> point = tl::make_unexpected(Failure{Reason::kNotYet, ""});
-  bool refused = false;  // there is a point, but not of a runway
+  bool refused = false;  // there was a point, but it was not a runway's
 };
 
-// The same edge had all rows been exposed at the stamp.
+// The same edge with all rows exposed at the stamp.
 LineSegment atStamp(const LineSegment& segment, const StampMap& rows) {
   const auto onLine = [&](const Eigen::Vector2d& end) -> Eigen::Vector2d {
     return end - segment.line.dot(end.homogeneous()) * segment.line.head<2>();
@@ -84,7 +85,7 @@ ApproachAngleResult::View reportOf(const Found& found) {
   return view;
 }
 
-// The steps, with what all of them need. ground: or null.
+// The steps of the search, with what all of them need. ground: or null.
 class Search {
  public:
   Search(const SeenGround* ground, const ApproachAngleParameters& parameters, RunwayDirectionMemory& memory,
@@ -95,7 +96,7 @@ class Search {
         memory_(memory),
         timings_(timings) {}
 
-  // By the view itself.
+  // Searches one view on its own.
   Found in(const View& view) const {
     std::vector<LineSegment> lines;
     {
@@ -107,8 +108,8 @@ class Search {
     return withPoint(view, std::move(lines));
   }
 
-  // Of lines that the other view has shown already, where they are expected; by the view itself where those
-  // through the other view's point are mostly lost. Needs a plane.
+  // Searches only where lines of the other view are expected. If that loses most of the lines through the
+  // other view's point, the view is searched on its own. Needs a plane.
   Found following(const View& view, const std::vector<RoughSegment>& expected,
                   const VanishingPoint& other) const {
     std::vector<LineSegment> lines;
@@ -121,7 +122,7 @@ class Search {
     return in(view);
   }
 
-  // Those that may be along the runway, if there is one.
+  // While a runway is followed: only the lines that may run along it.
   std::vector<LineSegment> along(const View& view, const std::vector<LineSegment>& lines) const {
     if (!hasRunway()) return atStamp(lines, view.rows);
     const HeadingGate gate = gateOf(view);
@@ -131,17 +132,21 @@ class Search {
     return atStamp(std::move(passing), view.rows);
   }
 
-  // Whether the other view's lines may be looked for where this one has them: that view is a witness of where
-  // they lie then, but not of which ones are there. So half of a runway would be taken for a whole one the
-  // sooner, as the edge that tells is not seen; and a point that may be there by chance, or off the ground,
-  // is told by lines that the other view finds by itself: those meet elsewhere. The paper's Hough transforms,
-  // and lines as those find them, are of each view alone.
+  // Whether the right view may be searched only where the left view's lines lead. It then shows where these
+  // lines lie, but not which other lines exist. So these conditions must hold:
+  // - A runway is already followed. Otherwise half of a runway could pass for a whole one, because the edge
+  //   that shows the error is not searched for.
+  // - The left view's point is certain and on the ground. A wrong point would be exposed by lines that the
+  //   right view finds on its own, as those meet elsewhere.
+  // - Lines are found row by row and refined. The paper's Hough transforms, and lines without refinement,
+  //   belong to each view alone.
   bool isSure(const Expected<VanishingPoint>& point) const {
     return hasRunway() && point && point->coincidences <= kSure && isOnGround(*point) &&
            parameters_.hough_method == HoughMethod::kScanLines && parameters_.refine_lines;
   }
 
-  // The points of views that have none of their own, by the direction that the ground gives their lines.
+  // Finds points for views that have none of their own, from the direction that known ground gives their
+  // lines.
   void tryTogether(const View& left_view, const View& right_view, Found& left, Found& right) const {
     if (ground_ == nullptr || (left.point && right.point)) return;
     ScopedTimer timer(timings_, "ransac");
@@ -160,8 +165,8 @@ class Search {
     retry(right_view, right, along->back());
   }
 
-  // Where the other view's lines are those of no runway, a point that is not clearly one's is one view's word
-  // against the other's.
+  // If the other view refused its point, this view's point is one word against another. It stays only if it
+  // is clearly a runway's.
   void settle(Found& view, const Found& other) const {
     if (!other.refused || !view.point || view.point->runway_margin >= kClear) return;
     view.point = tl::make_unexpected(other.point.error());
@@ -184,8 +189,8 @@ class Search {
     return found;
   }
 
-  /// Lines that meet may be those of a town. A runway among them has the say; without one, the point has to
-  /// be on the ground.
+  /// Lines that meet may belong to a town. If there is a runway among them, it decides. Without one, the
+  /// point has to be on the ground.
   Expected<VanishingPoint> ofRunway(const View& view, const Found& found) const {
     const Expected<RunwayChoice> choice = findRunwayHypothesis(found.straight, view.K, parameters_, prior());
     const bool needs_edges = !ground_->runway.paved;
@@ -206,8 +211,8 @@ class Search {
     return believed(point, *choice);
   }
 
-  // The point of all lines that meet; that of the runway's own ones where it contradicts the former, as lines
-  // of fields hardly turned against the runway pull at it.
+  // Returns the point of all lines that meet, or that of the runway's own lines if both contradict each
+  // other. The reason is that field borders which are hardly turned against the runway pull at the point.
   Expected<VanishingPoint> withoutOthers(const View& view, const Found& found,
                                          const std::vector<char>& members) const {
     const Expected<VanishingPoint> own =
@@ -218,7 +223,7 @@ class Search {
     return kPulled.admits(turn.squaredNorm(), variance) ? found.point : own;
   }
 
-  // A point off the ground contradicts stereo. It counts where it is a runway's beyond doubt.
+  // A point off the ground contradicts stereo. It is believed only when it is a runway's beyond doubt.
   Expected<VanishingPoint> believed(Expected<VanishingPoint> point, const RunwayChoice& choice) const {
     if (!point) return point;
     if (!isNearGround(*point) && choice.margin < kBeyondDoubt)
@@ -228,8 +233,7 @@ class Search {
     return point;
   }
 
-  // How clearly a point is that of a runway where nothing is known of the ground but what the point itself
-  // says.
+  // Margin of a point's runway when nothing but the point itself says where the ground is.
   double marginOnLevelGround(const View& view, const Found& found) const {
     const Eigen::Vector3d& p = found.point->direction;
     const RunwayPrior prior{normalFromVanishingPoint(*found.point, 0, 0).n,
@@ -253,7 +257,7 @@ class Search {
     return kGate.admits(normal_.dot(point.direction), heightVariance(point) + slope() * slope());
   }
 
-  // Of the sine of a point's angle above the ground, without the runway's own slope.
+  // Variance of the sine of the point's angle above the ground, without the runway's own slope.
   double heightVariance(const VanishingPoint& point) const {
     return point.direction.dot(ground_->plane.normalCovariance() * point.direction) +
            normal_.dot(point.covariance * normal_);
@@ -283,7 +287,7 @@ class Search {
     return variance <= kVague * kVague && std::abs(normal_.dot(point.direction)) <= kGate.bound(variance);
   }
 
-  // Good until the next call.
+  // The result is valid until the next call.
   cv::Mat groundPart(const View& view) const {
     cv::Mat ground = memory_.ground.image(view.mask.size());
     keepBelowHorizon(view.mask, view.K, normal_, ground);
@@ -291,7 +295,7 @@ class Search {
   }
   bool hasRunway() const { return ground_ != nullptr && ground_->has_runway; }
   const Eigen::Vector3d* normal() const { return ground_ ? &normal_ : nullptr; }
-  // 1 sigma of a runway's own slope against the ground.
+  // 1 sigma of the runway's own slope against the ground, rad.
   double slope() const { return parameters_.runway_slope_stddev_deg * kDegree; }
   double maxYaw() const { return parameters_.max_yaw_deg * kDegree; }
   HeadingGate gateOf(const View& view) const { return {view.K, normal_, maxYaw()}; }

@@ -14,26 +14,34 @@
 
 namespace uav_landing {
 
-/// Lines and vanishing point of the runway in both rectified views, and both views' direction combined.
+/// Lines and vanishing points of the runway in both rectified views, and the direction combined from both.
 struct RunwayDirection {
   ApproachAngleResult::View left, right;
-  /// Those of the views, with their uncertainty; where a runway is followed, those that may lie along it.
+  /// Lines of the views with their uncertainty. While a runway is followed, only those that may lie along it.
   std::vector<LineSegment> left_lines, right_lines;
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 
-/// Memory that it is looked for in.
+/// Working memory of the search.
 struct RunwayDirectionMemory {
   LineMemory lines;
   ImageMemory ground;
 };
 
-/// Stages 3 and 4. ground: from stereo, or null; with it lines are looked for below the horizon only, the
-/// direction must lie near the ground, and where a view has too few lines for a vanishing point of its own,
-/// two long edges side by side that agree in both views are enough. Where the ground has a runway already,
-/// only lines that may be along it are fitted, and if the left view's point is on the ground and not there by
-/// chance, its lines are looked for in the right view where the ground has them, instead of all lines there.
-/// Masks: of the rectified views, eroded. rows: lines are those at the stamp, but for the views' reports.
+/// Finds the direction of the runway in both views (stages 3 and 4).
+///
+/// With known ground, lines are searched for below the horizon only, and the direction must lie near the
+/// ground. A view may have too few lines for a vanishing point of its own. Then two long edges side by side
+/// that agree in both views are enough.
+///
+/// While a runway is followed on that ground, only lines that may run along it are fitted. If the left view's
+/// vanishing point is certain and on the ground, the right view is searched only where the ground puts the
+/// left view's lines.
+///
+/// - ground: from stereo, or null.
+/// - masks: of the rectified views, eroded.
+/// - rows: row times of the views. left_lines and right_lines are as they would be with all rows exposed at
+///   the stamp; the reports `left` and `right` show lines as they are in the images.
 RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
                                     const cv::Mat& left_mask, const cv::Mat& right_mask,
                                     const SeenGround* ground, const ApproachAngleParameters& parameters,

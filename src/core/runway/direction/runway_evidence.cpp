@@ -9,41 +9,43 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kSameEdge = 0.04;     // of the width: lines this near to an edge are its pieces
-constexpr double kLeastExtent = 0.14;  // log(far / near) of both edges
+constexpr double kSameEdge = 0.04;     // share of the width; lines this close to an edge belong to it
+constexpr double kLeastExtent = 0.14;  // least log(far / near) of both edges
 
-// Evidence by the lines.
-constexpr double kEnoughOfEdges = 14;  // more lines along the edges do not make it more of a runway
-constexpr double kEnoughMarks = 10;    // nor do more marks
-constexpr double kAstray = 1.2;        // against it, for each line between the edges that no runway has
-constexpr double kMiddle = 0.08, kSide = 0.15;  // of the width: centre line, side stripes
-constexpr double kLane = 0.5;                   // of the length, from which on a line is long
-constexpr double kSameEnd = 0.03;               // of the distance: lines this near to an end are at it
-constexpr double kUnbroken = 2;                 // per log of the share of an edge that is seen
-constexpr double kLeastSeen = 0.05;             // of an edge
-constexpr double kSlender = 3;                  // per log of the length that is missing
-constexpr double kUsualLength = 6;              // widths; a runway is longer, even the part in view
-constexpr double kEnoughExtent = 2;             // log(far / near)
-constexpr double kUsualBeside = 30;  // evidence of lines beside a runway: taxiways, roads, edges of grass
-constexpr double kTelling = 1;       // least evidence of a line that counts as lying beside an object
+// Evidence of the lines.
+constexpr double kEnoughOfEdges = 14;  // limit, as more lines along the edges do not make it more of a runway
+constexpr double kEnoughMarks = 10;    // limit for marks
+constexpr double kAstray = 1.2;        // penalty for each line between the edges that no runway has
+constexpr double kMiddle = 0.08, kSide = 0.15;  // shares of the width for centre line and side stripes
+constexpr double kLane = 0.5;                   // share of the length; a longer line is no mark
+constexpr double kSameEnd = 0.03;    // share of the distance; lines this close to an end count as at it
+constexpr double kUnbroken = 2;      // factor for the log of the share of an edge that is seen
+constexpr double kLeastSeen = 0.05;  // least share of an edge, for that log
+constexpr double kSlender = 3;       // factor for the log of the missing length
+constexpr double kUsualLength = 6;   // in widths; the visible part of a runway is longer
+constexpr double kEnoughExtent = 2;  // limit of log(far / near)
+// Evidence of lines that a runway may have beside it: taxiways, roads, edges of grass.
+constexpr double kUsualBeside = 30;
+constexpr double kTelling = 1;  // least evidence of a line that counts as beside the object
 
-// Evidence by what is known besides.
-constexpr double kMostOff = 10;             // against it at most, for ground, path, or chart
-constexpr double kMostTurned = 6;           // for the pair before
-constexpr double kPathSigma = 3 * kDegree;  // between path and runway: wind and corrections
-// For a strip without marks that the path leads along. Of a thousand approaches about one has a road there:
-// as near to the path in direction (6 of 60 degrees), as near to its side, and a runway that is not in view.
+// Evidence from earlier knowledge.
+constexpr double kMostOff = 10;             // largest penalty for ground, path, or chart
+constexpr double kMostTurned = 6;           // largest penalty for a turn since the previous pair
+constexpr double kPathSigma = 3 * kDegree;  // 1 sigma between path and runway, from wind and corrections
+// Largest margin of a strip without marks that the path leads along. In about one of a thousand approaches
+// such a strip is a road. That road is as near to the path in direction (6 of 60 degrees) and at the side,
+// and no runway is in view.
 constexpr double kBareStrip = 7.3;
-constexpr double kSteepest = 60 * kDegree;    // between both, beyond which nothing is known
-constexpr double kStepSigma = 0.7 * kDegree;  // by which the camera turns between pairs
-constexpr double kSizeSigma = 0.06;           // share of its size by which a runway seems to be another
-constexpr double kFarSigma = 0.05 * kDegree;  // of the angle between the far end and the horizon
+constexpr double kSteepest = 60 * kDegree;    // angle between path and runway above which nothing is known
+constexpr double kStepSigma = 0.7 * kDegree;  // 1 sigma of the camera's turn between pairs
+constexpr double kSizeSigma = 0.06;           // 1 sigma of the size that is seen, as a share of the size
+constexpr double kFarSigma = 0.05 * kDegree;  // 1 sigma of the angle between the far end and the horizon
 
 double penalty(double off, double variance, double most) {
   return std::min(most, 0.5 * off * off / variance);
 }
 
-/// The lines along one edge.
+/// The lines along one edge, with their ends and their evidence.
 struct Edge {
   std::vector<size_t> pieces;
   double near = std::numeric_limits<double>::infinity(), far = 0;
@@ -62,7 +64,8 @@ Edge edgeAt(const LinePencil& p, double lateral, double slack) {
   return edge;
 }
 
-/// log(far / near) of what is seen of an edge where both are: the union of its pieces.
+/// log(far / near) of the visible part of an edge, within the range where both edges are seen. Overlapping
+/// pieces count once.
 double seenLength(const LinePencil& p, const Edge& edge, const RunwayHypothesis& h) {
   std::vector<std::pair<double, double>> pieces;
   for (const size_t k : edge.pieces)
@@ -78,27 +81,27 @@ double seenLength(const LinePencil& p, const Edge& edge, const RunwayHypothesis&
   return length;
 }
 
-/// A long object whose edges are not broken. seen: length of the edge that shows less.
+/// Evidence of a long object with unbroken edges. seen: visible length of the less visible edge.
 double ofShape(const RunwayHypothesis& h, double seen) {
   const double extent = std::log(h.far / h.near), lengths = (h.far - h.near) / h.width();
   return kUnbroken * std::log(std::max(seen / extent, kLeastSeen)) +
          kSlender * std::min(0.0, std::log(lengths / kUsualLength)) + std::min(extent, kEnoughExtent);
 }
 
-/// Whether a line runs along the runway for long between its middle and its sides, where nothing is painted.
+/// Whether a long line runs along the runway between its middle and its sides, where nothing is painted.
 bool isLane(const LinePencil& p, size_t k, const RunwayHypothesis& h) {
   const double across = std::abs((p.places[k]->lateral - h.right) / h.width() - 0.5);  // 0: middle, 0.5: edge
   const double length = std::log(std::min(p.places[k]->far, h.far) / std::max(p.places[k]->near, h.near));
   return across > kMiddle && across < 0.5 - kSide && length > kLane * std::log(h.far / h.near);
 }
 
-/// What lies between the edges: evidence of marks, and lines that no runway has.
+/// Lines between the edges: evidence of marks, and the number of lines that no runway has.
 struct Surface {
   double marks = 0;
   int astray = 0;
 };
 
-/// Adds what runs along the runway there to the members.
+/// Evaluates the lines between the edges, and adds those along the runway to the members.
 Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, RunwayHypothesis& h) {
   Surface found;
   for (size_t k = 0; k < p.passes.size(); ++k) {
@@ -119,14 +122,15 @@ Surface surfaceOf(const GroundLines& lines, const LinePencil& p, double slack, R
   return found;
 }
 
-/// Whether two lines are pieces of one: in line, and not side by side, however close together.
+/// Whether two lines are pieces of one. Then they are in line with each other, and not side by side, however
+/// close.
 bool arePieces(const LinePlace& a, const LinePlace& b, double slack) {
   return std::abs(a.lateral - b.lateral) < slack && std::min(a.far, b.far) <= std::max(a.near, b.near);
 }
 
-/// For one of many objects side by side. Streets, crop rows and roofs come in rows, runways do not. That a
-/// row's lines point there is no wonder: each line beside the object says of the row what one of the object
-/// says of the runway, and at most it takes all that.
+/// Evidence that the object is one of many side by side. Streets, crop rows and roofs come in rows; runways
+/// do not. In a row it is no surprise that lines point to the same place. So each line beside the object
+/// takes away as much as one line of the object adds, up to all of it.
 double ofRow(const LinePencil& p, double slack, const RunwayHypothesis& h) {
   std::vector<LinePlace> places;
   double beside = 0;
@@ -202,7 +206,7 @@ double againstSize(const RunwayHypothesis& h, const RunwayPrior& prior) {
   if (!prior.height) return 0;
   double sum = 0;
   if (runway.length > 0) {
-    // The far end is the less certain the nearer it is to the horizon.
+    // The far end is less certain when it is closer to the horizon.
     const double length = (h.far - h.near) * *prior.height,
                  far_sigma = kFarSigma * h.far * h.far / (h.far - h.near);
     const double longer = std::max(0.0, std::log(length / runway.length));

@@ -10,9 +10,10 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kOther = 1 * M_PI / 180;  // between directions of two runways
-constexpr double kByChance = 4;            // evidence of two lines that meet somewhere, as any two do
-constexpr double kSideBySide = 1.05;       // far end over near end of what two lines have beside each other
+constexpr double kOther = 1 * M_PI / 180;  // least angle between two directions that count as different
+constexpr double kByChance = 4;            // evidence of two lines that meet by chance, as any two do
+// Least far end over near end of the part in which two lines lie side by side.
+constexpr double kSideBySide = 1.05;
 
 class Search {
  public:
@@ -47,7 +48,7 @@ class Search {
     return object;
   }
 
-  /// Whether two lines are seen side by side, and are as far apart as the edges of a runway.
+  /// Whether two lines are seen side by side, at a distance that the edges of a runway may have.
   bool mayBeEdges(const LinePlace& a, const LinePlace& b) const {
     if (std::min(a.far, b.far) < kSideBySide * std::max(a.near, b.near)) return false;
     if (!prior_.height) return true;

@@ -9,19 +9,19 @@
 
 namespace uav_landing {
 
-/// The ground as stereo sees it.
+/// The ground as stereo sees it, with what earlier pairs and charts say about the runway on it.
 struct SeenGround {
   GroundPlane plane;
-  RigRotation rows;  ///< what vertical disparities tell, or unknown
-  /// Whether a runway is followed on it already: then nothing depends on lines that are not there.
+  RigRotation rows;  ///< from vertical disparities; may be unknown
+  /// Whether a runway is already followed on it. Then missing lines are not used as evidence.
   bool has_runway = false;
-  /// Directions in the pair before, unit, frame of the camera: of flight, and of the runway.
+  /// Directions in the previous pair, unit, camera frame: of flight, and of the runway.
   std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
-  RunwayParameters runway = {};  ///< what charts say of it
-  double last_doubt = 0;         ///< chance that the last direction was not the runway's
+  RunwayParameters runway = {};  ///< data of the chart
+  double last_doubt = 0;         ///< chance that `last` was not the runway's direction
 };
 
-/// Of both rectified views: where their pixels would be had all rows been exposed at the stamp.
+/// Maps of both rectified views to the places that pixels would have with all rows exposed at the stamp.
 struct ViewRows {
   StampMap left, right;
 };

@@ -5,7 +5,7 @@
 namespace uav_landing {
 
 void CentreColumns::add(double centre, double variance, const Eigen::Vector3d& by_rotation) {
-  constexpr double kFloatError = 1e-6;  // of the centre, several times
+  constexpr double kFloatError = 1e-6;  // rounding error as a share of the centre, several times over
   centres_.push_back(static_cast<float>(centre));
   variances_.push_back(static_cast<float>(variance + kFloatError * kFloatError * centre * centre));
   for (int axis = 0; axis < 3; ++axis) by_rotation_[axis].push_back(static_cast<float>(by_rotation[axis]));

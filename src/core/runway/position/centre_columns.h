@@ -7,16 +7,18 @@
 
 namespace uav_landing {
 
-/// Centres of pairs of edges and how well they are known, by columns, as all are compared with all. Floats
-/// are exact enough to say which are certainly apart, and twice as many at once.
+/// Centres of pairs of edges and their uncertainty, stored by columns because all are compared with all.
+/// Floats are exact enough to tell which centres are certainly apart, and twice as many fit into one
+/// instruction.
 class CentreColumns {
  public:
-  /// variance: of the centre; by_rotation: its derivatives by rotations that are common to all.
+  /// variance: of the centre, without the rotations. by_rotation: derivatives of the centre by rotations that
+  /// are common to all pairs.
   void add(double centre, double variance, const Eigen::Vector3d& by_rotation);
 
-  /// Sets 1 for centres that are certainly farther from one of them than this many sigma of the difference,
-  /// and 0 for the others. spread: trace of the rotations' covariance, which bounds what that makes of a
-  /// vector.
+  /// Sets 1 for each centre that is certainly far from one of them: by more than `sigmas` standard deviations
+  /// of the difference. Sets 0 for the others. one: its index. spread: trace of the covariance of the
+  /// rotations, an upper bound for their effect.
   void markApart(std::ptrdiff_t one, double sigmas, double spread, uchar* apart) const;
 
  private:

@@ -13,13 +13,14 @@ namespace uav_landing {
 namespace {
 
 constexpr Sigmas kGate(5);
-constexpr double kRestart = 1.0;      // s of rejected measurements after which they are believed
-constexpr double kCommon = 0.5;       // share of a measurement's variance that successive ones have in common
-constexpr double kAlongError = 0.01;  // of the distance flown, 1 sigma
-constexpr double kAcrossError = 0.005;  // of the distance flown: direction of the runway in the picture, rad
-constexpr double kBlindError = 0.2;     // of the distance flown while the motion is not seen
-constexpr double kWorthlessX = 0.5;     // of the runway's width
-constexpr double kWorthlessY = 0.1;     // of the runway's width
+constexpr double kRestart = 1.0;      // s of rejected measurements after which they are accepted
+constexpr double kCommon = 0.5;       // share of a measurement's variance that the next ones have in common
+constexpr double kAlongError = 0.01;  // share of the distance flown, 1 sigma
+// Share of the distance flown, 1 sigma: error of the runway's direction, rad.
+constexpr double kAcrossError = 0.005;
+constexpr double kBlindError = 0.2;  // share of the distance flown, 1 sigma, while the motion is not measured
+constexpr double kWorthlessX = 0.5;  // 1 sigma as a share of the runway's width
+constexpr double kWorthlessY = 0.1;  // 1 sigma as a share of the runway's width
 
 }  // namespace
 
@@ -109,7 +110,7 @@ void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vect
   const bool moved = !step.failure && step.translation_over_height.allFinite() && step.rotation.allFinite();
   if (moved && std::isfinite(height) && direction_.allFinite() && normal.allFinite()) {
     const Eigen::Vector3d forward = (direction_ - normal.dot(direction_) * normal).normalized();
-    // A step that began earlier: the rest of the time has been guessed before.
+    // This step began before the previous pair, and the earlier part of it has already been guessed.
     const double share = seconds > 0 && step.duration > seconds ? seconds / step.duration : 1;
     const Eigen::Vector3d t = share * height * step.translation_over_height;
     const Eigen::Vector2d movement(forward.dot(t), forward.cross(normal).dot(t));

@@ -12,33 +12,34 @@
 namespace uav_landing {
 namespace {
 
-constexpr size_t kMaxEdges = 30;      // longest ones
-constexpr Sigmas kGate(3);            // between two pairs' centres
-constexpr double kAsymmetry = 0.002;  // of the width: 1 sigma by which a pair of marks is painted off centre
-constexpr double kSharper = 2;        // times, by which one pair's centre is known much better
-constexpr double kWidthTolerance = 0.05;  // of the width that is known
-constexpr double kLong = 0.4;             // of the longest pair's extent: long enough for a runway's edge
-constexpr double kLeastExtent = 0.3;      // log(far / near) of the runway's edges
-constexpr double kLeastMargin = 1.4;      // evidence over that of any other symmetry
-constexpr double kLeastWidth = 0.3;       // heights: narrower is a stripe
+constexpr size_t kMaxEdges = 30;          // only the longest ones are used
+constexpr Sigmas kGate(3);                // between the centres of two pairs
+constexpr double kAsymmetry = 0.002;      // 1 sigma by which paint is off centre, as a share of the width
+constexpr double kSharper = 2;            // ratio of standard deviations
+constexpr double kWidthTolerance = 0.05;  // share of the known width
+// Share of the longest pair's extent. Such an edge is long enough to be the runway's.
+constexpr double kLong = 0.4;
+constexpr double kLeastExtent = 0.3;  // log(far / near) of the runway's edges
+constexpr double kLeastMargin = 1.4;  // ratio to the score of any other symmetry
+constexpr double kLeastWidth = 0.3;   // heights; anything narrower is a stripe
 constexpr double kOtherWidth =
     1.5;                         // ratio between the widths of two pairs that are not the sides of one line
-constexpr double kStripe = 0.1;  // of the runway's width: the centre line is narrower
-constexpr double kLeastDash = 0.1;       // log(far / near) of a dash of 30 m as far as 300 m
-constexpr double kThinner = 2;           // times, by which a line may look thinner where it is not seen
-constexpr double kHalf = 0.5;            // of its extent
-constexpr double kHalfTolerance = 0.15;  // of a pair's width: between marks and edges side by side
-constexpr double kFarTolerance = 0.01;   // rad about the vanishing point, by which a thin far line may be off
+constexpr double kStripe = 0.1;  // share of the runway's width; the centre line is narrower
+constexpr double kLeastDash = 0.1;       // log(far / near) of a dash of 30 m at 300 m
+constexpr double kThinner = 2;           // ratio by which a line may look thinner at another place
+constexpr double kHalf = 0.5;            // share of the extent
+constexpr double kHalfTolerance = 0.15;  // share of a pair's width, between marks and edges side by side
+constexpr double kFarTolerance = 0.01;   // rad about the vanishing point; a thin far line may be off by this
 constexpr double kUnbroken = 0.9;        // share of an edge's length that is seen
 constexpr double kSameExtent = 0.4;      // log of the ratio of their extents
-constexpr double kSameBeginning = 0.3;   // log of the ratio of the distances where two edges begin
+constexpr double kSameBeginning = 0.3;   // log of the ratio of the distances at which two edges begin
 
 /// An edge and its counterpart on the other side.
 struct MirroredPair {
   size_t left, right;  // indices of edges
   double centre, width;
-  double variance;              // of the centre, in the image alone and by asymmetry of the paint
-  Eigen::Vector3d by_rotation;  // of the centre
+  double variance;              // of the centre: from the image and from asymmetric paint
+  Eigen::Vector3d by_rotation;  // derivatives of the centre
   double extent;
 };
 
@@ -82,7 +83,7 @@ class Search {
     return fitRunway(axes_, pairs, widest);
   }
 
-  /// Extent of the longest pair, wherever its middle is; stripes of paint are no runways.
+  /// Extent of the longest pair. Its middle may be anywhere, but stripes of paint do not count.
   double longest() const {
     double longest = 0;
     for (const MirroredPair& pair : pairs_)
@@ -90,33 +91,34 @@ class Search {
     return longest;
   }
 
-  /// Whether the edges of the pair are as long as each other: those of a runway are, but its centre line is
-  /// not as long as they.
+  /// Whether both edges of the pair are equally long. A runway's edges are; its centre line is shorter than
+  /// they.
   bool isEven(const MirroredPair& pair) const {
     return std::abs(std::log(edges_[pair.left].extent / edges_[pair.right].extent)) < kSameExtent;
   }
-  /// Whether this is a dark strip that begins within the picture, as at a threshold.
+  /// Whether the pair is a dark strip that begins within the image, as it does at a threshold.
   bool isStrip(const MirroredPair& pair) const {
     const GroundEdge& l = edges_[pair.left];
     return isEven(pair) && l.begins && l.brighter_left && beginAlike(pair);
   }
-  /// A centre line is dashed.
+  /// Whether most of the edge is seen. A centre line is dashed and fails this.
   static bool isUnbroken(const GroundEdge& edge) {
     return edge.extent >= kUnbroken * std::log(edge.far / edge.near);
   }
-  /// Whether one edge of the pair seems to be the centre line of a wider runway: halfway between the other
-  /// one and a long edge beyond it. With such edges beyond both, the pair is the middle of what is symmetric.
+  /// Whether one edge of the pair seems to be the centre line of a wider runway. It would lie halfway between
+  /// the other edge and a long edge beyond it. With such edges beyond both sides, the pair is the middle of a
+  /// symmetric whole.
   bool isHalf(const MirroredPair& pair) const {
     const double left = edges_[pair.left].lateral, right = edges_[pair.right].lateral;
     return hasLongEdge(2 * left - right, pair) != hasLongEdge(2 * right - left, pair);
   }
-  /// Whether both edges begin at the same distance, or neither within the picture.
+  /// Whether both edges begin at the same distance, or neither begins within the image.
   bool beginAlike(const MirroredPair& pair) const {
     const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
     return l.begins == r.begins && (!l.begins || std::abs(std::log(l.near / r.near)) < kSameBeginning);
   }
-  /// Whether these are two painted lines with nothing as far again beyond either, where such a line would be
-  /// seen: if one of them were the centre line of a wider runway, its other edge line were there.
+  /// Whether the pair is two painted lines with nothing at the same distance beyond either of them. If one
+  /// line were the centre line of a wider runway, its other edge line would be seen there.
   bool areOutermost(const Symmetry& symmetry, const MirroredPair& outermost, const Outlook& outlook) const {
     const auto isLong = [&](bool bright) {
       return std::any_of(symmetry.pairs.begin(), symmetry.pairs.end(), [&](const MirroredPair* pair) {
@@ -127,8 +129,8 @@ class Search {
     return isLong(true) && isLong(false) && isBare(2 * left - right, outermost, outlook) &&
            isBare(2 * right - left, outermost, outlook);
   }
-  /// Whether these are two unbroken lines alike, each with both its sides. A single dash is not the
-  /// counterpart of a line that goes on.
+  /// Whether the pairs are two unbroken lines that look alike, each with both of its sides. A single dash is
+  /// no counterpart of a continuous line.
   bool areTwoLines(const Symmetry& symmetry) const {
     return symmetry.pairs.size() >= 2 &&
            std::all_of(symmetry.pairs.begin(), symmetry.pairs.end(), [this](const MirroredPair* pair) {
@@ -150,7 +152,7 @@ class Search {
             std::min(l.extent, r.extent)};
   }
 
-  /// Whether an edge, long beside the pair's, lies there.
+  /// Whether there is an edge at this lateral place that is long compared with the pair's.
   bool hasLongEdge(double lateral, const MirroredPair& pair) const {
     return hasEdge(edges_, lateral, pair, std::max(kLong * pair.extent, kLeastExtent));
   }
@@ -163,10 +165,10 @@ class Search {
     });
   }
 
-  /// Whether a line like those of the pair would be seen there, and none is.
+  /// Whether a line like those of the pair would be seen at this place, but none is.
   bool isBare(double lateral, const MirroredPair& pair, const Outlook& outlook) const {
     const GroundEdge &l = edges_[pair.left], &r = edges_[pair.right];
-    // The same line looks the thinner the farther to the side.
+    // The same line looks thinner farther to the side.
     const double nearer = std::min(std::abs(l.lateral), std::abs(r.lateral));
     if (std::hypot(1, lateral) > kThinner * std::hypot(1, nearer)) return false;
     const double near = std::max(l.near, r.near), far = std::min(l.far, r.far);
@@ -174,7 +176,8 @@ class Search {
            !hasEdge(outlook.edges, lateral, pair, kLeastDash);
   }
 
-  /// log(far / near) of what the left camera sees of a line along the runway between these distances.
+  /// log(far / near) of the part that the left camera sees of a line along the runway between these
+  /// distances.
   double seenExtent(double lateral, double near, double far, const StereoRig& rig) const {
     constexpr int kSteps = 16;
     int seen = 0;
@@ -204,20 +207,22 @@ class Search {
     return width;
   }
 
-  /// A centre that is hardly known has room for any pairs, whether they agree with each other or not: what
-  /// gathers them is the one among them that knows best, as far as the runway's paint tells.
+  /// Whether this pair knows its centre much better than the given centre is known. An uncertain centre has
+  /// room for any pairs, even for those that contradict each other. So pairs gather around the most certain
+  /// one. The limit is how exactly a runway is painted.
   bool isSharper(const MirroredPair& pair, const MirroredPair& centre) const {
     return std::max(pair.variance, paint_) * kSharper * kSharper < centre.variance;
   }
 
-  /// For one centre after another.
+  /// Working memory for one centre after another.
   struct Memory {
-    std::vector<std::pair<double, const MirroredPair*>> near;  // pairs by their distance, in tolerances
-    std::vector<char> used;                                    // edges
-    std::vector<uchar> apart;                                  // pairs that are too far away
+    // Pairs with their distance from the centre, in tolerances.
+    std::vector<std::pair<double, const MirroredPair*>> near;
+    std::vector<char> used;    // per edge
+    std::vector<uchar> apart;  // per pair: 1 when it is certainly too far away
   };
 
-  /// Every edge counts in one pair only, the one that fits best.
+  /// Pairs that agree on this centre. Each edge counts in one pair only, the one that fits best.
   Symmetry around(const MirroredPair& centre, Memory& memory) const {
     auto& [near, used, apart] = memory;
     near.clear();
@@ -253,10 +258,11 @@ class Search {
   std::vector<GroundEdge> edges_;
   std::vector<MirroredPair> pairs_;
   CentreColumns columns_;  // of pairs_
-  double paint_ = 0;       // variance of a centre by how marks are painted, whose own width does not matter
+  // Variance of a centre from inexact paint, for the width of the longest pair instead of the pair's own.
+  double paint_ = 0;
 };
 
-/// The widest long pair; with a known width, the longest pair of that width.
+/// The widest long pair. With a known width, it is the longest pair of that width.
 const MirroredPair* outermostPair(const Symmetry& symmetry, double width, double longest) {
   const MirroredPair* best = nullptr;
   for (const MirroredPair* pair : symmetry.pairs) {
@@ -271,11 +277,14 @@ const MirroredPair* outermostPair(const Symmetry& symmetry, double width, double
   return best;
 }
 
-/// Whether more than two lines share the symmetry. Any two are symmetric about their middle, by both their
-/// sides, and a piece of texture or the sides of one mark may be, too. But long pairs of very different
-/// widths are not the sides of two lines, nor are three long pairs, as of edge lines with the edges of the
-/// pavement beyond; a narrow bright stripe just in the middle is the centre line, and two marks or more, as
-/// bars of a threshold, are not there by chance.
+/// Whether more than two lines share the symmetry.
+///
+/// Any two lines are symmetric about their middle with both of their sides. A piece of texture may be as
+/// well, and so may the sides of one mark. But these cases are more than that:
+/// - a narrow bright stripe in the middle, which is the centre line;
+/// - two marks or more, such as bars of a threshold;
+/// - more than two long pairs, such as edge lines with the edges of the pavement beyond;
+/// - long pairs of very different widths, which cannot be the sides of two lines.
 bool hasMoreThanTwoLines(const Symmetry& symmetry, const MirroredPair& outermost,
                          const std::vector<GroundEdge>& edges) {
   double narrowest = outermost.width, widest = outermost.width;

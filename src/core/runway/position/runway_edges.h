@@ -10,42 +10,45 @@
 
 namespace uav_landing {
 
-/// Where the centre line is expected, and by how much it may differ.
+/// Expected place of the centre line, and its largest distance from there, in multiples of the height.
 struct ExpectedCentre {
   double centre = 0, tolerance = 0;
 };
 
-/// What is seen of the ground beside the runway, so that the lack of an edge says something, too.
+/// The view beside the runway. With it, a missing edge is evidence, too.
 struct Outlook {
   const StereoRig& rig;
-  const std::vector<GroundEdge>& edges;  ///< seen by at least one view
+  const std::vector<GroundEdge>& edges;  ///< edges seen by at least one view
 };
 
-/// What is known of the runway's width, multiples of the height.
+/// Knowledge about the runway's width, in multiples of the height.
 struct RunwayWidth {
-  double known = 0;                                         ///< 0: not known
-  double widest = std::numeric_limits<double>::infinity();  ///< shores and fields are wider
+  double known = 0;  ///< width by a chart; 0: unknown
+  /// Upper limit, as shores and fields are farther apart.
+  double widest = std::numeric_limits<double>::infinity();
 
   RunwayWidth(double width = 0, double limit = std::numeric_limits<double>::infinity())  // NOLINT: a number
       : known(width), widest(limit) {}
 };
 
-/// The runway's edges.
+/// Finds the runway's edges and measures its cross section.
 ///
 /// A runway is painted symmetrically. Each edge on its left has a counterpart on the right whose brighter
-/// side is the other one. The centre line is where most length of edges agrees on that, long edges among
-/// them. The runway's own edges are the outermost long ones. Sometimes one more long edge lies as far beyond
-/// one side of a pair, and none beyond the other. Then the pair is an edge and the centre line, and nothing
-/// is found unless the width is known.
+/// side is the other one. The centre line is the one on which the largest length of edges agrees, with long
+/// edges among them. The runway's own edges are the outermost long ones. A pair may also be an edge and the
+/// centre line of a wider runway. Then one more long edge lies beyond one side of the pair, at the distance
+/// of the pair's width, and none beyond the other side. In that case nothing is found unless the width is
+/// known.
 ///
-/// edges: of the ground along the runway.
-/// expected: from frames before. Without it a symmetry is believed only if no other one with long edges comes
-/// near it, and if it is more than that of any two lines. One of these has to hold:
-/// - a stripe is in the middle;
-/// - marks besides the edges share it;
-/// - the edges are two unbroken lines alike;
-/// - they are two lines with room beyond either, and the outlook shows no third one there;
-/// - the only pair is a dark strip that begins within the picture or has the known width.
+/// edges: along the runway on the ground. expected: from earlier pairs. outlook: or null.
+///
+/// Without an expected centre, a symmetry must also be clearly better than any other one with long edges. And
+/// if the width is unknown, one of these must show that it is more than two lines with a middle:
+/// - a narrow bright stripe lies in the middle;
+/// - several marks or long edges besides the outermost pair share the symmetry;
+/// - the edges are two unbroken lines that look alike, each with both of its sides;
+/// - they are two painted lines, and the outlook shows free ground where a third one would be;
+/// - the outermost pair is a dark strip that begins within the image.
 Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
                                              const RunwayWidth& width,
                                              const std::optional<ExpectedCentre>& expected,

@@ -8,17 +8,23 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kAsymmetry = 2e-4;  // of the runway's width: 1 sigma by which a pair of marks is off centre
-constexpr double kWeakest = 1e-12;   // information of what nothing tells of
-// Pixels, 1 sigma, by which blur moves the side of a line to the dark: by its own sigma at most.
+// 1 sigma by which a pair of marks is off centre, as a share of the runway's width.
+constexpr double kAsymmetry = 2e-4;
+constexpr double kWeakest = 1e-12;  // information on unknowns that nothing measures
+// 1 sigma by which blur moves the side of a line towards the dark, pixels. It is at most the blur's own
+// sigma.
 constexpr double kBlur = 0.7;
-constexpr double kSurest = 1e-5;  // rad: no vanishing point tells the direction better
+constexpr double kSurest = 1e-5;  // rad: no vanishing point gives a more exact direction
 
-/// Lateral position of every edge, the direction, and for every pair how far blur has moved its sides, in 1
-/// sigma of that. Both sides of a pair are moved towards the dark, the one to the left and the other to the
-/// right, by the more on the ground the farther away: they turn against each other. Where one is seen better
-/// than the other, the pair would seem turned. Model of a piece: lateral = edge + slope forward, slope = turn
-/// +- moved. What the lines' vanishing point says of the direction is one more measurement of the turn, of 0.
+/// Least squares fit of all edges. Unknowns are the lateral position of each edge, the common direction, and
+/// for each pair the shift of its sides by blur in units of 1 sigma.
+///
+/// Blur moves both sides of a pair towards the dark: one to the left, the other to the right. On the ground
+/// the shift grows with the distance, so the sides turn against each other. If one side is seen better than
+/// the other, the pair would seem to be turned.
+///
+/// Model of a piece: lateral = edge + slope forward, slope = turn +- moved. The vanishing point of the lines
+/// is one more measurement of the turn, with the value 0.
 class EdgeFit {
  public:
   EdgeFit(const std::vector<MirroredEdges>& pairs, double direction_variance)
@@ -37,7 +43,7 @@ class EdgeFit {
       Eigen::Matrix<double, 2, 3> model;
       const double moved = movedByBlur(e);
       model << 1, piece.forward, moved * piece.forward, 0, 1, moved;
-      // What a rotation of the normal about forward and about left does to lateral and slope.
+      // Derivatives of lateral and slope by rotations of the normal about forward and about left.
       const double x = piece.forward, y = piece.lateral;
       Eigen::Matrix2d by_rotation;
       by_rotation << -1 - y * y, x * y, 0, y;
@@ -64,7 +70,7 @@ class EdgeFit {
 
  private:
   Eigen::Index blurOf(Eigen::Index edge) const { return turn() + 1 + edge / 2; }
-  /// Slope by 1 sigma of blur.
+  /// Change of the slope by 1 sigma of blur.
   double movedByBlur(Eigen::Index edge) const {
     const GroundEdge& seen = *edges_[edge];
     return (edge % 2 == 0 ? 1 : -1) * kBlur * seen.pixel * std::hypot(1, seen.lateral);
@@ -76,7 +82,7 @@ class EdgeFit {
       for (const EdgePiece& piece : edges_[e]->pieces) visit(static_cast<Eigen::Index>(e), piece);
   }
 
-  /// Lines that fit worse than they claim have claimed too much.
+  /// Enlarges the covariance when lines fit worse than they claim.
   void inflate() {
     double chi2 = solution_[turn()] * solution_[turn()] / direction_variance_ +
                   solution_.tail(solution_.size() - turn() - 1).squaredNorm();
@@ -98,7 +104,8 @@ class EdgeFit {
   Eigen::MatrixXd covariance_, by_normal_;
 };
 
-/// Variance by which the middles of pairs scatter beyond their own errors (DerSimonian and Laird's estimate).
+/// Variance by which the middles of pairs scatter in addition to their own errors (estimate of DerSimonian
+/// and Laird).
 double scatter(const Eigen::VectorXd& middles, const Eigen::VectorXd& variances) {
   const Eigen::VectorXd weights = variances.cwiseInverse();
   const double sum = weights.sum(), mean = weights.dot(middles) / sum;
@@ -113,7 +120,7 @@ RunwayCrossSection fitRunway(const GroundAxes& axes, const std::vector<MirroredE
                              size_t outermost) {
   const EdgeFit fit(pairs, axes.covariance(2, 2));
   const auto n = static_cast<Eigen::Index>(pairs.size());
-  // Middles of the pairs, and the direction last.
+  // Rows: the middles of the pairs, then the direction.
   Eigen::MatrixXd middles_of = Eigen::MatrixXd::Zero(n + 1, fit.solution().size());
   for (Eigen::Index p = 0; p < n; ++p) middles_of(p, 2 * p) = middles_of(p, 2 * p + 1) = 0.5;
   middles_of(n, fit.turn()) = 1;
@@ -125,8 +132,7 @@ RunwayCrossSection fitRunway(const GroundAxes& axes, const std::vector<MirroredE
   section.width = fit.solution()[l] - fit.solution()[r];
   const double paint =
       std::pow(kAsymmetry * section.width, 2) + scatter(middles.head(n), covariance.diagonal().head(n));
-  // The longer a mark, the better it stands for the runway: its edge lines rather than the bars of its
-  // threshold.
+  // A longer mark represents the runway better. So its edge lines count more than the bars of its threshold.
   const auto extent = [&](size_t p) { return std::min(pairs[p].left->extent, pairs[p].right->extent); };
   for (Eigen::Index p = 0; p < n; ++p) covariance(p, p) += paint * extent(outermost) / extent(p);
 

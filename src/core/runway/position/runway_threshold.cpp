@@ -13,14 +13,15 @@
 namespace uav_landing {
 namespace {
 
-constexpr double kShortestBars = 0.2;  // of the width
-constexpr double kLineSearch = 0.3;    // of the width, before the bars
+constexpr double kShortestBars = 0.2;  // share of the width
+constexpr double kLineSearch = 0.3;    // share of the width, before the bars
 constexpr double kLocation = 0.5;      // px, 1 sigma of an edge across the runway
-// Bars begin 6 m behind the threshold and are 3.5 m apart (ICAO Annex 14; FAA AC 150/5340-1); on runways that
-// follow no standard they begin anywhere from the threshold on.
-constexpr double kFarthestBars = 1.9;  // pitches of the bars, behind the threshold
-constexpr double kSearched = 1.3;      // of the farthest: before the bars
-constexpr double kPitchError = 0.05;   // 1 sigma, of the pitch
+// Bars begin 6 m behind the threshold and are 3.5 m apart (ICAO Annex 14; FAA AC 150/5340-1). On runways that
+// follow no standard, they may begin closer to the threshold.
+// Largest distance of the bars behind the threshold, in pitches of the bars.
+constexpr double kFarthestBars = 1.9;
+constexpr double kSearched = 1.3;     // searched distance before the bars, as a multiple of the farthest
+constexpr double kPitchError = 0.05;  // 1 sigma as a share of the pitch
 
 template <class... Parts>
 tl::unexpected<Failure> noThreshold(const Parts&... parts) {
@@ -38,7 +39,8 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   const double begin = view.distance(bars->begin);
   if (view.distance(bars->end) - begin < kShortestBars * runway.width)
     return noThreshold("bars of the threshold are too short");
-  // The line before them must be in the picture if there is one: without it the bars tell nothing.
+  // The place of a line before the bars must be in the image. Otherwise the bars alone say nothing about the
+  // threshold.
   const double pitch = bars->pitch / TopView::kColumns * TopView::kAcross * runway.width;
   const double farthest = kFarthestBars * pitch;
   const double search = begin - std::max(kLineSearch * runway.width, kSearched * farthest);
@@ -63,7 +65,8 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   threshold.variance =
       std::pow(kLocation * view.footprint(station), 2) + by_rotation.dot(axes.covariance * by_rotation);
   if (!seen) {
-    // As well at the bars as at the farthest: the standard deviation takes in both.
+    // The threshold may be at the bars, or as far before them as they ever begin. The standard deviation
+    // covers both.
     threshold.distance -= 0.5 * farthest;
     threshold.systematic_variance = std::pow(0.5 * farthest, 2);
     threshold.variance += threshold.systematic_variance + std::pow(kPitchError * farthest, 2);

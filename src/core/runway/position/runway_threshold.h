@@ -11,20 +11,29 @@
 
 namespace uav_landing {
 
-/// Where the threshold lies in front of the left camera, in multiples of its height.
+/// Distance of the threshold ahead of the left camera, in multiples of its height.
 struct Threshold {
   double distance = 0, variance = 0;
-  /// Part of the variance that is the same error in every picture of this runway; 0 when its line or the
-  /// beginning of its pavement is seen.
+  /// Part of the variance from an error that is the same in every image of this runway. It is 0 when the
+  /// threshold's line or the beginning of the pavement is seen.
   double systematic_variance = 0;
 };
 
-/// The threshold: the near edge of a bright line across the runway just before its bars, or where the
-/// pavement of the bars begins. Where neither is seen it lies up to 6 m of a full-size runway, scaled by the
-/// distance between its bars, before them: told in the middle, with a systematic error that takes in both
-/// ends. Bars: at least eight edges between light and dark side by side, evenly over the
-/// runway's width, unlike the marks of the touchdown zone. image: left rectified mono8. mask: 255 where it
-/// has picture. memory: for rows seen from above. rows: of the image.
+/// Finds the threshold by its bars: at least eight edges between light and dark side by side, evenly over the
+/// runway's width. Marks of the touchdown zone are not like that.
+///
+/// The threshold is the near edge of a bright line across the runway just before the bars, or the beginning
+/// of the pavement. If neither is seen, the threshold of a full-size runway lies up to 6 m before the bars.
+/// On other runways the distance scales with that between the bars. The middle of that range is reported, and
+/// the systematic variance covers both of its ends.
+///
+/// - image: left rectified, mono8.
+/// - mask: 255 where the image is valid.
+/// - memory: for rows seen from above.
+/// - rows: row times of the image.
+///
+/// Fails with no_runway when there are no bars or the ground before them is not in the image. It also fails
+/// when something before the bars is not clearly a line.
 Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
                                   const GroundAxes& axes, const RunwayCrossSection& runway,
                                   std::vector<LineGreys>& memory, const StampMap& rows = {});

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFarthest = 60;     // heights
 constexpr double kNearest = 0.5;     // heights
-constexpr double kFootprint = 0.02;  // of the width: largest length on the ground of a pixel that tells
+constexpr double kFootprint = 0.02;  // largest length of a station on the ground, as a share of the width
 constexpr int kColumns = TopView::kColumns;
 
 }  // namespace
@@ -26,7 +26,7 @@ TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig
       rows_(rows) {
   for (int c = 0; c < kColumns; ++c)
     across_[c] = runway.centre + ((c + 0.5) / kColumns - 0.5) * kAcross * runway.width;
-  // Stations lie evenly in the inverse of the distance, as pixels do.
+  // Stations are evenly spaced in the inverse of the distance, as pixels are.
   const double farthest = std::min(kFarthest, std::sqrt(kFootprint * runway.width / step_));
   rows_.clear();
   bool begun = false;
@@ -45,8 +45,8 @@ TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig
   }
 }
 
-/// Quick: a row of which neither this nor that quarter's end is in the picture has not enough of it there, as
-/// what is there hangs together.
+/// Quick test. The part of a row that lies in the image is one piece. If the row has enough of it, the sample
+/// at its first or its third quarter is in the image.
 bool TopView::mayBeSeen(double x) const {
   const auto isSeen = [&](int c) {
     const Eigen::Vector3d point = x * axes_.forward + axes_.down + across_[c] * axes_.left;
@@ -58,7 +58,7 @@ bool TopView::mayBeSeen(double x) const {
 
 bool TopView::sample(double x, Across& row) const {
   if (image_.cols < 2 || image_.rows < 2) return false;
-  // A line across takes few rows of the picture, so the time of its middle is that of all of it.
+  // A line across the runway covers few rows of the image, so the time of its middle is used for all of it.
   const Eigen::Vector3d begin = x * axes_.forward + axes_.down, middle = begin + centre_ * axes_.left;
   const double seconds = middle.z() > 0 ? exposed_.timeOf(middle) : 0;
   const LineView line{seconds == 0 ? begin : exposed_.pointAfter(seconds, begin),

@@ -11,28 +11,30 @@
 
 namespace uav_landing {
 
-/// The runway as seen from above, one row (station) for each pixel of distance. Refers to what it is made of.
+/// The runway seen from above. A row (station) corresponds to one pixel of distance. The object refers to the
+/// image, the mask, the rig, the axes and the rows, which must outlive it.
 class TopView {
  public:
   static constexpr int kColumns = kLineSamples;  ///< samples across the runway
-  static constexpr double kAcross = 0.92;        ///< of the width: without the lines along the edges
-  static constexpr double kLeastPicture = 0.75;  ///< share of a station's samples that lie in the picture
+  /// Share of the width that is sampled, without the lines along the edges.
+  static constexpr double kAcross = 0.92;
+  static constexpr double kLeastPicture = 0.75;  ///< least share of a station's samples that lie in the image
 
-  /// Grey levels across the runway from the left, not finite outside the picture.
+  /// Grey levels across the runway from left to right. They are not finite outside the image.
   using Across = LineGreys;
 
-  /// rows: memory for the rows, kept by the caller. exposed: when the image's rows were.
+  /// rows: memory for the rows, kept by the caller. exposed: row times of the image.
   TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
           const RunwayCrossSection& runway, std::vector<Across>& rows, const StampMap& exposed = {});
 
   int size() const { return static_cast<int>(rows_.size()); }
   const Across& row(int k) const { return rows_[static_cast<size_t>(k)]; }
-  /// Mean of 2 kBlock + 1 stations around k.
+  /// Mean of the 2 kBlock + 1 stations around k.
   Across blockAround(int k) const;
   static constexpr int kBlock = 3;
-  /// Forward of the camera, in heights, of a station that need not be whole.
+  /// Distance of a station ahead of the camera, in heights. k need not be whole.
   double distance(double k) const { return 1 / (inverse_.front() - k * step_); }
-  /// Of one station, in heights.
+  /// Length of a station on the ground, in heights.
   double footprint(double k) const { return step_ * distance(k) * distance(k); }
 
  private:
@@ -43,14 +45,14 @@ class TopView {
   const StereoRig& rig_;
   const GroundAxes& axes_;
   StampMap exposed_;
-  double centre_;  // of the runway, left of the camera, in heights
+  double centre_;  // lateral place of the runway's centre, left positive, in heights
   double step_;
-  LinePlaces across_;  // left of the camera, in heights
+  LinePlaces across_;  // lateral places of the samples, left positive, in heights
   std::vector<double> inverse_;
   std::vector<Across>& rows_;
 };
 
-/// Of the samples that are in the picture.
+/// Mean of the samples that are in the image.
 double meanOf(const TopView::Across& row);
 
 }  // namespace uav_landing

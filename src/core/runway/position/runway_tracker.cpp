@@ -12,14 +12,16 @@ namespace uav_landing {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-constexpr Sigmas kGate(4);          // between what is seen and what was expected
-constexpr double kSlack = 0.01;     // of the runway's width, that the gate is wider
-constexpr double kSameWidth = 0.1;  // of the width: between the surface's edges and the lines along them
-constexpr double kVague = 0.1;      // of the width: a centre expected within more than this says nothing
-constexpr double kPatience = 1.0;   // s without the edges, after which the interpretation is forgotten
+constexpr Sigmas kGate(4);       // between measured and expected values
+constexpr double kSlack = 0.01;  // addition to the gate, as a share of the runway's width
+// Share of the width; between the edges of the surface and the lines along them.
+constexpr double kSameWidth = 0.1;
+constexpr double kVague = 0.1;  // share of the width; an expected centre with a larger tolerance is useless
+constexpr double kPatience = 1.0;  // s without the edges, after which they are forgotten
 constexpr double kThresholdPatience = 0.5;
-constexpr double kUnknownMotion = 0.1;  // of the height: 1 sigma of a step's movement that is not known
-constexpr double kLongestStep = 1.0;    // s
+// 1 sigma of the movement in an unknown step, as a share of the height.
+constexpr double kUnknownMotion = 0.1;
+constexpr double kLongestStep = 1.0;  // s
 
 }  // namespace
 
@@ -42,7 +44,7 @@ bool RunwayTracker::Follower::update(double value, double variance, double slack
     confirmations_ = 1;
     return false;
   }
-  // Errors of pairs in a row are much the same, so their mean is hardly better than one of them.
+  // Errors of successive pairs are similar, so their mean is hardly better than one of them.
   const double gain = variance_ / (variance_ + variance);
   value_ = *value_ + gain * (value - *value_);
   variance_ = std::max((1 - gain) * variance_, std::min(variance_, 0.5 * variance));
@@ -91,7 +93,8 @@ void RunwayTracker::missAll(double seconds) {
   threshold_.miss(seconds, kThresholdPatience);
 }
 
-// Another runway, or this one from elsewhere, is of another width: in heights, too.
+// Another runway, or this one from elsewhere, has another width in heights. So the width is forgotten with
+// the centre.
 void RunwayTracker::missCentre(double seconds) {
   centre_.miss(seconds, kPatience);
   if (centre_.confirmations() == 0) width_ = wider_ = Follower();
@@ -112,7 +115,7 @@ ApproachAngleResult::Runway RunwayTracker::process(double stamp, const cv::Mat& 
     missAll(seconds);
     return result;
   }
-  // The runway's own slope and curve turn its vanishing point up and down, not to the sides.
+  // The runway's own slope and curve move its vanishing point up and down, not to the sides.
   const Eigen::Vector3d& p = direction.combined->direction;
   const double straightness = std::pow(parameters_.runway_straightness_deg * kDegree, 2);
   const Eigen::Matrix3d own =
@@ -167,7 +170,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
                         const Outlook* outlook) {
     Expected<RunwayCrossSection> found = findRunwayEdges(axes, among, width, expected, outlook);
     if (found || width.known <= 0) return found;
-    // The edges that show may be those of stripes inside the chart's width.
+    // The visible edges may be those of stripes within the chart's width.
     return findRunwayEdges(axes, among, {0, width.widest}, expected, outlook);
   };
   Expected<RunwayCrossSection> seen = find(edges.both, std::nullopt, &outlook);
@@ -202,7 +205,8 @@ void RunwayTracker::followWidth(const RunwayCrossSection& seen, ApproachAngleRes
     width_.update(seen.width, seen.width_variance, kSameWidth * seen.width);
     result.width = seen.width;
     result.width_variance = seen.width_variance;
-  } else if (width_.confirmations() < kConfirmations) {  // one pair's word against the other's
+    // The pairs contradict each other, so no width is reported.
+  } else if (width_.confirmations() < kConfirmations) {
     width_.update(seen.width, seen.width_variance, kSameWidth * seen.width);
   } else if (seen.width > width_.value() &&
              wider_.update(seen.width, seen.width_variance, kSameWidth * seen.width)) {

@@ -14,40 +14,43 @@
 
 namespace uav_landing {
 
-/// Position over the runway from pair to pair. One pair alone may take other edges for the runway's, so a
-/// position is told only after several pairs in a row that agree with the motion between them, and from then
-/// on only edges where the motion says they must be are taken. All in multiples of the height, which needs no
-/// stereo.
+/// Follows the position over the runway from pair to pair. A single pair may take other edges for the
+/// runway's. So a position is reported only after several pairs in a row that agree with the motion between
+/// them. From then on, only edges where the motion predicts them are accepted. All lengths are in multiples
+/// of the height, so stereo is not needed.
 class RunwayTracker {
  public:
-  /// Pairs in a row that must agree.
+  /// Number of pairs in a row that must agree.
   static constexpr int kConfirmations = 3;
 
   RunwayTracker(const RigModel& rig, const ApproachAngleParameters& parameters,
                 const RunwayParameters& runway = {});
 
-  /// left: rectified image. approach: of this pair, with n, the vanishing direction and the step; direction:
-  /// the lines it was found from. height: by stereo, m, or NaN; without it only the left view counts. rows:
-  /// of the left image.
+  /// Processes one pair.
+  /// - left: rectified image.
+  /// - approach: result of this pair, with n and the step.
+  /// - direction: vanishing direction and lines of this pair.
+  /// - height: from stereo, m, or NaN. Without it only the left view is used.
+  /// - rows: row times of the left image.
   ApproachAngleResult::Runway process(double stamp, const cv::Mat& left, const ApproachAngleResult& approach,
                                       const RunwayDirection& direction, double height,
                                       const StampMap& rows = {});
-  /// A pair of which nothing is known but that the motion up to the next one does not begin before it.
+  /// Call it for a pair without any result. The motion of the next pair must begin at this one.
   void skip(double stamp);
   void reset();
-  /// Whether the pair before the one of this stamp has shown the runway where those before it did. Until then
-  /// it also matters which lines are not there.
+  /// Whether the pair before this stamp showed the runway at the same place as earlier pairs. Until then,
+  /// missing lines are evidence, too.
   bool isSettled(double stamp) const { return follows(stamp) && centre_.isSeen() && contradicted_ == 0; }
 
  private:
-  /// A place on the ground followed over pairs: its distance from the camera along one axis.
+  /// Follows one quantity on the ground over pairs, such as a distance from the camera along one axis.
   class Follower {
    public:
-    /// scale: height before over height now. motion: along the axis, over the height now.
+    /// scale: previous height over height now. motion: along the axis, over the height now.
     void predict(double scale, double motion, double variance);
-    /// Where it must be by what was seen before; none when nothing was.
+    /// Range in which the next measurement must lie; nothing before the first one.
     std::optional<ExpectedCentre> expected(double slack) const;
-    /// Whether the measurement is confirmed by those before it.
+    /// Adds a measurement. Returns whether earlier ones confirm it.
     bool update(double value, double variance, double slack);
     void miss(double seconds, double patience);
     double value() const { return value_.value_or(0); }
@@ -58,15 +61,15 @@ class RunwayTracker {
     std::optional<double> value_;
     double variance_ = 0;
     int confirmations_ = 0;
-    double missed_ = 0;  // s
+    double missed_ = 0;  // time without a measurement, s
   };
 
-  /// Whether the pair before is near enough in time for what it has shown to count.
+  /// Whether the previous pair is recent enough to be used.
   bool follows(double stamp) const;
-  /// Since the pair before, s; forgets that when it does not follow.
+  /// Returns the time since the previous pair, s. Resets the tracker when that pair is too old.
   double advance(double stamp);
   void predict(const GroundAxes* axes, const ApproachAngleResult::Motion& step);
-  /// Edges along the runway that both views see, and those that at least one does.
+  /// Edges along the runway: those that both views see, and those that at least one view sees.
   struct Edges {
     std::vector<GroundEdge> both, either;
   };
@@ -83,13 +86,14 @@ class RunwayTracker {
 
   RigModel model_;
   ApproachAngleParameters parameters_;
-  double known_width_;  // m; 0: unknown
+  double known_width_;  // from the chart, m; 0: unknown
   std::optional<double> last_stamp_;
 
   Follower centre_, threshold_;
-  Follower width_, wider_;       // between the outermost edges; edges farther out that are not confirmed yet
+  // Width between the outermost edges, and a larger one that is not confirmed yet.
+  Follower width_, wider_;
   std::vector<LineGreys> rows_;  // memory for the view from above
-  double contradicted_ = 0;      // s for which the pairs have told of another runway
+  double contradicted_ = 0;      // s for which pairs have shown another runway
 };
 
 }  // namespace uav_landing

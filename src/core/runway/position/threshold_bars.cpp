@@ -16,27 +16,29 @@ namespace {
 using Across = TopView::Across;
 
 constexpr int kColumns = TopView::kColumns, kBlock = TopView::kBlock;
-constexpr double kLeastContrast = 20;   // grey levels between bars and what lies between them
-constexpr int kLeastFlips = 8;          // between light and dark across the bars
-constexpr double kLargestGap = 0.25;    // of the width between two of them, or to the runway's edge
-constexpr double kLeastLikeness = 0.7;  // correlation of the pattern with itself further on, and mirrored
-constexpr double kUnevenPitch = 0.25;   // of the pitch, between neighbouring bars
-constexpr double kLeastAlike = 0.6;     // share of the bars that are one pitch apart
-constexpr double kUnevenBars = 0.35;    // of the width of a bar
-constexpr int kFewestBars = 4;          // that are equally wide
+constexpr double kLeastContrast = 20;  // grey levels between the bars and the gaps
+constexpr int kLeastFlips = 8;         // changes between light and dark across the bars
+// Largest distance between two changes, or to the runway's edge, as a share of the width.
+constexpr double kLargestGap = 0.25;
+// Correlation of the pattern with itself farther on, and with its mirror image.
+constexpr double kLeastLikeness = 0.7;
+constexpr double kUnevenPitch = 0.25;  // share of the pitch, between neighbouring bars
+constexpr double kLeastAlike = 0.6;    // share of the bars that are one pitch apart
+constexpr double kUnevenBars = 0.35;   // share of the width of a bar
+constexpr int kFewestBars = 4;         // of equal width
 
-/// An eighth of a pattern is darker than the one, and another lighter than the other.
+/// An eighth of the pattern is darker than `dark`, and an eighth is lighter than `light`.
 struct Greys {
   float dark = 0, light = 0;
 };
 
-/// Whether it is light and dark in turn, often enough and with no large gap.
+/// Whether the pattern alternates between light and dark often enough and without a large gap.
 bool alternate(const LineShades& shades) {
   int flips = 0, last = 0, state = kBetweenShade, gap = 0;
   for (int c = 0; c < kColumns; ++c) {
     if (shades[c] == kBetweenShade || shades[c] == state) continue;
     if (shades[c] == kUnknownShade) {
-      last = c;  // outside the picture: nothing is known to be missing
+      last = c;  // outside the image, so nothing is missing for certain
       continue;
     }
     gap = std::max(gap, c - last);
@@ -48,14 +50,14 @@ bool alternate(const LineShades& shades) {
   return flips >= kLeastFlips && gap <= kLargestGap * kColumns;
 }
 
-/// Contrast of bars side by side, grey levels; 0 when the pattern is not of bars, or of less contrast. greys:
-/// of the station before, which are much the same, if they are known; then of this one.
+/// Contrast of bars side by side, grey levels; 0 when the pattern shows no bars or less contrast than
+/// `least`. greys: on entry those of the previous station, as they are similar; on return of this one.
 double barContrast(const Across& pattern, double least, Greys& greys) {
   KnownGreys known;
   takeKnown(pattern, known);
   if (known.count < TopView::kLeastPicture * kColumns) return 0;
-  // Most of the runway is nearly of one grey: too few are lighter by so much than the darkest, or than what
-  // is dark.
+  // Quick exit: most of the runway has nearly one grey. So too few samples are lighter by this contrast than
+  // the darkest one, or than `dark`.
   constexpr float kSafe = 0.999F;
   const int outermost = known.count / 8;
   const float lighter = known.darkest + kSafe * static_cast<float>(least);
@@ -73,7 +75,7 @@ double barContrast(const Across& pattern, double least, Greys& greys) {
   return alternate(shades) ? contrast : 0;
 }
 
-/// The median when enough of the lengths are like it; 0 otherwise.
+/// The median if enough of the lengths are close to it, else 0.
 double commonLength(const std::vector<double>& lengths, double tolerance, int fewest) {
   if (lengths.empty()) return 0;
   const double middle = medianOf(lengths);
@@ -83,8 +85,8 @@ double commonLength(const std::vector<double>& lengths, double tolerance, int fe
   return alike >= fewest && alike >= kLeastAlike * lengths.size() ? middle : 0;
 }
 
-/// From bar to bar, in columns; 0 when they are not evenly apart or not equally wide: the marks of the
-/// aiming point with the centre line between them are no zebra.
+/// Distance from bar to bar, in columns; 0 when the bars are not evenly spaced or not equally wide. The marks
+/// of the aiming point with the centre line between them are no bars, for example.
 double pitchOf(const Across& pattern) {
   const double level = meanOf(pattern);
   std::vector<double> pitches, widths;
@@ -102,7 +104,7 @@ double pitchOf(const Across& pattern) {
   return commonLength(pitches, kUnevenPitch, 1);
 }
 
-/// How much of the pattern is in a station: 1 where it is as in the pattern, 0 where there is nothing of it.
+/// Share of the pattern in a station: 1 where the station shows it fully, 0 where it shows nothing of it.
 double share(const Across& pattern, const Across& row) {
   const double pattern_mean = meanOf(pattern), row_mean = meanOf(row);
   double product = 0, square = 0;
@@ -121,12 +123,12 @@ double correlation(const Across& a, const Across& b) {
   return share(a, b) > 0 ? std::sqrt(std::max(0.0, product)) : 0;
 }
 
-/// Place between stations k and k + step where the share falls through one half.
+/// Place between the stations k and k + step at which the share falls below one half.
 double crossing(double k, double step, double inside, double outside) {
   return k + step * (inside - 0.5) / std::max(inside - outside, 1e-6);
 }
 
-/// Whether the bars are the same at both ends, and on both sides of the centre line. Texture is neither.
+/// Whether the bars look the same at both ends, and on both sides of the centre line. Texture does not.
 bool areBars(const TopView& view, const ThresholdBars& bars) {
   const int first = static_cast<int>(std::ceil(bars.begin)) + 1, last = static_cast<int>(bars.end) - 1;
   if (last - first < 2 * kBlock) return false;

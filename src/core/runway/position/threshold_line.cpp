@@ -9,19 +9,19 @@ namespace uav_landing {
 namespace {
 
 constexpr int kColumns = TopView::kColumns;
-constexpr double kSpanning = 0.8;       // share of the width that the threshold line takes
-constexpr double kNothing = 0.25;       // share below which there is no line
-constexpr double kLineContrast = 0.35;  // of the bars' contrast: weakest step onto the line
-constexpr int kStretches = 8;           // across the runway, in which the pavement must begin alike
-constexpr double kLeastStep = 8;        // grey levels where the pavement begins
-constexpr double kClearStep = 5;        // the same, in standard errors over the stretches
-constexpr double kFirstStep = 0.5;      // of the clearest step: a nearer one that is taken instead
-// On bright ground the line's near edge is no clear step, but its far one is.
-constexpr double kWidestLine = 1.1;  // pitches of the bars
-constexpr double kPaint = 0.5;       // of the bars' contrast: least fall behind a line
+constexpr double kSpanning = 0.8;       // least share of the width that the threshold's line covers
+constexpr double kNothing = 0.25;       // below this share there is no line
+constexpr double kLineContrast = 0.35;  // weakest step onto the line, as a share of the bars' contrast
+constexpr int kStretches = 8;           // parts of the width in which the pavement must begin alike
+constexpr double kLeastStep = 8;        // least step at the beginning of the pavement, grey levels
+constexpr double kClearStep = 5;        // the same in standard errors over the stretches
+constexpr double kFirstStep = 0.5;  // share of the clearest step; a nearer one above this is taken instead
+// On bright ground the near edge of the line is no clear step, but its far edge is.
+constexpr double kWidestLine = 1.1;  // in pitches of the bars
+constexpr double kPaint = 0.5;       // least step down behind a line, as a share of the bars' contrast
 
-/// Share of the width on which it gets brighter towards the far side around a station by at least this much.
-/// The line may lie slightly aslant.
+/// Share of the width on which the brightness rises towards the far side by at least this much. The line may
+/// be slightly skewed.
 double rising(const TopView& view, int k, double least) {
   int up = 0, known = 0;
   for (int c = 0; c < kColumns; ++c) {
@@ -34,10 +34,10 @@ double rising(const TopView& view, int k, double least) {
   return known > 0 ? static_cast<double>(up) / known : 0;
 }
 
-/// Step of the brightness around a station, alike all across the runway.
+/// Step of the brightness at a station, over the whole width.
 struct Step {
   double mean = 0;     // grey levels, towards the far side
-  bool clear = false;  // against what it varies across
+  bool clear = false;  // large against its scatter across the width
 };
 
 Step stepAt(const TopView& view, int k) {
@@ -67,7 +67,7 @@ Step stepAt(const TopView& view, int k) {
   return step;
 }
 
-/// Top of the parabola through a step and its neighbours; nothing when one of them is steeper.
+/// Vertex of the parabola through a step and its neighbours. Nothing when one of the neighbours is steeper.
 std::optional<double> topOf(const std::vector<Step>& steps, size_t i) {
   const double here = std::abs(steps[i].mean), sign = steps[i].mean > 0 ? 1 : -1;
   const double before = sign * steps[i - 1].mean, after = sign * steps[i + 1].mean;
@@ -76,7 +76,7 @@ std::optional<double> topOf(const std::vector<Step>& steps, size_t i) {
   return static_cast<double>(i) + (curve < 0 ? 0.5 * (before - after) / curve : 0.0);
 }
 
-/// Where it gets brighter all across, the most of the steps from `first` to before `end`.
+/// Place of the largest clear rise from the step `first` to before `end`.
 std::optional<double> clearestRise(const std::vector<Step>& steps, size_t first, size_t end) {
   std::optional<double> found;
   double largest = 0;
@@ -90,7 +90,7 @@ std::optional<double> clearestRise(const std::vector<Step>& steps, size_t first,
   return found;
 }
 
-/// Near edge of the line of which the i-th step is the far one, first: station of the first step.
+/// Near edge of the line whose far edge is the i-th step. first: station of the first step.
 std::optional<double> nearEdge(const TopView& view, const std::vector<Step>& steps, int first, size_t i,
                                double pitch) {
   const double far = view.distance(first + static_cast<double>(i));
@@ -107,7 +107,7 @@ bool ThresholdLine::isSomething() const { return spanning > kNothing; }
 ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, int first) {
   ThresholdLine line;
   double steepest = 0;
-  const int end = static_cast<int>(bars.begin) - 2;  // what rises there is the bars
+  const int end = static_cast<int>(bars.begin) - 2;  // a rise beyond belongs to the bars
   for (int k = std::max(2, first); k < end; ++k) {
     const double spanning = rising(view, k, kLineContrast * bars.contrast);
     line.spanning = std::max(line.spanning, spanning);
@@ -116,7 +116,7 @@ ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, 
     const double here = slope(k);
     if (here <= steepest) continue;
     steepest = here;
-    // Top of the parabola through three slopes.
+    // Vertex of the parabola through three slopes.
     const double before = slope(k - 1), after = slope(k + 1), curve = before - 2 * here + after;
     line.station = k + (curve < 0 ? std::clamp(0.5 * (before - after) / curve, -1.0, 1.0) : 0.0);
   }
@@ -124,7 +124,7 @@ ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, 
 }
 
 std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, double pitch, int first) {
-  const int begin = std::max(2, first), end = static_cast<int>(bars.begin) - 2;  // free of the bars
+  const int begin = std::max(2, first), end = static_cast<int>(bars.begin) - 2;  // before the bars
   std::vector<Step> steps;
   double clearest = 0;
   for (int k = begin; k < end; ++k) {

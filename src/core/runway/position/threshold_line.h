@@ -6,22 +6,23 @@
 
 namespace uav_landing {
 
-/// The near edge of the line before the bars.
+/// The bright line across the runway before the bars, by its near edge.
 struct ThresholdLine {
-  double spanning = 0;  ///< largest share of the width on which there is something like it
-  double station = 0;   ///< unset when that is less than the whole, see spans()
+  double spanning = 0;  ///< largest share of the width on which a line is seen
+  double station = 0;   ///< of the near edge; only valid if spans()
 
   bool spans() const;
-  /// Whether there is something, be it not the line.
+  /// Whether there is any mark, even if it is not the line.
   bool isSomething() const;
 };
 
-/// Looks from the station `first` to where the bars begin.
+/// Searches from the station `first` to the beginning of the bars.
 ThresholdLine findThresholdLine(const TopView& view, const ThresholdBars& bars, int first);
 
-/// Station at which the pavement of the bars begins: a step of the brightness, either way, right across.
-/// Where it falls by as much as behind a line, the ground before may be almost as bright as a line that is
-/// there: its near edge is told, or nothing. pitch: from bar to bar, in heights.
+/// Station at which the pavement of the bars begins: a step of the brightness, up or down, across the whole
+/// width. Nothing when there is none. A step down as large as behind a painted line may be the far edge of
+/// such a line on bright ground. Then the near edge of that line is returned, or nothing if it is not clear.
+/// pitch: distance from bar to bar, in heights.
 std::optional<double> findPavement(const TopView& view, const ThresholdBars& bars, double pitch, int first);
 
 }  // namespace uav_landing
