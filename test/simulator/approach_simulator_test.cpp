@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "simulator/sensor.h"
+#include "simulator/approach/sensor.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 
 #include <gtest/gtest.h>
 

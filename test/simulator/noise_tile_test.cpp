@@ -1,4 +1,4 @@
-#include "simulator/noise_tile.h"
+#include "simulator/ground/noise_tile.h"
 
 #include <gtest/gtest.h>
 

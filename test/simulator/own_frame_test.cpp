@@ -1,4 +1,4 @@
-#include "simulator/own_frame.h"
+#include "simulator/approach/own_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/pixel_filter.h"
+#include "simulator/approach/pixel_filter.h"
 
 #include <gtest/gtest.h>
 

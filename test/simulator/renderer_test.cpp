@@ -1,4 +1,4 @@
-#include "simulator/renderer.h"
+#include "simulator/approach/renderer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/runway_surface.h"
+#include "simulator/ground/runway_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/scenery.h"
+#include "simulator/ground/scenery.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "integrity/pair_tests.h"
-#include "landing/ground_estimate.h"
-#include "landing/height_track.h"
-#include "landing/pair_input.h"
+#include "landing/height/ground_estimate.h"
+#include "landing/height/height_track.h"
+#include "landing/height/pair_input.h"
 #include "support/kalman_height_inputs.h"
 #include "support/rigs.h"
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "motion/ego_motion.h"
+#include "motion/step/ego_motion.h"
 #include "support/ground_renderer.h"
 #include "support/rigs.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 #include "uav_landing/simulator/trajectory.h"
 
 namespace uav_landing {

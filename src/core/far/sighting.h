@@ -3,26 +3,17 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "far/outline_fit.h"
 #include "far/picture_patch.h"
-#include "uav_landing/image/rectification.h"
-#include "uav_landing/parameters/approach_angle_parameters.h"
-#include "uav_landing/parameters/runway_parameters.h"
+#include "far/sight_fit.h"
+#include "far/sight_search.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 
-/// The ground as it is known without the runway; see SeenGround.
-struct KnownGround {
-  GroundNormal normal;  ///< without what the runway slopes against it
-  GroundPlane plane;    ///< by stereo, or not valid
-};
-
 /// The runway from afar, from pair to pair: its outline is searched for, fitted, and followed.
 ///
-/// An outline is taken for the runway's if it is possible: a surface of a runway's size ahead, seen on an
-/// approach, that fits charts, horizon and stereo together. Another one that is possible as well, and shows
-/// as clearly, leaves it open. It counts after some pairs in a row; each fits its size and place anew.
+/// An outline counts after some pairs in a row. Each of them fits size and place anew. Without the width or
+/// the length of a chart nothing is looked for.
 class Sighting {
  public:
   /// Pairs in a row that must agree.
@@ -30,43 +21,31 @@ class Sighting {
 
   Sighting(const RigModel& rig, const ApproachAngleParameters& parameters, const RunwayParameters& runway);
 
-  /// left: rectified image.
-  ApproachAngleResult::Sight process(double stamp, const cv::Mat& left, const KnownGround& ground);
+  /// left: rectified image. busy: other searches take the time of this pair, so a search waits.
+  ApproachAngleResult::Sight process(double stamp, const cv::Mat& left, const KnownGround& ground,
+                                     bool busy = false);
   void reset();
 
  private:
-  /// The outline of one pair with the pose that belongs to it.
-  struct Seen {
-    FittedOutline outline;
-    OutlinePose pose;
-    Corners corners;
-  };
-  bool byChart() const { return runway_.width > 0 || runway_.length > 0; }
-  static bool isNear(const OutlinePose& pose);
   bool mayStart(const KnownGround& ground) const;
-  bool isPlausible(const Corners& corners, const KnownGround& ground) const;
-  PoseKnowledge knowledge(const KnownGround& ground) const;
-  cv::Rect region(const KnownGround& ground) const;
-  Expected<Seen> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground) const;
-  Failure problemOf(const OutlinePose& pose) const;
-  Expected<Seen> fitFrom(const cv::Mat& left, const Corners& start, const KnownGround& ground) const;
-  Expected<Seen> fitCandidate(const cv::Mat& left, const Corners& corners, const KnownGround& ground) const;
-  Expected<Seen> search(const cv::Mat& left, const KnownGround& ground) const;
-  Expected<Seen> follow(const cv::Mat& left, const KnownGround& ground) const;
+  std::optional<Expected<SightedRunway>> search(double stamp, const cv::Mat& left, const KnownGround& ground,
+                                                bool busy);
+  Expected<SightedRunway> follow(const cv::Mat& left, const KnownGround& ground) const;
   double widthDoubt(const OutlinePose& pose) const;
   bool agrees(const OutlinePose& pose) const;
-  void keep(const cv::Mat& left, const Seen& seen);
-  ApproachAngleResult::Sight report(const Seen& seen, const KnownGround& ground) const;
+  void keep(const cv::Mat& left, const SightedRunway& seen);
+  void miss(double stamp, double seconds);
+  ApproachAngleResult::Sight report(const SightedRunway& seen, const KnownGround& ground) const;
 
-  RigModel model_;
-  double max_yaw_, slope_;  // rad
-  RunwayParameters runway_;
+  SightFit fit_;
+  bool at_once_;  // a whole search in one pair
+  SightSearch search_;
   std::optional<double> last_stamp_;
-  std::optional<Seen> last_;
+  std::optional<SightedRunway> last_;
   PicturePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s
-  double wait_until_ = 0;  // stamp until which there is no search
+  double wait_until_ = 0;  // stamp until which no search begins
 };
 
 }  // namespace uav_landing

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "height/height_filter.h"
-#include "image/image_region.h"
+#include "image/input/image_region.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "far/sighting.h"
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "integrity/runway_identity.h"
-#include "motion/angle_by_foe.h"
-#include "motion/angle_normal.h"
-#include "motion/motion_corners.h"
-#include "motion/motion_tracker.h"
-#include "motion/readout_filter.h"
+#include "motion/path/angle_by_foe.h"
+#include "motion/path/angle_normal.h"
+#include "motion/path/motion_corners.h"
+#include "motion/path/motion_tracker.h"
+#include "motion/step/readout_filter.h"
 #include "results/result_check.h"
 #include "rig/plane_rate.h"
-#include "runway/runway_direction.h"
-#include "runway/runway_tracker.h"
+#include "runway/direction/runway_direction.h"
+#include "runway/position/runway_tracker.h"
 
 namespace uav_landing {
 namespace {
@@ -89,8 +89,9 @@ struct ApproachAngleStage::Implementation {
       skip(stamp, left, stereo);
       return result;
     }
-    sight(stamp, left, stereo, result);
-    if (waitsForPlane(stamp, stereo)) {
+    const bool waits = waitsForPlane(stamp, stereo);
+    sight(stamp, left, stereo, waits, result);
+    if (waits) {
       result.failure = {Reason::kNotYet,
                         "waiting for the ground plane: lines and motion follow one pair later"};
       nothingKnown(result);
@@ -137,8 +138,9 @@ struct ApproachAngleStage::Implementation {
     return result;
   }
 
-  // Far away, the runway is seen before stereo has a plane.
-  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo,
+  // Far away, the runway is seen before stereo has a plane. Its search waits while another one takes the time
+  // of the pair.
+  void sight(double stamp, const cv::Mat& left, const StereoDepthResult& stereo, bool waits,
              ApproachAngleResult& result) {
     ScopedTimer timer(timings, "runway_outline");
     if (repeated(stereo)) {
@@ -152,7 +154,7 @@ struct ApproachAngleStage::Implementation {
       ground.normal = {stereo.plane.normal(), stereo.plane.normalCovariance()};
     else if (!result.imu.failure && result.imu.normal.allFinite())
       ground.normal = {result.imu.normal, result.imu.normal_covariance};
-    result.sight = sighting.process(stamp, left, ground);
+    result.sight = sighting.process(stamp, left, ground, waits || (has_plane && tracker.needsSearch()));
   }
 
   // Maps rows to the stamp with the last motion over the last known ground.

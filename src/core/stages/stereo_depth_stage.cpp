@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "image/corners.h"
-#include "image/image_check.h"
-#include "image/learned_frame.h"
-#include "image/match_image.h"
+#include "image/input/image_check.h"
+#include "image/input/learned_frame.h"
+#include "image/windows/corners.h"
+#include "image/windows/match_image.h"
 #include "stereo/matching/corner_matcher.h"
 #include "stereo/matching/corner_matching.h"
 #include "stereo/photometric/direct_refinement.h"

@@ -4,7 +4,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 
 namespace uav_landing {
 namespace {

@@ -7,7 +7,7 @@
 #include "camera_info.h"
 #include "datasets/dataset.h"
 #include "simulation/random_approach.h"
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 #include "uav_landing/simulator/attitude.h"
 
 namespace uav_landing {

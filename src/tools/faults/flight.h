@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "simulation/random_approach.h"
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/results/truth.h"

@@ -14,11 +14,11 @@
 #include "command_line.h"
 #include "datasets/csv_table.h"
 #include "geometry/half_plane.h"
-#include "image/image_check.h"
-#include "lines/line_segments.h"
-#include "lines/stripe_line.h"
-#include "runway/runway_direction.h"
-#include "runway/runway_hypothesis.h"
+#include "image/input/image_check.h"
+#include "lines/segments/line_segments.h"
+#include "lines/segments/stripe_line.h"
+#include "runway/direction/runway_direction.h"
+#include "runway/direction/runway_hypothesis.h"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include "command_line.h"
 #include "pending_file.h"
 #include "progress_bar.h"
-#include "simulator/renderer.h"
-#include "simulator/sensor.h"
+#include "simulator/approach/renderer.h"
+#include "simulator/approach/sensor.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "rig/rig_rotation.h"
 #include "simulation/draw.h"
-#include "simulator/ground_profile.h"
+#include "simulator/ground/ground_profile.h"
 #include "stereo/surface/surface_profile.h"
 
 namespace uav_landing {

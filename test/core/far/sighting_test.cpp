@@ -14,16 +14,17 @@ constexpr double kDegree = M_PI / 180;
 /// Pairs from 2.2 km on, 60 m/s and 5 a second, with an attitude that is never the same.
 class Approach {
  public:
-  explicit Approach(const RunwayParameters& runway, const RunwayPicture& picture = {})
-      : picture_(picture), sighting_(modelOf(picture), ApproachAngleParameters(), runway) {}
+  explicit Approach(const RunwayParameters& runway, const RunwayPicture& picture = {},
+                    bool search_at_once = true)
+      : picture_(picture), sighting_(modelOf(picture), parametersOf(search_at_once), runway) {}
 
-  ApproachAngleResult::Sight next(const KnownGround& ground = {}) {
+  ApproachAngleResult::Sight next(const KnownGround& ground = {}, bool busy = false) {
     const double time = 0.2 * count_++;
     pose = {{-2200 + 60 * time, 8, 120 - 3.1 * time},
             2 * kDegree * std::sin(1.5 * time),
             -3 * kDegree + 0.5 * kDegree * std::sin(2 * time),
             0.5 * kDegree};
-    return sighting_.process(10 + time, picture_.render(pose, 100 + count_), ground);
+    return sighting_.process(10 + time, picture_.render(pose, 100 + count_), ground, busy);
   }
 
   RunwayPose pose;
@@ -34,6 +35,12 @@ class Approach {
     model.rig = picture.rig();
     model.left_mask = cv::Mat(picture.size, CV_8U, cv::Scalar(255));
     return model;
+  }
+
+  static ApproachAngleParameters parametersOf(bool search_at_once) {
+    ApproachAngleParameters parameters;
+    parameters.search_at_once = search_at_once;
+    return parameters;
   }
 
   RunwayPicture picture_;
@@ -62,6 +69,31 @@ TEST(Sighting, TellsThePositionAfterSomePairs) {
     EXPECT_NEAR(sight.yaw, approach.pose.yaw, 0.2 * kDegree);
     EXPECT_TRUE(sight.height_without.allFinite());
   }
+}
+
+TEST(Sighting, ASearchIsSpreadOverPairs) {
+  Approach approach(chart(45, 2500), {}, false);
+  int pairs = 0;
+  ApproachAngleResult::Sight sight;
+  do {
+    sight = approach.next();
+    if (sight.failure) EXPECT_EQ(sight.failure.reason, Reason::kNotYet) << sight.failure.message();
+  } while (sight.failure && ++pairs < 24);
+  ASSERT_FALSE(sight.failure) << sight.failure.message();
+  EXPECT_GE(pairs, Sighting::kConfirmations + 1) << "candidates take a pair, and every start another one";
+  const Eigen::Vector3d error = sight.position - approach.pose.position;
+  for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(error[k]), 3.5 * std::sqrt(sight.covariance(k, k))) << k;
+}
+
+TEST(Sighting, ASearchWaitsWhileAnotherOneTakesTheTime) {
+  Approach approach(chart(45, 2500), {}, false);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(approach.next({}, true).failure.reason, Reason::kNoRunway);
+  EXPECT_EQ(approach.next({}, false).failure.reason, Reason::kNotYet);
+  for (int i = 0; i < 12; ++i)
+    EXPECT_EQ(approach.next({}, true).failure.reason, Reason::kNotYet) << "it goes on later";
+  int pairs = 0;
+  while (approach.next().failure && pairs < 24) ++pairs;
+  EXPECT_LT(pairs, 24);
 }
 
 TEST(Sighting, WithoutAChartNothingIsLookedFor) {

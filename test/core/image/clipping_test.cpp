@@ -1,4 +1,4 @@
-#include "image/clipping.h"
+#include "image/input/clipping.h"
 
 #include <gtest/gtest.h>
 

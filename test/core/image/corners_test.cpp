@@ -1,4 +1,4 @@
-#include "image/corners.h"
+#include "image/windows/corners.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "image/image_cells.h"
+#include "image/input/image_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/geometry/ground_plane.h"
 

@@ -1,4 +1,4 @@
-#include "image/learned_frame.h"
+#include "image/input/learned_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "image/mask_bounds.h"
+#include "image/input/mask_bounds.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "image/patch_matching.h"
+#include "image/windows/patch_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "image/match_image.h"
-#include "image/patch_refiner.h"
+#include "image/windows/match_image.h"
+#include "image/windows/patch_refiner.h"
 #include "support/random_texture.h"
 
 namespace uav_landing {

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "image/patch_refiner.h"
+#include "image/windows/patch_refiner.h"
 
 namespace uav_landing {
 namespace {

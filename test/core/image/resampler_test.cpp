@@ -1,4 +1,4 @@
-#include "image/resampler.h"
+#include "image/input/resampler.h"
 
 #include <gtest/gtest.h>
 

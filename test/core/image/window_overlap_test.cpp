@@ -1,4 +1,4 @@
-#include "image/window_overlap.h"
+#include "image/windows/window_overlap.h"
 
 #include <gtest/gtest.h>
 

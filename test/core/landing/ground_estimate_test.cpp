@@ -1,4 +1,4 @@
-#include "landing/ground_estimate.h"
+#include "landing/height/ground_estimate.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "landing/height_measurement.h"
+#include "landing/height/height_measurement.h"
 #include "support/degree.h"
 #include "support/landing_parts.h"
 

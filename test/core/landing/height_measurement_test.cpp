@@ -1,4 +1,4 @@
-#include "landing/height_measurement.h"
+#include "landing/height/height_measurement.h"
 
 #include <gtest/gtest.h>
 

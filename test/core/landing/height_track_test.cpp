@@ -1,4 +1,4 @@
-#include "landing/height_track.h"
+#include "landing/height/height_track.h"
 
 #include <gtest/gtest.h>
 

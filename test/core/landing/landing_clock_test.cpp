@@ -1,4 +1,4 @@
-#include "landing/landing_clock.h"
+#include "landing/height/landing_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/landing_report.h"
+#include "landing/report/landing_report.h"
 
 #include <gtest/gtest.h>
 

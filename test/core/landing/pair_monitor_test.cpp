@@ -1,4 +1,4 @@
-#include "landing/pair_monitor.h"
+#include "landing/watch/pair_monitor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/path_doubt.h"
+#include "landing/watch/path_doubt.h"
 
 #include <gtest/gtest.h>
 

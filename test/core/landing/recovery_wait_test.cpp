@@ -1,4 +1,4 @@
-#include "landing/recovery_wait.h"
+#include "landing/watch/recovery_wait.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/runway_report.h"
+#include "landing/report/runway_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/runway_track.h"
+#include "landing/report/runway_track.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/sink_rate_watch.h"
+#include "landing/watch/sink_rate_watch.h"
 
 #include <gtest/gtest.h>
 

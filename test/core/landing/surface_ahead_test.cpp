@@ -1,4 +1,4 @@
-#include "landing/surface_ahead.h"
+#include "landing/height/surface_ahead.h"
 
 #include <gtest/gtest.h>
 

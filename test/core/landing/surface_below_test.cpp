@@ -1,4 +1,4 @@
-#include "landing/surface_below.h"
+#include "landing/height/surface_below.h"
 
 #include <gtest/gtest.h>
 

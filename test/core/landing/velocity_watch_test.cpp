@@ -1,4 +1,4 @@
-#include "landing/velocity_watch.h"
+#include "landing/watch/velocity_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "landing/yaw_failure.h"
+#include "landing/watch/yaw_failure.h"
 
 #include <gtest/gtest.h>
 

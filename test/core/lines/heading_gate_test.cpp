@@ -1,4 +1,4 @@
-#include "lines/heading_gate.h"
+#include "lines/segments/heading_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lines/line_fit.h"
+#include "lines/segments/line_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lines/line_segments.h"
+#include "lines/segments/line_segments.h"
 
 #include <gtest/gtest.h>
 

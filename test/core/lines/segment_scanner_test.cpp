@@ -1,4 +1,4 @@
-#include "lines/segment_scanner.h"
+#include "lines/segments/segment_scanner.h"
 
 #include <gtest/gtest.h>
 

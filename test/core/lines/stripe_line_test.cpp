@@ -1,4 +1,4 @@
-#include "lines/stripe_line.h"
+#include "lines/segments/stripe_line.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "lines/line_segments.h"
+#include "lines/segments/line_segments.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "lines/vanishing_point.h"
+#include "lines/vanishing/vanishing_point.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "lines/vanishing_search.h"
+#include "lines/vanishing/vanishing_search.h"
 #include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {

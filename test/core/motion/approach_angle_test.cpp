@@ -1,4 +1,4 @@
-#include "motion/approach_angle.h"
+#include "motion/path/approach_angle.h"
 
 #include <gtest/gtest.h>
 

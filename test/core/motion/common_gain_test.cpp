@@ -1,4 +1,4 @@
-#include "motion/common_gain.h"
+#include "motion/matching/common_gain.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "motion/ego_motion.h"
+#include "motion/step/ego_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "motion/first_step_search.h"
+#include "motion/step/first_step_search.h"
 
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <vector>
 
-#include "image/corners.h"
-#include "motion/step_search.h"
+#include "image/windows/corners.h"
+#include "motion/step/step_search.h"
 #include "support/ground_renderer.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "motion/focus_of_expansion.h"
+#include "motion/path/focus_of_expansion.h"
 
 #include <gtest/gtest.h>
 

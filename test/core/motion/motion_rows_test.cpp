@@ -1,4 +1,4 @@
-#include "motion/motion_rows.h"
+#include "motion/step/motion_rows.h"
 
 #include <gtest/gtest.h>
 

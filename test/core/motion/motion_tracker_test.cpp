@@ -1,4 +1,4 @@
-#include "motion/motion_tracker.h"
+#include "motion/path/motion_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "image/corners.h"
+#include "image/windows/corners.h"
 #include "support/counting_allocator.h"
 #include "support/ground_renderer.h"
 

@@ -1,4 +1,4 @@
-#include "motion/path_angle_filter.h"
+#include "motion/path/path_angle_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "motion/plane_proof.h"
+#include "motion/step/plane_proof.h"
 
 #include <gtest/gtest.h>
 

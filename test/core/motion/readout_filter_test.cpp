@@ -1,4 +1,4 @@
-#include "motion/readout_filter.h"
+#include "motion/step/readout_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "motion/readout_shift.h"
+#include "motion/step/readout_shift.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "motion/ego_motion.h"
+#include "motion/step/ego_motion.h"
 #include "support/motion_matches.h"
 #include "support/rolling_camera.h"
 

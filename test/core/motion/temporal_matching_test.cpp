@@ -1,4 +1,4 @@
-#include "motion/temporal_matching.h"
+#include "motion/matching/temporal_matching.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "image/corners.h"
-#include "image/patch_refiner.h"
+#include "image/windows/corners.h"
+#include "image/windows/patch_refiner.h"
 #include "support/ground_renderer.h"
 #include "support/random_texture.h"
 

@@ -1,4 +1,4 @@
-#include "runway/centre_columns.h"
+#include "runway/position/centre_columns.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/ground_direction.h"
+#include "runway/direction/ground_direction.h"
 
 #include <gtest/gtest.h>
 

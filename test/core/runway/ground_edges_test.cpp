@@ -1,4 +1,4 @@
-#include "runway/ground_edges.h"
+#include "runway/direction/ground_edges.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/position_filter.h"
+#include "runway/position/position_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/right_view.h"
+#include "runway/direction/right_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/runway_direction.h"
+#include "runway/direction/runway_direction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/runway_hypothesis.h"
+#include "runway/direction/runway_hypothesis.h"
 
 #include <gtest/gtest.h>
 

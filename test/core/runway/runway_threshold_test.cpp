@@ -1,4 +1,4 @@
-#include "runway/runway_threshold.h"
+#include "runway/position/runway_threshold.h"
 
 #include <gtest/gtest.h>
 

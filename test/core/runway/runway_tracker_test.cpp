@@ -1,4 +1,4 @@
-#include "runway/runway_tracker.h"
+#include "runway/position/runway_tracker.h"
 
 #include <gtest/gtest.h>
 

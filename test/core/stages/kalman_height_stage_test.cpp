@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "landing/height_track.h"
+#include "landing/height/height_track.h"
 #include "support/degree.h"
 #include "support/kalman_height_inputs.h"
 #include "support/rigs.h"

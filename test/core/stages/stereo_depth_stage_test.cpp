@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "support/stereo_stage_scene.h"
 
 namespace uav_landing {

@@ -8,7 +8,7 @@
 #include "base/thinned.h"
 #include "base/touch_ahead.h"
 #include "geometry/half_plane.h"
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "stereo/matching/row_matching.h"
 #include "stereo/matching/row_refinement.h"
 #include "stereo/matching/shift_model.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image_memory.h"
-#include "image/corners.h"
+#include "image/windows/corners.h"
 #include "results/disparity_sample.h"
 #include "stereo/matching/row_refinement.h"
 #include "stereo/matching/stereo_level.h"

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "image/window_template.h"
+#include "image/windows/window_template.h"
 #include "kernels/window/strip.h"
 #include "stereo/matching/row_warp.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"

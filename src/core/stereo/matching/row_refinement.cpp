@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/patch_refiner.h"
+#include "image/windows/patch_refiner.h"
 
 namespace uav_landing {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "image/patch_refinement.h"
+#include "image/windows/patch_refinement.h"
 #include "stereo/matching/row_warp.h"
 
 namespace uav_landing {

@@ -3,8 +3,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "image/image_check.h"
-#include "image/match_image.h"
+#include "image/input/image_check.h"
+#include "image/windows/match_image.h"
 
 namespace uav_landing {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "geometry/bias_variance.h"
-#include "image/image_cells.h"
-#include "image/window_overlap.h"
+#include "image/input/image_cells.h"
+#include "image/windows/window_overlap.h"
 #include "stereo/plane/plane_consensus.h"
 
 namespace uav_landing {

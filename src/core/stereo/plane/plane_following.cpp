@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/thinned.h"
-#include "image/image_check.h"
-#include "image/match_image.h"
+#include "image/input/image_check.h"
+#include "image/windows/match_image.h"
 
 namespace uav_landing {
 namespace {

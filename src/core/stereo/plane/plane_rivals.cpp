@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "stereo/matching/row_matching.h"
 #include "stereo/matching/shift_model.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/plane_limits.h"
-#include "image/corners.h"
+#include "image/windows/corners.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/plane/slope_band.h"
 #include "uav_landing/image/rectification.h"

@@ -8,7 +8,7 @@
 
 #include "base/steadiness.h"
 #include "geometry/plane_limits.h"
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "stereo/matching/corner_matcher.h"
 #include "stereo/matching/stereo_level.h"
 #include "uav_landing/base/timings.h"

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "image/image_region.h"
+#include "image/input/image_region.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"

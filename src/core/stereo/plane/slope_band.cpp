@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/image_check.h"
+#include "image/input/image_check.h"
 #include "stereo/matching/row_matching.h"
 #include "uav_landing/parameters/window_radius.h"
 

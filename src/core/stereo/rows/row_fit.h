@@ -10,7 +10,7 @@
 
 #include "estimation/convergence.h"
 #include "estimation/robust.h"
-#include "image/image_cells.h"
+#include "image/input/image_cells.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
 

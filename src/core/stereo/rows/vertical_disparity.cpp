@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/thinned.h"
-#include "image/image_check.h"
-#include "image/patch_matching.h"
-#include "image/patch_refiner.h"
+#include "image/input/image_check.h"
+#include "image/windows/patch_matching.h"
+#include "image/windows/patch_refiner.h"
 #include "kernels/image/slanted_row.h"
 #include "rig/rig_rotation.h"
 #include "stereo/matching/shift_model.h"

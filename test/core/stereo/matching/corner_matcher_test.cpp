@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
-#include "image/corners.h"
+#include "image/windows/corners.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/stages/stereo_depth_stage.h"
 

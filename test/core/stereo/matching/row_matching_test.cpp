@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "stereo/matching/row_refinement.h"
 #include "support/random_texture.h"
 

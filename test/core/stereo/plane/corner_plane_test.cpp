@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "geometry/bias_variance.h"
-#include "image/image_cells.h"
+#include "image/input/image_cells.h"
 #include "support/rigs.h"
 
 namespace uav_landing {

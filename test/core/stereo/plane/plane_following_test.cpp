@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "stereo/matching/corner_matching.h"
 #include "support/ground_renderer.h"
 #include "uav_landing/stages/stereo_depth_stage.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <opencv2/core.hpp>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "support/ground_renderer.h"
 
 namespace uav_landing {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "stereo/plane/plane_rivals.h"
 #include "support/ground_renderer.h"
 

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "image/match_image.h"
+#include "image/windows/match_image.h"
 #include "rig/rig_rotation.h"
 #include "stereo/matching/corner_matching.h"
 #include "support/consistency.h"

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "far/outline_fit.h"
+#include "uav_landing/image/rectification.h"
+#include "uav_landing/parameters/approach_angle_parameters.h"
+#include "uav_landing/parameters/runway_parameters.h"
+
+namespace uav_landing {
+
+/// The ground as it is known without the runway; see SeenGround.
+struct KnownGround {
+  GroundNormal normal;  ///< without what the runway slopes against it
+  GroundPlane plane;    ///< by stereo, or not valid
+};
+
+/// A runway's outline in one picture, with the pose that belongs to it.
+struct SightedRunway {
+  FittedOutline outline;
+  OutlinePose pose;
+  Corners corners;  ///< px
+};
+
+/// Fits the outline of a surface and says whether it may be the runway. It may be the runway when it has a
+/// runway's size, is seen as on an approach, and agrees with charts, horizon and stereo.
+class SightFit {
+ public:
+  SightFit(const RigModel& rig, const ApproachAngleParameters& parameters, const RunwayParameters& runway);
+
+  /// One fit from corners within some pixels. about: size of the surface, m, where the chart does not give
+  /// it; 0: not known. Fails where no outline is found there.
+  Expected<SightedRunway> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
+                              const RunwaySize& about) const;
+  /// Corners to fit once more from: those of the pose, when outline and pose differ. Otherwise nothing.
+  std::optional<Corners> betterStart(const SightedRunway& seen) const;
+  /// Why this surface is no runway on an approach; no failure: it may be one.
+  Failure problemOf(const OutlinePose& pose) const;
+
+  /// Before anything is fitted: false when the near side has too many pixels, or a width that no runway has.
+  bool isPlausible(const Corners& corners, const KnownGround& ground) const;
+  /// True when an outline is too near to begin with it.
+  static bool isNear(const OutlinePose& pose);
+
+  /// Where in the picture a runway's far part may be.
+  cv::Rect region(const KnownGround& ground) const;
+  PoseKnowledge knowledge(const KnownGround& ground) const;
+  const RigModel& model() const { return model_; }
+  bool hasChart() const { return runway_.width > 0 || runway_.length > 0; }
+
+ private:
+  RigModel model_;
+  double max_yaw_, slope_;  // rad
+  RunwayParameters runway_;
+};
+
+}  // namespace uav_landing

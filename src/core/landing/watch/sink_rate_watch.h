@@ -1,0 +1,30 @@
+#pragma once
+
+#include "integrity/height_memory.h"
+#include "integrity/pair_tests.h"
+#include "landing/height/ground_estimate.h"
+#include "landing/height/height_track.h"
+#include "landing/height/measured_height.h"
+#include "landing/height/pair_input.h"
+
+namespace uav_landing {
+
+/// Tests the published height against an earlier one, carried on by the motion. The motion needs no stereo.
+class SinkRateWatch {
+ public:
+  explicit SinkRateWatch(const KalmanHeightParameters& parameters) : parameters_(parameters) {}
+
+  /// Returns why the published height is not valid, if so. errors: of the pair's height. doubt: of its step.
+  /// tests: those made so far; sink_rate is added.
+  Failure check(const PairInput& in, const Ground& ground, const HeightErrors& errors,
+                const TrackVerdict& post, const MotionDoubt& doubt, PairTests& tests);
+
+ private:
+  void carry(const PairInput& in, const Ground& ground, double scale, const MotionDoubt& doubt,
+             bool level_known);
+
+  KalmanHeightParameters parameters_;
+  HeightMemory memory_;
+};
+
+}  // namespace uav_landing

@@ -1,0 +1,362 @@
+#include "motion/path/motion_tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/rare_pairs.h"
+#include "base/text.h"
+#include "base/thinned.h"
+#include "geometry/rotation.h"
+#include "image/input/image_check.h"
+#include "image/windows/corners.h"
+#include "motion/path/approach_angle.h"
+#include "motion/step/plane_proof.h"
+
+namespace uav_landing {
+namespace {
+
+// Largest number of images kept, however close their stamps are: 0.5 s at 100 Hz.
+constexpr size_t kMostFrames = 50;
+
+// Number of images allocated at the start: 0.5 s at 20 Hz. Later it would take longer to get the memory from
+// the system than to fill it.
+constexpr size_t kUsualFrames = 12;
+
+// Largest share of the height that a step is predicted to sink.
+constexpr double kMostSunk = 0.5;
+
+// Tolerance of stamps for a frame to count as within the window, s.
+constexpr double kWindowSlack = 0.05;
+
+double sineOfAngle(const MotionEstimate& estimate) {
+  return estimate.normal.normalized().dot(estimate.motion.t.normalized());
+}
+
+// Gradient of n.t/|t| by t and n.
+Eigen::Matrix<double, 6, 1> sineGradient(const MotionEstimate& estimate) {
+  const Eigen::Vector3d& t = estimate.motion.t;
+  const Eigen::Vector3d n = estimate.normal.normalized();
+  const Eigen::Vector3d m = t.normalized();
+  const double sine = n.dot(m);
+  Eigen::Matrix<double, 6, 1> gradient;
+  gradient << (n - sine * m) / t.norm(), m - sine * n;
+  return gradient;
+}
+
+// Variance of the angle asin(n.t/|t|) from a covariance of t and n.
+double angleVariance(const MotionEstimate& estimate, const Eigen::Matrix<double, 9, 9>& covariance) {
+  const double sine = sineOfAngle(estimate);
+  const Eigen::Matrix<double, 6, 1> gradient = sineGradient(estimate);
+  return gradient.dot(covariance.bottomRightCorner<6, 6>() * gradient) / (1 - sine * sine);
+}
+
+// Effect of 1 sigma of an estimated readout time on the angle, rad.
+double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& readout) {
+  if (!readout.known()) return 0;
+  const double by_time = sineGradient(estimate).dot(estimate.readout.by_time.tail<6>());
+  return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
+}
+
+constexpr double kAnyAngle = 1;  // rad: 1 sigma when nothing is known
+
+// Whether shaking rows move the angle by more than a small part of its error. The size of that effect is
+// known only roughly, because the matches cannot tell a slow shake from a motion.
+bool isShaken(const MotionEstimate& estimate, double angle_variance) {
+  constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
+  return angleVariance(estimate, estimate.of_shake) > kSmallPart * kSmallPart * angle_variance;
+}
+
+// Adds the error of an estimated readout time to the covariances.
+void claimReadout(const ReadoutEstimate& readout, MotionEstimate& estimate) {
+  if (!readout.known()) return;
+  const ReadoutEffect& effect = estimate.readout;
+  estimate.covariance += readout.variance * effect.by_time * effect.by_time.transpose();
+  estimate.own_normal_covariance +=
+      readout.variance * effect.own_normal_by_time * effect.own_normal_by_time.transpose();
+}
+
+// Rotation from the inertial sensor, if it covers exactly this step.
+std::optional<RotationPrior> rotationOf(const AttitudePrior& imu, double duration) {
+  constexpr double kStampRounding = 1e-3;
+  if (!imu.hasRotation() || std::abs(imu.duration - duration) > kStampRounding) return std::nullopt;
+  return RotationPrior{rotationMatrix(imu.rotation), imu.rotation_covariance};
+}
+
+// Least 1 sigma of the rate of the angle while no new image shows it, rad/s.
+constexpr double kLeastRate = 1 * M_PI / 180;
+
+double largestEigenvalue(const Eigen::Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+}  // namespace
+
+MotionTracker::MotionTracker(const RigModel& model, const ApproachAngleParameters& parameters)
+    : rig_(model.rig),
+      times_(model.left_times),
+      unit_times_(model.left_unit_times),
+      mask_(erodeMask(model.left_mask, parameters.window_radius + 2)),
+      parameters_(parameters),
+      search_(rig_, mask_, parameters),
+      filter_(parameters.angle_window) {
+  reset();
+  spare_.resize(kUsualFrames);
+  for (MatchImage& image : spare_) image.fine = cv::Mat::zeros(rig_.size, CV_32FC1);
+}
+
+MotionTracker::Result MotionTracker::repeat(double stamp) const {
+  Result result;
+  result.step.failure = {Reason::kNoMotion, "the image is the one of the pair before"};
+  result.window = last_window_;
+  if (last_window_.failure) return result;
+  const double age = stamp - past_.back().stamp;
+  if (age > 0 && age <= parameters_.angle_window) {
+    result.window.angle_variance += std::pow(std::max(last_rate_stddev_, kLeastRate) * age, 2);
+  } else {
+    result.window = {};
+    result.window.failure = {Reason::kNoMotion, text("the image is the one of ", age, " s ago")};
+  }
+  return result;
+}
+
+void MotionTracker::reset() {
+  for (Frame& frame : past_) spare_.push_back(std::move(frame.image));
+  past_.clear();
+  last_step_.reset();
+  search_.reset();
+  step_shake_ = window_shake_ = {};
+  filter_.reset();
+  last_rate_stddev_ = 0;
+  last_window_ = {};
+  last_window_.failure = {Reason::kNotYet, "no earlier frame"};
+}
+
+ReadoutDoubt MotionTracker::doubtOf(const StepConditions& conditions) const {
+  if (!conditions.readout.known()) return {};
+  return {&unit_times_, conditions.readout.time, conditions.normal_by_readout};
+}
+
+MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
+  if (!past_.empty() && !(stamp > past_.back().stamp)) reset();
+  Frame frame;
+  frame.stamp = stamp;
+  if (!spare_.empty()) {
+    frame.image = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  if (frame.image.coarse.empty()) frame.image.coarse = std::move(spare_coarse_);
+  frame.image.assign(left);
+  return frame;
+}
+
+std::optional<RowMotion> MotionTracker::lastMotion(double stamp) const {
+  if (past_.empty() || !(std::abs(stamp - past_.back().stamp) <= kRarePairs)) return std::nullopt;
+  return past_.back().motion;
+}
+
+void MotionTracker::skip(double stamp, const cv::Mat& left) {
+  Result nothing;
+  nothing.window.failure = {Reason::kNotYet, "no frame step from the previous pair"};
+  search_.interrupt();
+  advance(takeFrame(stamp, left), nothing);
+}
+
+MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
+                                             const Eigen::Matrix3d& normal_covariance,
+                                             const Corners& all_corners, Timings& timings,
+                                             const AttitudePrior& imu, const StepConditions& conditions) {
+  Result result;
+  step_matches_.clear();
+  textures_.clear();
+  const Corners corners = thinned(
+      all_corners,
+      static_cast<size_t>(cornerBudget(rig_.size, parameters_.corner_count, parameters_.pixels_per_corner)));
+  Frame now;
+  {
+    ScopedTimer timer(timings, "match_images_motion");
+    now = takeFrame(stamp, left);
+  }
+  if (past_.empty()) {
+    result.step.failure = {Reason::kNotYet, "no earlier frame"};
+  } else {
+    ScopedTimer timer(timings, "feature_matching_motion");
+    const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
+    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, conditions,
+                 result);
+  }
+  ScopedTimer timer(timings, "window_motion");
+  estimateWindow(now, normal, normal_covariance, corners, conditions, result);
+  smoothAngle(stamp, result);
+  advance(std::move(now), result);
+  return result;
+}
+
+void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
+                                 const Eigen::Matrix3d& covariance, const Corners& corners,
+                                 const RotationPrior* rotation, const StepConditions& conditions,
+                                 Result& result) {
+  const double duration = now.stamp - past_.back().stamp;
+  const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
+  const StepImages step{
+      now.image,    past_.back().image,  duration,           corners, textures_,       memory_,
+      normal,       covariance,          rotation,           regular, conditions.time, &times_,
+      &step_shake_, doubtOf(conditions), past_.back().motion};
+  Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
+  if (estimate) {
+    last_duration_ = duration;
+    last_sink_ = estimate->normal.dot(estimate->motion.t);
+    const Failure failure = conditions.proof == GroundProof::kMotion
+                                ? doubtOfPlane(now.image.fine, corners, step_matches_, *estimate)
+                                : Failure();
+    if (failure) {
+      result.unproven = estimate->motion;
+      estimate = tl::make_unexpected(failure);
+    }
+  }
+  result.step = describe(estimate, duration, step_matches_.size(), conditions.readout, result.step_angle);
+  if (!estimate) return;
+  result.step_estimate = *estimate;
+  result.readout = estimate->readout;
+  claimReadout(conditions.readout, *result.step_estimate);
+}
+
+// The camera is predicted to move as before. If its rotation is known, a prediction with that comes first.
+std::vector<CameraMotion> MotionTracker::predictions(double duration, const RotationPrior* rotation) const {
+  std::vector<CameraMotion> predictions;
+  if (!last_step_) return predictions;
+  // The same distance is more heights when the height is lower, so sinking lengthens the step. A prediction
+  // without this would bias every step over ground with little but lines. Lines are found near the place
+  // where they are looked for.
+  const double sunk = std::min(last_sink_ * duration / last_duration_, kMostSunk);
+  const double times = duration / last_duration_;
+  CameraMotion predicted = carriedOn(*last_step_, times);
+  predicted.t = last_step_->t * (times / (1 - sunk));
+  if (rotation != nullptr) predictions.push_back({rotation->R, predicted.t});
+  predictions.push_back(predicted);
+  return predictions;
+}
+
+void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
+                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+                                   const StepConditions& conditions, Result& result) {
+  constexpr double kStampRounding = 1e-3;
+  if (!result.step_estimate) {
+    result.window.failure = result.step.failure;
+    return;
+  }
+  if (parameters_.angle_window <= 0) {
+    result.window = result.step;
+    return;
+  }
+  for (const Frame& then : past_) {
+    const double duration = now.stamp - then.stamp;
+    if (duration > parameters_.angle_window + kStampRounding) continue;
+    if (&then == &past_.back()) break;
+    if (!then.since) continue;
+    const CameraMotion& step = result.step_estimate->motion;
+    // Lengths are converted from units of the previous height to units of the height now.
+    const double unit = 1 + normal.dot(step.t);
+    const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
+    const RowMotion motion = evenMotion(step, result.step.duration);
+    const TemporalMatchOptions options{
+        parameters_.window_radius, parameters_.min_zncc, 0, {&times_, motion, then.motion.value_or(motion)}};
+    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options,
+                                    textures_, memory_.matching, std::move(window_matches_));
+    const ReadoutDoubt doubt = doubtOf(conditions);
+    shiftByReadout(rig_, {doubt.times, motion, then.motion.value_or(motion)}, predicted, normal, doubt.time,
+                   window_matches_);
+    const Expected<MotionEstimate> estimate = estimateMotion(
+        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion,
+        nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time});
+    if (!estimate) continue;
+    result.window =
+        describe(estimate, duration, window_matches_.size(), conditions.readout, result.window_angle);
+    return;
+  }
+  result.window = result.step;
+}
+
+ApproachAngleResult::Motion MotionTracker::describe(
+    const Expected<MotionEstimate>& estimate, double duration, size_t matches, const ReadoutEstimate& readout,
+    std::optional<PathAngleFilter::Measurement>& angle) const {
+  ApproachAngleResult::Motion motion;
+  motion.duration = duration;
+  motion.matches = static_cast<int>(matches);
+  if (!estimate) {
+    motion.failure = estimate.error();
+    return motion;
+  }
+  motion.inliers = estimate->inlier_count;
+  motion.rotation = rotationVector(estimate->motion.R);
+  motion.translation_over_height = estimate->motion.t;
+  MotionEstimate claimed = *estimate;
+  claimReadout(readout, claimed);
+  motion.covariance = claimed.covariance.topLeftCorner<6, 6>();
+  motion.normal = claimed.own_normal;
+  motion.normal_covariance = claimed.own_normal_covariance;
+  const double uncertainty = std::sqrt(largestEigenvalue(estimate->covariance.block<3, 3>(3, 3)));
+  if (estimate->motion.t.norm() < parameters_.min_motion * uncertainty) {
+    motion.failure = {Reason::kNoMotion, "the movement is not larger than its own uncertainty"};
+    return motion;
+  }
+  motion.angle = approachAngle(estimate->normal.normalized(), estimate->motion.t);
+  motion.angle_variance = angleVariance(*estimate, claimed.covariance);
+  const double of_normal = angleVariance(*estimate, estimate->of_normal);
+  const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
+  angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
+           angleByReadout(*estimate, readout)};
+  angle->shaken = isShaken(*estimate, motion.angle_variance);
+  if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
+  return motion;
+}
+
+// The chord's angle is half of its duration old. The published angle is the current one.
+void MotionTracker::smoothAngle(double stamp, Result& result) {
+  if (parameters_.angle_smoothing == AngleSmoothing::kChord || parameters_.angle_window <= 0) return;
+  if (!result.step_angle || !std::isfinite(result.step.angle_variance)) {
+    filter_.reset();
+    return;
+  }
+  const PathAngleFilter::Measurement& step = *result.step_angle;
+  const PathAngleFilter::Estimate estimate = filter_.update(stamp, step, result.window_angle.value_or(step));
+  last_rate_stddev_ = estimate.rate_stddev;
+  if (result.window.failure) result.window = result.step;
+  result.window.angle = estimate.angle;
+  result.window.angle_variance = estimate.variance;
+  if (step.shaken || (result.window_angle && result.window_angle->shaken))
+    result.window.angle_variance = kAnyAngle * kAnyAngle;
+}
+
+void MotionTracker::advance(Frame&& now, const Result& result) {
+  for (Frame& frame : past_) {
+    const bool previous = &frame == &past_.back();
+    if (!result.step_estimate || !(previous || frame.since)) {
+      frame.since.reset();
+      continue;
+    }
+    const CameraMotion& step = result.step_estimate->motion;
+    if (previous) {
+      frame.since = step;
+    } else {
+      const double unit = 1 + result.step_estimate->normal.dot(step.t);
+      frame.since = CameraMotion{step.R * frame.since->R, step.R * frame.since->t * unit + step.t};
+    }
+  }
+  now.motion.reset();
+  if (result.step_estimate) now.motion = evenMotion(result.step_estimate->motion, result.step.duration);
+  last_window_ = result.window;
+  last_step_ = result.unproven;
+  if (result.step_estimate) last_step_ = result.step_estimate->motion;
+  // Only the previous frame is searched widely, so older ones do not need the coarse level.
+  if (!past_.empty() && past_.back().image.factor > 1) spare_coarse_ = std::move(past_.back().image.coarse);
+  past_.push_back(std::move(now));
+  const double oldest = past_.back().stamp - parameters_.angle_window - kWindowSlack;
+  while (past_.size() > 2 && (past_.front().stamp < oldest || past_.size() > kMostFrames)) {
+    spare_.push_back(std::move(past_.front().image));
+    past_.pop_front();
+  }
+}
+
+}  // namespace uav_landing

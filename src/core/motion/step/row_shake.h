@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "motion/step/motion_state.h"
+
+namespace uav_landing {
+
+/// A rotation of the camera in addition to its motion, at one time within the readout; it is linear between
+/// two such nodes. The node holds the sums of the normal equations from the matches, after the motion that
+/// fits them best.
+struct RowNode {
+  /// Nodes in a readout. Vibration is nearly linear between two of them.
+  static constexpr int kInReadout = 16;
+
+  double share = 0;                                     ///< time of the node as a share of the readout
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();   ///< information on the rotation
+  Eigen::Matrix3d with_next = Eigen::Matrix3d::Zero();  ///< product with the rotation of the next node
+  Eigen::Matrix<double, 3, 9> with_motion = Eigen::Matrix<double, 3, 9>::Zero();
+  Eigen::Vector3d with_time = Eigen::Vector3d::Zero();  ///< product with an estimated readout time
+  Eigen::Vector3d score = Eigen::Vector3d::Zero();      ///< right side of the normal equations
+  double squares = 0;  ///< weighted sum of squared residuals over their stddevs, up to the next node
+  int count = 0;       ///< number of matches up to the next node
+};
+
+/// Remembers what the pairs of about one second say about the size of the shake. One pair is not enough,
+/// because it sees the vibration in one phase only.
+class ShakeMemory {
+ public:
+  /// Hypotheses: cycles of vibration in one readout, and standard deviations of the rotation, rad.
+  static constexpr std::array<double, 6> kCycles = {0.4, 0.7, 1.1, 1.7, 2.6, 4};
+  static constexpr int kStddevs = 21;
+  static double stddev(int k);
+
+  struct Size {
+    double stddev = 0, cycles = 0;
+    double likelihood = 0;  ///< logarithm of the likelihood ratio to no shake
+  };
+  /// Logarithms of the likelihood ratios for one pair. Indices: cycles, then standard deviations.
+  using Likelihoods = std::array<std::array<double, kStddevs>, kCycles.size()>;
+  void add(const Likelihoods& pair);
+  Size likeliest() const;
+
+ private:
+  Likelihoods sums_ = {};
+};
+
+/// Rotations of the camera while rows are exposed, as vibration causes them with a rolling shutter. They are
+/// random numbers of one variance, and similar at times that are close. They are additional unknowns and are
+/// eliminated from the normal equations of the motion.
+struct RowShake {
+  double variance = 0;   ///< rad^2, of each axis
+  Matrix9d information;  ///< information on the motion, reduced by the shake
+  Vector9d step;         ///< change of the motion to the one that fits best with the shake
+  /// Parts to subtract from the sums of the readout time, when that is estimated. time_right applies after
+  /// `step`.
+  double time_information = 0, time_right = 0;
+  Vector9d time_with_motion = Vector9d::Zero();
+
+  bool found() const { return variance > 0; }
+};
+
+/// Normal equations of a readout time that is estimated: sums at the motion that fits best without it.
+struct TimeUnknown {
+  Vector9d with_motion = Vector9d::Zero();
+  double information = 0;  ///< prior included, 1/s^2
+  double right = 0;
+};
+
+/// Looks for shake in the nodes of one pair. Any part of the residuals that no rotation can explain counts as
+/// noise of the matches, even if they claim less. Shake is found only when it is far beyond that noise over
+/// this pair and the previous ones. information: on the motion, priors included. time: another unknown, which
+/// must not be taken for shake.
+RowShake findRowShake(const std::vector<RowNode>& nodes, const Matrix9d& information, const TimeUnknown& time,
+                      ShakeMemory& memory);
+
+}  // namespace uav_landing

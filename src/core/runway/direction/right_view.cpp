@@ -1,0 +1,21 @@
+#include "runway/direction/right_view.h"
+
+#include "rig/rig_rotation.h"
+
+namespace uav_landing {
+
+std::vector<RoughSegment> linesInRightView(const StereoRig& rig, const SeenGround& ground,
+                                           const std::vector<LineSegment>& lines) {
+  const auto seen = [&](const Eigen::Vector2d& left) -> Eigen::Vector2d {
+    const double column = left.x() - ground.plane.disparity(rig, left.x(), left.y()) - rig.principalOffset();
+    if (!ground.rows.known()) return {column, left.y()};
+    return {column, left.y() + verticalDisparityByRotation(rig, column, left.y()).dot(ground.rows.w)};
+  };
+  std::vector<RoughSegment> moved;
+  moved.reserve(lines.size());
+  // The brighter side stays the same, because lines of the ground turn by less than a right angle.
+  for (const LineSegment& line : lines) moved.push_back({seen(line.a), seen(line.b), line.line.head<2>()});
+  return moved;
+}
+
+}  // namespace uav_landing
