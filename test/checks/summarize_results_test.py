@@ -33,6 +33,13 @@ class SummarizeResultsTest(unittest.TestCase):
         folder.mkdir(parents=True)
         (folder / "LastTestsFailed.log").write_text("".join(f"{i}:{name}\n" for i, name in enumerate(names, 1)))
 
+    def ctest_took(self, **seconds):
+        folder = self.build / "Testing" / "Temporary"
+        folder.mkdir(parents=True)
+        (folder / "LastTest.log").write_text("".join(
+            f'{i}/9 Testing: {name}\n{i}/9 Test: {name}\nCommand: "run"\nOutput:\n-----\nTest time is long\n<end of output>\n'
+            f"Test time = {time:6.2f} sec\n-----\nTest Passed.\n" for i, (name, time) in enumerate(seconds.items(), 1)))
+
     def summary(self):
         output = io.StringIO()
         with contextlib.redirect_stdout(output):
@@ -58,6 +65,16 @@ class SummarizeResultsTest(unittest.TestCase):
     def test_all_passed_is_success(self):
         self.write("gtest-c.xml", ONE_PASSED)
         self.assertEqual(self.summary(), (0, ["1 passed, 0 failed"]))
+
+    def test_names_the_longest_tests_before_the_last_line(self):
+        self.write("gtest-c.xml", ONE_PASSED)
+        self.ctest_took(**{f"_ctest_uav_landing_gtest_quick{i}_test": 0.1 * i for i in range(10)},
+                        **{"_ctest_uav_landing_nosetests_test_tools_slow_test.py": 61.25})
+        status, lines = self.summary()
+        self.assertEqual((status, len(lines)), (0, summarize_results.LONGEST + 1))
+        self.assertEqual(lines[0], "LONGEST   61.2 s test_tools_slow_test.py")
+        self.assertEqual(lines[1], "LONGEST    0.9 s quick9_test")
+        self.assertEqual(lines[-1], "1 passed, 0 failed")
 
     def test_no_test_at_all_is_a_failure(self):
         self.assertEqual(self.summary(), (1, ["no test ran", "0 passed, 0 failed"]))

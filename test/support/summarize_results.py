@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Adds up the XML results of gtest, rostest and python tests below <build>/test_results.
 
-Prints failures and skips with their reasons; the last line is "N passed, N failed". The exit status is 0 only when some
+Prints failures and skips with their reasons, and which test programs took longest; the last line is "N passed, N failed". The exit status is 0 only when some
 test ran and none failed. A test program that ctest calls failed though its results show no failure (it crashed at exit,
 or left no results) counts as one failure.
 """
@@ -13,6 +13,7 @@ from collections import namedtuple
 from pathlib import Path
 
 Case = namedtuple("Case", "name outcome message")
+LONGEST = 10  # test programs that are named with their time
 
 
 def read_cases(path):
@@ -71,6 +72,15 @@ def unexplained_failures(build):
     return failures
 
 
+def longest(build):
+    """Names and seconds of the test programs that took longest, as ctest's log has them."""
+    log = build / "Testing" / "Temporary" / "LastTest.log"
+    text = log.read_text(errors="replace") if log.is_file() else ""
+    times = re.findall(r"^\d+/\d+ Test: (\S+)$.*?^Test time = +([0-9.]+) sec$", text, re.MULTILINE | re.DOTALL)
+    times = [(re.sub("^_ctest_.*?_(gtest|rostest|nosetests|roslaunch-check)_", "", name), float(time)) for name, time in times]
+    return sorted(times, key=lambda test: -test[1])[:LONGEST]
+
+
 def main(build):
     cases = read_results(build) + unexplained_failures(build)
     failed = [case for case in cases if case.outcome == "failed"]
@@ -84,6 +94,8 @@ def main(build):
         print(f"{len(skipped)} TESTS DID NOT RUN, see SKIPPED above")
     if not passed and not failed:
         print("no test ran")
+    for name, time in longest(build):
+        print(f"LONGEST {time:6.1f} s {name}")
     print(f"{passed} passed, {len(failed)} failed")
     return 0 if passed and not failed else 1
 
