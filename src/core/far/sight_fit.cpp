@@ -31,6 +31,11 @@ bool within(double value, double low, double high) { return value >= low && valu
 
 }  // namespace
 
+Expected<SightedRunway> betterOf(Expected<SightedRunway> first, Expected<SightedRunway> second) {
+  if (!first || !second) return first ? first : second;
+  return second->pose.misfit < first->pose.misfit ? second : first;
+}
+
 SightFit::SightFit(const RigModel& rig, const ApproachAngleParameters& parameters,
                    const RunwayParameters& runway)
     : model_(rig),
@@ -50,6 +55,11 @@ PoseKnowledge SightFit::knowledge(const KnownGround& ground) const {
   known.normal = ground.normal;
   if (known.normal.known()) known.normal.covariance += slope_ * slope_ * Eigen::Matrix3d::Identity();
   return known;
+}
+
+bool SightFit::mayStart(const KnownGround& ground) const {
+  const bool low = ground.plane.valid() && ground.plane.height() < kLowestFlight;
+  return !low && (runway_.width > 0 || runway_.length > 0);
 }
 
 cv::Rect SightFit::region(const KnownGround& ground) const {

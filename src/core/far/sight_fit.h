@@ -22,6 +22,9 @@ struct SightedRunway {
   Corners corners;  ///< px
 };
 
+/// The one of two fits that agrees better with its own pose; the other one when one has failed.
+Expected<SightedRunway> betterOf(Expected<SightedRunway> first, Expected<SightedRunway> second);
+
 /// Fits the outline of a surface and says whether it may be the runway. It may be the runway when it has a
 /// runway's size, is seen as on an approach, and agrees with charts, horizon and stereo.
 class SightFit {
@@ -46,7 +49,9 @@ class SightFit {
   cv::Rect region(const KnownGround& ground) const;
   PoseKnowledge knowledge(const KnownGround& ground) const;
   const RigModel& model() const { return model_; }
-  bool hasChart() const { return runway_.width > 0 || runway_.length > 0; }
+  /// True when an outline is worth looking for: a chart gives the size, and the ground is not known to be
+  /// near.
+  bool mayStart(const KnownGround& ground) const;
 
  private:
   RigModel model_;

@@ -72,12 +72,11 @@ void SightSearch::follow(const cv::Mat& left) {
 
 std::optional<Expected<SightedRunway>> SightSearch::step(const SightFit& fit, const cv::Mat& left,
                                                          const KnownGround& ground) {
-  follow(left);
   Attempt attempt = std::move(attempts_.front());
   attempts_.pop_front();
   Expected<SightedRunway> seen = fit.fit(left, attempt.start, ground, {});
   if (attempt.seen) {
-    if (!seen || seen->pose.misfit >= attempt.seen->pose.misfit) seen = std::move(*attempt.seen);
+    seen = betterOf(std::move(*attempt.seen), std::move(seen));
   } else if (seen) {
     if (const std::optional<Corners> better = fit.betterStart(*seen)) {
       attempts_.push_front({*better, attempt.strength, attempt.last, std::move(*seen)});

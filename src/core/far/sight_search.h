@@ -19,8 +19,10 @@ class SightSearch {
   bool running() const { return !attempts_.empty(); }
   /// Finds the candidates in a left picture. Fails where there are none.
   Failure begin(const SightFit& fit, const cv::Mat& left, const KnownGround& ground);
-  /// Makes one fit while running. Nothing while others are to follow; then the outline, in this picture to
-  /// some pixels, or why there is none.
+  /// Moves the candidates with the picture. It has to see every picture while the search is running.
+  void follow(const cv::Mat& left);
+  /// Makes one fit in the picture that was followed last. Nothing while others are to come; then the outline,
+  /// to some pixels, or why there is none.
   std::optional<Expected<SightedRunway>> step(const SightFit& fit, const cv::Mat& left,
                                               const KnownGround& ground);
 
@@ -32,7 +34,6 @@ class SightSearch {
     std::optional<SightedRunway> seen;  // by the fit before, which this one may better
   };
   void addAttempts(const Corners& candidate, double strength);
-  void follow(const cv::Mat& left);
   void watch(const cv::Mat& left);
   /// Takes in what an attempt has found. False when the search has to stop: two outlines may be the runway's.
   bool judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit);

@@ -14,8 +14,7 @@ constexpr double kLongestStep = 1, kPatience = 1;  // s
 constexpr int kReach = 16;                         // px by which the outline moves from pair to pair
 constexpr int kMargin = 5;                         // px around it that are kept
 constexpr double kSearchWait = 0.3;                // s from one search to the next
-constexpr double kNearWait = 10;     // s without a search after a runway has become too near to be followed
-constexpr double kLowestFlight = 8;  // m: cars and laboratories do not look down on runways
+constexpr double kNearWait = 10;  // s without a search after a runway has become too near to be followed
 // Doubt of the width by stripes, m: at most, and where a pixel is a metre.
 constexpr double kMostDoubt = 2.5, kDoubt = 0.18;
 constexpr Sigmas kGate(4);
@@ -38,11 +37,6 @@ void Sighting::reset() {
   missed_ = wait_until_ = 0;
 }
 
-bool Sighting::mayStart(const KnownGround& ground) const {
-  const bool low = ground.plane.valid() && ground.plane.height() < kLowestFlight;
-  return !low && fit_.hasChart();
-}
-
 /// Nothing while the search goes on.
 std::optional<Expected<SightedRunway>> Sighting::search(double stamp, const cv::Mat& left,
                                                         const KnownGround& ground, bool busy) {
@@ -52,6 +46,8 @@ std::optional<Expected<SightedRunway>> Sighting::search(double stamp, const cv::
     wait_until_ = stamp + kSearchWait;
     if (const Failure none = search_.begin(fit_, left, ground)) return tl::make_unexpected(none);
     if (!at_once_) return std::nullopt;
+  } else {
+    search_.follow(left);
   }
   if (busy) return std::nullopt;
   std::optional<Expected<SightedRunway>> found = search_.step(fit_, left, ground);
@@ -67,8 +63,7 @@ Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround&
   Expected<SightedRunway> seen = fit_.fit(left, start, ground, last_->pose.size);
   if (!seen) return seen;
   if (const std::optional<Corners> better = fit_.betterStart(*seen)) {
-    Expected<SightedRunway> again = fit_.fit(left, *better, ground, last_->pose.size);
-    if (again && again->pose.misfit < seen->pose.misfit) seen = std::move(again);
+    seen = betterOf(std::move(seen), fit_.fit(left, *better, ground, last_->pose.size));
   }
   if (const Failure problem = fit_.problemOf(seen->pose)) return tl::make_unexpected(problem);
   return seen;
@@ -115,7 +110,7 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
   const double seconds = last_stamp_ ? stamp - *last_stamp_ : 0;
   last_stamp_ = stamp;
   ApproachAngleResult::Sight sight;
-  if (!mayStart(ground)) {
+  if (!fit_.mayStart(ground)) {
     search_ = {};
     last_.reset();
     confirmations_ = 0;

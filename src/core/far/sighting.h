@@ -27,7 +27,6 @@ class Sighting {
   void reset();
 
  private:
-  bool mayStart(const KnownGround& ground) const;
   std::optional<Expected<SightedRunway>> search(double stamp, const cv::Mat& left, const KnownGround& ground,
                                                 bool busy);
   Expected<SightedRunway> follow(const cv::Mat& left, const KnownGround& ground) const;

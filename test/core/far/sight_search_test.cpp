@@ -27,7 +27,9 @@ class SightSearchTest : public testing::Test {
   Expected<SightedRunway> run(SightSearch& search, const PoseOf& poseOf, int most) {
     for (steps_ = 1; steps_ <= most; ++steps_) {
       pose_ = poseOf(steps_);
-      const auto found = search.step(fit(), picture_.render(pose_, steps_), {});
+      const cv::Mat picture = picture_.render(pose_, steps_);
+      search.follow(picture);
+      const auto found = search.step(fit(), picture, {});
       if (found) return *found;
     }
     return tl::make_unexpected(Failure{Reason::kNotYet, "it does not end"});
