@@ -48,8 +48,9 @@ def needed_libraries():
 
 def owner(library, folder):
     """The package that a library of the system comes from."""
-    result = run(["dpkg-query", "-S", f"{folder}/{library}"])
-    return result.stdout.split(":")[0] if result.returncode == 0 else None
+    files = [line.split(": ", 1) for line in run(["dpkg-query", "-S", f"{folder}/{library}"]).stdout.splitlines()]
+    # dpkg-query finds all files that have this in their name, such as debug information.
+    return next((packages.split(":")[0] for packages, file in files if file.endswith(f"lib/{folder}/{library}")), None)
 
 
 class SetupTest(unittest.TestCase):

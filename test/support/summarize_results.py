@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Adds up the XML results of gtest, rostest and python tests below <build>/test_results.
 
-Prints failures and skips with their reasons, and which test programs took longest; the last line is "N passed, N failed". The exit status is 0 only when some
-test ran and none failed. A test program that ctest calls failed though its results show no failure (it crashed at exit,
-or left no results) counts as one failure.
+Prints failures and skips with their reasons, and which test programs took longest. The last line is "N passed, N failed". The exit
+status is 0 only when some test ran and none failed. A test program that ctest calls failed though its results show no failure (it
+crashed at exit, or left no results) counts as one failure.
 """
 
 import re
