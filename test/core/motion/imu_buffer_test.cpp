@@ -114,6 +114,22 @@ TEST_F(ImuBufferTest, AClockThatIsSetBackStartsAnew) {
   EXPECT_FALSE(buffer.covers(10));
 }
 
+// Between a message that claims a covariance and one that does not, nothing is known but the parameter.
+TEST_F(ImuBufferTest, BetweenMessagesOfWhichOneClaimsNothingTheParameterClaims) {
+  for (const bool first_claims : {true, false}) {
+    ImuBuffer buffer(parameters);
+    for (int i = 0; i < 2; ++i) {
+      ImuSample sample = sampleAt(0.01 * i);
+      if ((i == 0) == first_claims) sample.orientation_covariance = 0.01 * Eigen::Matrix3d::Identity();
+      buffer.add(sample);
+    }
+    const AttitudePrior prior = buffer.at(0.005, std::nullopt, mounting_);
+    ASSERT_TRUE(prior.hasNormal()) << prior.failure.message();
+    const double variance = std::pow(parameters.imu_attitude_stddev_deg * kDegree, 2);
+    EXPECT_NEAR(prior.normal_covariance.trace(), 2 * variance, 1e-3 * variance) << first_claims;
+  }
+}
+
 TEST_F(ImuBufferTest, AheadOfTheNewestMessageItTurnsOnAndSaysSoByItsVariance) {
   const ImuBuffer buffer = filled(100, 1);
   EXPECT_TRUE(buffer.covers(1.0));

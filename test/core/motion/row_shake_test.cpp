@@ -130,6 +130,25 @@ TEST(RowShake, IsNotFoundInNoise) {
   }
 }
 
+// The residuals tell the size of the errors, so claims that are all too small by one factor change nothing.
+TEST(RowShake, IsTheSameWhereMatchesClaimTooLittle) {
+  ShakeMemory memory, memory_of_bold;
+  bool found = false;
+  for (int i = 0; i < 20; ++i) {
+    const ShakenStep step({0.05 * kDegree, 37, 0}, kPeriod * i, i);
+    ShakenStep bold = step;
+    for (TemporalMatch& match : bold.matches) match.covariance /= 25;
+    const Expected<MotionEstimate> usual = step.estimate(&memory), of_bold = bold.estimate(&memory_of_bold);
+    ASSERT_TRUE(usual && of_bold);
+    found = !usual->of_shake.isZero(0);
+    const auto same = [](const auto& a, const auto& b) { return (a - b).norm() <= 1e-3 * a.norm(); };
+    EXPECT_TRUE(same(usual->motion.t, of_bold->motion.t)) << i;
+    EXPECT_TRUE(same(usual->covariance, of_bold->covariance)) << i;
+    EXPECT_TRUE(same(usual->of_shake, of_bold->of_shake)) << i;
+  }
+  EXPECT_TRUE(found);
+}
+
 TEST(RowShake, IsForgottenWhenItEnds) {
   ShakeMemory memory;
   const auto isFound = [&](double amplitude, int first, int end) {

@@ -243,6 +243,56 @@ TEST(ResultCheck, AReadoutTimeThatNoCameraHasIsLeftOut) {
   EXPECT_FALSE(isKept(0.03, 2));
 }
 
+/// A runway of 45 m by 2 km that is seen from 1.5 km before it and 80 m above it.
+ApproachAngleResult::Sight possibleSight() {
+  ApproachAngleResult::Sight sight;
+  sight.position = {-1500, 3, 80};
+  sight.covariance = Eigen::Vector3d(100, 1, 4).asDiagonal();
+  sight.yaw = 0.02;
+  sight.width = 45;
+  sight.length = 2000;
+  sight.size_over_chart = 1.01;
+  sight.height_without = {79, 81, 82};
+  sight.yaw_variance = sight.width_variance = sight.length_variance = sight.size_over_chart_variance = 1e-4;
+  sight.variance_without.setConstant(9);
+  return sight;
+}
+
+TEST(ResultCheck, AnOutlineLosesWhatIsNoNumberAndKeepsTheRest) {
+  const auto known = [](const std::function<void(ApproachAngleResult::Sight&)>& change) {
+    ApproachAngleResult result;
+    result.sight = possibleSight();
+    change(result.sight);
+    const ApproachAngleResult::Sight kept = checked(result).sight;
+    std::string names;
+    const auto add = [&](const char* name, double value, double variance) {
+      EXPECT_EQ(std::isfinite(value), std::isfinite(variance)) << name;
+      if (std::isfinite(value)) names += name;
+    };
+    add("yaw ", kept.yaw, kept.yaw_variance);
+    add("width ", kept.width, kept.width_variance);
+    add("length ", kept.length, kept.length_variance);
+    add("size ", kept.size_over_chart, kept.size_over_chart_variance);
+    for (int i = 0; i < 3; ++i) add("without ", kept.height_without[i], kept.variance_without[i]);
+    add("position", kept.position.sum(), kept.covariance.sum());
+    return names;
+  };
+  using Sight = ApproachAngleResult::Sight;
+  EXPECT_EQ(known([](Sight&) {}), "yaw width length size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.yaw_variance = -1; }),
+            "width length size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.width = 1e6; }), "yaw length size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.length_variance = kUnknown; }),
+            "yaw width size without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.size_over_chart = kUnknown; }),
+            "yaw width length without without without position");
+  EXPECT_EQ(known([](Sight& s) { s.variance_without[1] = -4; }),
+            "yaw width length size without without position");
+  EXPECT_EQ(known([](Sight& s) { s.position.x() = -1e6; }), "yaw width length size without without without ");
+  EXPECT_EQ(known([](Sight& s) { s.covariance(2, 2) = -1; }),
+            "yaw width length size without without without ");
+}
+
 /// A runway that is seen from 2 heights to the side, 4 heights wide, 10 heights ahead.
 ApproachAngleResult::Runway checkedRunway(const std::function<void(ApproachAngleResult::Runway&)>& change) {
   ApproachAngleResult result;

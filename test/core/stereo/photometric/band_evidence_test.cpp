@@ -28,7 +28,8 @@ BlockGrid everywhere() {
 /// A texture, known between pixels, as a camera shows it.
 struct Picture {
   double contrast = 10, grain = 3, shift = 0, gain = 1, noise = 0;  // grey levels, pixels
-  double line = 0;  // contrast of one that runs down the middle
+  double line = 0;   // contrast of one that runs down the middle
+  double slant = 0;  // columns for each row that the texture leans by; not 0: it is the same along its lean
   unsigned texture = 1;
   int other_from = 1 << 20;  // column from which it shows something else
 
@@ -38,8 +39,8 @@ struct Picture {
     const double middle = image.cols / 2.0;
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
-        const double x = u + shift;
-        const double light = contrast * (u < other_from ? random : other).at(x / grain, v / grain) +
+        const double x = u + shift + slant * v, y = slant == 0 ? v : 0;
+        const double light = contrast * (u < other_from ? random : other).at(x / grain, y / grain) +
                              line * std::exp(-0.5 * std::pow((x - middle) / 2, 2));
         image.at<float>(v, u) = static_cast<float>(gain * light);
       }
@@ -86,6 +87,18 @@ TEST(BandEvidence, TellsTheShiftAndTheGain) {
     EXPECT_NEAR(compared.all.shift(), shift, 0.02) << shift;
     EXPECT_LT(compared.all.stddev(), 0.03);
     EXPECT_TRUE(compared.all.looksAlike());
+  }
+}
+
+/// Edges that lean by half a column for each row: a right image that lies a row higher shows them there.
+TEST(BandEvidence, TellsHowRowsThatAreNotLevelMoveSlantedEdges) {
+  for (const double slant : {-0.5, 0.3}) {
+    Picture left, right;
+    left.grain = right.grain = 5;
+    left.slant = right.slant = slant;
+    left.noise = right.noise = 1;
+    const Compared compared(left, right, 1);
+    EXPECT_NEAR(compared.all.lean(), slant, 0.05 * std::abs(slant));
   }
 }
 
