@@ -1,8 +1,9 @@
-"""Bags with other topic names, compressed images, or both pictures in one."""
+"""Bags with other topic names, compressed images, or both images in one."""
 
 import copy
 
 import rosbag
+import rospy
 
 from .errors import BrokenPicture, InputError
 from .pictures import deinterlaced, raw_halves, to_image
@@ -26,7 +27,7 @@ def check_topics(bag, path, images, infos):
 
 
 def check_half(image, side, calibration, topic, layout):
-    """A picture that was cut out is as large as its calibration says."""
+    """An image that was cut out is as large as its calibration says."""
     if calibration and (image.width, image.height) != (calibration.width, calibration.height):
         raise InputError(f"{topic}: each half ({layout}) has {image.width}x{image.height} pixels, the {side} calibration is for "
                          f"{calibration.width}x{calibration.height}: calibrate with the halves")
@@ -37,12 +38,14 @@ class BagConversion:
 
     images: {"left": topic, "right": topic}, the same topic twice with a layout; infos: topics of camera_info by side;
     calibrations: CameraInfo by side, instead of those in the bag. layout: both pictures are in one, see pictures.py.
-    deinterlace: of interlaced video one field is taken.
+    deinterlace: of interlaced video one field is taken. right_delay: seconds by which the right camera's stamps are late; they
+    are made earlier by that.
     """
 
-    def __init__(self, camera, images, infos, calibrations, left_out, layout=None, deinterlace=False):
+    def __init__(self, camera, images, infos, calibrations, left_out, layout=None, deinterlace=False, right_delay=0.0):
         self.camera, self.images, self.infos, self.calibrations = camera, images, infos, calibrations
         self.left_out, self.layout, self.deinterlace = left_out, layout, deinterlace
+        self.right_delay = rospy.Duration.from_sec(right_delay)
         self.counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
 
     def convert(self, path, output):
@@ -51,6 +54,8 @@ class BagConversion:
             check_topics(bag, path, self.images.values(), self.infos)
             with rosbag.Bag(str(output), "w") as result:
                 for topic, message, time in bag.read_messages([*self.images.values(), *self.infos.values()]):
+                    if self.right_delay and topic in (self.images["right"], self.infos.get("right")):
+                        self.make_earlier(message.header, topic)
                     for side in (side for side in SIDES if self.infos.get(side) == topic):
                         self.write(result, f"{side}/camera_info", message, time)
                     if topic in self.images.values():
@@ -58,6 +63,14 @@ class BagConversion:
         if self.left_out.count and not all(self.counts[f"{side}/image_raw"] for side in SIDES):
             raise InputError(self.left_out.first)
         return self.counts
+
+    def make_earlier(self, header, topic):
+        """Corrects a stamp of the right camera. A stamp of zero stays, because it means that there is none."""
+        if header.stamp and header.stamp.to_nsec() <= self.right_delay.to_nsec():
+            raise InputError(f"{topic}: the stamp {header.stamp.to_sec():.6f} s cannot be made earlier by "
+                             f"{self.right_delay.to_sec():g} s: give a smaller --right-delay")
+        if header.stamp:
+            header.stamp -= self.right_delay
 
     def take(self, result, message, topic, time):
         """Writes what a message has, and leaves out what is broken."""

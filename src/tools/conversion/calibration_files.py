@@ -147,7 +147,7 @@ def opencv_entry(entries, kind, number=0):
 
 
 def opencv_size(entries, given):
-    """Picture size: as given, or of the files."""
+    """Image size: as given, or of the files."""
     if given:
         return given
     for name in ("size", "imageSize", "image_size", "img_size"):
@@ -156,7 +156,7 @@ def opencv_size(entries, given):
     for names in (("image_width", "image_height"), ("width", "height"), ("LEFT.width", "LEFT.height")):
         if all(name in entries for name in names):
             return tuple(int(entries[name]) for name in names)
-    raise InputError("the files do not say how large the pictures are: give --size WIDTHxHEIGHT")
+    raise InputError("the files do not say how large the images are: give --size WIDTHxHEIGHT")
 
 
 def from_opencv(paths, size, fisheye):
@@ -202,7 +202,7 @@ def stereo_cameras(paths, unit=None, size=None, fisheye=False):
     if not np.allclose(R @ R.T, np.eye(3), atol=1e-3) or np.linalg.det(R) < 0:
         raise InputError(f"{first}: the rotation between the cameras is none")
     if lenses[0].size != lenses[1].size:
-        raise InputError(f"{first}: pictures of {lenses[0].size} and of {lenses[1].size}, expected the same for both")
+        raise InputError(f"{first}: images of {lenses[0].size} and of {lenses[1].size}, expected the same for both")
     pose[:3, 3] *= scale
     second = -R.T @ pose[:3, 3]
     exchanged = second[0] < 0

@@ -6,7 +6,7 @@ class InputError(Exception):
 
 
 class BrokenPicture(InputError):
-    """One picture cannot be used; the others may be."""
+    """One image cannot be used; the others may be."""
 
 
 def unreadable(path, error):
@@ -15,7 +15,7 @@ def unreadable(path, error):
 
 
 class LeftOut:
-    """Pictures that cannot be used, of many that can: the first ones in words, all of them counted."""
+    """Images that cannot be used, of many that can: the first ones in words, all of them counted."""
 
     SHOWN = 5
 
@@ -29,7 +29,7 @@ class LeftOut:
             self.messages.append(str(broken))
 
     def note(self, text):
-        """What else a person should know of the pictures."""
+        """What else a person should know of the images."""
         self.notes.append(text)
 
     @property
@@ -40,5 +40,5 @@ class LeftOut:
         """For the user."""
         lines = [f"left out: {message}" for message in self.messages]
         if self.count:
-            lines.append("1 broken picture was left out" if self.count == 1 else f"{self.count} broken pictures were left out")
+            lines.append("1 broken image was left out" if self.count == 1 else f"{self.count} broken images were left out")
         return lines + self.notes
