@@ -59,9 +59,10 @@ A run is a piece of an approach of at most {frames} frames, with one fault or wi
 Pairs of faults are in one row together, those with an unobservable fault in another.
 
 ## Without a fault
-There are {healthy} healthy frames in {runs} runs. {false_alarms} of them have no valid height ({share:.2%}, 95 % bound {bound:.2%}), and
-{healthy_misleading} are misleading. {uncertain} more passed all tests, but their protection level was above the alert limit: such frames are
-not available, with or without a fault. Each test on the healthy frames:
+There are {all_healthy} healthy frames in {runs} runs. On {uncertain} of them all tests passed, but the protection level was above the
+alert limit. Their height is not valid for that reason, fault or no fault, so they are no false alarms.
+A false alarm is one of the other {healthy} frames without a valid height. There are {false_alarms} ({share:.2%}, 95 % bound {bound:.2%}).
+{healthy_misleading} frames are misleading. Each test on all healthy frames:
 """
 
 
@@ -156,11 +157,18 @@ class Campaign:
                               f"{upper_bound(misled, frames):.2%}", runs_misled, f"{upper_bound(runs_misled, len(runs)):.1%}")
 
     def healthy(self):
-        """Frames without a fault whose height may be certain enough, of them without a valid height, misleading ones."""
-        rows = self.healthy_rows()
-        flat = [row for row in rows if row["source"] not in UNEVEN]
-        frames = self.total(flat, "healthy") - self.total(flat, "healthy_uncertain")
-        return frames, frames - self.total(flat, "healthy_valid"), self.total(rows, "healthy_misleading")
+        """Counts of healthy frames: those whose height is certain enough, those of them without a valid height, misleading ones."""
+        frames = self.total(self.even_rows(), "healthy") - self.uncertain()
+        return (frames, frames - self.total(self.even_rows(), "healthy_valid"),
+                self.total(self.healthy_rows(), "healthy_misleading"))
+
+    def uncertain(self):
+        """Healthy frames that passed all tests, but whose protection level is above the alert limit."""
+        return self.total(self.even_rows(), "healthy_uncertain")
+
+    def even_rows(self):
+        """Healthy runs over ground that is a plane, where a height that is refused would be a false alarm."""
+        return [row for row in self.healthy_rows() if row["source"] not in UNEVEN]
 
     def healthy_rows(self):
         """Each approach and each dataset once: the frames before a fault's onset are the same for all faults."""
@@ -224,8 +232,8 @@ class Campaign:
         faulted, misled = self.total(self.rows, "faulted"), self.total(self.rows, "misleading")
         text = TEXT.format(date=datetime.datetime.now().strftime(" on %Y-%m-%d"), seeds=seeds, machine=machine(),
                            frames=max(int(row["healthy"]) + int(row["faulted"]) for row in self.rows), healthy=frames,
-                           runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
-                           bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
+                           all_healthy=frames + self.uncertain(), runs=len(self.healthy_rows()), false_alarms=alarms,
+                           share=alarms / max(1, frames), bound=upper_bound(alarms, frames), uncertain=self.uncertain(),
                            healthy_misleading=misleading)
         text = text.replace("\n\nA run is", f"\n\n{self.summary()}\nA run is", 1)
         return (f"{TITLE}{text}\n{self.false_alarms()}\n## Heights with a fault\n"
@@ -233,7 +241,7 @@ class Campaign:
                 "baseline that is wrong, which no image shows.\n\n"
                 f"{self.table()}\n{ANGLE_TEXT.format(healthy=self.healthy_angles() or 'none')}\n{self.angle_table()}\n"
                 f"{self.yaw_text()}\n{self.yaw_table()}\n"
-                f"{self.remarks()}\n## Picture\n"
+                f"{self.remarks()}\n## Figure\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
     def summary(self):
@@ -243,8 +251,9 @@ class Campaign:
         misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
         others = sum(int(row["misleading"]) > 0 for row in self.rows if not self.is_unobservable(row))
         angles = self.angle_rows()
-        return (f"- **Without a fault**: {frames} frames. {alarms} have no valid height, {misleading} a misleading one, and "
-                f"{self.healthy_angles()} a misleading angle.\n"
+        return (f"- **Without a fault**: {frames + self.uncertain()} frames. On {self.uncertain()} the protection level is above the "
+                f"alert limit, so\n  the height is not valid. On the other {frames} there are {alarms} false alarms and {misleading} misleading "
+                f"heights.\n  {self.healthy_angles()} angles are misleading.\n"
                 f"- **Heights with a fault**: {self.total(runs, 'faulted')} frames in {len(runs)} runs. {misled} are misleading, {unobservable} "
                 f"of these by a\n  baseline that is wrong, which no image shows. The other {misled - unobservable} are in {others} runs.\n"
                 f"- **Angles with a fault**: {self.total(angles, 'angle_misleading')} of {self.total(angles, 'faulted')} frames are misleading, in "
