@@ -35,7 +35,7 @@ counts: samples are independent. Every snippet has another scene and path, and o
 expects:
 
 - the rotation of the right camera and the baseline (`disparity_bias_stddev`, `height_model_error`),
-- rows of the right picture that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
+- rows of the right image that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
 - rows that are inclined: as much again at 0.3 focal lengths from the middle, as a lens's calibration leaves them.
 
 Each cell has three numbers: the share of the errors within the claimed 95 % interval; in brackets the 95 % confidence interval (Wilson) of

@@ -56,7 +56,7 @@ def fingerprint(*files, devel=None):
 
 
 def save_figure(figure, path):
-    """Writes a picture and closes the figure."""
+    """Writes a figure to a file and closes it, because open figures fill the memory."""
     import matplotlib.pyplot as plt  # only here: it takes longer to load than everything else
     figure.tight_layout()
     path.parent.mkdir(parents=True, exist_ok=True)
