@@ -7,7 +7,7 @@ from sensor_msgs.msg import CameraInfo, Image
 
 WIDTH, HEIGHT, FOCAL_LENGTH, BASELINE = 160, 120, 150.0, 0.5
 
-# A calibration file of ROS: of such a camera, or of a wider picture.
+# A calibration file of ROS: of such a camera, or of a wider image.
 CALIBRATION_FILE = """image_width: {width}
 image_height: 120
 camera_name: {side}

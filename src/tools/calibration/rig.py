@@ -70,7 +70,7 @@ def in_order_of(reference, corners, board):
     """The corners counted from the end of the board from which the reference counts them.
 
     A chessboard looks the same turned by 180° (a square one by 90°), and each image is searched on its own. The cameras
-    of a pair are nearly parallel, so the right order is the one that gives the most similar picture.
+    of a pair are nearly parallel, so the right order is the one that gives the most similar image.
     """
     grid = corners.reshape(board.n_rows, board.n_cols, 2)
     turns = range(4) if board.n_rows == board.n_cols else (0, 2)

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 from evaluation.pending_file import pending  # noqa: E402
 from evaluation.scores import SETTLING_TIME, SIGMAS_95  # noqa: E402
 
-# Title, column of estimates and truth, standard deviation, validity, unit in the picture, factor to it.
+# Title, column of estimates and truth, standard deviation, validity, unit in the figure, factor to it.
 ERRORS = (("height", "height_m", "height_stddev_m", "height_valid", "cm", 100),
           ("approach angle", "approach_angle_deg", "approach_angle_stddev_deg", "angle_valid", "deg", 1))
 STATUSES = ("tracking", "coasting", "searching", "lost")

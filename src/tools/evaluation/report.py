@@ -29,7 +29,7 @@ STYLE = "body{font-family:sans-serif;max-width:62em;margin:2em auto;padding:0 1e
 
 
 def pictures(report_data, name):
-    """Pictures name_N.png of the report data: frame number -> path."""
+    """Images name_N.png of the report data: frame number -> path."""
     if report_data is None:
         raise Missing("no --report-data given (process_bag --report-data makes it)")
     if not os.path.isdir(report_data):
@@ -40,12 +40,12 @@ def pictures(report_data, name):
         if match:
             found[int(match.group(1))] = os.path.join(report_data, file)
     if not found:
-        raise Missing(f"{report_data}: no picture {name}_*.png")
+        raise Missing(f"{report_data}: no image {name}_*.png")
     return found
 
 
 def show_pictures(path, images, titles):
-    """Pictures side by side, as large as they are in proportion."""
+    """Images side by side, as large as they are in proportion."""
     images = [plt.imread(image) for image in images]
     height, width = images[0].shape[:2]
     figure, axes = plt.subplots(1, len(images), figsize=(12, 12 / len(images) * height / width + 0.4), squeeze=False)
@@ -176,7 +176,7 @@ def score_table(scores):
 
 
 def embedded(path, title):
-    """The picture in the page itself, so that the page can be sent as one file."""
+    """The image in the page itself, so that the page can be sent as one file."""
     with open(path, "rb") as file:
         data = base64.b64encode(file.read()).decode()
     return f"<img src='data:image/png;base64,{data}' alt='{html.escape(title)}'>"
