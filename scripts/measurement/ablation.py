@@ -65,7 +65,7 @@ integrity under faults ([integrity](integrity.md)). A variant with fewer valid f
 
 
 def known_parameters():
-    """Names of all parameters of the build, as section/name."""
+    """Returns the names of all parameters of the build, as section/name."""
     names, section = set(), ""
     for line in run("process_bag", "--list-parameters").splitlines():
         if line.startswith("## "):
@@ -76,7 +76,7 @@ def known_parameters():
 
 
 def variants():
-    """Those whose parameters this build has."""
+    """Yields the variants whose parameters this build has."""
     known = known_parameters()
     for title, changes in VARIANTS:
         missing = [f"{section}/{name}" for section, values in changes.items() for name in values
@@ -88,7 +88,7 @@ def variants():
 
 
 def config_of(changes, number_of_variant):
-    """A config file: the default preset with these changes."""
+    """Writes a config file: the default preset with these changes."""
     config = yaml.safe_load((ROOT / "config/stereo.yaml").read_text(encoding="utf-8")) or {}
     for section, values in changes.items():
         config[section] = {**(config.get(section) or {}), **values}
@@ -105,7 +105,7 @@ def row(title, scores):
 
 
 def compress(bag, quality):
-    """Makes the bag's images what a JPEG encoder leaves of them."""
+    """Puts the bag's images through a JPEG encoder and back."""
     compressed = bag.with_suffix(".compressed.bag")
     with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(compressed), "w") as result:
         for topic, message, stamp in source.read_messages():
@@ -118,7 +118,7 @@ def compress(bag, quality):
 
 
 def make_condition(title, file, changes, quality):
-    """Name, bag and truth of one of CONDITIONS."""
+    """Makes the bag of one of CONDITIONS and returns name, bag and truth."""
     name = "conditions/" + title.replace(" ", "_")
     config = yaml.safe_load((ROOT / "config/simulator" / file).read_text(encoding="utf-8"))
     for section, values in changes.items():
@@ -133,7 +133,7 @@ def make_condition(title, file, changes, quality):
 
 
 def inputs(data):
-    """Title, and what makes name, bag and truth, of all that is measured."""
+    """Returns for all inputs the title and a function that makes name, bag and truth."""
     for name, source in find_sets(data, SETS):
         yield f"`{name}`", lambda name=name, source=source: (name, *make_bag(name, source))
     for condition in CONDITIONS:

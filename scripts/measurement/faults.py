@@ -1,4 +1,4 @@
-"""Scores of a fault campaign: by fault, per frame and per approach, with what the counts support."""
+"""Scores a fault campaign by fault, per frame and per approach, with the bounds that the counts support."""
 
 import datetime
 import math
@@ -67,7 +67,7 @@ A false alarm is one of the other {healthy} frames without a valid height. There
 
 
 def upper_bound(count, total, confidence=0.95):
-    """Clopper-Pearson: largest share for which so few would be seen with probability 1 - confidence."""
+    """Returns the largest share with which so few would be seen with probability 1 - confidence (Clopper and Pearson)."""
     if total == 0 or count >= total:
         return 1.0
     low, high = 0.0, 1.0
@@ -80,7 +80,7 @@ def upper_bound(count, total, confidence=0.95):
 
 
 def machine():
-    """Processor of this machine."""
+    """Returns the name of this machine's processor."""
     try:
         with open("/proc/cpuinfo") as info:
             name = re.search(r"model name\s*:\s*(.*)", info.read()).group(1)
@@ -90,7 +90,7 @@ def machine():
 
 
 def renew_summary(page, summary):
-    """docs/integrity.md with this summary."""
+    """Returns docs/integrity.md with this summary."""
     before, rest = page.split(SUMMARY_BEGIN)
     return f"{before}{SUMMARY_BEGIN}\n{summary}\n{SUMMARY_END}{rest.split(SUMMARY_END)[1]}"
 
@@ -101,7 +101,7 @@ class Campaign:
 
     @staticmethod
     def kind(row):
-        """Row of the table that a run belongs to."""
+        """Returns the row of the table to which a run belongs."""
         names = row["faults"].split("+")
         if len(names) == 1:
             return row["faults"]
@@ -128,7 +128,7 @@ class Campaign:
             for rows, cells in self.counts(self.rows, "faulted_valid", "misleading")])
 
     def angle_rows(self):
-        """Runs with a true approach angle."""
+        """Returns the runs with a true approach angle."""
         return [row for row in self.rows if row["source"] not in WITHOUT_TRUE_ANGLE]
 
     def angle_table(self):
@@ -137,7 +137,7 @@ class Campaign:
             for rows, cells in self.counts(self.angle_rows(), "faulted_angle_valid", "angle_misleading")])
 
     def yaw_rows(self):
-        """Runs with a yaw that the images could tell."""
+        """Returns the runs with a yaw that the images could tell."""
         return [row for row in self.rows
                 if not any(name in WITHOUT_TRUE_YAW for name in row["faults"].split("+")) and row["source"] != "kitti_road"]
 
@@ -147,7 +147,7 @@ class Campaign:
             for rows, cells in self.counts(self.yaw_rows(), "faulted_yaw_known", "yaw_misleading")])
 
     def counts(self, rows, valid, misleading):
-        """Of each fault the runs, and what is said of them, for frames and for runs."""
+        """Yields the runs of each fault with the cells of its row: counts of frames and of runs, with their bounds."""
         for name, group in self.groups(rows).items():
             frames, misled = self.total(group, "faulted"), self.total(group, misleading)
             runs = [row for row in group if int(row["faulted"]) > 0]
@@ -171,7 +171,7 @@ class Campaign:
         return [row for row in self.healthy_rows() if row["source"] not in UNEVEN]
 
     def healthy_rows(self):
-        """Each approach and each dataset once: the frames before a fault's onset are the same for all faults."""
+        """Returns each approach and each dataset once, because the frames before a fault's onset are the same for all faults."""
         rows = {}
         for row in self.rows:
             if row["faults"] == "none":
@@ -179,7 +179,7 @@ class Campaign:
         return list(rows.values())
 
     def false_alarms(self):
-        """Table: how often each test failed on healthy frames."""
+        """Makes the table of how often each test failed on healthy frames."""
         made, failed = defaultdict(int), defaultdict(int)
         for row in self.healthy_rows():
             for counts in filter(None, row["healthy_tests"].split(";")):
@@ -191,7 +191,7 @@ class Campaign:
                       for name, count in sorted(made.items())])
 
     def problems(self):
-        """What should not be."""
+        """Lists what should not be: too many false alarms, and misleading frames."""
         problems = []
         frames, alarms, misleading = self.healthy()
         if misleading:
@@ -213,7 +213,7 @@ class Campaign:
 
     @staticmethod
     def misled(groups, column, what):
-        """Which runs of each group misled."""
+        """Lists the runs of each group that misled."""
         found = []
         for name, rows in groups.items():
             count = Campaign.total(rows, column)
@@ -223,7 +223,7 @@ class Campaign:
         return found
 
     def healthy_angles(self):
-        """Misleading ones without a fault."""
+        """Counts the misleading angles without a fault."""
         return self.total([row for row in self.healthy_rows() if row["source"] not in WITHOUT_TRUE_ANGLE],
                           "healthy_angle_misleading")
 
@@ -245,7 +245,7 @@ class Campaign:
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
     def summary(self):
-        """What the campaign shows, in three lines."""
+        """Says what the campaign shows, with a bullet each for healthy frames, heights and angles."""
         frames, alarms, misleading = self.healthy()
         runs = [row for row in self.rows if int(row["faulted"])]
         misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
@@ -264,7 +264,7 @@ class Campaign:
         return any(name in UNOBSERVABLE for name in row["faults"].split("+"))
 
     def unobservable(self):
-        """Misleading heights of faults that nothing can tell."""
+        """Counts the misleading heights of faults that nothing can tell."""
         return self.total([row for row in self.rows if self.is_unobservable(row)], "misleading")
 
     def yaw_text(self):
@@ -273,14 +273,14 @@ class Campaign:
                                healthy=self.total(rows, "healthy_yaw_misleading") or "none")
 
     def remarks(self):
-        """What should not be, as a list."""
+        """Writes what should not be as a list."""
         problems = self.problems()
         if not problems:
             return "## What should not be\nNo frame was misleading where there is something to see.\n"
         return "## What should not be\nFault, misleading frames, and the runs that have them:\n\n" + "".join(f"- {problem}\n" for problem in problems)
 
     def plot(self, file):
-        """Worst error over protection level, and availability, of each fault."""
+        """Plots the worst error over the protection level, and the availability, of each fault."""
         import matplotlib
         matplotlib.use("Agg")
         from matplotlib import pyplot

@@ -1,4 +1,4 @@
-"""Bags with other topic names, compressed images, or both images in one."""
+"""Converts bags with other topic names, with compressed images, or with the images of both cameras in one."""
 
 import copy
 
@@ -13,7 +13,7 @@ IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
 
 
 def check_topics(bag, path, images, infos):
-    """The topics of the images are there and are images; those of camera_info are there."""
+    """Checks that the topics of the images are there and are images, and that those of camera_info are there."""
     known = bag.get_type_and_topic_info().topics
     there = [name for name, info in known.items() if info.msg_type in IMAGE_TYPES]
     for topic in images:
@@ -27,7 +27,7 @@ def check_topics(bag, path, images, infos):
 
 
 def check_half(image, side, calibration, topic, layout):
-    """An image that was cut out is as large as its calibration says."""
+    """Checks that an image that was cut out is as large as its calibration says."""
     if calibration and (image.width, image.height) != (calibration.width, calibration.height):
         raise InputError(f"{topic}: each half ({layout}) has {image.width}x{image.height} pixels, the {side} calibration is for "
                          f"{calibration.width}x{calibration.height}: calibrate with the halves")
@@ -49,7 +49,7 @@ class BagConversion:
         self.counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
 
     def convert(self, path, output):
-        """Counts messages by name."""
+        """Writes the bag and returns how many messages of each name it has."""
         with rosbag.Bag(str(path)) as bag:
             check_topics(bag, path, self.images.values(), self.infos)
             with rosbag.Bag(str(output), "w") as result:
@@ -73,7 +73,7 @@ class BagConversion:
             header.stamp -= self.right_delay
 
     def take(self, result, message, topic, time):
-        """Writes what a message has, and leaves out what is broken."""
+        """Writes the images of a message. A broken image is left out."""
         try:
             pictures = self.pictures(message, topic)
         except BrokenPicture as broken:
@@ -86,7 +86,7 @@ class BagConversion:
             self.write(result, f"{side}/image_raw", picture, time)
 
     def pictures(self, message, topic):
-        """Raw images by side."""
+        """Returns the raw images of a message by side."""
         image = to_image(message, topic)
         if self.deinterlace:
             image = deinterlaced(image, topic)

@@ -1,4 +1,4 @@
-"""Images of messages: decoded, cut in two, and freed of the second field of interlaced video."""
+"""Decodes the images of messages, cuts them in two, and removes the second field of interlaced video."""
 
 import os
 import re
@@ -19,7 +19,7 @@ JPEG_END, JPEG_SCAN, PROGRESSIVE = b"\xff\xd9", b"\xff\xda", b"\xff\xc2"  # mark
 
 @contextmanager
 def without_stderr():
-    """Keeps what C libraries say from the terminal."""
+    """Keeps the output of C libraries off the terminal."""
     sys.stderr.flush()
     kept = os.dup(2)
     with open(os.devnull, "w") as nothing:
@@ -49,7 +49,7 @@ def decoded_without_end(data, flags):
 
 
 def decoded(data, flags):
-    """Pixels of an image file; nothing where it cannot be decoded, or is cut: decoders fill what is missing and return no error."""
+    """Returns the pixels of an image file, or None if it cannot be decoded or is cut. Decoders themselves report no cut."""
     if data.startswith(b"\xff\xd8") and data.rfind(JPEG_END) <= data.rfind(JPEG_SCAN):
         return decoded_without_end(data, flags)
     if not data or data.startswith(b"\x89PNG") and b"IEND" not in data[-64:]:
@@ -58,7 +58,7 @@ def decoded(data, flags):
 
 
 def encoding_of(pixels, compressed_format):
-    """Of decoded pixels; None where they are no image. The transport says in front that grey ones are a Bayer mosaic."""
+    """Returns the encoding of pixels, or None if they are no image. Only the format text tells a Bayer mosaic from grey."""
     bits = {np.dtype(np.uint8): "8", np.dtype(np.uint16): "16"}.get(pixels.dtype)
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     name = {1: "mono", 3: "bgr", 4: "bgra"}.get(channels)
@@ -69,7 +69,7 @@ def encoding_of(pixels, compressed_format):
 
 
 def to_image(message, topic):
-    """A raw image; a compressed one is decoded by OpenCV, with the bits and channels that it has."""
+    """Returns a raw image. OpenCV decodes a compressed one, with the bits and channels that it has."""
     if message._type == "sensor_msgs/Image":
         return message
     data = bytes(message.data)
@@ -86,7 +86,7 @@ def to_image(message, topic):
 
 
 def rows_of(image, topic):
-    """The pixels of a raw image, (rows, columns, bytes of a pixel)."""
+    """Returns the pixels of a raw image: (rows, columns, bytes of a pixel)."""
     known = re.fullmatch(r"(mono|rgb|bgr|rgba|bgra|bayer_[a-z]{4}|)(8|16)(?:[US]C([1-4]))?", image.encoding)
     channels = {"rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}.get(known[1], int(known[3] or 1)) if known else 0
     size = 2 if image.encoding in YUV else channels * (2 if known and known[2] == "16" else 1)
@@ -100,7 +100,7 @@ def rows_of(image, topic):
 
 
 def image_of(pixels, like):
-    """A raw image of pixels as rows_of() gives them."""
+    """Makes a raw image of pixels as rows_of() returns them."""
     pixels = np.ascontiguousarray(pixels)
     image = Image(header=like.header, height=pixels.shape[0], width=pixels.shape[1], encoding=like.encoding,
                   is_bigendian=like.is_bigendian, step=pixels.shape[1] * pixels.shape[2])
@@ -109,7 +109,7 @@ def image_of(pixels, like):
 
 
 def halves(pixels, layout, where):
-    """The two images in one, the left or upper one first."""
+    """Cuts an image that holds those of both cameras; the left or upper half comes first."""
     axis = 1 if layout == SIDE_BY_SIDE else 0
     if pixels.shape[axis] % 2:
         raise InputError(f"{where}: an image of {pixels.shape[1]}x{pixels.shape[0]} pixels cannot be cut in two, {layout}")
@@ -117,7 +117,7 @@ def halves(pixels, layout, where):
 
 
 def raw_halves(image, layout, topic):
-    """halves() of a raw image, as raw images. The second one has to begin where the colours of its encoding begin."""
+    """Cuts a raw image by halves() into raw images. The second half has to begin where the colours of its encoding begin."""
     pixels = rows_of(image, topic)
     along = pixels.shape[1] if layout == SIDE_BY_SIDE else pixels.shape[0]
     pairs_of_pixels = image.encoding.startswith("bayer") or image.encoding in YUV and layout == SIDE_BY_SIDE
@@ -128,7 +128,7 @@ def raw_halves(image, layout, topic):
 
 
 def one_field(pixels):
-    """Interlaced video's upper field, with the rows between made of those above and below: the image keeps its size."""
+    """Keeps the upper field of interlaced video and fills the rows between with means, so that the image keeps its size."""
     field = pixels[::2]
     between = ((field[:-1].astype(np.uint32) + field[1:]) // 2).astype(pixels.dtype)
     result = pixels.copy()
@@ -140,7 +140,7 @@ def one_field(pixels):
 
 
 def deinterlaced(image, topic):
-    """one_field() of a raw image."""
+    """Applies one_field() to a raw image."""
     if image.encoding.startswith("bayer"):
         raise InputError(f"{topic}: encoding {image.encoding}: only images with the same colours in all rows are deinterlaced")
     pixels = rows_of(image, topic)
