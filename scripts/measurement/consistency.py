@@ -38,9 +38,9 @@ expects:
 - rows of the right image that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
 - rows that are inclined: as much again at 0.3 focal lengths from the middle, as a lens's calibration leaves them.
 
-Each cell has three numbers: the share of the errors within the claimed 95 % interval; in brackets the 95 % confidence interval (Wilson) of
-that share; then the ratio of errors to claimed standard deviations, root mean square. The ratio is 1 when the claim is true, and less
-when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
+Each cell has three numbers. The first is the share of the errors within the claimed 95 % interval. Its own 95 % confidence interval
+(Wilson) stands in brackets. The last is the ratio of errors to claimed standard deviations, root mean square. It is 1 when the claim is
+true, and less when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
 
 **Ground.** The height is that over ground that bends as much and as often as the estimator is told to expect. 60 of 100 snippets are flat. 10
 each have one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 σ). It lies somewhere from

@@ -5,9 +5,9 @@ from collections import Counter
 import yaml
 
 TEXT = """# Mutation test
-A test that cannot fail proves nothing. `scripts/mutation` puts plausible slips into the code, one at a time, and looks whether a
-test fails. Such slips are a term of a variance that is dropped, a wrong sign, a reset that is forgotten, an error that is swallowed,
-a field that is mixed up with its neighbour.
+A test that cannot fail proves nothing. `scripts/mutation` puts plausible slips into the code, one at a time, and looks whether a test
+fails. Such slips are a dropped term of a variance, a wrong sign, a forgotten reset, a swallowed error, or a field that is mixed up with
+its neighbour.
 
 ```
 scripts/mutation --seed 1 --number 30                      # thirty mutants of the whole tree, some minutes

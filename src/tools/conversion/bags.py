@@ -37,7 +37,7 @@ class BagConversion:
     """Copies images and calibrations to the names that the launch file expects.
 
     images: {"left": topic, "right": topic}, the same topic twice with a layout; infos: topics of camera_info by side;
-    calibrations: CameraInfo by side, instead of those in the bag. layout: both pictures are in one, see pictures.py.
+    calibrations: CameraInfo by side, instead of those in the bag. layout: both images are in one, see pictures.py.
     deinterlace: of interlaced video one field is taken. right_delay: seconds by which the right camera's stamps are late; they
     are made earlier by that.
     """
