@@ -15,11 +15,11 @@ from .sets import find_sets, make_bag, quantity, score
 
 SETS = ("lab", "fg_noon", "kitti_road", "simulator/full_scale", "simulator/bent_rig")
 # What parts may be worth something for and those sets do not have: title, file in config/simulator, what is changed in it, and the quality
-# of JPEG pictures where they are such.
+# of JPEG images where they are such.
 CONDITIONS = (
     ("noise of 5 grey levels", "demo.yaml", {"image": {"noise": 5}}, None),
     ("noise of 8 grey levels", "demo.yaml", {"image": {"noise": 8}}, None),
-    ("JPEG pictures of quality 60", "demo.yaml", {}, 60),
+    ("JPEG images of quality 60", "demo.yaml", {}, 60),
     ("ground that bends", "scenes/sloped.yaml", {"path": {"duration": 14, "start_height": 25}}, None),
     ("a dark night", "scenes/night.yaml", {"path": {"duration": 12}}, None),
     ("from 200 m", "scenes/far.yaml", {}, None),
@@ -32,7 +32,7 @@ VARIANTS = (
     ("no photometric refinement of the plane (`direct_refinement`)", {"stereo_depth": {"direct_refinement": False}}),
     ("rows as rectification leaves them (`vertical_disparities`)", {"stereo_depth": {"vertical_disparities": False}}),
     ("flat surface ahead (`surface_curvature`)", {"stereo_depth": {"surface_curvature": False}}),
-    ("no watch on the rig (`rig_watch`)", {"kalman_height": {"rig_watch": False}}),
+    ("no rig watch (`rig_watch`)", {"kalman_height": {"rig_watch": False}}),
     ("lines by the probabilistic Hough transform (`hough_method`)", {"approach_angle": {"hough_method": "probabilistic"}}),
     ("lines as Hough gives them (`refine_lines`)", {"approach_angle": {"refine_lines": False}}),
     ("sides of narrow stripes as blur shows them (`stripe_centres`)", {"approach_angle": {"stripe_centres": False}}),
@@ -58,14 +58,14 @@ HEADER = ("changed", "coverage", "height, cm: 95 %", "angle, °: mean", "95 %", 
           "lateral, m: 95 %")
 TEXT = """One improvement over the paper is switched off at a time, by the parameter in brackets. Scored as above, on the frames that are valid.
 
-What makes a number worse was worth having on that set. What changes nothing there earns its place elsewhere. The watch on the rig and the
+What makes a number worse was worth having on that set. What changes nothing there earns its place elsewhere. The rig watch and the
 motion's normal help on a rig that has turned (`simulator/bent_rig`). The runway's width helps where stereo is out, the tests of
 integrity under faults ([integrity](integrity.md)). A variant with fewer valid frames shows easier ones.
 """
 
 
 def known_parameters():
-    """Names of all parameters of the build, as section/name."""
+    """Returns the names of all parameters of the build, as section/name."""
     names, section = set(), ""
     for line in run("process_bag", "--list-parameters").splitlines():
         if line.startswith("## "):
@@ -76,7 +76,7 @@ def known_parameters():
 
 
 def variants():
-    """Those whose parameters this build has."""
+    """Yields the variants whose parameters this build has."""
     known = known_parameters()
     for title, changes in VARIANTS:
         missing = [f"{section}/{name}" for section, values in changes.items() for name in values
@@ -88,7 +88,7 @@ def variants():
 
 
 def config_of(changes, number_of_variant):
-    """A config file: the default preset with these changes."""
+    """Writes a config file: the default preset with these changes."""
     config = yaml.safe_load((ROOT / "config/stereo.yaml").read_text(encoding="utf-8")) or {}
     for section, values in changes.items():
         config[section] = {**(config.get(section) or {}), **values}
@@ -105,7 +105,7 @@ def row(title, scores):
 
 
 def compress(bag, quality):
-    """Makes the bag's pictures what a JPEG encoder leaves of them."""
+    """Puts the bag's images through a JPEG encoder and back."""
     compressed = bag.with_suffix(".compressed.bag")
     with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(compressed), "w") as result:
         for topic, message, stamp in source.read_messages():
@@ -118,7 +118,7 @@ def compress(bag, quality):
 
 
 def make_condition(title, file, changes, quality):
-    """Name, bag and truth of one of CONDITIONS."""
+    """Makes the bag of one of CONDITIONS and returns name, bag and truth."""
     name = "conditions/" + title.replace(" ", "_")
     config = yaml.safe_load((ROOT / "config/simulator" / file).read_text(encoding="utf-8"))
     for section, values in changes.items():
@@ -133,7 +133,7 @@ def make_condition(title, file, changes, quality):
 
 
 def inputs(data):
-    """Title, and what makes name, bag and truth, of all that is measured."""
+    """Returns for all inputs the title and a function that makes name, bag and truth."""
     for name, source in find_sets(data, SETS):
         yield f"`{name}`", lambda name=name, source=source: (name, *make_bag(name, source))
     for condition in CONDITIONS:

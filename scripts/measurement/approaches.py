@@ -64,7 +64,7 @@ def lag_of(rows):
 
 
 def score(rows):
-    """Scores of the frames of one approach, or of many."""
+    """Scores the frames of one approach, or of many."""
     columns = {name: np.array([number(row, name) for row in rows])
                for name in ("time_s", "valid", "height_true_m", "height_m", "x_true_m", "y_true_m", "y_m")}
     settled = columns["time_s"] > SETTLING_TIME + 1e-6

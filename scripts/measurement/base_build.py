@@ -9,18 +9,18 @@ TARGETS = ("process_bag", "simulate_approach", "simulate_campaign")
 
 
 class Unusable(Exception):
-    """What is wrong and what to do, for the user."""
+    """Something is wrong. The message tells the user what, and what to do."""
 
 
 def git(root, *arguments):
-    """What git says, or None when it refuses."""
+    """Returns the output of git, or None when git refuses."""
     result = subprocess.run(["git", "-C", str(root), *arguments], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                             universal_newlines=True, check=False)
     return result.stdout.strip() if result.returncode == 0 else None
 
 
 def find_commit(root, revision):
-    """Full name of a commit."""
+    """Returns the full name of a commit."""
     if git(root, "rev-parse", "--git-dir") is None:
         raise Unusable(f"{root} is not a git checkout: there is no base to compare with")
     commit = git(root, "rev-parse", "--verify", "--quiet", f"{revision}^{{commit}}")
@@ -30,7 +30,7 @@ def find_commit(root, revision):
 
 
 def build(root, commit, work):
-    """Folder of the commit's sources, with the programs in build/devel; built once."""
+    """Builds a commit once and returns the folder of its sources; the programs are in build/devel."""
     folder = work / f"base-{commit[:12]}"
     if (folder / "built").exists():
         return folder
@@ -53,7 +53,7 @@ def build(root, commit, work):
 
 
 def extract(root, commit, folder):
-    """The commit's files, complete or not at all."""
+    """Extracts the commit's files, either completely or not at all."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     part, archive = folder.with_name(folder.name + ".part"), folder.with_name(folder.name + ".tar")
     shutil.rmtree(str(part), ignore_errors=True)
@@ -64,7 +64,7 @@ def extract(root, commit, folder):
 
 
 def build_tree(root):
-    """Builds what this tree needs; what it says is shown when it fails."""
+    """Builds what this tree needs. The output is shown only when the build fails."""
     result = subprocess.run([str(root / "scripts/build"), "--target", *TARGETS, "dataset_to_bag"], stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, universal_newlines=True, check=False)
     if result.returncode != 0:

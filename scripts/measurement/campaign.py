@@ -1,4 +1,4 @@
-"""Rows of simulate_campaign, flown in pieces on several cores; what is there already is not flown again."""
+"""Flies rows of simulate_campaign in pieces on several cores. What is there already is not flown again."""
 
 import csv
 import math
@@ -11,7 +11,7 @@ PROGRAM = DEVEL / "lib/uav_landing/simulate_campaign"
 
 
 def fly(kind, begin, count, piece, jobs, *options):
-    """Rows of so many seeds from begin on as dictionaries, flown in pieces."""
+    """Flies a number of seeds in pieces, from begin on, and returns the rows as dictionaries."""
     config = ROOT / "config/stereo.yaml"
     folder = WORK / f"{kind}-{fingerprint(PROGRAM, config)}"
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What the columns of estimates are: those of process_bag --csv and of simulate_campaign --csv."""
+"""Says what the columns of estimates are, those of process_bag --csv and of simulate_campaign --csv."""
 
 import math
 
@@ -14,24 +14,24 @@ UNITS = ("_m_s", "_m", "_deg", "_px", "_s", "_probability")
 
 
 def key_columns(header):
-    """Columns that name a row; none when the table is of another kind."""
+    """Returns the columns that name a row, or none when the table is of another kind."""
     return next((keys for keys in KEYS if set(keys) <= set(header)), ())
 
 
 def is_truth(column, header):
-    """Whether the simulator made the column. The width of the runway is drawn in a campaign, and estimated elsewhere."""
+    """Says whether the simulator made the column. The runway's width is drawn in a campaign and estimated elsewhere."""
     campaign = "seed" in header
     return "_true_" in column or campaign and (column in DRAWN or column == "runway_width_m")
 
 
 def compared(header):
-    """Columns that estimates are judged by, in the file's order."""
+    """Returns the columns by which estimates are judged, in the file's order."""
     left_out = {*key_columns(header), *TIMING}
     return [column for column in header if column not in left_out and not is_truth(column, header)]
 
 
 def is_claim(column):
-    """Whether the column says how uncertain another one is."""
+    """Says whether the column tells how uncertain another one is."""
     return "_stddev" in column or column in (
         "height_protection_level_m", "height_alert_limit_m", "height_above_runway_protection_level_m",
         "height_above_runway_limit_m")
@@ -42,14 +42,14 @@ def unit_of(column):
 
 
 def stddev_column(column, header):
-    """Column with the claimed standard deviation of this one, or None."""
+    """Returns the column with the claimed standard deviation of this one, or None."""
     unit = unit_of(column)
     name = f"{column[:-len(unit)]}_stddev{unit}" if unit else None
     return name if name in header else None
 
 
 def number(text):
-    """The field as a number, or None: blank, not finite, or text."""
+    """Returns the field as a number, or None if it is blank, not finite, or text."""
     try:
         value = float(text)
     except ValueError:

@@ -35,12 +35,12 @@ counts: samples are independent. Every snippet has another scene and path, and o
 expects:
 
 - the rotation of the right camera and the baseline (`disparity_bias_stddev`, `height_model_error`),
-- rows of the right picture that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
+- rows of the right image that lie `row_bias_stddev` (0.03 px, 1 σ) too low,
 - rows that are inclined: as much again at 0.3 focal lengths from the middle, as a lens's calibration leaves them.
 
-Each cell has three numbers: the share of the errors within the claimed 95 % interval; in brackets the 95 % confidence interval (Wilson) of
-that share; then the ratio of errors to claimed standard deviations, root mean square. The ratio is 1 when the claim is true, and less
-when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
+Each cell has three numbers. The first is the share of the errors within the claimed 95 % interval. Its own 95 % confidence interval
+(Wilson) stands in brackets. The last is the ratio of errors to claimed standard deviations, root mean square. It is 1 when the claim is
+true, and less when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
 
 **Ground.** The height is that over ground that bends as much and as often as the estimator is told to expect. 60 of 100 snippets are flat. 10
 each have one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 σ). It lies somewhere from
@@ -63,7 +63,7 @@ and the ground below.
 
 
 def wilson(good, count):
-    """95 % confidence interval of a share (Wilson 1927)."""
+    """Returns the 95 % confidence interval of a share (Wilson 1927)."""
     z2 = SIGMAS_95 ** 2
     share = good / count
     middle = (share + z2 / (2 * count)) / (1 + z2 / count)
@@ -72,7 +72,7 @@ def wilson(good, count):
 
 
 def score(rows, name, unit, flag):
-    """Count, share within 95 %, its interval, and root mean square of error over claim; None when nothing is valid."""
+    """Returns count, share within 95 %, its interval, and root mean square of error over claim, or None if nothing is valid."""
     used = [row for row in rows if row[flag] == "1"]
     error = np.array([number(row, f"{name}_{unit}") - number(row, f"{name}_true_{unit}") for row in used])
     stddev = np.array([number(row, f"{name}_stddev_{unit}") for row in used])
@@ -86,7 +86,7 @@ def score(rows, name, unit, flag):
 
 
 def cells(rows, quantities):
-    """Scores of the quantities by height and noise."""
+    """Returns the scores of the quantities by height and noise."""
     found = {}
     for height in HEIGHTS:
         for noise in NOISE:
@@ -96,7 +96,7 @@ def cells(rows, quantities):
 
 
 def flights(options):
-    """Rows over ground that bends, and over flat ground: the former's where it happens not to bend, and more of them."""
+    """Returns rows over ground that bends and over flat ground. Rows of the first that happen not to bend are flat."""
     cell = ("--noise", *NOISE, "--heights", *HEIGHTS)
     bent = fly("snippets", 1, options.snippets, 10, options.jobs, "--bend", *cell)
     flat = [row for row in bent if float(row["slope_change_deg"]) == 0]
@@ -106,7 +106,7 @@ def flights(options):
 
 
 def sensor_rows(options):
-    """Scores by what else is drawn and by height."""
+    """Returns the scores by what else is drawn and by height."""
     quantities = [quantity for quantity in QUANTITIES if quantity[0] != "y"]
     scores = []
     for title, drawn in SENSORS:
@@ -184,7 +184,7 @@ def render(results):
 
 
 def sensor_table(results):
-    """Second table; nothing for results from before it was measured."""
+    """Makes the second table. It is empty for results that were kept before it was measured."""
     if not results.get("sensors"):
         return ""
     names = ("height", *OVER_FLAT)

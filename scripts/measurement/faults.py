@@ -1,4 +1,4 @@
-"""Scores of a fault campaign: by fault, per frame and per approach, with what the counts support."""
+"""Scores a fault campaign by fault, per frame and per approach, with the bounds that the counts support."""
 
 import datetime
 import math
@@ -59,14 +59,15 @@ A run is a piece of an approach of at most {frames} frames, with one fault or wi
 Pairs of faults are in one row together, those with an unobservable fault in another.
 
 ## Without a fault
-There are {healthy} healthy frames in {runs} runs. {false_alarms} of them have no valid height ({share:.2%}, 95 % bound {bound:.2%}), and
-{healthy_misleading} are misleading. {uncertain} more passed all tests, but their protection level was above the alert limit: such frames are
-not available, with or without a fault. Each test on the healthy frames:
+There are {all_healthy} healthy frames in {runs} runs. On {uncertain} of them all tests passed, but the protection level was above the
+alert limit. Their height is not valid for that reason, fault or no fault, so they are no false alarms.
+A false alarm is one of the other {healthy} frames without a valid height. There are {false_alarms} ({share:.2%}, 95 % bound {bound:.2%}).
+{healthy_misleading} frames are misleading. Each test on all healthy frames:
 """
 
 
 def upper_bound(count, total, confidence=0.95):
-    """Clopper-Pearson: largest share for which so few would be seen with probability 1 - confidence."""
+    """Returns the largest share with which so few would be seen with probability 1 - confidence (Clopper and Pearson)."""
     if total == 0 or count >= total:
         return 1.0
     low, high = 0.0, 1.0
@@ -79,7 +80,7 @@ def upper_bound(count, total, confidence=0.95):
 
 
 def machine():
-    """Processor of this machine."""
+    """Returns the name of this machine's processor."""
     try:
         with open("/proc/cpuinfo") as info:
             name = re.search(r"model name\s*:\s*(.*)", info.read()).group(1)
@@ -89,7 +90,7 @@ def machine():
 
 
 def renew_summary(page, summary):
-    """docs/integrity.md with this summary."""
+    """Returns docs/integrity.md with this summary."""
     before, rest = page.split(SUMMARY_BEGIN)
     return f"{before}{SUMMARY_BEGIN}\n{summary}\n{SUMMARY_END}{rest.split(SUMMARY_END)[1]}"
 
@@ -100,7 +101,7 @@ class Campaign:
 
     @staticmethod
     def kind(row):
-        """Row of the table that a run belongs to."""
+        """Returns the row of the table to which a run belongs."""
         names = row["faults"].split("+")
         if len(names) == 1:
             return row["faults"]
@@ -127,7 +128,7 @@ class Campaign:
             for rows, cells in self.counts(self.rows, "faulted_valid", "misleading")])
 
     def angle_rows(self):
-        """Runs with a true approach angle."""
+        """Returns the runs with a true approach angle."""
         return [row for row in self.rows if row["source"] not in WITHOUT_TRUE_ANGLE]
 
     def angle_table(self):
@@ -136,7 +137,7 @@ class Campaign:
             for rows, cells in self.counts(self.angle_rows(), "faulted_angle_valid", "angle_misleading")])
 
     def yaw_rows(self):
-        """Runs with a yaw that the images could tell."""
+        """Returns the runs with a yaw that the images could tell."""
         return [row for row in self.rows
                 if not any(name in WITHOUT_TRUE_YAW for name in row["faults"].split("+")) and row["source"] != "kitti_road"]
 
@@ -146,7 +147,7 @@ class Campaign:
             for rows, cells in self.counts(self.yaw_rows(), "faulted_yaw_known", "yaw_misleading")])
 
     def counts(self, rows, valid, misleading):
-        """Of each fault the runs, and what is said of them, for frames and for runs."""
+        """Yields the runs of each fault with the cells of its row: counts of frames and of runs, with their bounds."""
         for name, group in self.groups(rows).items():
             frames, misled = self.total(group, "faulted"), self.total(group, misleading)
             runs = [row for row in group if int(row["faulted"]) > 0]
@@ -156,14 +157,21 @@ class Campaign:
                               f"{upper_bound(misled, frames):.2%}", runs_misled, f"{upper_bound(runs_misled, len(runs)):.1%}")
 
     def healthy(self):
-        """Frames without a fault whose height may be certain enough, of them without a valid height, misleading ones."""
-        rows = self.healthy_rows()
-        flat = [row for row in rows if row["source"] not in UNEVEN]
-        frames = self.total(flat, "healthy") - self.total(flat, "healthy_uncertain")
-        return frames, frames - self.total(flat, "healthy_valid"), self.total(rows, "healthy_misleading")
+        """Counts of healthy frames: those whose height is certain enough, those of them without a valid height, misleading ones."""
+        frames = self.total(self.even_rows(), "healthy") - self.uncertain()
+        return (frames, frames - self.total(self.even_rows(), "healthy_valid"),
+                self.total(self.healthy_rows(), "healthy_misleading"))
+
+    def uncertain(self):
+        """Healthy frames that passed all tests, but whose protection level is above the alert limit."""
+        return self.total(self.even_rows(), "healthy_uncertain")
+
+    def even_rows(self):
+        """Healthy runs over ground that is a plane, where a height that is refused would be a false alarm."""
+        return [row for row in self.healthy_rows() if row["source"] not in UNEVEN]
 
     def healthy_rows(self):
-        """Each approach and each dataset once: the frames before a fault's onset are the same for all faults."""
+        """Returns each approach and each dataset once, because the frames before a fault's onset are the same for all faults."""
         rows = {}
         for row in self.rows:
             if row["faults"] == "none":
@@ -171,7 +179,7 @@ class Campaign:
         return list(rows.values())
 
     def false_alarms(self):
-        """Table: how often each test failed on healthy frames."""
+        """Makes the table of how often each test failed on healthy frames."""
         made, failed = defaultdict(int), defaultdict(int)
         for row in self.healthy_rows():
             for counts in filter(None, row["healthy_tests"].split(";")):
@@ -183,7 +191,7 @@ class Campaign:
                       for name, count in sorted(made.items())])
 
     def problems(self):
-        """What should not be."""
+        """Lists what should not be: too many false alarms, and misleading frames."""
         problems = []
         frames, alarms, misleading = self.healthy()
         if misleading:
@@ -205,7 +213,7 @@ class Campaign:
 
     @staticmethod
     def misled(groups, column, what):
-        """Which runs of each group misled."""
+        """Lists the runs of each group that misled."""
         found = []
         for name, rows in groups.items():
             count = Campaign.total(rows, column)
@@ -215,7 +223,7 @@ class Campaign:
         return found
 
     def healthy_angles(self):
-        """Misleading ones without a fault."""
+        """Counts the misleading angles without a fault."""
         return self.total([row for row in self.healthy_rows() if row["source"] not in WITHOUT_TRUE_ANGLE],
                           "healthy_angle_misleading")
 
@@ -224,8 +232,8 @@ class Campaign:
         faulted, misled = self.total(self.rows, "faulted"), self.total(self.rows, "misleading")
         text = TEXT.format(date=datetime.datetime.now().strftime(" on %Y-%m-%d"), seeds=seeds, machine=machine(),
                            frames=max(int(row["healthy"]) + int(row["faulted"]) for row in self.rows), healthy=frames,
-                           runs=len(self.healthy_rows()), false_alarms=alarms, share=alarms / max(1, frames),
-                           bound=upper_bound(alarms, frames), uncertain=self.total(self.healthy_rows(), "healthy_uncertain"),
+                           all_healthy=frames + self.uncertain(), runs=len(self.healthy_rows()), false_alarms=alarms,
+                           share=alarms / max(1, frames), bound=upper_bound(alarms, frames), uncertain=self.uncertain(),
                            healthy_misleading=misleading)
         text = text.replace("\n\nA run is", f"\n\n{self.summary()}\nA run is", 1)
         return (f"{TITLE}{text}\n{self.false_alarms()}\n## Heights with a fault\n"
@@ -233,18 +241,19 @@ class Campaign:
                 "baseline that is wrong, which no image shows.\n\n"
                 f"{self.table()}\n{ANGLE_TEXT.format(healthy=self.healthy_angles() or 'none')}\n{self.angle_table()}\n"
                 f"{self.yaw_text()}\n{self.yaw_table()}\n"
-                f"{self.remarks()}\n## Picture\n"
+                f"{self.remarks()}\n## Figure\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
     def summary(self):
-        """What the campaign shows, in three lines."""
+        """Says what the campaign shows, with a bullet each for healthy frames, heights and angles."""
         frames, alarms, misleading = self.healthy()
         runs = [row for row in self.rows if int(row["faulted"])]
         misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
         others = sum(int(row["misleading"]) > 0 for row in self.rows if not self.is_unobservable(row))
         angles = self.angle_rows()
-        return (f"- **Without a fault**: {frames} frames. {alarms} have no valid height, {misleading} a misleading one, and "
-                f"{self.healthy_angles()} a misleading angle.\n"
+        return (f"- **Without a fault**: {frames + self.uncertain()} frames. On {self.uncertain()} the protection level is above the "
+                f"alert limit, so\n  the height is not valid. On the other {frames} there are {alarms} false alarms and {misleading} misleading "
+                f"heights.\n  {self.healthy_angles()} angles are misleading.\n"
                 f"- **Heights with a fault**: {self.total(runs, 'faulted')} frames in {len(runs)} runs. {misled} are misleading, {unobservable} "
                 f"of these by a\n  baseline that is wrong, which no image shows. The other {misled - unobservable} are in {others} runs.\n"
                 f"- **Angles with a fault**: {self.total(angles, 'angle_misleading')} of {self.total(angles, 'faulted')} frames are misleading, in "
@@ -255,7 +264,7 @@ class Campaign:
         return any(name in UNOBSERVABLE for name in row["faults"].split("+"))
 
     def unobservable(self):
-        """Misleading heights of faults that nothing can tell."""
+        """Counts the misleading heights of faults that nothing can tell."""
         return self.total([row for row in self.rows if self.is_unobservable(row)], "misleading")
 
     def yaw_text(self):
@@ -264,14 +273,14 @@ class Campaign:
                                healthy=self.total(rows, "healthy_yaw_misleading") or "none")
 
     def remarks(self):
-        """What should not be, as a list."""
+        """Writes what should not be as a list."""
         problems = self.problems()
         if not problems:
             return "## What should not be\nNo frame was misleading where there is something to see.\n"
         return "## What should not be\nFault, misleading frames, and the runs that have them:\n\n" + "".join(f"- {problem}\n" for problem in problems)
 
     def plot(self, file):
-        """Worst error over protection level, and availability, of each fault."""
+        """Plots the worst error over the protection level, and the availability, of each fault."""
         import matplotlib
         matplotlib.use("Agg")
         from matplotlib import pyplot

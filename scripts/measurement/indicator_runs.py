@@ -36,7 +36,7 @@ class Side:
         return self.root / f"config/{name}.yaml"
 
     def presets(self):
-        """Names of the files that set parameters of the stages; the one without changes first."""
+        """Returns the names of the files that set parameters of the stages, the one without changes first."""
         files = sorted((self.root / "config").glob("*.yaml"), key=lambda file: (file.stem != "stereo", file.stem))
         return [file.stem for file in files if STAGES & set(yaml.safe_load(file.read_text(encoding="utf-8")) or {})]
 
@@ -48,7 +48,7 @@ class Side:
 
 
 def invalid_too(preset):
-    """Whether errors of this preset are those of all frames, as in docs/accuracy.md."""
+    """Says whether errors of this preset count on all frames, as in docs/accuracy.md."""
     return any(name == preset and "--invalid-too" in options for _, name, options in PRESETS)
 
 
@@ -57,7 +57,7 @@ def files_below(folder):
 
 
 def digest(files):
-    """Of the contents of all these files."""
+    """Returns a digest of the contents of all these files."""
     total = hashlib.sha256()
     for file in files:
         with file.open("rb") as content:
@@ -83,7 +83,7 @@ def is_dataset(folder):
 
 
 def find_sets(data, root):
-    """Sets by name, and what is left out of the data folder."""
+    """Returns the sets by name, and what of the data folder is left out."""
     folders = sorted(folder for folder in data.iterdir() if folder.is_dir()) if data.is_dir() else []
     sets = [BagSet(folder.name, folder) for folder in folders if is_dataset(folder)]
     left_out = [folder.name for folder in folders if not is_dataset(folder)]
@@ -92,14 +92,14 @@ def find_sets(data, root):
 
 
 class BagSet:
-    """A dataset folder, or an approach of the simulator: a bag that both sides read."""
+    """A dataset folder or an approach of the simulator. Both sides read the same bag of it."""
 
     def __init__(self, name, source):
         self.name, self.source = name, source
         self.bag = self.truth = self.contents = self.ready = None
 
     def key(self, tree, work):
-        """Name of what the bag is made of."""
+        """Returns a name for what the bag is made of."""
         if self.source.is_file():
             # Rendering takes minutes, and most changes of the core library do not touch the simulator.
             made_of = probe(tree, self.source, work) + digest([self.source, *tree.sources(SIMULATOR)])
@@ -138,7 +138,7 @@ class BagSet:
         part.rename(folder)
 
     def tasks(self, side, preset, work):
-        """Functions that each write a file of rows, and return its name."""
+        """Returns functions that each write a file of rows and return its name."""
         return [lambda: self._run(side, preset, work)]
 
     def _run(self, side, preset, work):
@@ -153,7 +153,7 @@ class BagSet:
 
 
 class SnippetSet:
-    """Random snippets of simulate_campaign, which renders them itself: each side its own."""
+    """Random snippets. simulate_campaign renders them itself, so each side has its own."""
 
     name = SNIPPETS
 
@@ -178,7 +178,7 @@ class SnippetSet:
 
 
 class Jobs:
-    """Programs that run beside each other, begun in the order in which they are submitted. After an error no other begins."""
+    """Runs programs beside each other, in the order in which they are submitted. After an error no other one begins."""
 
     def __init__(self, count):
         self.pool, self.futures = ThreadPoolExecutor(count), []
@@ -198,7 +198,7 @@ class Jobs:
 
 
 class Runs:
-    """One side over all sets, with those of the presets that it has."""
+    """One side over all sets, with those presets that the side has."""
 
     def __init__(self, jobs, side, sets, presets, work):
         there = side.presets()
@@ -209,7 +209,7 @@ class Runs:
         return key in self.futures
 
     def files(self, key):
-        """Files of rows of a set and preset; waits for them."""
+        """Waits for the files of rows of a set and preset, and returns them."""
         return [future.result() for future in self.futures[key]]
 
     def rows(self, key):
@@ -217,7 +217,7 @@ class Runs:
 
 
 def probe(side, config, work):
-    """Digest of what a side's simulator renders first, or its message when it does not know the configuration."""
+    """Returns a digest of what a side's simulator renders first, or its message if it does not know the configuration."""
     name = f"{side.fingerprint('simulate_approach', config)}.txt"
     file = kept(work / "probes" / name, lambda text: text.write_text(render_probe(side, config, text.parent), encoding="utf-8"))
     return file.read_text(encoding="utf-8")
@@ -233,7 +233,7 @@ def render_probe(side, config, folder):
 
 
 def check_built(side):
-    """Every program that is needed must be there."""
+    """Checks that every program that is needed has been built."""
     for name in ("process_bag", "simulate_approach", "simulate_campaign"):
         if not side.program(name).exists():
             raise Unusable(f"{side.program(name)} is missing")

@@ -53,7 +53,7 @@ def group_of(column):
 
 
 def fingerprints(rows):
-    """Short hash of each group of columns."""
+    """Returns a short hash of each group of columns."""
     digests = {group: hashlib.sha256() for group in FINGERPRINTS}
     columns = compared(rows[0]) if rows else []
     for row in rows:
@@ -65,7 +65,7 @@ def fingerprints(rows):
 
 
 def bag_errors(estimates, truth, invalid_too):
-    """Mean and 95 % of the errors by quantity, as evaluate has them; nothing where there is no truth."""
+    """Returns mean and 95 % of the errors by quantity, as evaluate has them. It is empty where there is no truth."""
     try:
         known = read_truth(str(truth))
         quantities = score(known, join(known, read_estimates(str(estimates))), invalid_too)["quantities"]
@@ -75,7 +75,7 @@ def bag_errors(estimates, truth, invalid_too):
 
 
 def campaign_errors(rows, invalid_too):
-    """The same of a campaign, which has the truth in its rows."""
+    """Returns the same for a campaign, which has the truth in its rows."""
     errors = {}
     for name, column, flag, _ in QUANTITIES:
         stem, unit = column.rsplit("_", 1)
@@ -88,7 +88,7 @@ def campaign_errors(rows, invalid_too):
 
 
 def claim(rows, column, flag, invalid_too):
-    """Median of the claimed standard deviations, or None."""
+    """Returns the median of the claimed standard deviations, or None."""
     claims = [number(row[stddev_column(column, row)]) for row in rows if invalid_too or row[flag] == "1"]
     claims = [value for value in claims if value is not None]
     return float(np.median(claims)) if claims else None
@@ -99,7 +99,7 @@ def digits(value, factor):
 
 
 def line(name, preset, rows, errors, invalid_too):
-    """A line of the summary."""
+    """Returns a line of the summary."""
     cells = {"set": name, "preset": preset, "rows": str(len(rows)), **fingerprints(rows)}
     for flag in COUNTS[1:]:
         cells[flag] = str(sum(row[flag] == "1" for row in rows))
@@ -111,7 +111,7 @@ def line(name, preset, rows, errors, invalid_too):
 
 
 def machine(program):
-    """What else than the code may decide about the last bits: processor and libraries."""
+    """Names processor and libraries, which decide about the last bits besides the code."""
     flags = re.search(r"^flags\s*:(.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
     vectors = [name for name in ("avx2", "fma", "avx512f") if flags and name in flags.group(1).split()]
     listed = subprocess.run(["ldd", str(program)], stdout=subprocess.PIPE, universal_newlines=True, check=False).stdout
@@ -121,7 +121,7 @@ def machine(program):
 
 
 def render(lines, made_on):
-    """Text of the summary."""
+    """Writes the text of the summary."""
     text = io.StringIO()
     text.write(f"{MADE_ON}{made_on}; docs/change_indicator.md explains it\n")
     writer = csv.DictWriter(text, HEADER, lineterminator="\n")
@@ -131,7 +131,7 @@ def render(lines, made_on):
 
 
 def read(path):
-    """Machine and lines by set and preset of a summary; nothing when there is none."""
+    """Reads the machine and the lines by set and preset of a summary. Both are empty when there is no summary."""
     if not path.exists():
         return "", {}
     first, *rest = path.read_text(encoding="utf-8").splitlines()
@@ -140,7 +140,7 @@ def read(path):
 
 
 def agree(name, old, new, same_machine):
-    """Whether a cell is as it was."""
+    """Says whether a cell is as it was."""
     if old == new or not same_machine and name in FINGERPRINTS:
         return True
     numbers = number(old or ""), number(new)
@@ -150,7 +150,7 @@ def agree(name, old, new, same_machine):
 
 
 def differences(old, new, same_machine):
-    """What is not as in the old summary, a text each. Other machines are only held to its numbers, and those nearly."""
+    """Lists what differs from the old summary. Other machines have to agree with its numbers only, and only nearly."""
     texts = []
     for key, cells in new.items():
         if key not in old:

@@ -1,4 +1,4 @@
-"""Results of the sections, kept as JSON so that the page can be made anew without measuring anew."""
+"""Keeps the results of the sections as JSON, so that the page can be made anew without measuring anew."""
 
 import datetime
 import json
@@ -20,7 +20,7 @@ def keep(section, results):
 
 
 def recall(section):
-    """Date and results of a section, or None when it has never been measured."""
+    """Returns date and results of a section, or None when it has never been measured."""
     if not path(section).exists():
         return None
     content = json.loads(path(section).read_text(encoding="utf-8"))

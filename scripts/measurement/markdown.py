@@ -1,10 +1,10 @@
-"""Numbers as cells of markdown tables."""
+"""Writes numbers as cells of markdown tables."""
 
 DASH = "–"
 
 
 def number(value, form, factor=1):
-    """A number in this format, a dash when there is none."""
+    """Writes a number in this format, or a dash when there is none."""
     return DASH if value is None else format(factor * value, form)
 
 
@@ -13,7 +13,7 @@ def line(*cells):
 
 
 def table(header, rows):
-    """A whole table; all rows must have the header's number of cells."""
+    """Writes a whole table. All rows must have as many cells as the header."""
     for row in rows:
         if len(row) != len(header):
             raise ValueError(f"{len(row)} cells under {len(header)} headings: {row}")

@@ -10,14 +10,14 @@ from .programs import DEVEL, ROOT, WORK, run, save_figure
 PROGRAM = "measure_noise_bound"
 IMAGE = ROOT / "docs/images/noise.png"
 QUANTITIES = (("height_m", "height, cm", 100), ("pitch_deg", "pitch, °", 1), ("roll_deg", "roll, °", 1))
-TEXT = """`measure_noise_bound` renders pairs without noise, adds it, and fits the plane of a single pair. Errors are root mean squares over scenes and
-pairs. They are compared with the least that any unbiased estimator could have: the Cramér–Rao bound, from the gradients of the same
-pictures, with gain and offset between the cameras unknown. Asked is a ratio of at most 2 at noise of 2 grey levels and more. *Claimed* is
-the standard deviation that the estimate comes with.
+TEXT = """`measure_noise_bound` renders pairs without noise, adds it, and fits the plane of a single pair. Errors are root mean squares over scenes
+and pairs. They are compared with the Cramér–Rao bound, the least error that any unbiased estimator could have. It follows from the
+gradients of the same images, with gain and offset between the cameras unknown. Asked is a ratio of at most 2 at noise of 2 grey levels
+and more. *Claimed* is the standard deviation that the estimate comes with.
 
-This bound knows the gradients without noise. The ratio in brackets is to another bound, which has to tell the texture from the noise by the
-spectrum of each part of the picture (the delay between two receivers, Knapp and Carter 1976). Who does not know the texture can hardly
-come nearer to the first bound than that. The rest is the estimator's. At noise of 1 these are errors that are not noise, of
+This bound knows the gradients without noise. The ratio in brackets is to another bound. That one has to tell the texture from the noise,
+by the spectrum of each part of the image (the delay between two receivers, Knapp and Carter 1976). Who does not know the texture can
+hardly come nearer to the first bound than that. The rest is the estimator's. At noise of 1 these are errors that are not noise, of
 interpolation for instance. Under much noise it is what it takes to find out which of the texture to believe.
 
 ![Errors of the plane over noise, with the bound](images/noise.png)

@@ -48,7 +48,7 @@ def run_built(devel, program, *arguments):
 
 
 def fingerprint(*files, devel=None):
-    """Short name of the contents of the core library and these files: results of other contents are not reused."""
+    """Returns a short name for the contents of the core library and these files. Results of other contents are not reused."""
     digest = hashlib.sha256()
     for file in ((devel or DEVEL) / "lib/libuav_landing_core.so", *files):
         digest.update(Path(file).read_bytes())
@@ -56,7 +56,7 @@ def fingerprint(*files, devel=None):
 
 
 def save_figure(figure, path):
-    """Writes a picture and closes the figure."""
+    """Writes a figure to a file and closes it, because open figures fill the memory."""
     import matplotlib.pyplot as plt  # only here: it takes longer to load than everything else
     figure.tight_layout()
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The numbers of README.md, taken from the tables of docs/accuracy.md and docs/performance.md, so that each has one home."""
+"""Takes the numbers of README.md from docs/accuracy.md and docs/performance.md, so that each number has one home."""
 
 from .markdown import table
 
@@ -13,7 +13,7 @@ COLUMNS = (2, 3, 5, 6, 8, 10)
 
 
 def rows(page, heading):
-    """Cells of the first table behind a heading, by the first cell."""
+    """Returns the cells of the first table below a heading, by the first cell."""
     if heading not in page:
         raise ValueError(f"no heading '{heading}'")
     found = {}
@@ -27,7 +27,7 @@ def rows(page, heading):
 
 
 def render(accuracy, performance):
-    """The block between BEGIN and END from the two pages."""
+    """Makes the block between BEGIN and END from the two pages."""
     sets = rows(accuracy, "### Default preset")
     times = rows(performance, "# Performance")
     lines = [[f"`{name}`", what, *(sets[name][column] for column in COLUMNS)] for name, what in WHAT.items() if name in sets]
@@ -37,6 +37,6 @@ def render(accuracy, performance):
 
 
 def renew(readme, accuracy, performance):
-    """README with the block made anew."""
+    """Returns README with the block made anew."""
     before, rest = readme.split(BEGIN)
     return before + render(accuracy, performance) + rest.split(END)[1]

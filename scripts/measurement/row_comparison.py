@@ -79,7 +79,7 @@ class Comparison:
         return f"{self.differing} of {self.compared} rows differ"
 
     def lines(self):
-        """What differs, a line each: first what makes the rest hard to compare."""
+        """Says what differs, a line each. What makes the rest hard to compare comes first."""
         lines = [f"{column} is drawn otherwise in {change.rows} rows: the simulator changed, or what it draws by"
                  for (column, _), change in self.truth_changes.items()]
         for keys, text in ((self.missing, "no longer there"), (self.added, "new")):
@@ -97,7 +97,7 @@ def read_rows(path):
 
 
 def by_key(rows):
-    """Rows by the text that names them; of those with the same name each has a number of its own."""
+    """Returns the rows by the text that names them. Rows with the same name get numbers."""
     seen, named = Counter(), {}
     for row in rows:
         names = key_columns(row)
@@ -108,7 +108,7 @@ def by_key(rows):
 
 
 def difference_of(column, before, after):
-    """(kind, size, unit) of what a column differs by, or None."""
+    """Returns (kind, size, unit) of a column's difference, or None."""
     old, new = before[column], after[column]
     if old == new:
         return None

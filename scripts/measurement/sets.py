@@ -40,7 +40,7 @@ certain enough to be valid. Their errors are those of all frames that have a num
 
 
 def find_sets(data, names=None):
-    """Name and source (dataset folder or configuration) of all sets, or of those named."""
+    """Returns name and source (dataset folder or configuration) of all sets, or of those named."""
     sets = [(name, data / name) for name in DATASETS if (data / name).is_dir()]
     sets += [(f"simulator/{path.stem}", path) for path in sorted((ROOT / "config/simulator").glob("*.yaml"))]
     for name in DATASETS:
@@ -50,7 +50,7 @@ def find_sets(data, names=None):
 
 
 def make_bag(name, source):
-    """Bag and truth of a set."""
+    """Makes the bag of a set and returns it with the truth."""
     folder = WORK / name
     shutil.rmtree(str(folder), ignore_errors=True)
     folder.mkdir(parents=True)
@@ -63,7 +63,7 @@ def make_bag(name, source):
 
 
 def score(name, bag, truth, config, options=()):
-    """Scores of one run, as evaluate --json writes them."""
+    """Returns the scores of one run as evaluate --json writes them."""
     estimates, scores = (WORK / name / f"{config.stem}.{ending}" for ending in ("csv", "json"))
     run("process_bag", "--input", bag, "--config", config, "--csv", estimates)
     run("evaluate", "--truth", truth, "--estimates", estimates, "--json", scores, *options)
@@ -75,7 +75,7 @@ def quantity(scores, name, key):
 
 
 def row(name, scores):
-    """One row of the table."""
+    """Makes one row of the table."""
     def cells(quantity_name, keys, factor, form):
         for key in keys:
             share = key == "within_claimed_95"
@@ -90,7 +90,7 @@ def row(name, scores):
 
 
 def measure(options):
-    """Scores by preset and set. Only some sets (options.sets): printed, not kept."""
+    """Measures the scores by preset and set. With only some sets (options.sets) they are printed and not kept."""
     sets = find_sets(options.data, options.sets)
     if not sets:
         raise SystemExit("no set to measure")

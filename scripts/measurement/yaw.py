@@ -20,14 +20,14 @@ the known ones.
 
 
 def errors(rows):
-    """Error and claimed standard deviation where the yaw is known, deg."""
+    """Returns error and claimed standard deviation where the yaw is known, deg."""
     pairs = [(abs(math.remainder(number(row, "yaw_deg") - number(row, "yaw_true_deg"), 360)), number(row, "yaw_stddev_deg"))
              for row in rows]
     return sorted((error, stddev) for error, stddev in pairs if math.isfinite(error))
 
 
 def score(rows):
-    """Counts, and what the known ones are worth; None where none is known."""
+    """Counts the snippets and scores those with a known yaw. The scores are None where none is known."""
     known = errors(rows)
     scores = {"snippets": len(rows), "known": len(known), "wrong": sum(error > WRONG for error, _ in known), "claims": None}
     if known:

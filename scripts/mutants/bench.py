@@ -14,14 +14,14 @@ MANY = 8  # sources that see a header: it takes long to compile them all
 
 
 class TestTimes:
-    """Seconds that tests took when they passed, kept as they come."""
+    """Keeps the seconds that tests took when they passed."""
 
     def __init__(self, path):
         self._path = path
         self._seconds = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
     def of(self, test):
-        """0 when it is not known."""
+        """Returns the seconds of a test, or 0 when they are not known."""
         return self._seconds.get(test.name, 0)
 
     def note(self, test, seconds):
@@ -30,7 +30,7 @@ class TestTimes:
 
 
 def is_of_shared_library(path):
-    """Whether a mutant of this file changes nothing but a shared library: gtest programs then need not be built anew."""
+    """Says whether a mutant of this file changes only a shared library. The gtest programs then need not be built anew."""
     return path.startswith(("src/core/", "src/ros/")) and path.endswith(".cpp")
 
 
@@ -46,17 +46,17 @@ class Bench:
         self._passing = {}  # whether a test passes without a mutant: only those are asked that have failed with one
 
     def known(self, mutant, by_any_tests=False):
-        """The result of an earlier run that still holds, or None. by_any_tests: also of one that survived older tests."""
+        """Returns the result of an earlier run that still holds, or None. by_any_tests: also one that survived older tests."""
         return self._results.of(mutant, self._source(mutant.path), None if by_any_tests else self._tests)
 
     def _source(self, path):
-        """Fingerprint of a source file without a mutant: it is asked for first by known()."""
+        """Returns the fingerprint of a source file without a mutant. known() asks for it before the file is changed."""
         if path not in self._sources:
             self._sources[path] = file_fingerprint(self._workshop.tree / path)
         return self._sources[path]
 
     def judge(self, mutants):
-        """All of them: those of libraries side by side as far as gtest programs tell, the others one by one in the copy."""
+        """Judges all mutants: those of libraries side by side as far as gtest programs tell, the others one by one."""
         if not self._workshop.build("uav_landing_core", "uav_landing_ros"):
             raise RuntimeError(f"the tree does not build without a mutant, see {self._workshop.tree.parent / 'build.log'}")
         side_by_side = [mutant for mutant in mutants if is_of_shared_library(mutant.path)]
@@ -93,7 +93,7 @@ class Bench:
         return mutant
 
     def _judge_in_place(self, mutant):
-        """A mutant that tests or programs are built with, or that tests with a ROS master judge."""
+        """Judges a mutant with which tests or programs have to be built, or which tests with a ROS master judge."""
         tests = self._tests_of(mutant)
         if is_of_shared_library(mutant.path):
             tests = [test for test in tests if not test.program]
@@ -107,7 +107,7 @@ class Bench:
         self._note(mutant, *self._judge_built(mutant, tests))
 
     def _judge_built(self, mutant, tests, sources=None):
-        """The outcome, the test that killed, and its seconds. sources: see Workshop.changed()."""
+        """Returns the outcome, the test that killed, and its seconds. sources: see Workshop.changed()."""
         libraries = ["uav_landing_core"]
         if not mutant.path.startswith(("src/core/", "include/")):
             libraries += ["uav_landing_ros", "uav_landing_nodelets", "uav_landing_tools"]
@@ -122,7 +122,7 @@ class Bench:
                 return "killed", killer, seconds
 
     def _passes_without(self, test):
-        """Whether a test passes without a mutant. One that does not is left out from then on."""
+        """Says whether a test passes without a mutant. One that does not is left out from then on."""
         with self._changing:
             if test not in self._passing:
                 built = test.target in self._built or self._workshop.build(*self._targets(test))

@@ -1,4 +1,4 @@
-"""All mutants that a tree allows, in the random order of a seed."""
+"""Finds all mutants that a tree allows, in the random order of a seed."""
 
 import hashlib
 import re
@@ -18,7 +18,7 @@ def _digest(*parts):
 
 
 def source_files(tree, folders):
-    """Sources and headers below the folders or files, as paths below the tree."""
+    """Returns sources and headers below the folders or files, as paths below the tree."""
     found = set()
     for folder in folders:
         path = tree / folder
@@ -27,7 +27,7 @@ def source_files(tree, folders):
 
 
 def of_file(tree, path):
-    """Lists of the mutants of each line that has any. A name stays the same while other lines change."""
+    """Returns a list of mutants for each line that has any. Their names stay the same while other lines change."""
     source = (tree / path).read_text(encoding="utf-8")
     seen = {}
     for number, (text, code) in enumerate(zip(source.split("\n"), without_comments_and_texts(source).split("\n")), 1):
@@ -45,7 +45,7 @@ def of_file(tree, path):
 
 
 def in_random_order(tree, folders, seed):
-    """One mutant of each line: the lines in random order, each line's mutant drawn at random."""
+    """Returns one mutant of each line. The lines are in random order, and the mutant of a line is drawn at random."""
     drawn = []
     for path in source_files(tree, folders):
         for mutants in of_file(tree, path):

@@ -1,4 +1,4 @@
-"""Which tests concern a source file: those that reach it by includes, the nearest first."""
+"""Finds the tests that concern a source file: those that reach it by includes, the nearest first."""
 
 import re
 from collections import namedtuple
@@ -53,11 +53,11 @@ class Concern:
         return self._sources[test]
 
     def sources_that_see(self, header):
-        """Sources of the libraries and programs that include it, by other headers or not."""
+        """Returns the sources of libraries and programs that include a file, directly or by other headers."""
         return {name for name in self._seeing(header) if name.startswith("src/")}
 
     def nearest_sources(self, header):
-        """Of the sources and of the tests those that see it by the fewest includes."""
+        """Returns those of the sources and of the tests that see a file by the fewest includes."""
         nearest = set()
         for folder in ("src/", "test/"):
             seeing = {name: steps for name, steps in self._seeing(header).items() if name.startswith(folder)}
@@ -65,7 +65,7 @@ class Concern:
         return nearest
 
     def _seeing(self, header):
-        """Sources that include it, with the number of includes that it takes."""
+        """Returns the sources that include a file, with the number of includes that it takes."""
         steps, border = {header: 0}, [header]
         while border:
             reached = {user: steps[at] + 1 for at in border for user in self._includers[at] if user not in steps}
@@ -74,13 +74,13 @@ class Concern:
         return {name: count for name, count in steps.items() if name.endswith(".cpp")}
 
     def _headers_of(self, name):
-        """The headers that a source implements: of its own name, and of the classes whose functions it defines."""
+        """Returns the headers that a source implements: of its own name, and of the classes whose functions it defines."""
         stem = Path(name).stem
         same = [header for header in self._includes[name] if Path(header).stem == stem]
         return set(same) | {self._homes[kind] for kind in _DEFINED.findall(self._texts[name]) if kind in self._homes}
 
     def _distances(self, name):
-        """Files that depend on this one, with the number of includes between."""
+        """Returns the files that depend on this one, with the number of includes between."""
         distances, border = {name: 0}, [name]
         while border:
             reached = []
@@ -96,7 +96,7 @@ class Concern:
         return distances
 
     def _by_words(self, word, folders):
-        """Tests in Python or with a launch file that name a program."""
+        """Returns the tests in Python or with a launch file that name a program."""
         return [test for test in self._tests if not test.target and any(folder in test.name for folder in folders) and
                 re.search(rf"\b{word}\b", self._text_of(test))]
 
@@ -108,7 +108,7 @@ class Concern:
         return ""
 
     def _text_with_launched(self, path):
-        """The text of a test, of the program that a .test file starts, and of the launch files that are named."""
+        """Returns the text of a test with those of the program that its .test file starts and of the launch files it names."""
         if not path.is_file():
             return ""
         text = _read(path)
@@ -118,7 +118,7 @@ class Concern:
         return text + "".join(_read(file) for file in launched if file.is_file())
 
     def _outside_core(self, name):
-        """Tests of a nodelet or of a program by its source: 0 for those that bear its name, 1 for others."""
+        """Returns the tests of a nodelet or of a program by its source: 0 for those with its name, 1 for others."""
         stem, tests = Path(name).stem, []
         if name.startswith("src/nodelets/"):
             targets = [f"{nodelet}_test" for nodelet in (stem, *_WHOLE_CHAIN)]

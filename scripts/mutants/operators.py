@@ -10,7 +10,7 @@ from .source_text import argument_end, term_end
 
 
 def _swaps(pairs):
-    """Changes of each pattern's group 1 into its replacement."""
+    """Yields the changes of each pattern's group 1 into its replacement."""
     compiled = [(re.compile(pattern), replacement) for pattern, replacement in pairs]
 
     def operator(line):
@@ -21,7 +21,7 @@ def _swaps(pairs):
 
 
 def dropped_term(line):
-    """a + b -> a, and a * b -> a."""
+    """Drops a term or a factor: a + b -> a, and a * b -> a."""
     for match in re.finditer(r"(?<=[\w)\]]) ([-+*]) (?=\S)", line):
         end = term_end(line, match.end())
         if match.group(1) == "*":  # a factor ends where the next factor or term begins
@@ -35,13 +35,13 @@ def dropped_term(line):
 
 
 def dropped_first_factor(line):
-    """0.5 * a -> a."""
+    """Drops the first factor: 0.5 * a -> a."""
     for match in re.finditer(r"(?<![\w.])(\d+(?:\.\d+)?(?:e-?\d+)? \* )(?=\S)", line):
         yield match.start(1), match.end(1), ""
 
 
 def dropped_function(line):
-    """std::sqrt(a) -> (a), std::pow(a, 2) -> (a)."""
+    """Drops a function: std::sqrt(a) -> (a), std::pow(a, 2) -> (a)."""
     for match in re.finditer(r"std::(?:sqrt|abs|exp|log)(?=\()", line):
         yield match.start(), match.end(), ""
     for match in re.finditer(r"std::pow\(", line):
@@ -74,14 +74,14 @@ _HARMLESS = re.compile(r"^(?:return|throw|delete|using|typedef|static_assert|ROS
 
 
 def dropped_statement(line):
-    """An assignment or a call that is forgotten, a reset for example."""
+    """Forgets an assignment or a call, a reset for example."""
     match = _STATEMENT.match(line)
     if match and not _HARMLESS.search(match.group(2)):
         yield match.start(2), match.end(2), "{}"
 
 
 def swallowed_error(line):
-    """A condition whose early return is forgotten."""
+    """Forgets the early return of a condition."""
     match = re.match(r"^(\s*)(if \(.*\) (?:return\b[^;]*|throw [^;]*);)\s*$", line)
     if match:
         yield match.start(2), match.end(2), ""

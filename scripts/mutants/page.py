@@ -1,13 +1,13 @@
-"""The page about the mutation test: the score by folder, and what survives."""
+"""Writes the page about the mutation test: the score by folder, and the mutants that survive."""
 
 from collections import Counter
 
 import yaml
 
 TEXT = """# Mutation test
-A test that cannot fail proves nothing. `scripts/mutation` puts plausible slips into the code, one at a time, and looks whether a
-test fails. Such slips are a term of a variance that is dropped, a wrong sign, a reset that is forgotten, an error that is swallowed,
-a field that is mixed up with its neighbour.
+A test that cannot fail proves nothing. `scripts/mutation` puts plausible slips into the code, one at a time, and looks whether a test
+fails. Such slips are a dropped term of a variance, a wrong sign, a forgotten reset, a swallowed error, or a field that is mixed up with
+its neighbour.
 
 ```
 scripts/mutation --seed 1 --number 30                      # thirty mutants of the whole tree, some minutes
@@ -26,7 +26,7 @@ looked at. *Equivalent* ones, which no input can tell from the original, have th
 
 
 def read_judged(path):
-    """Verdicts by the mutants' names: {name: {verdict: equivalent | survives, why: text}}."""
+    """Reads verdicts by the mutants' names: {name: {verdict: equivalent or survives, why: text}}."""
     judged = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
     for name, entry in (judged or {}).items():
         if set(entry) - {"where", "verdict", "why"} or entry.get("verdict") not in ("equivalent", "survives") or not entry.get("why"):
@@ -35,20 +35,20 @@ def read_judged(path):
 
 
 def outcome(result, judged):
-    """killed, equivalent or survived."""
+    """Returns killed, equivalent or survived."""
     if result["outcome"] == "survived" and judged.get(result["name"], {}).get("verdict") == "equivalent":
         return "equivalent"
     return result["outcome"]
 
 
 def folder(path):
-    """src/core/height of src/core/height/height_filter.cpp; headers of include/uav_landing count to the same folder."""
+    """Returns the folder a file counts to, src/core/height for src/core/height/height_filter.cpp. Public headers count alike."""
     parts = path.split("/")[:-1]
     return "/".join((["src", "core"] + parts[2:] if parts[0] == "include" else parts)[:3])
 
 
 def score(results, judged):
-    """Counters by folder, that of all under 'all'."""
+    """Returns counters by folder, and that of all folders as 'all'."""
     counts = {}
     for result in results:
         for where in (folder(result["path"]), "all"):
@@ -65,7 +65,7 @@ def _cell(code):
 
 
 def render(results, judged, seed, drawn):
-    """drawn: mutants of the sample, judged or not."""
+    """Writes the page. drawn: mutants of the sample, judged or not."""
     counts = score(results, judged)
     lines = [TEXT, f"## Score\nSeed {seed}: {len(results)} of {drawn} mutants have been judged.\n", "| folder | mutants | killed | equivalent | survive | score |",
              "|---|---|---|---|---|---|"]

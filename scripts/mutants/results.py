@@ -1,4 +1,4 @@
-"""What became of each mutant, kept as it comes, so that a run goes on where it was stopped."""
+"""Keeps the result of each mutant as it comes, so that a run goes on where it was stopped."""
 
 import hashlib
 import json
@@ -9,7 +9,7 @@ def file_fingerprint(path):
 
 
 def folder_fingerprint(folder):
-    """Of the contents of all files below it."""
+    """Returns a fingerprint of the contents of all files below a folder."""
     digest = hashlib.sha256()
     for path in sorted(folder.rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:
@@ -18,7 +18,7 @@ def folder_fingerprint(folder):
 
 
 class Results:
-    """The last outcome of each mutant: killed, survived, or broken (it could not be compiled)."""
+    """Keeps the last outcome of each mutant: killed, survived, or broken (it could not be compiled)."""
 
     def __init__(self, path):
         self._path = path
@@ -29,7 +29,7 @@ class Results:
                 self._by_name[result["name"]] = result
 
     def add(self, mutant, outcome, by, seconds, source, tests):
-        """by: the test that killed it. source, tests: fingerprints of the file and of the tests then."""
+        """Adds a result. by: the test that killed the mutant. source, tests: fingerprints of the file and of the tests then."""
         result = {**mutant._asdict(), "outcome": outcome, "by": by, "seconds": round(seconds, 1), "source": source, "tests": tests}
         self._by_name[mutant.name] = result
         self._path.parent.mkdir(parents=True, exist_ok=True)

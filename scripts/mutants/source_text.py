@@ -1,4 +1,4 @@
-"""C++ source as the mutation test reads it: line by line, with comments and texts blanked out."""
+"""Reads C++ source for the mutation test: line by line, with comments and texts blanked out."""
 
 import re
 
@@ -14,14 +14,14 @@ _OPERATOR = re.compile(r" (?:[-+*/%<>?:|&^=]|[<>=!]=|&&|\|\|) ")
 
 
 def without_comments_and_texts(source):
-    """The source with the same lines and columns; what no mutant may change is blank."""
+    """Returns the source with the same lines and columns, and blanks where no mutant may change anything."""
     def blank(match):
         return "".join("\n" if c == "\n" else " " for c in match.group())
     return _QUIET.sub(blank, source)
 
 
 def _end(line, start, is_end):
-    """The first place from `start` on that is_end(place), at the level of `start`, or where that level is left."""
+    """Returns the first place from start on where is_end(place) holds at the level of start, or where that level is left."""
     depth = 0
     for i in range(start, len(line)):
         if line[i] in "([{":
@@ -36,7 +36,7 @@ def _end(line, start, is_end):
 
 
 def argument_end(line, start):
-    """Where the argument that begins at `start` ends; None where the line ends before."""
+    """Returns where the argument that begins at start ends, or None where the line ends before."""
     return _end(line, start, lambda i: False)
 
 

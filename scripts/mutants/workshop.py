@@ -23,7 +23,7 @@ def _limit_memory():
 
 
 def _limits_of_program(seconds):
-    """What a program is started with: it may take so much of the processors' time."""
+    """Returns a function that limits the memory and the processor time of a program."""
     def limit():
         _limit_memory()
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
@@ -31,7 +31,7 @@ def _limits_of_program(seconds):
 
 
 class Workshop:
-    """Files in `work`/tree, its build in `work`/tree/build."""
+    """A copy of the tree in work/tree, and its build in work/tree/build."""
 
     def __init__(self, root, work, jobs=1):
         """jobs: compilers side by side."""
@@ -43,7 +43,7 @@ class Workshop:
         self.environment.setdefault("UAV_LANDING_DATA", str((root.parent / "shared/data").resolve()))
 
     def refresh(self):
-        """Makes the copy what the tree is now. Files that are the same keep their times, and are not built again."""
+        """Makes the copy equal to the tree. Files that are the same keep their times, so they are not built again."""
         listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=self._root,
                                 stdout=subprocess.PIPE, check=True).stdout.decode().split("\0")
         wanted = {name for name in listed if name and (self._root / name).is_file()}
@@ -59,7 +59,7 @@ class Workshop:
                 copy.unlink()
 
     def configure(self):
-        """What cmake says when it fails, else None."""
+        """Configures the build and returns what cmake says when it fails, else None."""
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         # A mutant of the library is no reason to link a test anew.
         made = subprocess.run(["cmake", "-S", ".", "-B", "build", "-DPYTHON_EXECUTABLE=/usr/bin/python3", *launcher,
@@ -69,7 +69,7 @@ class Workshop:
         return made.stdout if made.returncode else None
 
     def build(self, *targets):
-        """Whether they could be built."""
+        """Builds targets and says whether that succeeded."""
         with (self._work / "build.log").open("w") as log:
             return subprocess.run(["cmake", "--build", "build", "--target", *targets, "--", "--keep-going", f"-j{self._jobs}"],
                                   cwd=self.tree, env=self.environment, stdout=log, stderr=subprocess.STDOUT).returncode == 0
@@ -98,7 +98,7 @@ class Workshop:
                 (self.tree / source).touch()
 
     def tests(self):
-        """All tests of ctest."""
+        """Returns all tests of ctest."""
         listed = subprocess.run(["ctest", "--show-only=json-v1"], cwd=self.build_folder, env=self.environment,
                                 stdout=subprocess.PIPE, check=True).stdout
         found = []
@@ -111,7 +111,7 @@ class Workshop:
         return found
 
     def sources_of(self, target):
-        """Source files of a target, by the files that cmake has made for it."""
+        """Returns the source files of a target, by the files that cmake has made for it."""
         made = self.build_folder / f"CMakeFiles/{target}.dir/build.make"
         if not made.is_file():
             return set()
@@ -156,7 +156,7 @@ class Workshop:
         return "\n".join(lines)
 
     def run(self, test, library=None, deadline=LONGEST):
-        """Whether a test passes, and its seconds. library: the folder of the one to use instead of that of the build."""
+        """Says whether a test passes, and its seconds. library: the folder of the library to use instead of that of the build."""
         environment = dict(self.environment)
         limit = _limit_memory
         if test.program:

@@ -57,7 +57,7 @@ class StereoDepthNodelet : public StageNodelet {
   }
   void forget() override { stage_.reset(); }
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) override {
-    status.addf("own frame, % of the left picture", "%.1f", 100 * own_frame_);
+    status.addf("own frame, % of the left image", "%.1f", 100 * own_frame_);
   }
   std::vector<InputWatch::Input> inputs() const override { return pairing_->inputs(); }
   std::string complaint() override { return pairing_->complaint(); }

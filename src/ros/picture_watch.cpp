@@ -67,9 +67,9 @@ void PictureWatch::look(const cv::Mat& grey, const std::string& topic) {
   if (alternating_ < kEnough) return;
   said_rows_ = true;
   news_.push_back(topic +
-                  ": every other row is of another picture: interlaced video, whose heights are wrong "
+                  ": every other row is of another image: interlaced video, whose heights are wrong "
                   "(convert_recording --deinterlace takes one field; live, set the camera or grabber to "
-                  "progressive), or a Bayer picture sent as grey");
+                  "progressive), or a Bayer image sent as grey");
 }
 
 std::vector<std::string> PictureWatch::news() {

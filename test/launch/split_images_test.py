@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""split_images: live images that have both pictures in them become those of two cameras."""
+"""split_images: live images that have both images in them become those of two cameras."""
 
 import sys
 import tempfile

@@ -90,7 +90,7 @@ TEST_F(RectifyNodeletTest, OfARigUpsideDownComesThePairThatStandsUpright) {
   const sensor_msgs::CameraInfo &left = *left_info.messages()[0], &right = *right_info.messages()[0];
   EXPECT_EQ(left.P, scene_.info(false)->P);
   EXPECT_NEAR(right.P[3], scene_.info(true)->P[3], 1e-9);
-  EXPECT_EQ(left.R[0], -1) << "from the camera as it hangs to the picture";
+  EXPECT_EQ(left.R[0], -1) << "from the camera as it hangs to the image";
   EXPECT_EQ(left.R[8], 1);
 }
 
@@ -295,8 +295,8 @@ TEST_F(RectifyNodeletTest, ACameraInfoOfAnotherPictureSizeIsRefusedInLogAndDiagn
   const auto wrong = scene_.info(true);
   wrong->K[2] = 320;
   const std::string message =
-      "camera_info: right K[2]: 320, expected 96 to 224 in a picture 320 px wide: is this the calibration of "
-      "another picture size? If the picture is cropped off the middle, raise rig/max_principal_point_offset "
+      "camera_info: right K[2]: 320, expected 96 to 224 in an image 320 px wide: is this the calibration of "
+      "another image size? If the image is cropped off the middle, raise rig/max_principal_point_offset "
       "(/stereo/right/camera_info)";
   double t = 0;
   EXPECT_TRUE(eventually([&] {

@@ -102,8 +102,8 @@ TEST_F(RigCheckNodeletTest, APrincipalPointOfAnotherPictureSizeIsRefusedAlsoWher
   startBehindRectify();
   scene_.calibrated_scale = 2;
   expectRefused(
-      "camera_info: left K[2]: 320, expected 96 to 224 in a picture 320 px wide: is this the calibration of "
-      "another picture size? If the picture is cropped off the middle, raise "
+      "camera_info: left K[2]: 320, expected 96 to 224 in an image 320 px wide: is this the calibration of "
+      "another image size? If the image is cropped off the middle, raise "
       "rig/max_principal_point_offset");
 }
 
@@ -114,8 +114,8 @@ TEST_F(RigCheckNodeletTest, AMaskOfAnotherSizeIsTheReasonOfEveryStage) {
   startWholeChain();
   const std::string reason =
       "input_invalid: rig/right_mask: " + file +
-      ": is 200x100, expected 320x240, the size of the raw pictures by camera_info; draw it "
-      "on a raw picture of this camera";
+      ": is 200x100, expected 320x240, the size of the raw images by camera_info; draw it "
+      "on a raw image of this camera";
   ASSERT_TRUE(feedUntil([&] {
     return hasReason(depths_, reason) && hasReason(angles_, reason) && hasReason(estimates_, reason) &&
            diagnostics_.said("stereo_depth", DiagnosticStatus::ERROR, reason) &&
@@ -151,7 +151,7 @@ TEST_F(RigCheckNodeletTest, APictureCroppedOffTheMiddleIsLetThroughByTheSharedPa
            estimates_.waitFor([](const auto& estimate) { return estimate.height_valid; },
                               std::chrono::milliseconds(1));
   })) << wholeLog();
-  EXPECT_EQ(wholeLog().find("another picture size"), std::string::npos) << wholeLog();
+  EXPECT_EQ(wholeLog().find("another image size"), std::string::npos) << wholeLog();
 }
 
 TEST_F(RigCheckNodeletTest, AnUnlikelyCalibrationIsWarnedAboutOnceAndInDiagnosticsAsLongAsItHolds) {
@@ -160,11 +160,11 @@ TEST_F(RigCheckNodeletTest, AnUnlikelyCalibrationIsWarnedAboutOnceAndInDiagnosti
   scene_.calibrated_scale = 1.25;
   const std::string
       left =
-          "camera_info: left K[2]: 200, 12.5 % of the picture's width off its middle: is this the "
-          "calibration of another picture size?",
+          "camera_info: left K[2]: 200, 12.5 % of the image's width off its middle: is this the "
+          "calibration of another image size?",
       right =
-          "camera_info: right K[2]: 200, 12.5 % of the picture's width off its middle: is "
-          "this the calibration of another picture size?";
+          "camera_info: right K[2]: 200, 12.5 % of the image's width off its middle: is "
+          "this the calibration of another image size?";
   ASSERT_TRUE(feedUntil([&] {
     for (const char* nodelet : nodelets)
       if (!diagnostics_.said(nodelet, DiagnosticStatus::WARN, left + "; " + right)) return false;

@@ -102,8 +102,7 @@ TEST(PictureWatch, TellsInterlacedPicturesOnce) {
   for (int i = 0; i < 30; ++i) watch.look(interlaced(3), "/left");
   const std::vector<std::string> news = watch.news();
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_EQ(news[0].rfind("/left: every other row is of another picture: interlaced video", 0), 0u)
-      << news[0];
+  EXPECT_EQ(news[0].rfind("/left: every other row is of another image: interlaced video", 0), 0u) << news[0];
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ class FitTest(unittest.TestCase):
 
 
 class Picture:
-    """Pictures of the board by rolling shutters: each row by its own rays at its own time."""
+    """Images of the board by rolling shutters: each row by its own rays at its own time."""
 
     def __init__(self, hand, readout_time):
         self.hand, self.readout_time = hand, readout_time

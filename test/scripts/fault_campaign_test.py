@@ -97,10 +97,11 @@ class CountsTest(unittest.TestCase):
 class SummaryTest(unittest.TestCase):
     def test_counts_frames_and_runs_apart_from_what_nothing_can_tell(self):
         misled = dict(faulted=40, faulted_valid=40, misleading=3, angle_misleading=1)
-        rows = [row("none", healthy=50, healthy_valid=49), row("dirt", **misled), row("dirt", faulted=40), row("baseline_8", **misled),
+        rows = [row("none", healthy=50, healthy_valid=46, healthy_uncertain=3), row("dirt", **misled), row("dirt", faulted=40), row("baseline_8", **misled),
                 row("dirt+baseline_2", **misled), {**row("snow", **misled), "source": "kitti_road"}]
         summary = faults.Campaign(rows).summary().replace("\n  ", " ")
-        self.assertIn("50 frames. 1 have no valid height, 0 a misleading one, and 0 a misleading angle.", summary)
+        self.assertIn("50 frames. On 3 the protection level is above the alert limit, so the height is not valid. On the other 47 there are 1 "
+                      "false alarms and 0 misleading heights. 0 angles are misleading.", summary)
         self.assertIn("200 frames in 5 runs. 12 are misleading, 6 of these by", summary)
         self.assertIn("The other 6 are in 2 runs.", summary)
         self.assertIn("3 of 160 frames are misleading, in 3 runs.", summary)
@@ -193,7 +194,7 @@ class ShortCampaignTest(unittest.TestCase):
             rows = self.fly("--first", 2, "--frames", 50, "--scenery", scenery, "--faults", names)
             self.assertEqual(sorted(rows), sorted(names.split(",")))
             self.assertEqual(rows["none"]["healthy_yaw_known"], rows["none"]["healthy"])
-            self.assertGreater(int(rows["fogged_right"]["faulted_yaw_known"]), 0, "by the left picture")
+            self.assertGreater(int(rows["fogged_right"]["faulted_yaw_known"]), 0, "by the left image")
             for name, row in rows.items():
                 self.assertEqual(row["source"], scenery)
                 self.assertEqual((row["yaw_misleading"], row["healthy_yaw_misleading"]), ("0", "0"), f"{name} {scenery}")

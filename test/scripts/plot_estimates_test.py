@@ -29,10 +29,16 @@ def widest_gap(picture):
     return np.diff(np.flatnonzero(line)).max()
 
 
+def with_limits(text, level):
+    """The estimates with a protection level and an alert limit of 0.15 m."""
+    header, *rows = text.splitlines()
+    return "\n".join([f"{header},height_protection_level_m,height_alert_limit_m", *(f"{row},{level},0.15" for row in rows)]) + "\n"
+
+
 class PlotEstimatesTest(unittest.TestCase):
-    def plot(self, name, text):
+    def plot(self, name, text, truth=True):
         (self.folder / f"{name}.csv").write_text(text)
-        result = run([SOURCE_DIR / "scripts/plot_estimates", "--truth", self.folder / "frames.csv",
+        result = run([SOURCE_DIR / "scripts/plot_estimates", *(["--truth", self.folder / "frames.csv"] if truth else []),
                       "--estimates", self.folder / f"{name}.csv", "--output", self.folder / f"{name}.png"])
         self.assertEqual(result.returncode, 0, result.stderr)
         return cv2.imread(str(self.folder / f"{name}.png"))
@@ -53,6 +59,18 @@ class PlotEstimatesTest(unittest.TestCase):
     def test_no_error_is_drawn_where_nothing_is_valid(self):
         self.assertLess(widest_gap(self.plot("all", estimates(valid=1, height_error=0.5))), 5)
         self.assertGreater(widest_gap(self.plot("gap", estimates(valid=1, height_error=0.5, gap=range(20, 30)))), 40)
+
+    def test_without_truth_the_estimates_are_drawn_with_how_far_they_may_be_off(self):
+        text = estimates(valid=1, height_error=0)
+        alone = self.plot("alone", with_limits(text, 0.05), truth=False)
+        self.assertEqual(alone.shape, self.plot("good", text).shape)
+        half, width = alone.shape[0] // 2, alone.shape[1] // 2
+        other = self.plot("other", with_limits(text, 0.1), truth=False)
+        self.assertTrue((alone[half:, :width] != other[half:, :width]).any(), "the protection level of the height")
+        np.testing.assert_array_equal(alone[:half], other[:half], "the estimates themselves")
+        np.testing.assert_array_equal(alone[half:, width + 40:], other[half:, width + 40:], "an angle has no level")
+        invalid = self.plot("invalid", with_limits(estimates(valid=0, height_error=0), 0.05), truth=False)
+        self.assertTrue((alone[half:, :width] != invalid[half:, :width]).any())
 
     def test_names_the_file_that_is_missing(self):
         result = run([SOURCE_DIR / "scripts/plot_estimates", "--truth", self.folder / "frames.csv",

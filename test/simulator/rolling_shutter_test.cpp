@@ -277,7 +277,7 @@ TEST(RollingShutter, BadNumbersAndWordsAreNamed) {
   EXPECT_EQ(refusalOf("image: {readout_time: .nan}"),
             "my.yaml: image/readout_time: nan is out of range, expected -0.5 to 0.5 s");
   EXPECT_EQ(refusalOf("image: {stamp_row: 3}"),
-            "my.yaml: image/stamp_row: 3 is out of range, expected -2 to 2 picture heights");
+            "my.yaml: image/stamp_row: 3 is out of range, expected -2 to 2 image heights");
   EXPECT_EQ(refusalOf("image: {row_direction: diagonal}"),
             "my.yaml: image/row_direction: 'diagonal' is not a choice, expected rows or columns");
   EXPECT_EQ(refusalOf("vibration: {pitch_deg: -1}"),

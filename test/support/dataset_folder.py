@@ -1,4 +1,4 @@
-"""A small dataset folder for tests of the programs."""
+"""Writes a small dataset folder for tests of the programs."""
 
 import cv2
 import numpy as np
@@ -26,7 +26,7 @@ def picture(seed):
 
 
 def write_dataset(folder, header=HEADER, rows=tuple(ROWS)):
-    """Two frames; left/a.png is picture(0), left/b.png picture(1), right/a.png picture(2), right/b.png picture(3)."""
+    """Writes two frames. left/a.png is picture(0), left/b.png picture(1), right/a.png picture(2), right/b.png picture(3)."""
     for number, side in enumerate(("left", "right")):
         (folder / side).mkdir(parents=True, exist_ok=True)
         (folder / f"{side}.yaml").write_text(

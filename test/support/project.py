@@ -1,4 +1,4 @@
-"""Where the project, its build and its built programs are."""
+"""Finds the project, its build and its built programs."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Small bags of stereo images for tests of the programs."""
+"""Writes small bags of stereo images for tests of the programs."""
 
 import numpy as np
 import rosbag
@@ -7,7 +7,7 @@ from sensor_msgs.msg import CameraInfo, Image
 
 WIDTH, HEIGHT, FOCAL_LENGTH, BASELINE = 160, 120, 150.0, 0.5
 
-# A calibration file of ROS: of such a camera, or of a wider picture.
+# A calibration file of ROS: of such a camera, or of a wider image.
 CALIBRATION_FILE = """image_width: {width}
 image_height: 120
 camera_name: {side}
@@ -20,7 +20,7 @@ projection_matrix: {{rows: 3, cols: 4, data: [150, 0, 80, {shift}, 0, 150, 60, 0
 
 
 def camera_info(right=False):
-    """An ideal, already rectified camera."""
+    """Returns an ideal camera whose images are rectified already."""
     info = CameraInfo(width=WIDTH, height=HEIGHT, distortion_model="plumb_bob", D=[0.0] * 5)
     info.K = [FOCAL_LENGTH, 0, WIDTH / 2, 0, FOCAL_LENGTH, HEIGHT / 2, 0, 0, 1]
     info.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]
@@ -30,7 +30,7 @@ def camera_info(right=False):
 
 
 def image(pixels, encoding="mono8"):
-    """An image message of a numpy array (rows, columns[, channels])."""
+    """Makes an image message of a numpy array (rows, columns[, channels])."""
     pixels = np.ascontiguousarray(pixels)
     message = Image(height=pixels.shape[0], width=pixels.shape[1], encoding=encoding)
     message.step = pixels.strides[0]
@@ -43,7 +43,7 @@ def noise(seed):
 
 
 def noise_frames(count=3, start=10.0, period=0.1):
-    """Frames of a camera that sees nothing sensible: enough for the chain to run and to find nothing."""
+    """Returns frames of a camera that sees nothing sensible: enough for the chain to run and to find nothing."""
     return [Frame(start + i * period, image(noise(2 * i)), image(noise(2 * i + 1))) for i in range(count)]
 
 
@@ -69,7 +69,7 @@ class Frame:
 
 
 def write_bag(path, frames, camera="/stereo", begin=1000):
-    """Frames are recorded in this order, from this second on, whatever their stamps are."""
+    """Writes frames in this order. They are recorded from this second on, whatever their stamps are."""
     with rosbag.Bag(str(path), "w") as bag:
         for number, frame in enumerate(frames):
             recorded = rospy.Time.from_sec(begin + 0.01 * number)

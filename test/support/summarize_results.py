@@ -17,7 +17,7 @@ LONGEST = 10  # test programs that are named with their time
 
 
 def read_cases(path):
-    """Test cases of one result file: outcome is passed, failed or skipped."""
+    """Reads the test cases of one result file. Their outcome is passed, failed or skipped."""
     try:
         root = ElementTree.parse(str(path)).getroot()
     except ElementTree.ParseError as error:
@@ -39,19 +39,19 @@ def read_case(element, source):
 
 
 def read_results(build):
-    """Cases of all result files. Not rostest's own files: they repeat, by name only, what the rosunit-* files say."""
+    """Reads the cases of all result files but rostest's own, which repeat, by name only, what the rosunit-* files say."""
     return [case for path in sorted((build / "test_results").rglob("*.xml"))
             if not path.name.startswith("rostest-") for case in read_cases(path)]
 
 
 def failed_in_ctest(build):
-    """Names of the tests that ctest calls failed."""
+    """Returns the names of the tests that ctest calls failed."""
     log = build / "Testing" / "Temporary" / "LastTestsFailed.log"
     return [line.split(":", 1)[1].strip() for line in log.read_text().splitlines()] if log.is_file() else []
 
 
 def result_files(build, ctest_name):
-    """Result files of a test that catkin called _ctest_<project>_<type>_<name>."""
+    """Returns the result files of a test that catkin called _ctest_<project>_<type>_<name>."""
     kind, name = re.match(r"_ctest_.*?_(gtest|rostest|nosetests|roslaunch-check)_(.*)", ctest_name).groups()
     files = list((build / "test_results").rglob(f"{kind}[-_]{name}.xml"))
     if kind == "rostest":
@@ -61,7 +61,7 @@ def result_files(build, ctest_name):
 
 
 def unexplained_failures(build):
-    """Failed ctest tests whose results show no failure, and what rostest says besides its tests' own results."""
+    """Returns failed tests whose results show no failure, and what rostest says besides its tests' own results."""
     failures = []
     for name in failed_in_ctest(build):
         cases = [(path, case) for path in result_files(build, name) for case in read_cases(path)
@@ -73,7 +73,7 @@ def unexplained_failures(build):
 
 
 def longest(build):
-    """Names and seconds of the test programs that took longest, as ctest's log has them."""
+    """Returns names and seconds of the test programs that took longest, by ctest's log."""
     log = build / "Testing" / "Temporary" / "LastTest.log"
     text = log.read_text(errors="replace") if log.is_file() else ""
     times = re.findall(r"^\d+/\d+ Test: (\S+)$.*?^Test time = +([0-9.]+) sec$", text, re.MULTILINE | re.DOTALL)

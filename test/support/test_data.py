@@ -1,4 +1,4 @@
-"""The datasets that tests use, and where they are."""
+"""Finds the datasets that tests use."""
 
 import os
 import unittest
@@ -8,12 +8,12 @@ from project import SOURCE_DIR
 
 
 def data_folder():
-    """Environment variable UAV_LANDING_DATA, or shared/data beside the project."""
+    """Returns the folder of UAV_LANDING_DATA, or else shared/data beside the project."""
     return Path(os.environ.get("UAV_LANDING_DATA") or SOURCE_DIR.parent / "shared" / "data")
 
 
 def dataset(name):
-    """Folder of a dataset ("lab"); skips the calling test, saying so, when it is not on this machine."""
+    """Returns the folder of a dataset ("lab"). If it is not on this machine, the calling test is skipped and says so."""
     folder = data_folder() / name
     if not folder.is_dir():
         raise unittest.SkipTest(f"no dataset {folder} (set UAV_LANDING_DATA)")

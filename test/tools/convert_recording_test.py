@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import rosbag
 import rospy
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from project import SOURCE_DIR, rosrun
 from stereo_bag import CALIBRATION_FILE, HEIGHT, WIDTH, image, noise, noise_frames, write_bag
@@ -178,7 +178,7 @@ class ConvertRecordingTest(unittest.TestCase):
         self.assertEqual(messages["/stereo/right/camera_info"][0].P[3], -75)
 
     def test_a_video_that_ends_early_is_told_unless_its_header_is_about_right(self):
-        for count, said in ((98, []), (97, ["ends after 97 pictures, 100 by its header: the rest is damaged or missing"])):
+        for count, said in ((98, []), (97, ["ends after 97 images, 100 by its header: the rest is damaged or missing"])):
             left_out, video = LeftOut(), self.folder / f"{count}.avi"
             reader = Videos([video], [], left_out)
             capture = mock.Mock()
@@ -193,7 +193,7 @@ class ConvertRecordingTest(unittest.TestCase):
         good, large = self.video("l.avi", 2), self.video("large.avi", 2, (320, 240))
         self.refused("none.avi: no such video", "videos", good, self.folder / "none.avi", *self.calibrations())
         self.refused("320x240 pixels, its calibration is for 160x120", "videos", good, large, *self.calibrations())
-        self.refused("l.avi: given twice; if it has both pictures in one, give it once, with --side-by-side", "videos", good, good,
+        self.refused("l.avi: given twice; if it has both images in one, give it once, with --side-by-side", "videos", good, good,
                      *self.calibrations())
         self.refused("l.avi: each half, side-by-side, 80x120 pixels, its calibration is for 160x120", "videos", good,
                      "--side-by-side", *self.calibrations())
@@ -309,7 +309,7 @@ class ConvertRecordingTest(unittest.TestCase):
             self.assertEqual((result.returncode, "Traceback" in result.stderr), (1, False), result.stderr)
             return result.stderr
         files = self.opencv_files(1000)
-        self.assertIn("do not say how large the pictures are: give --size WIDTHxHEIGHT", refusal(*files))
+        self.assertIn("do not say how large the images are: give --size WIDTHxHEIGHT", refusal(*files))
         self.assertIn("T is 300.2 long, in the unit of the board's squares: say which gives the baseline: --unit m "
                       "(300.2 m), --unit cm (3.002 m), --unit mm (0.3002 m)", refusal(*files, "--size", "160x120"))
         self.assertIn("no R, the pose between the cameras: expected one of R, rotation",
@@ -379,8 +379,49 @@ class ConvertRecordingTest(unittest.TestCase):
                          [m.header.stamp for m in messages["/stereo/right/image_raw"]])
         self.assertEqual((len(infos), infos[0].K[2]), (3, 80))
 
+    def late_bag(self, seconds):
+        """A bag whose right camera stamps its messages late by a constant, with stamps of the left one from 10.0 s on."""
+        path = self.folder / "late.bag"
+        write_bag(self.folder / "plain.bag", noise_frames(4))
+        with rosbag.Bag(str(self.folder / "plain.bag")) as bag, rosbag.Bag(str(path), "w") as result:
+            for topic, message, time in bag.read_messages():
+                if "/right/" in topic:
+                    message.header.stamp += rospy.Duration.from_sec(seconds)
+                result.write(topic, message, time)
+        return path
+
+    def test_stamps_of_a_late_right_camera_are_made_earlier(self):
+        topics = ("--left", "/stereo/left/image_raw", "--right", "/stereo/right/image_raw")
+        for seconds in (0.015, -0.02):
+            for calibrations in ([], self.calibrations()):
+                with self.subTest(seconds=seconds, files=bool(calibrations)):
+                    messages = self.converted("bag", self.late_bag(seconds), *topics, *calibrations, f"--right-delay={seconds}")
+                    for topic, found in messages.items():
+                        self.assertEqual([m.header.stamp.to_nsec() for m in found], [10 ** 10 + 10 ** 8 * i for i in range(4)], topic)
+                    self.assertIn("4 pairs, ", rosrun("process_bag", "--input", self.output).stdout)
+
+    def test_a_message_without_a_stamp_has_none_after_a_delay_was_taken_out(self):
+        bag = self.late_bag(0)
+        with rosbag.Bag(str(bag), "a") as result:
+            result.write("/stereo/right/camera_info", CameraInfo(), rospy.Time(11))
+        messages = self.converted("bag", bag, "--left", "/stereo/left/image_raw", "--right", "/stereo/right/image_raw",
+                                  "--right-delay", "0.015")
+        self.assertIn(rospy.Time(0), [m.header.stamp for m in messages["/stereo/right/camera_info"]])
+
+    def test_a_delay_that_cannot_be_is_refused(self):
+        topics = ("--left", "/stereo/left/image_raw", "--right", "/stereo/right/image_raw")
+        self.refused("/stereo/right/image_raw: the stamp 10.015000 s cannot be made earlier by 11 s: give a smaller --right-delay",
+                     "bag", self.late_bag(0.015), *topics, "--right-delay", "11")
+        for text in ("nan", "inf", "86401", "-86401", "soon"):
+            result = self.convert("bag", self.late_bag(0.015), *topics, f"--right-delay={text}")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(f"'{text}' is not a number of seconds from -86400 to 86400", result.stderr)
+        result = self.convert("bag", self.late_bag(0), "--side-by-side", "/usb_cam/image_raw", "--right-delay", "0.1")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--right-delay is for two topics: both images of --side-by-side have the same stamp", result.stderr)
+
     def compressed_bag(self, broken, count=12, suffix=".jpg", times=1):
-        """Pictures of two cameras; broken: {number: data of the left one}; times: of 16 bits when more than 1."""
+        """Images of two cameras; broken: {number: data of the left one}; times: of 16 bits when more than 1."""
         path = self.folder / "jpeg.bag"
         with rosbag.Bag(str(path), "w") as result:
             for number, frame in enumerate(noise_frames(count)):
@@ -396,7 +437,7 @@ class ConvertRecordingTest(unittest.TestCase):
         return path
 
     def test_broken_pictures_of_many_are_left_out_named_and_counted(self):
-        bag = self.compressed_bag({3: lambda data: b"", 5: lambda data: data[:len(data) // 2], 8: lambda data: b"no picture"})
+        bag = self.compressed_bag({3: lambda data: b"", 5: lambda data: data[:len(data) // 2], 8: lambda data: b"no image"})
         messages = self.converted("bag", bag, "--left", "/cam/left/image_raw/compressed", "--right", "/cam/right/image_raw/compressed",
                                   *self.calibrations())
         numbers = [round(10 * m.header.stamp.to_sec()) - 100 for m in messages["/stereo/left/image_raw"]]
@@ -405,7 +446,7 @@ class ConvertRecordingTest(unittest.TestCase):
         self.assertEqual(self.said, "".join(
             f"convert_recording: left out: /cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at {stamp} "
             "s cannot be decoded to grey or colour of 8 or 16 bits\n" for stamp in ("10.300000", "10.500000", "10.800000"))
-            + "convert_recording: 3 broken pictures were left out\n")
+            + "convert_recording: 3 broken images were left out\n")
         result = rosrun("process_bag", "--input", self.output)
         self.assertEqual(result.returncode, 0)
         self.assertIn("9 pairs, ", result.stdout)
@@ -416,7 +457,7 @@ class ConvertRecordingTest(unittest.TestCase):
                                   *self.calibrations())
         found = messages["/stereo/left/image_raw"]
         self.assertEqual((len(found), {m.encoding for m in found}), (10, {"mono16"}))
-        self.assertIn("convert_recording: 2 broken pictures were left out\n", self.said)
+        self.assertIn("convert_recording: 2 broken images were left out\n", self.said)
 
     def test_jpegs_without_an_end_marker_are_used_unless_they_are_cut(self):
         def cut(share):
@@ -466,10 +507,10 @@ class ConvertRecordingTest(unittest.TestCase):
         messages = self.converted("euroc", self.folder)
         self.assertEqual([len(found) for found in messages.values()], 4 * [2])
         self.assertEqual(self.said, f"convert_recording: left out: {broken}: no such image, or damaged\n"
-                                    "convert_recording: 1 broken picture was left out\n")
+                                    "convert_recording: 1 broken image was left out\n")
 
     def joined_bag(self, axis, encoding, compressed=False):
-        """Both pictures in one, and the expected halves."""
+        """Both images in one, and the expected halves."""
         path, expected = self.folder / "joined.bag", {"left": [], "right": []}
         with rosbag.Bag(str(path), "w") as result:
             for number, frame in enumerate(noise_frames(4)):
@@ -512,9 +553,9 @@ class ConvertRecordingTest(unittest.TestCase):
     def test_what_is_wrong_with_halves_is_named(self):
         bag, _ = self.joined_bag(1, "mono8")
         both = ("bag", bag, "--left", "/usb_cam/image_raw", "--right", "/usb_cam/image_raw")
-        self.refused("left and right must be different topics; if /usb_cam/image_raw has both pictures in one: --side-by-side "
+        self.refused("left and right must be different topics; if /usb_cam/image_raw has both images in one: --side-by-side "
                      "/usb_cam/image_raw", *both, *self.calibrations())
-        self.refused("/usb_cam/image_raw has both pictures: give the calibration of each half, --left-calibration or --left-info",
+        self.refused("/usb_cam/image_raw has both images: give the calibration of each half, --left-calibration or --left-info",
                      "bag", bag, "--side-by-side", "/usb_cam/image_raw")
         self.refused("/usb_cam/image_raw: each half (top-and-bottom) has 320x60 pixels, the left calibration is for 160x120: "
                      "calibrate with the halves", "bag", bag, "--top-and-bottom", "/usb_cam/image_raw", *self.calibrations())
@@ -528,7 +569,7 @@ class ConvertRecordingTest(unittest.TestCase):
                 path = self.folder / "odd.bag"
                 with rosbag.Bag(str(path), "w") as result:
                     result.write("/usb_cam/image_raw", image(pixels, encoding))
-                self.refused(f"a picture of {size} pixels {encoding} cannot be cut in two", "bag", path, option, "/usb_cam/image_raw",
+                self.refused(f"an image of {size} pixels {encoding} cannot be cut in two", "bag", path, option, "/usb_cam/image_raw",
                              *self.calibrations())
 
     def test_one_video_with_both_pictures(self):
@@ -572,7 +613,7 @@ class ConvertRecordingTest(unittest.TestCase):
                     np.testing.assert_array_equal(pixels[-1], steady[-2])
                 self.output.unlink()
         bayer = self.interlaced_bag("bayer_rggb8", ramp.astype(np.uint8))
-        self.refused("bayer_rggb8: only pictures with the same colours in all rows are deinterlaced", "bag", bayer, "--left",
+        self.refused("bayer_rggb8: only images with the same colours in all rows are deinterlaced", "bag", bayer, "--left",
                      "/cam/left/image_raw", "--right", "/cam/right/image_raw", "--deinterlace", *self.calibrations())
 
     def test_bag_mistakes_are_named(self):
@@ -581,7 +622,7 @@ class ConvertRecordingTest(unittest.TestCase):
                      "--left", "/cam0/image/compressed", "--right", "/cam2/image")
         self.refused("must be different topics", "bag", bag, "--left", "/cam0/image", "--right", "/cam0/image")
         with rosbag.Bag(str(bag), "a") as result:
-            result.write("/cam3/image/compressed", CompressedImage(format="h264", data=b"no picture"))
+            result.write("/cam3/image/compressed", CompressedImage(format="h264", data=b"no image"))
             result.write("/cam4/image/compressed", CompressedImage(format="png"))
         self.refused("/cam3/image/compressed: an image with format 'h264'", "bag", bag, "--left",
                      "/cam0/image/compressed", "--right", "/cam3/image/compressed", "--right-info", "/cam1/camera_info")

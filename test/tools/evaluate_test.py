@@ -15,7 +15,7 @@ from project import SOURCE_DIR, run
 
 EVALUATE = SOURCE_DIR / "src/tools/evaluate"
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
-PAGE_WIDTH = 992  # of the text and the pictures, px: 62 em
+PAGE_WIDTH = 992  # of the text and the images, px: 62 em
 STAMPS = [0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0]  # scored: the last four
 
 

@@ -76,6 +76,33 @@ TEST_F(FaultsTest, AreFlownWithRigsThatTheChainTakes) {
   EXPECT_EQ(flown().rfind("refused: right P[7]", 0), 0u) << flown();
 }
 
+TEST_F(FaultsTest, TheChainIsFlownByWhatAFaultTellsIt) {
+  // The right images are uniform. The second pair is 50 ms late by its stamp.
+  flight_.settled = 0;
+  cv::RNG random(1);
+  for (Flight::Frame& frame : flight_.frames) random.fill(frame.left, cv::RNG::UNIFORM, 0, 255);
+  Fault late = fault("none");
+  late.spoil = [](FaultRun&, int frame, Delivery& pair) { pair.time = frame == 0 ? 1.0 : 0.95; };
+  const auto seen = [&](const Fault& fault) {
+    std::vector<std::string> pairs;
+    const FaultObserver observe = [&](double, const LandingResult& said, double, bool) {
+      pairs.push_back(said.failure.detail);
+    };
+    flyWithFaults(flight_, {&fault}, 0, 0, 1, Parameters(), observe);
+    return pairs;
+  };
+  const std::vector<std::string> usual = seen(late);
+  ASSERT_EQ(usual.size(), 1u) << "0.05 s is less than max_late";
+  EXPECT_EQ(usual[0].rfind("right image has no contrast", 0), 0u) << usual[0];
+  late.tell = [](Parameters& told) {
+    told.rig.upside_down = true;
+    told.rectify.max_late = 0.01;
+  };
+  const std::vector<std::string> told = seen(late);
+  ASSERT_EQ(told.size(), 2u) << "0.05 s is more than max_late, so the clock was set back";
+  EXPECT_EQ(told[0].rfind("left image has no contrast", 0), 0u) << told[0];
+}
+
 TEST_F(FaultsTest, WhatBuildsOrPaintsASceneIsForTheSimulatorAlone) {
   for (const Fault& fault : allFaults()) {
     if (fault.build || fault.disturb) {

@@ -73,7 +73,7 @@ class MeasureRunwaysTest(unittest.TestCase):
         (self.folder / "vanishing_points.csv").write_text(f"{HEADER}\nb.png,800,320,180,320,100\n")
         result = self.measure()
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"line 2, column image: .*b.png is no picture")
+        self.assertRegex(result.stderr, r"line 2, column image: .*b.png is no image")
         image, _ = photograph()
         self.write(image, "", 100)
         result = self.measure()

@@ -297,27 +297,27 @@ TEST(PairCount, TellsEachCauseByWhatShowsIt) {
     EXPECT_NE(told.find("likely cause: " + cause), std::string::npos) << told;
   };
   hasCause(times(10, Reason::kNegativeDisparity), "left and right images are swapped");
-  hasCause(times(10, Reason::kInconsistent, "repeated_image"), "pictures of one camera come twice");
-  hasCause(times(10, Reason::kUniformImage), "the pictures are black, saturated or uniform");
+  hasCause(times(10, Reason::kInconsistent, "repeated_image"), "images of one camera come twice");
+  hasCause(times(10, Reason::kUniformImage), "the images are black, saturated or uniform");
   hasCause(times(10, Reason::kInconsistent, "row_agreement"),
            "the rows of left and right images do not belong together");
   hasCause(times(10, Reason::kInconsistent, "sink_rate"), "heights change otherwise than the motion says");
-  hasCause(times(10, Reason::kNoPlane), "the pictures show hardly any texture");
+  hasCause(times(10, Reason::kNoPlane), "the images show hardly any texture");
   hasCause(times(10, Reason::kNoMotion), "the cameras stand still");
   hasCause(times(10, Reason::kTransformMissing),
            "most pairs are transform_missing: see docs/troubleshooting.md");
   std::vector<std::pair<Reason, std::string>> blinking;
   for (int i = 0; i < 10; ++i)
     blinking.push_back({i % 2 == 0 ? Reason::kUniformImage : Reason::kTooFewMatches, ""});
-  hasCause(blinking, "every second picture is black or uniform");
+  hasCause(blinking, "every second image is black or uniform");
 }
 
 TEST(PairCount, TellsCamerasThatStandStillFromOneThatHangs) {
   const auto pairs = times(10, Reason::kInconsistent, "repeated_image");
-  EXPECT_NE(toldOf(pairs, 1).find("likely cause: pictures of one camera come twice"), std::string::npos);
+  EXPECT_NE(toldOf(pairs, 1).find("likely cause: images of one camera come twice"), std::string::npos);
   const std::string told = toldOf(pairs, 2);
-  EXPECT_NE(told.find("likely cause: the pictures of both cameras come again, bit by bit: the cameras stand "
-                      "still and have no noise (a simulator), or the driver sends no new pictures"),
+  EXPECT_NE(told.find("likely cause: the images of both cameras come again, bit by bit: the cameras stand "
+                      "still and have no noise (a simulator), or the driver sends no new images"),
             std::string::npos)
       << told;
 }

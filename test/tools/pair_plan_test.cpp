@@ -228,7 +228,7 @@ TEST_F(PairPlanTest, NoSkewIsAdvisedThatTheConfigFileMayNotHave) {
   const std::string expected =
       "images on /left/image and /right/image are 120 ms apart, more than max_skew can be, 100 ms: the "
       "clocks "
-      "of the cameras differ, the stamps of one of them are offset, or they take pictures in turn: stamp "
+      "of the cameras differ, the stamps of one of them are offset, or they take images in turn: stamp "
       "both "
       "by one clock, and trigger them together";
   EXPECT_EQ(plan().complaint(), expected);

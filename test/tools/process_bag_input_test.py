@@ -392,7 +392,7 @@ class CameraInfoTest(ProcessBagTest):
         self.assert_refused(self.process_with(change), "camera_info", "right", "P[3]")
 
     def process_scaled(self, factor, *options):
-        """With the K of a picture that is larger by a factor."""
+        """With the K of an image that is larger by a factor."""
         frames = noise_frames()
         for frame in frames:
             for info in (frame.left_info, frame.right_info):
@@ -401,8 +401,8 @@ class CameraInfoTest(ProcessBagTest):
 
     def test_calibration_of_another_picture_size_is_refused(self):
         self.assert_refused(self.process_scaled(2), f"{self.bag}: no usable image pair: camera_info: left K[2]: 160, expected "
-                            "48 to 112 in a picture 160 px wide: is this the calibration of another picture size? If the "
-                            "picture is cropped off the middle, raise rig/max_principal_point_offset\n")
+                            "48 to 112 in an image 160 px wide: is this the calibration of another image size? If the "
+                            "image is cropped off the middle, raise rig/max_principal_point_offset\n")
 
     def test_picture_cropped_off_the_middle_is_let_through_by_the_config(self):
         config = self.folder / "config.yaml"
@@ -414,8 +414,8 @@ class CameraInfoTest(ProcessBagTest):
         result = self.process_scaled(1.25)
         self.assertEqual(result.returncode, 0)
         self.assertEqual(result.stderr, "".join(
-            f"process_bag: camera_info: {side} K[2]: 100, 12.5 % of the picture's width off its middle: is this the "
-            "calibration of another picture size?\n" for side in ("left", "right")))
+            f"process_bag: camera_info: {side} K[2]: 100, 12.5 % of the image's width off its middle: is this the "
+            "calibration of another image size?\n" for side in ("left", "right")))
 
     def process_with_baseline(self, metres):
         def change(frame):

@@ -1,4 +1,4 @@
-"""Rigs and pictures that are not the usual ones: process_bag on one approach, told in other ways."""
+"""Rigs and images that are not the usual ones: process_bag on one approach, told in other ways."""
 
 import csv
 import shutil
@@ -107,7 +107,7 @@ class ProcessBagRigTest(unittest.TestCase):
     def test_rows_of_a_rig_upside_down_have_their_times(self):
         self.bag, _ = self.simulated("rolling", image=", readout_time: 0.03, stamp_row: 0")
         upright = self.estimates(self.bag, "readout_time: 0.03, stamp_row: 0")
-        # Its pictures come the other way up: the last row is the one that is exposed first.
+        # Its images come the other way up: the last row is the one that is exposed first.
         given = "upside_down: true, readout_time: -0.03, stamp_row: "
         hanging = self.changed(self.turn_over)
         for row, usual in zip(self.estimates(hanging, given + "1"), upright):
@@ -147,7 +147,7 @@ class ProcessBagRigTest(unittest.TestCase):
                 image = messages[f"{side}/image_raw"]
                 put(image, pixels(image).astype(np.uint16) * 256, "mono16")
         self.estimates(self.changed(change), "bits: 12")
-        self.assertEqual(self.said.count("rig/bits: 12: more than 1 % of a picture's values are above 4095"), 1, self.said)
+        self.assertEqual(self.said.count("rig/bits: 12: more than 1 % of an image's values are above 4095"), 1, self.said)
 
     def test_fisheye_lenses(self):
         bag, truth = self.simulated("fisheye", ", lens: equidistant, k1: -0.02, k2: 0.01, k3: -0.004, k4: 0.0005")

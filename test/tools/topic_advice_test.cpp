@@ -44,12 +44,12 @@ TEST(TopicAdvice, LeavesATopicThatCannotBeGuessedToBeFilledIn) {
 }
 
 TEST(TopicAdvice, TakesASingleImageTopicForBothPictures) {
-  EXPECT_EQ(
-      topicAdvice({{"/usb_cam/image_raw", kImage}}, "a.bag"),
-      "\nIf /usb_cam/image_raw has both pictures side by side, this makes a bag that can be read:\n  rosrun "
-      "uav_landing convert_recording bag a.bag --side-by-side /usb_cam/image_raw --left-calibration "
-      "left.yaml "
-      "--right-calibration right.yaml --output a_stereo.bag");
+  EXPECT_EQ(topicAdvice({{"/usb_cam/image_raw", kImage}}, "a.bag"),
+            "\nIf /usb_cam/image_raw has the images of both cameras side by side, this makes a bag that can "
+            "be read:\n  rosrun "
+            "uav_landing convert_recording bag a.bag --side-by-side /usb_cam/image_raw --left-calibration "
+            "left.yaml "
+            "--right-calibration right.yaml --output a_stereo.bag");
 }
 
 TEST(TopicAdvice, SaysNothingWhereThereAreNoImages) {

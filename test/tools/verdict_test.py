@@ -26,7 +26,7 @@ def blurred(side, pictures, number):
 
 
 def moved(matrix):
-    """The right pictures are those of a camera that has moved since the calibration."""
+    """The right images are those of a camera that has moved since the calibration."""
     def spoiled(side, pictures, number):
         pixels = pictures[side][number]
         if side == "left":
@@ -40,7 +40,7 @@ ABOUT_ITS_AXIS = cv2.getRotationMatrix2D((240, 180), 2, 1)
 CAUSES = {
     "swapped": (swapped, "left and right images are swapped"),
     "late": (late, "the images of a pair were not taken at the same time"),
-    "blurred": (blurred, "the pictures show hardly any texture or are blurred"),
+    "blurred": (blurred, "the images show hardly any texture or are blurred"),
     "sideways": (moved(SIDEWAYS), "a camera has turned sideways since the calibration: calibrate again"),
     "about its axis": (moved(ABOUT_ITS_AXIS), "the rows of left and right images do not belong together"),
 }

@@ -119,8 +119,10 @@ struct KalmanHeightParameters {
     v.number("alert_limit_relative", alert_limit_relative, 0.0, 1.0, "of height",
              "the alert limit as a share of the height, see alert_limit");
     v.number("unwatched_scale_error", unwatched_scale_error, 0.0, 0.5, "of height",
-             "largest error of a scale common to all heights, such as a wrong baseline. No test can "
-             "see it, so the protection level assumes it. The variance has rig/baseline_stddev instead");
+             "largest error by a factor that all heights have in common, such as that of a wrong baseline. "
+             "Heights, motion and the size of the ground are then wrong by the same factor, so a test that "
+             "compares them with each other does not find it. The protection level allows for it by this "
+             "share of the height, and the variance by rig/baseline_stddev");
     v.number(
         "runway_height_limit", runway_height_limit, 0.0, 1.0, "of height",
         "the height above the runway is not known when its protection level exceeds this share of it and "

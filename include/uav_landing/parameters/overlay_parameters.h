@@ -10,7 +10,7 @@ struct OverlayParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.number("scale", scale, 0, 4, "", "picture enlarged by this factor; 0: at least 640 pixels wide");
+    v.number("scale", scale, 0, 4, "", "the overlay is enlarged by this factor; 0: at least 640 pixels wide");
   }
 };
 

@@ -36,11 +36,11 @@ struct SimulatedImageParameters {
     v.number("noise", noise, 0.0, 50.0, "grey levels", "1 sigma of the sensor's noise");
     v.number("exposure_time", exposure_time, 0.0, 0.1, "s",
              "motion blur over this time around the stamp; 0: none");
-    v.number("exposure_samples", exposure_samples, 1, 64, "", "pictures averaged over the exposure time");
+    v.number("exposure_samples", exposure_samples, 1, 64, "", "images averaged over the exposure time");
     v.number("readout_time", readout_time, -0.5, 0.5, "s",
              "of a rolling shutter, from the top row to the bottom row; negative: from bottom to top; 0: all "
              "rows at once");
-    v.number("stamp_row", stamp_row, -2.0, 2.0, "picture heights",
+    v.number("stamp_row", stamp_row, -2.0, 2.0, "image heights",
              "row that is in the middle of its exposure at the stamp; 0: top, 1: bottom");
     v.choice("row_direction", row_direction, {"rows", "columns"},
              "what is exposed one after the other; columns: from left to right");
@@ -103,7 +103,7 @@ struct SimulatedRigParameters {
     v.number("stretch", stretch, -0.5, 0.5, "of the baseline",
              "by which the real baseline is longer than the calibration says");
     v.number("lens_rows", lens_rows, -10.0, 10.0, "px",
-             "by which the right camera's picture lies lower than the calibration of its lens says");
+             "by which the right camera's image lies lower than the calibration of its lens says");
     v.number("lens_tilt_deg", lens_tilt_deg, -2.0, 2.0, "deg",
              "by which its rows are inclined, and its columns are not, without the calibration knowing");
   }

@@ -162,21 +162,21 @@ struct SimulatedOwnFrameParameters {
 
   template <class Visitor>
   void visit(Visitor&& v) {
-    v.number("nose_height", nose_height, 0.0, 1.0, "of the picture's height",
-             "the nose covers the picture up to this; 0: no nose");
-    v.number("nose_width", nose_width, 0.01, 3.0, "of the picture's width", "of the nose at the bottom");
-    v.number("nose_left", nose_left, -1.0, 2.0, "of the picture's width",
-             "middle of the nose in the left camera's picture");
-    v.number("nose_right", nose_right, -1.0, 2.0, "of the picture's width", "and in the right camera's");
+    v.number("nose_height", nose_height, 0.0, 1.0, "of the image's height",
+             "the nose covers the image up to this; 0: no nose");
+    v.number("nose_width", nose_width, 0.01, 3.0, "of the image's width", "of the nose at the bottom");
+    v.number("nose_left", nose_left, -1.0, 2.0, "of the image's width",
+             "middle of the nose in the left camera's image");
+    v.number("nose_right", nose_right, -1.0, 2.0, "of the image's width", "and in the right camera's");
     v.number("nose_brightness", nose_brightness, 0.0, 255.0, "grey levels",
              "of the nose; it is brighter along its middle");
-    v.number("post_width", post_width, 0.0, 1.0, "of the picture's width",
+    v.number("post_width", post_width, 0.0, 1.0, "of the image's width",
              "thickness of the window post; 0: none");
-    v.number("post_left", post_left, -1.0, 2.0, "of the picture's width",
-             "middle of the post in the middle row of the left camera's picture");
-    v.number("post_right", post_right, -1.0, 2.0, "of the picture's width", "and of the right camera's");
+    v.number("post_left", post_left, -1.0, 2.0, "of the image's width",
+             "middle of the post in the middle row of the left camera's image");
+    v.number("post_right", post_right, -1.0, 2.0, "of the image's width", "and of the right camera's");
     v.number("post_tilt_deg", post_tilt_deg, -60.0, 60.0, "deg",
-             "of the post's upper end to the right, in the right camera's picture to the left");
+             "of the post's upper end to the right, in the right camera's image to the left");
     v.number("post_brightness", post_brightness, 0.0, 255.0, "grey levels", "of the post");
   }
 };

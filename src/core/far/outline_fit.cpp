@@ -328,10 +328,10 @@ bool isUsable(const Corners& corners) {
 
 Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
                                    const OutlineLook& look) {
-  if (!isUsable(start)) return tl::make_unexpected(noOutline("the runway is too small in the picture"));
+  if (!isUsable(start)) return tl::make_unexpected(noOutline("the runway is too small in the image"));
   const Model model(start, look);
   const std::vector<Pixel> pixels = pixelsAround(image, mask, start, model);
-  if (pixels.size() < 3 * kCount) return tl::make_unexpected(noOutline("the runway is not in the picture"));
+  if (pixels.size() < 3 * kCount) return tl::make_unexpected(noOutline("the runway is not in the image"));
   Solver solver(model, pixels, look);
   if (!solver.run()) return tl::make_unexpected(noOutline("no outline where the runway is expected"));
   const Vector& p = solver.parameters();

@@ -30,7 +30,7 @@ Eigen::Vector2d middleOf(const Corners& corners) {
 
 Failure SightSearch::begin(const SightFit& fit, const cv::Mat& left, const KnownGround& ground) {
   *this = {};
-  failure_ = noRunway("no outline of a runway in the picture");
+  failure_ = noRunway("no outline of a runway in the image");
   for (const OutlineCandidate& candidate : searchOutlines(left, fit.model().left_mask, fit.region(ground))) {
     if (!fit.isPlausible(candidate.corners, ground)) continue;
     if (!running()) middle_ = middleOf(candidate.corners);

@@ -10,7 +10,7 @@ namespace uav_landing {
 namespace {
 
 constexpr double kWarnedShare = 0.5;  // share of the largest offset from which on it warns
-constexpr const char* kSizeQuestion = "is this the calibration of another picture size?";
+constexpr const char* kSizeQuestion = "is this the calibration of another image size?";
 constexpr const char* kLeft = "left ";
 constexpr const char* kRight = "right ";
 
@@ -52,7 +52,7 @@ void warnOfPrincipalPoint(const char* camera, const CameraCalibration& calibrati
   const Coordinate& farther = y.offset() > x.offset() ? y : x;
   if (farther.offset() < kWarnedShare * limits.max_principal_point_offset) return;
   warnings.push_back(text(camera, farther.field, ": ", farther.value, ", ", rounded(100 * farther.offset()),
-                          " % of the picture's ", farther.side, " off its middle: ", kSizeQuestion));
+                          " % of the image's ", farther.side, " off its middle: ", kSizeQuestion));
 }
 
 }  // namespace
@@ -64,8 +64,8 @@ Failure checkPrincipalPoint(const CameraCalibration& calibration, const RigParam
       return {
           Reason::kInputInvalid,
           text(c.field, ": ", c.value, ", expected ", c.middle() - share * c.size, " to ",
-               c.middle() + share * c.size, " in a picture ", c.size, " px ", c.extent, ": ", kSizeQuestion,
-               " If the picture is cropped off the middle, raise rig/max_principal_point_offset")};
+               c.middle() + share * c.size, " in an image ", c.size, " px ", c.extent, ": ", kSizeQuestion,
+               " If the image is cropped off the middle, raise rig/max_principal_point_offset")};
   return {};
 }
 

@@ -113,7 +113,7 @@ Failure ReadoutCheck::follow(double stamp) {
   if (longest_ <= (kRounding + kJitter / periods) * period) return {};
   return {Reason::kInputInvalid,
           text("rig/readout_time: ", longest_, " s is longer than the ", rounded(period),
-               " s between pictures, expected at most that; give it in seconds, as in docs/calibration.md")};
+               " s between images, expected at most that; give it in seconds, as in docs/calibration.md")};
 }
 
 }  // namespace uav_landing

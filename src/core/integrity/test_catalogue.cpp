@@ -47,10 +47,10 @@ std::string integrityTestPage() {
          "CSV column\n"
          "`failed_tests` have them in this order. A test fails when the squared normalised difference "
          "exceeds the limit.\n"
-         "Noise alone exceeds *chi-square* with the probability `false_alarm_rate`. Steps are those of the\n"
-         "[landing estimate](kalman_height.md#the-steps-of-a-pair). [Integrity](integrity.md) says what the "
+         "Noise alone exceeds *chi-square* with the probability `false_alarm_rate`. Phases are those of the\n"
+         "[landing estimate](kalman_height.md#the-phases-of-a-pair). [Integrity](integrity.md) says what the "
          "tests are worth.\n\n"
-         "| test | step | compares | unit | limit | when it fails |\n|---|---|---|---|---|---|\n";
+         "| test | phase | compares | unit | limit | when it fails |\n|---|---|---|---|---|---|\n";
   for (const TestDescription& described : kTestCatalogue)
     out << "| `" << described.name << "` | " << stepOf(described) << " | " << described.compares << " | "
         << described.unit << " | " << limitOf(described) << " | " << described.consequence << " |\n";

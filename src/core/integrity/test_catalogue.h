@@ -29,8 +29,8 @@ struct TestLimit {
 };
 
 /// All tests of integrity, in the order in which they are reported. A line has the name in the code, the name
-/// for people, the step, the consequence, the limit, the unit, what is compared, and the consequence in
-/// words. A new test is a line here and a call in its step. The enum, the messages, the diagnostics and
+/// for people, the phase, the consequence, the limit, the unit, what is compared, and the consequence in
+/// words. A new test is a line here and a call in its phase. The enum, the messages, the diagnostics and
 /// docs/integrity_tests.md are made from these lines.
 // clang-format off
 #define UAV_LANDING_INTEGRITY_TESTS(TEST)                                                                              \

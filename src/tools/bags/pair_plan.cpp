@@ -206,9 +206,8 @@ std::string PairPlan::complaint() const {
       "images on " + left.topic + " and " + right.topic + " are " + milliseconds(left.nearest_ms) + " apart";
   if (left.nearest_ms > kLargestSkewMs)
     return apart + ", more than max_skew can be, " + milliseconds(kLargestSkewMs) +
-           ": the clocks of the cameras differ, the stamps of one of them are offset, or they take pictures "
-           "in "
-           "turn: stamp both by one clock, and trigger them together";
+           ": the clocks of the cameras differ, the stamps of one of them are offset, or they take images "
+           "in turn: stamp both by one clock, and trigger them together";
   const std::string limit = milliseconds(1e3 * max_skew);
   if (!approximate)
     return "the stamps do not match (approximate_sync pairs cameras without a hardware trigger, within "

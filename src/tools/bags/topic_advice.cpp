@@ -109,7 +109,7 @@ std::string topicAdvice(const Topics& topics, const std::string& bag) {
   const std::string output = " --output " + quoted(outputFor(bag));
   if (images.size() == 1)
     return "\nIf " + images.front() +
-           " has both pictures side by side, this makes a bag that can be read:" + command +
+           " has the images of both cameras side by side, this makes a bag that can be read:" + command +
            " --side-by-side " + images.front() +
            " --left-calibration left.yaml --right-calibration right.yaml" + output;
   const std::optional<Sides> sides = imagePair(images);

@@ -1,4 +1,4 @@
-"""How good a calibration is, in numbers and words."""
+"""Judges how good a calibration is, in numbers and words."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ def rms(values):
 
 
 def epipolar_errors(calibrator, views):
-    """Per view: rms difference of the rows of the same corner in the two rectified images, px."""
+    """Returns for each view the rms difference of the rows of the same corner in the two rectified images, px."""
     return [float(calibrator.epipolar_error(calibrator.l.undistort_points(view.left),
                                             calibrator.r.undistort_points(view.right))) for view in views]
 
@@ -39,7 +39,7 @@ def height_for_share(share, disparity_error, baseline, rows_below):
 
 
 def occupied(corners, size, shape):
-    """Which cells of a grid of the given shape over the image hold corners."""
+    """Says which cells of a grid of the given shape over the image hold corners."""
     cells = np.zeros(shape, bool)
     columns, rows = (corners[:, 0] * shape[1] / size[0]).astype(int), (corners[:, 1] * shape[0] / size[1]).astype(int)
     cells[np.clip(rows, 0, shape[0] - 1), np.clip(columns, 0, shape[1] - 1)] = True
@@ -47,7 +47,7 @@ def occupied(corners, size, shape):
 
 
 def coverage(corners, size):
-    """Share of the image that holds corners, and the names of the ninths of it that hold none."""
+    """Returns the share of the image that holds corners, and the names of the ninths of it that hold none."""
     empty = ~occupied(corners, size, (3, 3))
     return float(occupied(corners, size, GRID).mean()), [REGIONS[i][j] for i, j in np.argwhere(empty)]
 
@@ -61,7 +61,7 @@ def coverage_in_words(empty):
 
 
 class Report:
-    """Lines for people, and what makes the calibration unusable."""
+    """Collects lines for people, and what makes the calibration unusable."""
 
     def __init__(self):
         self.lines, self.faults = [], []
@@ -77,7 +77,7 @@ class Report:
 
 
 def make_report(calibrator, views, measured_baseline=None):
-    """Report of a calibration made from these views."""
+    """Makes the report of a calibration that was made from these views."""
     report = Report()
     left, right = (rms(calibrator.view_errors[:, side]) for side in (0, 1))
     report.judge("reprojection error", f"{left:.3f} px left, {right:.3f} px right (rms)", max(left, right),

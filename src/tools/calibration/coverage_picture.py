@@ -1,4 +1,4 @@
-"""Where in the images the board was: what no corner covers is extrapolated."""
+"""Draws where in the images the board was, because a calibration extrapolates where no corner is."""
 
 import matplotlib
 matplotlib.use("Agg")
@@ -10,7 +10,7 @@ import numpy as np  # noqa: E402
 
 
 def draw_coverage(path, calibrator, views):
-    """Corners of all views in both images, coloured by the view's reprojection error; cells without any are red."""
+    """Draws the corners of all views into both images, coloured by the view's reprojection error. Cells without any are red."""
     width, height = calibrator.size
     figure, axes = plt.subplots(1, 2, figsize=(12, 1.2 + 5.6 * height / width), constrained_layout=True)
     for side, axis in enumerate(axes):

@@ -1,5 +1,5 @@
-"""What can be wrong with the input."""
+"""Errors that are the input's fault."""
 
 
 class InputError(Exception):
-    """The input cannot be used; the message says which file and why."""
+    """The input cannot be used. The message says which file and why."""

@@ -1,4 +1,4 @@
-"""Pairs of calibration images, from a folder, a tar archive or a bag."""
+"""Reads pairs of calibration images from a folder, a tar archive or a bag."""
 
 import re
 import tarfile
@@ -23,7 +23,7 @@ class Image:
         self.source, self.read = source, read
 
     def decode(self):
-        """Grey image (rows, columns), uint8."""
+        """Returns the grey image (rows, columns), uint8."""
         data = self.read()
         pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data else None
         if pixels is None:
@@ -32,7 +32,7 @@ class Image:
 
 
 def list_images(path, camera="stereo"):
-    """{"left": {view name: Image}, "right": ...} of a folder, an archive or a bag with /camera/{left,right}/image_raw."""
+    """Lists {"left": {view name: Image}, "right": ...} of a folder, an archive or a bag with /camera/{left,right}/image_raw."""
     path = Path(path)
     if path.suffix == ".bag":
         return bag_images(path, camera)
@@ -55,7 +55,7 @@ def list_images(path, camera="stereo"):
 
 
 def archive_files(path):
-    """Image files of an archive in one pass: going back in a compressed one would unpack it again each time."""
+    """Reads the image files of an archive in one pass, because going back in a compressed one would unpack it again each time."""
     try:
         with tarfile.open(str(path)) as archive:
             contents = [(member.name, archive.extractfile(member).read()) for member in archive
@@ -66,7 +66,7 @@ def archive_files(path):
 
 
 def grey(message, source):
-    """Grey levels of a sensor_msgs/Image."""
+    """Returns the grey levels of a sensor_msgs/Image."""
     from cv_bridge import CvBridge, CvBridgeError  # only here: folders and archives need no ROS
     if message._type != "sensor_msgs/Image":
         raise InputError(f"{source}: {message._type}, expected sensor_msgs/Image (convert_recording decodes others)")
@@ -86,7 +86,7 @@ def view_name(stamp):
 
 
 def common_stamps(bag, path, topics):
-    """Stamps that both cameras have, in order."""
+    """Returns the stamps that both cameras have, in order."""
     present = bag.get_type_and_topic_info().topics
     missing = [topic for topic in topics if topic not in present]
     if missing:
@@ -125,7 +125,7 @@ def bag_neighbours(path, camera, names, longest_gap, most):
 
 
 def bag_images(path, camera):
-    """Evenly spaced pairs of equal stamp, at most BAG_PAIRS: neighbours at 20 Hz show the same board twice."""
+    """Returns evenly spaced pairs of equal stamp, at most BAG_PAIRS, because neighbours at 20 Hz show the same board twice."""
     import rosbag  # only here: folders and archives need no ROS
     topics = bag_topics(camera)
     try:
@@ -166,5 +166,5 @@ def read_pairs(images):
 
 
 def unpaired(images):
-    """Names of views that only one camera has."""
+    """Returns the names of views that only one camera has."""
     return sorted(set(images["left"]) ^ set(images["right"]))

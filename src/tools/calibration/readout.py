@@ -1,4 +1,4 @@
-"""Readout time of a rolling shutter, from consecutive views of a board that moves."""
+"""Estimates the readout time of a rolling shutter from consecutive views of a board that moves."""
 
 from collections import namedtuple
 
@@ -18,7 +18,7 @@ Readout = namedtuple("Readout", "time stddev views")
 
 
 def seen(points, camera):
-    """Pixels (n, 2) of points (n, 3) in a camera's axes, their derivatives (n, 2, 3), and those by the lens (2 n, 8 or 9)."""
+    """Returns pixels (n, 2) of points (n, 3) in camera axes, their derivatives (n, 2, 3), and those by the lens (2 n, 8 or 9)."""
     zero = np.zeros(3)
     pixels, derivatives = cv2.projectPoints(points, zero, zero, camera.intrinsics, camera.distortion)
     lens = 8 + int(np.ravel(camera.distortion)[4] != 0)  # k3 where it was not held
@@ -26,19 +26,19 @@ def seen(points, camera):
 
 
 def crosses(points):
-    """Matrices that make the vector product of each point with another vector."""
+    """Returns matrices that make the vector product of each point with another vector."""
     x, y, z = points.T
     zero = np.zeros_like(x)
     return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
 
 
 def movements(points):
-    """What turns and shifts do to points (n, 3, 6)."""
+    """Returns what turns and shifts do to points (n, 3, 6)."""
     return np.concatenate([-crosses(points), np.broadcast_to(np.eye(3), (len(points), 3, 3))], axis=2)
 
 
 def residuals(calibrator, points, rotation, translation, corners):
-    """What the corners (left and right below each other) are off from a board's pose; its change with pose and calibration."""
+    """Returns how far the corners (left above right) are off a board's pose, and its change with pose and calibration."""
     inside = points @ rotation.T + translation
     turned = inside @ calibrator.R.T + calibrator.T.ravel()
     left, by_left, left_lens = seen(inside, calibrator.l)
@@ -52,7 +52,7 @@ def residuals(calibrator, points, rotation, translation, corners):
 
 
 def fit_pose(calibrator, points, corners):
-    """Residuals of the corners from the board's best pose, and their derivatives there (see residuals())."""
+    """Returns the residuals of the corners from the board's best pose, and their derivatives there (see residuals())."""
     half = len(points)
     _, vector, translation = cv2.solvePnP(points, corners[:half, None], calibrator.l.intrinsics, calibrator.l.distortion)
     rotation, translation = cv2.Rodrigues(vector)[0], translation.ravel()
@@ -69,12 +69,12 @@ def both(left, right):
 
 
 def row_times(corners, height):
-    """When rows are exposed, as a share of the readout time, after the middle row."""
+    """Returns when rows are exposed, as a share of the readout time, after the middle row."""
     return (corners[:, 1] + 0.5) / height - 0.5
 
 
 def movement(moment, corners, readout, height):
-    """Velocity and acceleration of each corner, px/s and px/s^2: of the parabola through its three places in time."""
+    """Returns each corner's velocity and acceleration, px/s and px/s^2, by the parabola through its three places in time."""
     rows = row_times(corners, height)
     before, after = both(*moment.before), both(*moment.after)
     past = (moment.times[0] + readout * (row_times(before, height) - rows))[:, None]
@@ -85,7 +85,7 @@ def movement(moment, corners, readout, height):
 
 
 def explain(calibrator, moment, readout):
-    """What a longer readout time and another calibration would change in a view that its pose cannot, and what is left; px."""
+    """Returns what a longer readout time and another calibration would change in a view beyond its pose, and the rest; px."""
     points = calibrator.mk_object_points([moment.view.board], True)[0].reshape(-1, 3).astype(float)
     corners = both(moment.view.left, moment.view.right)
     height = calibrator.size[1]
@@ -103,7 +103,7 @@ def explain(calibrator, moment, readout):
 
 
 def without(values, directions):
-    """What is left of the columns when these directions are taken out."""
+    """Returns what is left of the columns when these directions are taken out."""
     basis = np.linalg.qr(directions)[0]
     return values - basis @ (basis.T @ values)
 
@@ -135,7 +135,7 @@ def fit_readout(calibrator, moments):
 
 
 def in_words(readout):
-    """What a fit says, for people."""
+    """Says for people what a fit found."""
     if readout is None:
         return ("not known: a bag with at least 4 views, each with the pairs just before and after it, of a board that is moved "
                 "would tell")

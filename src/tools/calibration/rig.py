@@ -1,4 +1,4 @@
-"""Calibration of a stereo rig: the corners, then both lenses and the pose between the cameras in one fit."""
+"""Calibrates a stereo rig: finds the corners, then fits both lenses and the pose between the cameras at once."""
 
 import contextlib
 import io
@@ -55,12 +55,12 @@ class RigCalibrator(StereoCalibrator):
 
     @property
     def baseline(self):
-        """Metres."""
+        """Returns the distance of the cameras in metres."""
         return float(np.linalg.norm(self.T))
 
 
 def make_calibrator(columns, rows, square, coefficients):
-    """For a board of columns x rows inner corners, squares of the given side in metres, 2 or 3 radial coefficients."""
+    """Makes a calibrator for columns x rows inner corners, squares of a side in metres, and 2 or 3 radial coefficients."""
     # No fast check: it gives up on boards that fill a small part of a small image.
     return RigCalibrator([ChessboardInfo("chessboard", columns, rows, square)],
                          flags=cv2.CALIB_FIX_K3 if coefficients == 2 else 0, checkerboard_flags=0)
@@ -70,7 +70,7 @@ def in_order_of(reference, corners, board):
     """The corners counted from the end of the board from which the reference counts them.
 
     A chessboard looks the same turned by 180° (a square one by 90°), and each image is searched on its own. The cameras
-    of a pair are nearly parallel, so the right order is the one that gives the most similar picture.
+    of a pair are nearly parallel, so the right order is the one that gives the most similar image.
     """
     grid = corners.reshape(board.n_rows, board.n_cols, 2)
     turns = range(4) if board.n_rows == board.n_cols else (0, 2)
@@ -81,7 +81,7 @@ def in_order_of(reference, corners, board):
 
 
 def corners_like(calibrator, view, left_image, right_image):
-    """Corners of another pair (left, right) in the view's order, or None when a camera does not see the whole board."""
+    """Returns the corners of another pair (left, right) in the view's order, or None if a camera does not see the whole board."""
     found = []
     for image, reference in ((left_image, view.left), (right_image, view.right)):
         corners = calibrator.downsample_and_detect(image)[1]
@@ -92,7 +92,7 @@ def corners_like(calibrator, view, left_image, right_image):
 
 
 def find_views(calibrator, pairs):
-    """Views in which both cameras see the whole board, and the names of the others. Notes the image size."""
+    """Returns the views in which both cameras see the whole board, and the names of the others. Notes the image size."""
     views, others = [], []
     for name, left_image, right_image in pairs:
         calibrator.size = calibrator.l.size = calibrator.r.size = left_image.shape[::-1]
@@ -140,7 +140,7 @@ def fit(calibrator, views):
 
 
 def yaml_texts(calibrator):
-    """{"left": text, "right": text} of the calibration files."""
+    """Returns {"left": text, "right": text} of the calibration files."""
     return {name: calibrator.lryaml(name, camera.distortion, camera.intrinsics, camera.R, camera.P, calibrator.size,
                                     calibrator.camera_model)
             for name, camera in (("left", calibrator.l), ("right", calibrator.r))}

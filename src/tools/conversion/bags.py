@@ -1,8 +1,9 @@
-"""Bags with other topic names, compressed images, or both pictures in one."""
+"""Converts bags with other topic names, with compressed images, or with the images of both cameras in one."""
 
 import copy
 
 import rosbag
+import rospy
 
 from .errors import BrokenPicture, InputError
 from .pictures import deinterlaced, raw_halves, to_image
@@ -12,7 +13,7 @@ IMAGE_TYPES = ("sensor_msgs/Image", "sensor_msgs/CompressedImage")
 
 
 def check_topics(bag, path, images, infos):
-    """The topics of the images are there and are images; those of camera_info are there."""
+    """Checks that the topics of the images are there and are images, and that those of camera_info are there."""
     known = bag.get_type_and_topic_info().topics
     there = [name for name, info in known.items() if info.msg_type in IMAGE_TYPES]
     for topic in images:
@@ -26,7 +27,7 @@ def check_topics(bag, path, images, infos):
 
 
 def check_half(image, side, calibration, topic, layout):
-    """A picture that was cut out is as large as its calibration says."""
+    """Checks that an image that was cut out is as large as its calibration says."""
     if calibration and (image.width, image.height) != (calibration.width, calibration.height):
         raise InputError(f"{topic}: each half ({layout}) has {image.width}x{image.height} pixels, the {side} calibration is for "
                          f"{calibration.width}x{calibration.height}: calibrate with the halves")
@@ -36,21 +37,25 @@ class BagConversion:
     """Copies images and calibrations to the names that the launch file expects.
 
     images: {"left": topic, "right": topic}, the same topic twice with a layout; infos: topics of camera_info by side;
-    calibrations: CameraInfo by side, instead of those in the bag. layout: both pictures are in one, see pictures.py.
-    deinterlace: of interlaced video one field is taken.
+    calibrations: CameraInfo by side, instead of those in the bag. layout: both images are in one, see pictures.py.
+    deinterlace: of interlaced video one field is taken. right_delay: seconds by which the right camera's stamps are late; they
+    are made earlier by that.
     """
 
-    def __init__(self, camera, images, infos, calibrations, left_out, layout=None, deinterlace=False):
+    def __init__(self, camera, images, infos, calibrations, left_out, layout=None, deinterlace=False, right_delay=0.0):
         self.camera, self.images, self.infos, self.calibrations = camera, images, infos, calibrations
         self.left_out, self.layout, self.deinterlace = left_out, layout, deinterlace
+        self.right_delay = rospy.Duration.from_sec(right_delay)
         self.counts = dict.fromkeys([f"{side}/{kind}" for side in SIDES for kind in ("image_raw", "camera_info")], 0)
 
     def convert(self, path, output):
-        """Counts messages by name."""
+        """Writes the bag and returns how many messages of each name it has."""
         with rosbag.Bag(str(path)) as bag:
             check_topics(bag, path, self.images.values(), self.infos)
             with rosbag.Bag(str(output), "w") as result:
                 for topic, message, time in bag.read_messages([*self.images.values(), *self.infos.values()]):
+                    if self.right_delay and topic in (self.images["right"], self.infos.get("right")):
+                        self.make_earlier(message.header, topic)
                     for side in (side for side in SIDES if self.infos.get(side) == topic):
                         self.write(result, f"{side}/camera_info", message, time)
                     if topic in self.images.values():
@@ -59,8 +64,16 @@ class BagConversion:
             raise InputError(self.left_out.first)
         return self.counts
 
+    def make_earlier(self, header, topic):
+        """Corrects a stamp of the right camera. A stamp of zero stays, because it means that there is none."""
+        if header.stamp and header.stamp.to_nsec() <= self.right_delay.to_nsec():
+            raise InputError(f"{topic}: the stamp {header.stamp.to_sec():.6f} s cannot be made earlier by "
+                             f"{self.right_delay.to_sec():g} s: give a smaller --right-delay")
+        if header.stamp:
+            header.stamp -= self.right_delay
+
     def take(self, result, message, topic, time):
-        """Writes what a message has, and leaves out what is broken."""
+        """Writes the images of a message. A broken image is left out."""
         try:
             pictures = self.pictures(message, topic)
         except BrokenPicture as broken:
@@ -73,7 +86,7 @@ class BagConversion:
             self.write(result, f"{side}/image_raw", picture, time)
 
     def pictures(self, message, topic):
-        """Raw images by side."""
+        """Returns the raw images of a message by side."""
         image = to_image(message, topic)
         if self.deinterlace:
             image = deinterlaced(image, topic)

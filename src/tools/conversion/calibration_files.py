@@ -1,4 +1,4 @@
-"""Calibration files of others: ROS's .ini, Kalibr camchains and stereo files of OpenCV (FileStorage)."""
+"""Reads calibration files of others: ROS's .ini, Kalibr camchains and stereo files of OpenCV (FileStorage)."""
 
 import re
 from collections import namedtuple
@@ -42,7 +42,7 @@ def is_ini(text):
 
 
 def ini_sections(path, text):
-    """Name of each section with its labels, each with the numbers below it; one [image] before each camera."""
+    """Returns each section's name with its labels, each with the numbers below it; an [image] stands before each camera."""
     sections, label = [], None
     for line in significant_lines(text):
         words = line.split()
@@ -63,7 +63,7 @@ def ini_sections(path, text):
 
 
 def from_ros_ini(path, text, side):
-    """The camera of an .ini file of camera_calibration, which it also saves as ost.txt; of two the one of this side."""
+    """Reads a camera from an .ini file of camera_calibration (also saved as ost.txt). If the file has two, it takes this side's."""
     size, found = {}, []
     for name, section in ini_sections(path, text):
         if name == "image":
@@ -85,7 +85,7 @@ def from_ros_ini(path, text, side):
 
 
 def from_ros_file(path, side):
-    """Calibration file of ROS for one camera, YAML or .ini whatever its name."""
+    """Reads a calibration file of ROS for one camera. It may be YAML or .ini, whatever its name says."""
     text = read_text(path)
     return from_ros_ini(path, text, side) if is_ini(text) else from_ros_yaml(path)
 
@@ -107,7 +107,7 @@ def kalibr_lens(content, path, name):
 
 
 def from_kalibr(content, path):
-    """Both lenses and the transform from cam0 to cam1."""
+    """Returns both lenses and the transform from cam0 to cam1."""
     lenses = [kalibr_lens(content, path, name) for name in ("cam0", "cam1")]
     if "T_cn_cnm1" in content["cam1"]:
         pose = numbers(content, path, ("cam1", "T_cn_cnm1"), 16).reshape(4, 4)
@@ -118,7 +118,7 @@ def from_kalibr(content, path):
 
 
 def opencv_entries(paths):
-    """Matrices and numbers of all files by name."""
+    """Returns the matrices and numbers of all files by name."""
     entries = {}
     for path in paths:
         read_text(path)
@@ -147,7 +147,7 @@ def opencv_entry(entries, kind, number=0):
 
 
 def opencv_size(entries, given):
-    """Picture size: as given, or of the files."""
+    """Returns the image size: as given, or else as the files say."""
     if given:
         return given
     for name in ("size", "imageSize", "image_size", "img_size"):
@@ -156,11 +156,11 @@ def opencv_size(entries, given):
     for names in (("image_width", "image_height"), ("width", "height"), ("LEFT.width", "LEFT.height")):
         if all(name in entries for name in names):
             return tuple(int(entries[name]) for name in names)
-    raise InputError("the files do not say how large the pictures are: give --size WIDTHxHEIGHT")
+    raise InputError("the files do not say how large the images are: give --size WIDTHxHEIGHT")
 
 
 def from_opencv(paths, size, fisheye):
-    """Both lenses and the transform from the left camera to the right one."""
+    """Returns both lenses and the transform from the left camera to the right one."""
     entries = opencv_entries(paths)
     size, lenses = opencv_size(entries, size), []
     for number in (0, 1):
@@ -186,7 +186,7 @@ def check_unit(pose, unit):
 
 
 def stereo_cameras(paths, unit=None, size=None, fisheye=False):
-    """Both cameras, left and right, and what was found, in words."""
+    """Returns both cameras, left and right, and what was found, in words."""
     first = paths[0]
     text = read_text(first)
     is_kalibr = re.search(r"^cam0:", text, re.MULTILINE)
@@ -202,7 +202,7 @@ def stereo_cameras(paths, unit=None, size=None, fisheye=False):
     if not np.allclose(R @ R.T, np.eye(3), atol=1e-3) or np.linalg.det(R) < 0:
         raise InputError(f"{first}: the rotation between the cameras is none")
     if lenses[0].size != lenses[1].size:
-        raise InputError(f"{first}: pictures of {lenses[0].size} and of {lenses[1].size}, expected the same for both")
+        raise InputError(f"{first}: images of {lenses[0].size} and of {lenses[1].size}, expected the same for both")
     pose[:3, 3] *= scale
     second = -R.T @ pose[:3, 3]
     exchanged = second[0] < 0
@@ -214,7 +214,7 @@ def stereo_cameras(paths, unit=None, size=None, fisheye=False):
 
 
 def convert_calibration(paths, folder, unit=None, size=None, fisheye=False):
-    """Writes left.yaml and right.yaml of ROS into a folder; returns what was found, in words."""
+    """Writes left.yaml and right.yaml of ROS into a folder and returns in words what was found."""
     cameras, found = stereo_cameras(paths, unit, size, fisheye)
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / f"{side}.yaml" for side in SIDES]

@@ -1,4 +1,4 @@
-"""Calibrations of a stereo pair as sensor_msgs/CameraInfo."""
+"""Reads and makes calibrations of a stereo pair as sensor_msgs/CameraInfo."""
 
 import re
 
@@ -11,14 +11,14 @@ from .errors import InputError, unreadable
 
 
 def camera_info(size, K, D, R, P, model="plumb_bob"):
-    """CameraInfo of matrices; size is (width, height)."""
+    """Makes a CameraInfo of matrices. size is (width, height)."""
     info = CameraInfo(width=int(size[0]), height=int(size[1]), distortion_model=model)
     info.D, info.K, info.R, info.P = ([float(x) for x in np.ravel(values)] for values in (D, K, R, P))
     return info
 
 
 class TagLoader(yaml.SafeLoader):
-    """Takes what has a tag, as OpenCV's matrices, for what it is without."""
+    """Reads a value with a tag, such as OpenCV's matrices, as if it had none."""
 
 
 def without_tag(loader, _, node):
@@ -34,12 +34,12 @@ STEREO_FILE = re.compile(r"^\s*(cam0|M1|K1|cameraMatrix1|CameraMatrix1|camera_ma
 
 
 def model_of(distortion):
-    """The model that a file means which names none: it is told by how many coefficients there are."""
+    """Returns the distortion model of a file that names none. The number of coefficients tells it."""
     return "rational_polynomial" if len(distortion) > 5 else "plumb_bob"
 
 
 def ros_yaml(info, name):
-    """Calibration file of ROS."""
+    """Writes a calibration file of ROS."""
     def matrix(values, columns):
         return f"{{rows: {len(values) // columns}, cols: {columns}, data: [{', '.join(repr(float(x)) for x in values)}]}}"
     return (f"image_width: {info.width}\nimage_height: {info.height}\ncamera_name: {name}\n"
@@ -49,7 +49,7 @@ def ros_yaml(info, name):
 
 
 def load_yaml(path):
-    """Content of a YAML file; the tags and the first line of OpenCV's are left out."""
+    """Returns the content of a YAML file, without OpenCV's tags and first line."""
     try:
         with open(str(path)) as file:
             text = "\n".join(line for line in file.read().splitlines() if not line.startswith("%"))
@@ -64,7 +64,7 @@ def load_yaml(path):
 
 
 def field(content, path, *names):
-    """A field of nested dictionaries."""
+    """Returns a field of nested dictionaries."""
     for depth, name in enumerate(names):
         if not isinstance(content, dict) or name not in content:
             raise InputError(f"{path}: no field {'.'.join(names[:depth + 1])}")
@@ -73,7 +73,7 @@ def field(content, path, *names):
 
 
 def numbers(content, path, names, count):
-    """A list of that many finite numbers in a field."""
+    """Returns a field's list of that many finite numbers."""
     values = field(content, path, *names)
     try:
         array = np.array(values, float).ravel()
@@ -85,7 +85,7 @@ def numbers(content, path, names, count):
 
 
 def from_ros_yaml(path):
-    """Calibration file of ROS (camera_calibration_parsers)."""
+    """Reads a calibration file of ROS (camera_calibration_parsers)."""
     content = load_yaml(path)
     if "camera_matrix" not in content and any(STEREO_FILE.match(f"{name}:") for name in content):
         raise InputError(f"{path}: is of a stereo pair, not of one camera: make left.yaml and right.yaml of it by "
@@ -102,7 +102,7 @@ def from_ros_yaml(path):
 
 
 def rectified(K, baseline, size):
-    """Both cameras of a rig whose images are rectified already; baseline in metres."""
+    """Makes both cameras of a rig whose images are rectified already; baseline in metres."""
     K = np.reshape(K, (3, 3))
     shift = np.zeros((3, 1))
     right = shift.copy()
@@ -111,7 +111,7 @@ def rectified(K, baseline, size):
 
 
 def stereo_rectified(size, left, right, right_from_left):
-    """Both cameras from their lenses, each (K, D, model), and the 4x4 transform from left to right camera axes."""
+    """Makes both cameras from their lenses, each (K, D, model), and the 4x4 transform from left to right camera axes."""
     R, t = right_from_left[:3, :3], right_from_left[:3, 3]
     fisheye = [lens[2] == "equidistant" and np.any(lens[1]) for lens in (left, right)]
     if fisheye[0] != fisheye[1]:

@@ -1,21 +1,21 @@
-"""What can be wrong with the input."""
+"""Errors that are the input's fault."""
 
 
 class InputError(Exception):
-    """The input cannot be used; the message says which file, topic or field, and what was expected."""
+    """The input cannot be used. The message says which file, topic or field, and what was expected."""
 
 
 class BrokenPicture(InputError):
-    """One picture cannot be used; the others may be."""
+    """One image cannot be used, but others may be."""
 
 
 def unreadable(path, error):
-    """InputError for an OSError of a file."""
+    """Returns the InputError for an OSError of a file."""
     return InputError(f"{path}: " + ("no such file" if isinstance(error, FileNotFoundError) else error.strerror))
 
 
 class LeftOut:
-    """Pictures that cannot be used, of many that can: the first ones in words, all of them counted."""
+    """Images that cannot be used, among many that can. All are counted, and the first ones are described."""
 
     SHOWN = 5
 
@@ -23,13 +23,13 @@ class LeftOut:
         self.count, self.messages, self.notes = 0, [], []
 
     def add(self, broken):
-        """One that cannot be used."""
+        """Counts an image that cannot be used."""
         self.count += 1
         if self.count <= self.SHOWN:
             self.messages.append(str(broken))
 
     def note(self, text):
-        """What else a person should know of the pictures."""
+        """Adds what else a person should know of the images."""
         self.notes.append(text)
 
     @property
@@ -37,8 +37,8 @@ class LeftOut:
         return self.messages[0]
 
     def lines(self):
-        """For the user."""
+        """Returns lines for the user."""
         lines = [f"left out: {message}" for message in self.messages]
         if self.count:
-            lines.append("1 broken picture was left out" if self.count == 1 else f"{self.count} broken pictures were left out")
+            lines.append("1 broken image was left out" if self.count == 1 else f"{self.count} broken images were left out")
         return lines + self.notes

@@ -1,4 +1,4 @@
-"""Pictures of messages: decoded, cut in two, and freed of the second field of interlaced video."""
+"""Decodes the images of messages, cuts them in two, and removes the second field of interlaced video."""
 
 import os
 import re
@@ -19,7 +19,7 @@ JPEG_END, JPEG_SCAN, PROGRESSIVE = b"\xff\xd9", b"\xff\xda", b"\xff\xc2"  # mark
 
 @contextmanager
 def without_stderr():
-    """Keeps what C libraries say from the terminal."""
+    """Keeps the output of C libraries off the terminal."""
     sys.stderr.flush()
     kept = os.dup(2)
     with open(os.devnull, "w") as nothing:
@@ -39,9 +39,9 @@ def decoded_without_end(data, flags):
     """
     if PROGRESSIVE in data or data.count(JPEG_SCAN) != 1:
         return None  # further scans may be missing
-    if data.endswith(b"\0"):  # what buffers are filled up with; one may be of the picture
+    if data.endswith(b"\0"):  # what buffers are filled up with; one may be of the image
         data = data.rstrip(b"\0") + b"\0"
-    some = 1024 * b"\x55"  # for several blocks, as the first ones may lie outside the picture
+    some = 1024 * b"\x55"  # for several blocks, as the first ones may lie outside the image
     more = b"\0" + some + b"".join(bytes([0xff, restart]) + some for restart in range(0xd0, 0xd8))
     with without_stderr():
         pixels, others = (cv2.imdecode(np.frombuffer(data + rest + JPEG_END, np.uint8), flags) for rest in (b"", more))
@@ -49,7 +49,7 @@ def decoded_without_end(data, flags):
 
 
 def decoded(data, flags):
-    """Pixels of a picture file; nothing where it cannot be decoded, or is cut: decoders fill what is missing and return no error."""
+    """Returns the pixels of an image file, or None if it cannot be decoded or is cut. Decoders themselves report no cut."""
     if data.startswith(b"\xff\xd8") and data.rfind(JPEG_END) <= data.rfind(JPEG_SCAN):
         return decoded_without_end(data, flags)
     if not data or data.startswith(b"\x89PNG") and b"IEND" not in data[-64:]:
@@ -58,7 +58,7 @@ def decoded(data, flags):
 
 
 def encoding_of(pixels, compressed_format):
-    """Of decoded pixels; None where they are no picture. The transport says in front that grey ones are a Bayer mosaic."""
+    """Returns the encoding of pixels, or None if they are no image. Only the format text tells a Bayer mosaic from grey."""
     bits = {np.dtype(np.uint8): "8", np.dtype(np.uint16): "16"}.get(pixels.dtype)
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     name = {1: "mono", 3: "bgr", 4: "bgra"}.get(channels)
@@ -69,11 +69,11 @@ def encoding_of(pixels, compressed_format):
 
 
 def to_image(message, topic):
-    """A raw image; a compressed one is decoded by OpenCV, with the bits and channels that it has."""
+    """Returns a raw image. OpenCV decodes a compressed one, with the bits and channels that it has."""
     if message._type == "sensor_msgs/Image":
         return message
     data = bytes(message.data)
-    # What the transport plugin puts before the picture (compressedDepth) or another codec (theora) is no picture file.
+    # What the transport plugin puts before the image (compressedDepth) or another codec (theora) is no image file.
     pixels = decoded(data, cv2.IMREAD_UNCHANGED)
     encoding = None if pixels is None else encoding_of(pixels, message.format)
     if encoding is None:
@@ -86,7 +86,7 @@ def to_image(message, topic):
 
 
 def rows_of(image, topic):
-    """The pixels of a raw image, (rows, columns, bytes of a pixel)."""
+    """Returns the pixels of a raw image: (rows, columns, bytes of a pixel)."""
     known = re.fullmatch(r"(mono|rgb|bgr|rgba|bgra|bayer_[a-z]{4}|)(8|16)(?:[US]C([1-4]))?", image.encoding)
     channels = {"rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}.get(known[1], int(known[3] or 1)) if known else 0
     size = 2 if image.encoding in YUV else channels * (2 if known and known[2] == "16" else 1)
@@ -100,7 +100,7 @@ def rows_of(image, topic):
 
 
 def image_of(pixels, like):
-    """A raw image of pixels as rows_of() gives them."""
+    """Makes a raw image of pixels as rows_of() returns them."""
     pixels = np.ascontiguousarray(pixels)
     image = Image(header=like.header, height=pixels.shape[0], width=pixels.shape[1], encoding=like.encoding,
                   is_bigendian=like.is_bigendian, step=pixels.shape[1] * pixels.shape[2])
@@ -109,26 +109,26 @@ def image_of(pixels, like):
 
 
 def halves(pixels, layout, where):
-    """The two pictures in one, the left or upper one first."""
+    """Cuts an image that holds those of both cameras; the left or upper half comes first."""
     axis = 1 if layout == SIDE_BY_SIDE else 0
     if pixels.shape[axis] % 2:
-        raise InputError(f"{where}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels cannot be cut in two, {layout}")
+        raise InputError(f"{where}: an image of {pixels.shape[1]}x{pixels.shape[0]} pixels cannot be cut in two, {layout}")
     return np.split(pixels, 2, axis)
 
 
 def raw_halves(image, layout, topic):
-    """halves() of a raw image, as raw images. The second one has to begin where the colours of its encoding begin."""
+    """Cuts a raw image by halves() into raw images. The second half has to begin where the colours of its encoding begin."""
     pixels = rows_of(image, topic)
     along = pixels.shape[1] if layout == SIDE_BY_SIDE else pixels.shape[0]
     pairs_of_pixels = image.encoding.startswith("bayer") or image.encoding in YUV and layout == SIDE_BY_SIDE
     if pairs_of_pixels and along % 4:
-        raise InputError(f"{topic}: a picture of {pixels.shape[1]}x{pixels.shape[0]} pixels {image.encoding} cannot be cut in two, "
+        raise InputError(f"{topic}: an image of {pixels.shape[1]}x{pixels.shape[0]} pixels {image.encoding} cannot be cut in two, "
                          f"{layout}: {along} is no multiple of 4, and the right colours would be lost")
     return [image_of(part, image) for part in halves(pixels, layout, topic)]
 
 
 def one_field(pixels):
-    """Interlaced video's upper field, with the rows between made of those above and below: the picture keeps its size."""
+    """Keeps the upper field of interlaced video and fills the rows between with means, so that the image keeps its size."""
     field = pixels[::2]
     between = ((field[:-1].astype(np.uint32) + field[1:]) // 2).astype(pixels.dtype)
     result = pixels.copy()
@@ -140,9 +140,9 @@ def one_field(pixels):
 
 
 def deinterlaced(image, topic):
-    """one_field() of a raw image."""
+    """Applies one_field() to a raw image."""
     if image.encoding.startswith("bayer"):
-        raise InputError(f"{topic}: encoding {image.encoding}: only pictures with the same colours in all rows are deinterlaced")
+        raise InputError(f"{topic}: encoding {image.encoding}: only images with the same colours in all rows are deinterlaced")
     pixels = rows_of(image, topic)
     if "16" in image.encoding:
         pixels = pixels.view(">u2" if image.is_bigendian else "<u2")

@@ -29,13 +29,13 @@ def read_image(path):
 
 
 class Pictures:
-    """Reads the pictures of a pair, or leaves the pair out where one is broken."""
+    """Reads the images of a pair, and leaves the pair out where one is broken."""
 
     def __init__(self, left_out):
         self.left_out = left_out
 
     def pair(self, left, right):
-        """Both pictures, or nothing."""
+        """Returns a list with both images, or an empty one."""
         try:
             return [(read_image(left), read_image(right))]
         except BrokenPicture as broken:
@@ -44,7 +44,7 @@ class Pictures:
 
 
 def read_rows(path, separator):
-    """Rows of a text table, without comments."""
+    """Returns the rows of a text table, without comments."""
     try:
         with open(str(path), newline="") as file:
             return [row for row in csv.reader(file, delimiter=separator, skipinitialspace=True)
@@ -71,7 +71,7 @@ class Euroc:
 
     @staticmethod
     def lens(path):
-        """Size, (K, D) and the transform body <- camera."""
+        """Returns size, (K, D, model) and the transform body <- camera."""
         content = cameras.load_yaml(path)
         model = cameras.field(content, path, "distortion_model")
         if model not in ("radial-tangential", "radtan", "plumb_bob", "equidistant"):
@@ -138,7 +138,7 @@ class KittiOdometry:
 
 
 class Videos:
-    """Two video files of synchronised cameras, or one with both pictures in it, and the calibration files."""
+    """Two video files of synchronised cameras, or one with both images in it, and the calibration files."""
 
     def __init__(self, paths, calibrations, left_out, skips=(0, 0), rate=None, layout=None, deinterlace=False):
         self.paths, self.skips, self.rate, self.left_out = paths, skips, rate, left_out
@@ -146,7 +146,7 @@ class Videos:
         self.cameras = tuple(map(from_ros_file, calibrations, ("left", "right")))
 
     def frames(self, path, skip):
-        """Time and grey picture of each frame of a video from the one after the first `skip` on; None for one that is broken."""
+        """Yields time and grey image of each frame of a video after the first `skip`. The image is None if it is broken."""
         video = cv2.VideoCapture(str(path))
         if not video.isOpened():
             raise InputError(f"{path}: no such video, or in a format that cannot be decoded")
@@ -163,10 +163,10 @@ class Videos:
         expected = round(video.get(cv2.CAP_PROP_FRAME_COUNT))
         # The count of the header is an estimate in many formats, made of duration and rate.
         if 0 < number < 0.98 * expected:
-            self.left_out.note(f"{path}: ends after {number} pictures, {expected} by its header: the rest is damaged or missing")
+            self.left_out.note(f"{path}: ends after {number} images, {expected} by its header: the rest is damaged or missing")
 
     def checked(self, picture, path, info):
-        """The picture, when it has the size of its calibration."""
+        """Returns the image if it has the size of its calibration."""
         if picture.shape[1::-1] != (info.width, info.height):
             half = f" each half, {self.layout}," if self.layout else ""
             raise InputError(f"{path}:{half} {picture.shape[1]}x{picture.shape[0]} pixels, its calibration is for "
@@ -174,7 +174,7 @@ class Videos:
         return picture
 
     def pairs(self):
-        """Time and both pictures, None for those that are broken."""
+        """Yields time and both images, with None for those that are broken."""
         if not self.layout:
             for (seconds, left), (_, right) in zip(*(self.frames(*view) for view in zip(self.paths, self.skips))):
                 yield seconds, (left, right)
@@ -186,6 +186,6 @@ class Videos:
         for number, (seconds, pictures) in enumerate(self.pairs()):
             broken = [path for path, picture in zip(self.paths, pictures) if picture is None]
             if broken:
-                self.left_out.add(f"{broken[0]}: picture {number} after those skipped cannot be decoded")
+                self.left_out.add(f"{broken[0]}: image {number} after those skipped cannot be decoded")
                 continue
             yield (round(seconds * 1e9), *map(self.checked, pictures, self.paths, self.cameras))

@@ -1,4 +1,4 @@
-"""Stereo frames to a bag."""
+"""Writes stereo frames to a bag."""
 
 import sys
 
@@ -10,7 +10,7 @@ from .errors import InputError
 
 
 def write_frames(source, output, camera):
-    """Writes all frames of a source; stamps that start at zero, which is no time in ROS, are moved by a second."""
+    """Writes all frames of a source. Stamps that start at zero, which is no time in ROS, are moved by a second."""
     offset, count, last = 0, 0, None
     with rosbag.Bag(str(output), "w") as bag:
         for nanoseconds, *pictures in source:

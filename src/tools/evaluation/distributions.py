@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 from evaluation.pending_file import pending  # noqa: E402
 from evaluation.scores import SETTLING_TIME, SIGMAS_95  # noqa: E402
 
-# Title, column of estimates and truth, standard deviation, validity, unit in the picture, factor to it.
+# Title, column of estimates and truth, standard deviation, validity, unit in the figure, factor to it.
 ERRORS = (("height", "height_m", "height_stddev_m", "height_valid", "cm", 100),
           ("approach angle", "approach_angle_deg", "approach_angle_stddev_deg", "angle_valid", "deg", 1))
 STATUSES = ("tracking", "coasting", "searching", "lost")
@@ -18,11 +18,11 @@ STATUS_COLOURS = {"tracking": "tab:green", "coasting": "gold", "searching": "0.7
 
 
 class Missing(Exception):
-    """Why a part of the report cannot be made."""
+    """A part of the report cannot be made. The message says why."""
 
 
 def scored_errors(truth, joined):
-    """(title, unit, errors, standard deviations) of the valid frames later than SETTLING_TIME after the first."""
+    """Returns (title, unit, errors, standard deviations) of the valid frames later than SETTLING_TIME after the first."""
     found = []
     for title, column, stddev, valid, unit, factor in ERRORS:
         if not truth.has(column):
@@ -46,7 +46,7 @@ def save(figure, path):
 
 
 def draw_histograms(path, truth, joined, _report_data):
-    """Errors of the frames on which each quantity is valid by itself."""
+    """Draws the errors on the frames where each quantity is valid by itself."""
     found = scored_errors(truth, joined)
     figure, axes = plt.subplots(1, len(found), figsize=(10, 3.4), squeeze=False)
     for axis, (title, unit, errors, _) in zip(axes[0], found):
@@ -60,7 +60,7 @@ def draw_histograms(path, truth, joined, _report_data):
 
 
 def draw_consistency(path, truth, joined, _report_data):
-    """Share of errors within k claimed standard deviations, against that of a normal distribution."""
+    """Draws the share of errors within k claimed standard deviations, against that of a normal distribution."""
     found = [(title, errors / stddevs) for title, _, errors, stddevs in scored_errors(truth, joined)
              if np.all(stddevs > 0)]
     if not found:
@@ -86,13 +86,13 @@ def draw_consistency(path, truth, joined, _report_data):
 
 
 def spans(flags, time):
-    """(start, length) of each run of True, for broken_barh; a frame lasts until the next one."""
+    """Returns (start, length) of each run of True, for broken_barh. A frame lasts until the next one."""
     ends = np.append(time[1:], 2 * time[-1] - time[-2] if len(time) > 1 else time[-1] + 1)
     return [(time[i], ends[i] - time[i]) for i in np.flatnonzero(flags)]
 
 
 def draw_timeline(path, _truth, joined, _report_data):
-    """Status, and when height, angle and both were valid, frame by frame."""
+    """Draws the status, and when height, angle and both were valid, frame by frame."""
     time = joined.stamp - joined.stamp[0]
     rows = [(name.replace("_", " "), joined.estimate(name) == 1)
             for name in ("valid", "angle_valid", "height_valid") if joined.estimates.has(name)]

@@ -1,4 +1,4 @@
-"""Files that get their name only when they are complete."""
+"""Writes files that get their name only when they are complete."""
 import contextlib
 import os
 

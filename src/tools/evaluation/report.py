@@ -29,7 +29,7 @@ STYLE = "body{font-family:sans-serif;max-width:62em;margin:2em auto;padding:0 1e
 
 
 def pictures(report_data, name):
-    """Pictures name_N.png of the report data: frame number -> path."""
+    """Returns the images name_N.png of the report data: frame number -> path."""
     if report_data is None:
         raise Missing("no --report-data given (process_bag --report-data makes it)")
     if not os.path.isdir(report_data):
@@ -40,12 +40,12 @@ def pictures(report_data, name):
         if match:
             found[int(match.group(1))] = os.path.join(report_data, file)
     if not found:
-        raise Missing(f"{report_data}: no picture {name}_*.png")
+        raise Missing(f"{report_data}: no image {name}_*.png")
     return found
 
 
 def show_pictures(path, images, titles):
-    """Pictures side by side, as large as they are in proportion."""
+    """Shows images side by side, in their true proportions."""
     images = [plt.imread(image) for image in images]
     height, width = images[0].shape[:2]
     figure, axes = plt.subplots(1, len(images), figsize=(12, 12 / len(images) * height / width + 0.4), squeeze=False)
@@ -143,7 +143,7 @@ def timing_table(report_data):
 
 
 def table_1(times, pairs):
-    """Mean per pair in the rows of the paper; a part that did not run for a pair took no time."""
+    """Makes the paper's Table 1 of means per pair. A part that did not run for a pair took no time."""
     named = {part for _, _, parts in PAPER_ROWS for part in parts}
     rows = [cells("th", ("image process", "mean", "the paper"))]
     total = 0
@@ -157,7 +157,7 @@ def table_1(times, pairs):
 
 
 def parts_table(times):
-    """Distribution of each part over the pairs for which it ran."""
+    """Makes a table of each part's times over the pairs for which it ran."""
     rows = [cells("th", ("part", "mean", "median", "99 %", "worst"))]
     for name, column in times.items():
         column = column[np.isfinite(column)]
@@ -176,14 +176,14 @@ def score_table(scores):
 
 
 def embedded(path, title):
-    """The picture in the page itself, so that the page can be sent as one file."""
+    """Puts the image into the page itself, so that the page can be sent as one file."""
     with open(path, "rb") as file:
         data = base64.b64encode(file.read()).decode()
     return f"<img src='data:image/png;base64,{data}' alt='{html.escape(title)}'>"
 
 
 def write_report(folder, truth, joined, scores, report_data):
-    """Writes the figures and index.html, which holds them, too; returns the path of the latter."""
+    """Writes the figures, and index.html, which holds them as well. Returns the path of the latter."""
     os.makedirs(folder, exist_ok=True)
     missing = [f"{name.replace('_', ' ')}: {why}" for name, why in scores["missing"].items()]
     parts = []

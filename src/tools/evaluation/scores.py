@@ -25,7 +25,7 @@ CLAIMED = {"height": "height_stddev_m", "approach_angle": "approach_angle_stddev
 
 
 def statistics(error, unit):
-    """Of the errors (estimate minus truth) without NaN."""
+    """Returns the statistics of the errors (estimate minus truth) that are not NaN."""
     size = np.abs(error)
     return {"unit": unit, "frames": int(error.size), "mean": float(np.mean(size)), "median": float(np.median(size)),
             "percentile_95": float(np.percentile(size, 95)), "worst": float(np.max(size)),
@@ -33,7 +33,7 @@ def statistics(error, unit):
 
 
 def consistency(error, stddev):
-    """Share of the frames whose error is within the claimed 95 % interval."""
+    """Returns the share of the frames whose error is within the claimed 95 % interval."""
     known = np.isfinite(error) & np.isfinite(stddev)
     if not np.any(known):
         return None
@@ -41,7 +41,7 @@ def consistency(error, stddev):
 
 
 def score_quantity(truth, joined, used, name, column, truth_column, unit):
-    """Scores of one quantity, or the text that says why there are none."""
+    """Returns the scores of one quantity, or the text that says why there are none."""
     if not truth.has(truth_column):
         return f"the truth has no {truth_column}"
     if column not in joined.estimates.text:
@@ -62,7 +62,7 @@ def score_quantity(truth, joined, used, name, column, truth_column, unit):
 
 
 def score(truth, joined, invalid_too=False):
-    """Everything as a dictionary, ready for JSON. invalid_too: errors of all frames, not of the valid ones only."""
+    """Returns all scores as a dictionary, ready for JSON. invalid_too: errors of all frames, not of the valid ones only."""
     stamp = joined.stamp
     scored = stamp > stamp[0] + SETTLING_TIME + 1e-6
     valid = scored & (joined.estimate("valid") == 1)
@@ -89,7 +89,7 @@ COLUMNS = (("mean", "mean"), ("median", "median"), ("95 %", "percentile_95"), ("
 
 
 def summary(scores):
-    """The scores as a table for people."""
+    """Returns the scores as a table for people."""
     coverage = "unknown" if scores["coverage"] is None else f"{100 * scores['coverage']:.1f} %"
     lines = [f"{scores['frames']} frames, {scores['frames_without_estimate']} without an estimate; "
              f"{scores['scored_frames']} later than {SETTLING_TIME:g} s after the first, "

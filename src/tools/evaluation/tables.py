@@ -12,11 +12,11 @@ ESTIMATE_COLUMNS = ("stamp_s", "valid", "height_m", "approach_angle_deg")
 
 
 class InputError(Exception):
-    """A file that cannot be used; the message says which and why."""
+    """A file cannot be used. The message says which one and why."""
 
 
 class Table:
-    """Columns of a CSV file by name: arrays of numbers, NaN where blank. Text columns stay out."""
+    """The columns of a CSV file by name: arrays of numbers, NaN where blank. Text columns stay out."""
 
     def __init__(self, path):
         self.path = path
@@ -47,7 +47,7 @@ class Table:
         self.rows = len(columns[0])
 
     def has(self, name):
-        """True when the column is there and knows something."""
+        """Says whether the column is there and knows something."""
         return name in self.text and any(self.text[name])
 
     def require(self, *names):
@@ -56,7 +56,7 @@ class Table:
             raise InputError(f"{self.path}: no column {', '.join(missing)} (there are: {', '.join(self.header)})")
 
     def number(self, name):
-        """The column as numbers; all NaN when it is absent."""
+        """Returns the column as numbers, all NaN when it is absent."""
         if name not in self.text:
             return np.full(self.rows, np.nan)
         values = np.empty(self.rows)
@@ -105,7 +105,7 @@ class Joined:
         self.found = np.minimum(*distance) <= STAMP_TOLERANCE
 
     def estimate(self, name):
-        """The column of the estimates, one value per frame of the truth."""
+        """Returns the column of the estimates, one value per frame of the truth."""
         return np.where(self.found, self.estimates.number(name)[self.row], np.nan)
 
 

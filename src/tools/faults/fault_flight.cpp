@@ -42,7 +42,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
   }
   FaultRun run{flight, in_flight, cv::RNG(seed)};
   double last = flight.frames.front().time;
-  StampOrder order(parameters.rectify.max_late);
+  StampOrder order(told.rectify.max_late);
   for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
     const Delivery pair = deliver(run, faults, in_flight, frame);
     const double now = flight.frames[static_cast<size_t>(frame)].time;
@@ -51,7 +51,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     if (!pair.delivered) continue;
     // Stamps are checked in the same way as where images are paired.
     if (!StampOrder::isUsed(order.follow(std::llround(1e9 * (kStart + pair.time))))) continue;
-    const bool exchanged = parameters.rig.upside_down;
+    const bool exchanged = told.rig.upside_down;
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, exchanged ? pair.right : pair.left,
                                                        exchanged ? pair.left : pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;

@@ -92,7 +92,7 @@ void addTiming(std::vector<Fault>& all) {
                        }));
   all.push_back(spoils("swapped", Place::kTiming, "left and right exchanged",
                        [](FaultRun&, int, Delivery& pair) { std::swap(pair.left, pair.right); }));
-  all.push_back(spoils("copied_right", Place::kTiming, "right picture is the left one",
+  all.push_back(spoils("copied_right", Place::kTiming, "right image is the left one",
                        [](FaultRun&, int, Delivery& pair) { pair.right = pair.left.clone(); }));
   all.push_back(
       spoils("dropped", Place::kTiming, "every second pair missing at random",
@@ -140,7 +140,7 @@ void addLight(std::vector<Fault>& all) {
                        }));
   all.push_back(both("noise", Place::kSensor, "noise of 15 grey levels",
                      [](FaultRun& run, int, cv::Mat& image) { addNoise(image, 15, run.random); }));
-  all.push_back(spoils("bands", Place::kSensor, "brightness bands that roll through both pictures",
+  all.push_back(spoils("bands", Place::kSensor, "brightness bands that roll through both images",
                        [](FaultRun& run, int frame, Delivery& pair) {
                          band(pair.left, 9 * sinceOnset(run, frame));
                          band(pair.right, 9 * sinceOnset(run, frame) + 0.5);
@@ -149,7 +149,7 @@ void addLight(std::vector<Fault>& all) {
                      [](FaultRun&, int, cv::Mat& image) { blur(image, 3); }));
   all.push_back(spoils("defocus_right", Place::kOptics, "right lens out of focus, 1 sigma of 2 px",
                        [](FaultRun&, int, Delivery& pair) { blur(pair.right, 2); }));
-  all.push_back(spoils("black_right", Place::kSensor, "right picture is black",
+  all.push_back(spoils("black_right", Place::kSensor, "right image is black",
                        [](FaultRun&, int, Delivery& pair) { pair.right.setTo(0); }));
   all.push_back(spoils("fogged_right", Place::kOptics, "right lens is fogged: a veil, 1 sigma of 8 px",
                        [](FaultRun& run, int, Delivery& pair) { fogLens(pair.right, run.random); }));

@@ -57,7 +57,7 @@ Expected<Photograph> read(const std::string& folder, const CsvTable& table, size
   photo.name = table.text(row, "image");
   photo.image = cv::imread(folder + "/" + photo.name, cv::IMREAD_GRAYSCALE);
   if (photo.image.empty())
-    return tl::make_unexpected(table.failure(row, "image", folder + "/" + photo.name + " is no picture"));
+    return tl::make_unexpected(table.failure(row, "image", folder + "/" + photo.name + " is no image"));
   photo.rig.size = photo.image.size();
   double u = 0, v = 0;
   for (const auto& [column, value] : {std::pair<const char*, double*>{"focal_px", &photo.rig.fx},

@@ -101,7 +101,7 @@ Failure processBag(const Options& options, const Parameters& parameters, Complai
   for (const std::string& note : plan.notes()) complain(note);
   if (chain.repetitions() > 0)
     complain(std::to_string(chain.repetitions()) + " of " + std::to_string(plan.pairs.size()) +
-             " pairs repeat the pictures of the one before, and were left out");
+             " pairs repeat the images of the one before, and were left out");
   if (chain.unusable() > 0)
     complain(std::to_string(chain.unusable()) + " of " + std::to_string(chain.pairs()) +
              " pairs could not be used");
@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
   app.add_option("--output", options.output,
                  "bag to write, with stereo_depth, approach_angle and landing_estimate");
   app.add_option("--report-data", options.report_data,
-                 "folder for what `evaluate --report` needs: timing.csv and pictures");
+                 "folder for what `evaluate --report` needs: timing.csv and drawings");
   app.add_flag_callback(
       "--list-parameters",
       [] {

@@ -36,19 +36,19 @@ std::string causeOf(const PairTally& tally) {
   const double repeating = share.test(IntegrityTest::kRepeatedImage);
   // If one camera alone repeats its images, it is frozen. If both do, they may just see nothing that moves.
   if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
-    return "the pictures of both cameras come again, bit by bit: the cameras stand still and have no noise "
-           "(a simulator), or the driver sends no new pictures";
+    return "the images of both cameras come again, bit by bit: the cameras stand still and have no noise "
+           "(a simulator), or the driver sends no new images";
   if (repeating > 0.3)
-    return "pictures of one camera come twice, bit by bit: its driver repeats them, or hangs";
+    return "images of one camera come twice, bit by bit: its driver repeats them, or hangs";
   if (share.of(tally.alternating) > 0.6)
-    return "every second picture is black or uniform: exposure bracketing, or a lamp or projector that "
-           "blinks; switch it off, or record the bright pictures alone";
+    return "every second image is black or uniform: exposure bracketing, or a lamp or projector that "
+           "blinks; switch it off, or record the bright images alone";
   if (share.reason(Reason::kUniformImage) > 0.3)
-    return "the pictures are black, saturated or uniform: exposure, lens cap, or an encoding that is not "
+    return "the images are black, saturated or uniform: exposure, lens cap, or an encoding that is not "
            "what it says";
   if (share.test(IntegrityTest::kBaselineDirection) > 0.2)
     return "the images of a pair were not taken at the same time (test baseline_direction): the right "
-           "pictures are late or early by some frames, their stamps are not those of the exposure, or there "
+           "images are late or early by some frames, their stamps are not those of the exposure, or there "
            "is no trigger. If the cameras are triggered and stamped well, one camera's focal length is "
            "wrong: calibrate again";
   if (share.test(IntegrityTest::kRowAgreement) + share.reason(Reason::kRigBent) > 0.3)
@@ -60,8 +60,8 @@ std::string causeOf(const PairTally& tally) {
   if (share.reason(Reason::kTooFewMatches) + share.reason(Reason::kTooFewFeatures) +
           share.reason(Reason::kNoPlane) >
       0.4)
-    return "the pictures show hardly any texture or are blurred, the ground fills too little of them, or "
-           "they are not aligned at all (calibration of another rig): look at the pictures of --report-data";
+    return "the images show hardly any texture or are blurred, the ground fills too little of them, or "
+           "they are not aligned at all (calibration of another rig): look at the images of --report-data";
   if (share.reason(Reason::kNoMotion) > 0.5)
     return "the cameras stand still, or move too slowly for an approach angle: heights are valid alone "
            "(column height_valid)";

@@ -42,7 +42,7 @@ std::string refusal(const Pair& pair) {
 Texts warnings(const Pair& pair) { return rigWarnings(pair.left, pair.right, pair.limits); }
 
 const char* const kHint =
-    ": is this the calibration of another picture size? If the picture is cropped off the middle, raise "
+    ": is this the calibration of another image size? If the image is cropped off the middle, raise "
     "rig/max_principal_point_offset";
 
 TEST(RigCheck, AcceptsACameraThatLooksThroughItsMiddleWithoutAWord) {
@@ -63,7 +63,7 @@ TEST(PrincipalPoint, OfAPictureTwiceAsLargeIsRefused) {
   pair.both([](CameraCalibration& c) { c.K.topRows(2) *= 2; });
   EXPECT_EQ(
       refusal(pair),
-      std::string("input_invalid: left K[2]: 640, expected 192 to 448 in a picture 640 px wide") + kHint);
+      std::string("input_invalid: left K[2]: 640, expected 192 to 448 in an image 640 px wide") + kHint);
   EXPECT_EQ(warnings(pair), Texts()) << "the refusal says it";
 }
 
@@ -72,7 +72,7 @@ TEST(PrincipalPoint, OfAPictureHalfAsLargeIsRefused) {
   pair.both([](CameraCalibration& c) { c.K.topRows(2) *= 0.5; });
   EXPECT_EQ(
       refusal(pair),
-      std::string("input_invalid: left K[2]: 160, expected 192 to 448 in a picture 640 px wide") + kHint);
+      std::string("input_invalid: left K[2]: 160, expected 192 to 448 in an image 640 px wide") + kHint);
 }
 
 TEST(PrincipalPoint, OfABinnedPictureIsRefusedWhereBinningIsAnnouncedAsWell) {
@@ -84,23 +84,21 @@ TEST(PrincipalPoint, OfABinnedPictureIsRefusedWhereBinningIsAnnouncedAsWell) {
   });
   EXPECT_EQ(
       refusal(pair),
-      std::string("input_invalid: left K[2]: 320, expected 384 to 896 in a picture 1280 px wide") + kHint);
+      std::string("input_invalid: left K[2]: 320, expected 384 to 896 in an image 1280 px wide") + kHint);
 }
 
 TEST(PrincipalPoint, OfAWholeWidthIsRefusedForTheHalvesOfASideBySidePicture) {
   Pair pair;
   pair.both([](CameraCalibration& c) { c.width = 320; });
-  EXPECT_EQ(
-      refusal(pair),
-      std::string("input_invalid: left K[2]: 320, expected 96 to 224 in a picture 320 px wide") + kHint);
+  EXPECT_EQ(refusal(pair),
+            std::string("input_invalid: left K[2]: 320, expected 96 to 224 in an image 320 px wide") + kHint);
 }
 
 TEST(PrincipalPoint, OfTheWholePictureIsRefusedForACropWhoseCentreWasNotMoved) {
   Pair pair;
   pair.both([](CameraCalibration& c) { c.height = 240; });
-  EXPECT_EQ(
-      refusal(pair),
-      std::string("input_invalid: left K[5]: 240, expected 72 to 168 in a picture 240 px high") + kHint);
+  EXPECT_EQ(refusal(pair),
+            std::string("input_invalid: left K[5]: 240, expected 72 to 168 in an image 240 px high") + kHint);
 }
 
 TEST(PrincipalPoint, OfTheRightCameraCountsAsWell) {
@@ -108,11 +106,10 @@ TEST(PrincipalPoint, OfTheRightCameraCountsAsWell) {
   pair.right.K(1, 2) = 480;
   EXPECT_EQ(
       refusal(pair),
-      std::string("input_invalid: right K[5]: 480, expected 144 to 336 in a picture 480 px high") + kHint);
+      std::string("input_invalid: right K[5]: 480, expected 144 to 336 in an image 480 px high") + kHint);
   pair.right.K(1, 2) = 300;
-  EXPECT_EQ(warnings(pair),
-            Texts{"right K[5]: 300, 12.5 % of the picture's height off its middle: is this the "
-                  "calibration of another picture size?"});
+  EXPECT_EQ(warnings(pair), Texts{"right K[5]: 300, 12.5 % of the image's height off its middle: is this the "
+                                  "calibration of another image size?"});
 }
 
 TEST(PrincipalPoint, IsNeitherRefusedNorWarnedAboutWhereTheRegionOfInterestIsAnnounced) {
@@ -145,10 +142,10 @@ TEST(PrincipalPoint, OfAPictureThatIsCroppedOffTheMiddleIsLetThroughByTheParamet
   pair.limits.max_principal_point_offset = 0.9;  // 150 of 180 rows are 0.833
   EXPECT_EQ(refusal(pair), "accepted");
   EXPECT_EQ(warnings(pair),
-            (Texts{"left K[5]: -60, 83.33 % of the picture's height off its middle: is this the "
-                   "calibration of another picture size?",
-                   "right K[5]: -60, 83.33 % of the picture's height off its middle: is this "
-                   "the calibration of another picture size?"}));
+            (Texts{"left K[5]: -60, 83.33 % of the image's height off its middle: is this the "
+                   "calibration of another image size?",
+                   "right K[5]: -60, 83.33 % of the image's height off its middle: is this "
+                   "the calibration of another image size?"}));
   pair.limits.max_principal_point_offset = 1.7;
   EXPECT_EQ(warnings(pair), Texts()) << "less than half of what is let through";
 }
@@ -244,12 +241,11 @@ TEST(RigCheck, WarnsOfBothCamerasAndTheBaselineAtOnce) {
   pair.right.P(0, 3) = -500 * 20;
   EXPECT_EQ(
       warnings(pair),
-      (Texts{
-          "left K[2]: 416, 15 % of the picture's width off its middle: is this the calibration of another "
-          "picture size?",
-          "right K[2]: 416, 15 % of the picture's width off its middle: is this the calibration of another "
-          "picture size?",
-          "baseline 20 m: is right P[3] in metres (-fx times the baseline)?"}));
+      (Texts{"left K[2]: 416, 15 % of the image's width off its middle: is this the calibration of another "
+             "image size?",
+             "right K[2]: 416, 15 % of the image's width off its middle: is this the calibration of another "
+             "image size?",
+             "baseline 20 m: is right P[3] in metres (-fx times the baseline)?"}));
 }
 
 }  // namespace

@@ -163,7 +163,7 @@ TEST(ReadoutCheck, RefusesRowsThatTakeLongerThanTheTimeBetweenPictures) {
     EXPECT_EQ(failure.reason, Reason::kInputInvalid);
     EXPECT_EQ(
         failure.detail,
-        "rig/readout_time: 0.06 s is longer than the 0.05 s between pictures, expected at most that; give "
+        "rig/readout_time: 0.06 s is longer than the 0.05 s between images, expected at most that; give "
         "it in seconds, as in docs/calibration.md");
   }
   EXPECT_FALSE(after(0.04, {0, 0.05, 0.1, 0.12, 0.2, 0.25})) << "one stamp that jitters";

@@ -262,7 +262,7 @@ TEST(HeightMeasurement, IsAsUncertainAsItChangesInTheTimeThatTheStampsLeaveOpen)
   EXPECT_NEAR(addedVariance(0, priorAt(kHeight, 0.01, -2)), 0, 1e-9) << "right stamps";
   EXPECT_NEAR(addedVariance(kJitter, priorAt(kHeight)), 0, 1e-9) << "a level flight";
   EXPECT_NEAR(addedVariance(kJitter, test::noPrior()), 0, 1e-12) << "a first height";
-  EXPECT_NEAR(addedVariance(kJitter, priorAt(kHeight, 0.01, -2), true), 0, 1e-12) << "repeated pictures";
+  EXPECT_NEAR(addedVariance(kJitter, priorAt(kHeight, 0.01, -2), true), 0, 1e-12) << "repeated images";
 }
 
 TEST(HeightMeasurement, WithoutTheVanishingPointOrTheMotionItIsThatOfStereoAlone) {

@@ -175,7 +175,7 @@ TEST(PairMonitor, AMotionThatAsksForAnotherNormalIsNamedAndDoesNotKnowWhatIsDown
     EXPECT_EQ(verdict.knowsDown(), off_deg == 0);
     EXPECT_FALSE(verdict.leftOut());
     pairs.stereo.left_repeated = true;
-    EXPECT_EQ(Pairs::failed(pairs.check()), "repeated_image") << "of a picture once more it is an old one";
+    EXPECT_EQ(Pairs::failed(pairs.check()), "repeated_image") << "of an image once more it is an old one";
   }
 }
 

@@ -35,7 +35,7 @@ TEST(ApproachAngleStage, ARepeatedPictureIsNoStandstillAndTheStepAfterItIsOverTh
   }
   EXPECT_NEAR(result.step.duration, 2 * kPeriod, 1e-9);
   const Pose now = path(7 * kPeriod);
-  expectMotion(result.step, Movement(path(5 * kPeriod), now), now.height(), "after the repeated picture");
+  expectMotion(result.step, Movement(path(5 * kPeriod), now), now.height(), "after the repeated image");
 }
 
 TEST(ApproachAngleStage, APictureOnceMoreDoesNotConfirmTheRunwayInIt) {

@@ -54,7 +54,7 @@ std::string toText(const GreyRange& range) {
 }
 
 std::string exceededText(int bits) {
-  return text("rig/bits: ", bits, ": more than 1 % of a picture's values are above ",
+  return text("rig/bits: ", bits, ": more than 1 % of an image's values are above ",
               std::lround(largestOf(bits)),
               " and become white: there are more bits, or they do not begin at the lowest one; with 0 the "
               "range is found");

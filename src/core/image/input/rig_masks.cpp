@@ -40,7 +40,7 @@ Failure checkShare(const RawMask& mask) {
   const double share = cv::countNonZero(mask.usable) / static_cast<double>(mask.usable.total());
   if (share >= kLeastShare) return {};
   return refusal(
-      mask, "leaves ", rounded(100 * share), " % of the picture, expected at least ", 100 * kLeastShare,
+      mask, "leaves ", rounded(100 * share), " % of the image, expected at least ", 100 * kLeastShare,
       " %: pixels that are not 0 (white) are used, those that are 0 (black) are left out; is it inverted?");
 }
 
@@ -69,9 +69,9 @@ Failure checkMaskSize(const RawMask& mask, const CameraCalibration& calibration)
   if (mask.usable.empty() || mask.usable.size() == calibration.imageSize()) return {};
   const bool of_full_picture = mask.usable.size() == cv::Size(calibration.width, calibration.height);
   return refusal(mask, "is ", toText(mask.usable.size()), ", expected ", toText(calibration.imageSize()),
-                 ", the size of the raw pictures by camera_info",
+                 ", the size of the raw images by camera_info",
                  of_full_picture ? ", whose ROI and binning count; cut and reduce the mask as the camera does"
-                                 : "; draw it on a raw picture of this camera");
+                                 : "; draw it on a raw image of this camera");
 }
 
 }  // namespace uav_landing

@@ -35,7 +35,7 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
                                   std::vector<LineGreys>& memory, const StampMap& rows) {
   const TopView view(image, mask, rig, axes, runway, memory, rows);
   const std::optional<ThresholdBars> bars = findThresholdBars(view);
-  if (!bars) return noThreshold("no threshold bars in the picture");
+  if (!bars) return noThreshold("no threshold bars in the image");
   const double begin = view.distance(bars->begin);
   if (view.distance(bars->end) - begin < kShortestBars * runway.width)
     return noThreshold("bars of the threshold are too short");
@@ -46,7 +46,7 @@ Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, con
   const double search = begin - std::max(kLineSearch * runway.width, kSearched * farthest);
   int first = 0;
   while (first < view.size() && view.distance(first) < search) ++first;
-  if (first == 0) return noThreshold("what lies before the threshold bars is not in the picture");
+  if (first == 0) return noThreshold("what lies before the threshold bars is not in the image");
   const ThresholdLine line = findThresholdLine(view, *bars, first);
   std::optional<double> seen;
   if (line.spans()) {
