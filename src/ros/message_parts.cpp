@@ -84,6 +84,8 @@ Motion toMessage(const ApproachAngleResult::Motion& motion) {
   toArray(motion.covariance, message.covariance);
   message.approach_angle = motion.angle;
   message.approach_angle_variance = motion.angle_variance;
+  message.row_motion = motion.row_motion;
+  message.row_motion_limit = motion.row_motion_limit;
   toArray(motion.normal, message.normal);
   toArray(motion.normal_covariance, message.normal_covariance);
   return message;
@@ -102,6 +104,8 @@ ApproachAngleResult::Motion toResult(const Motion& message) {
   fromArray(message.covariance, motion.covariance);
   motion.angle = message.approach_angle;
   motion.angle_variance = message.approach_angle_variance;
+  motion.row_motion = message.row_motion;
+  motion.row_motion_limit = message.row_motion_limit;
   return motion;
 }
 

@@ -59,6 +59,8 @@ ApproachAngleResult::Motion distinctMotion() {
   fill(motion.covariance);
   motion.angle = next();
   motion.angle_variance = next();
+  motion.row_motion = next();
+  motion.row_motion_limit = next();
   fill(motion.normal);
   fill(motion.normal_covariance);
   return motion;
@@ -74,6 +76,8 @@ void expectEqual(const ApproachAngleResult::Motion& a, const ApproachAngleResult
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.angle, b.angle);
   EXPECT_EQ(a.angle_variance, b.angle_variance);
+  EXPECT_EQ(a.row_motion, b.row_motion);
+  EXPECT_EQ(a.row_motion_limit, b.row_motion_limit);
   EXPECT_EQ(a.normal, b.normal);
   EXPECT_EQ(a.normal_covariance, b.normal_covariance);
 }
@@ -415,6 +419,8 @@ void expectFields(const Motion& message, const ApproachAngleResult::Motion& moti
   EXPECT_ROW_MAJOR(message, motion, covariance);
   EXPECT_EQ(message.approach_angle, motion.angle);
   EXPECT_EQ(message.approach_angle_variance, motion.angle_variance);
+  EXPECT_FIELD(message, motion, row_motion);
+  EXPECT_FIELD(message, motion, row_motion_limit);
   EXPECT_ROW_MAJOR(message, motion, normal);
   EXPECT_ROW_MAJOR(message, motion, normal_covariance);
 }

@@ -65,6 +65,10 @@ struct TestLimit {
        "random, and by 1 g as long as steps contradict. Finds steps that are one period of a pattern too long, lead "  \
        "to the other camera, or backwards",                                                                            \
        "approach angle as uncertain as this step changes it; no velocity by this step")                                \
+  TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kReported, TestLimit::fixed(1), "rad",                    \
+       "1 σ by which rows of a rolling shutter that move on their own, as vibration moves them, move the approach "    \
+       "angle: at most a third of the angle's own 1 σ. A fast `imu` takes that motion out",                            \
+       "approach angle not valid")                                                                                     \
   TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()),   \
        "rad",                                                                                                          \
        "ground normal of the pair, with that of the pairs before, turned by the rotation since (5 σ); needs "          \

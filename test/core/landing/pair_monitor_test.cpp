@@ -238,6 +238,30 @@ TEST(PairMonitor, AWidthThatContradictsStereoIsNamedAndLeavesNoPairOut) {
   EXPECT_EQ(Pairs::failed(pairs.check()), "") << "a height is not compared with itself";
 }
 
+// Both the last step and the window enter the published angle.
+TEST(PairMonitor, RowsThatMoveTheAngleByMoreThanItsClaimCoversAreNamedAndLeaveNoPairOut) {
+  using Motion = ApproachAngleResult::Motion;
+  for (Motion ApproachAngleResult::*const which :
+       {&ApproachAngleResult::step, &ApproachAngleResult::window}) {
+    Pairs pairs;
+    EXPECT_FALSE(pairs.check().tests.result(IntegrityTest::kRowMotion).possible()) << "a global shutter";
+    for (Motion* motion : {&pairs.approach.step, &pairs.approach.window}) {
+      motion->row_motion = 0;
+      motion->row_motion_limit = 0.001;
+    }
+    EXPECT_TRUE(pairs.check().tests.result(IntegrityTest::kRowMotion).possible());
+    (pairs.approach.*which).row_motion = 0.0009;
+    EXPECT_EQ(Pairs::failed(pairs.check()), "");
+    (pairs.approach.*which).row_motion = 0.002;
+    const PairVerdict verdict = pairs.check();
+    EXPECT_EQ(Pairs::failed(verdict), "row_motion");
+    EXPECT_NEAR(verdict.tests.result(IntegrityTest::kRowMotion).ratio, 4, 1e-9);
+    EXPECT_FALSE(verdict.leftOut() || verdict.angle_refused);
+    pairs.stereo.left_repeated = true;
+    EXPECT_FALSE(pairs.check().tests.result(IntegrityTest::kRowMotion).possible()) << "of the pair before";
+  }
+}
+
 TEST(PairMonitor, ATiltedPlaneLeavesThePairOutEvenWithoutTheMonitor) {
   for (const bool monitor : {false, true}) {
     KalmanHeightParameters parameters;

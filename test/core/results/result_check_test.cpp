@@ -22,6 +22,8 @@ Motion possibleMotion() {
   motion.covariance = 1e-6 * Matrix6d::Identity();
   motion.angle = 0.1;
   motion.angle_variance = 1e-4;
+  motion.row_motion = 0.001;
+  motion.row_motion_limit = 0.003;
   return motion;
 }
 
@@ -36,12 +38,15 @@ void expectMovementKept(const Motion& kept) {
 void expectNoAngle(const Motion& kept) {
   EXPECT_TRUE(std::isnan(kept.angle));
   EXPECT_TRUE(std::isnan(kept.angle_variance));
+  EXPECT_TRUE(std::isnan(kept.row_motion) && std::isnan(kept.row_motion_limit));
 }
 
 void expectKept(const Motion& kept) {
   expectMovementKept(kept);
   EXPECT_EQ(kept.angle, possibleMotion().angle);
   EXPECT_EQ(kept.angle_variance, possibleMotion().angle_variance);
+  EXPECT_EQ(kept.row_motion, possibleMotion().row_motion);
+  EXPECT_EQ(kept.row_motion_limit, possibleMotion().row_motion_limit);
 }
 
 void expectUnknown(const Motion& kept) {
@@ -65,6 +70,19 @@ TEST(ResultCheck, AMotionThatDidNotFailKeepsItsNumbers) {
   const ApproachAngleResult kept = checkedWith({}, {});
   expectKept(kept.step);
   expectKept(kept.window);
+}
+
+TEST(ResultCheck, AMotionOfRowsThatIsNoAngleIsLeftOutAlone) {
+  for (const auto& [motion, limit] :
+       {std::pair(-4.0, 0.003), {0.001, 0.0}, {0.001, kUnknown}, {kUnknown, 0.003}}) {
+    ApproachAngleResult result;
+    result.step = possibleMotion();
+    result.step.row_motion = motion;
+    result.step.row_motion_limit = limit;
+    const Motion kept = checked(result).step;
+    EXPECT_TRUE(std::isnan(kept.row_motion) && std::isnan(kept.row_motion_limit));
+    EXPECT_EQ(kept.angle, possibleMotion().angle);
+  }
 }
 
 TEST(ResultCheck, AMotionThatFailedLosesEachOfItsNumbersButNotItsReason) {

@@ -32,6 +32,19 @@ void testImages(const PairInput& in, PairTests& tests) {
     tests.addRatio(IntegrityTest::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement);
 }
 
+/// The angle of one pair enters the published one, and so does that of the window. The worse one is tested.
+void testRowMotion(const ApproachAngleResult& approach, PairTests& tests) {
+  const ApproachAngleResult::Motion* worse = nullptr;
+  for (const ApproachAngleResult::Motion* motion : {&approach.window, &approach.step}) {
+    if (!std::isfinite(motion->row_motion)) continue;
+    if (worse == nullptr ||
+        motion->row_motion * worse->row_motion_limit > worse->row_motion * motion->row_motion_limit)
+      worse = motion;
+  }
+  if (worse != nullptr)
+    tests.add(IntegrityTest::kRowMotion, worse->row_motion, std::pow(worse->row_motion_limit, 2));
+}
+
 void testRegions(const MeasuredHeight& measured, PairTests& tests) {
   double worst = 0, difference = 0, variance = 0;
   int count = 0;
@@ -97,6 +110,7 @@ PairVerdict PairMonitor::check(const PairInput& in, const Ground& ground, const 
   testImages(in, tests);
   testRig(in, verdict);
   testBaseline(in, tests);
+  if (!in.repeated()) testRowMotion(in.approach, tests);
   testStandstill(in, height, tests);
   verdict.velocity =
       in.repeated() ? velocity_.verdict() : velocity_.follow(in, height, duration_variance, tests);

@@ -61,11 +61,14 @@ double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& rea
 
 constexpr double kAnyAngle = 1;  // rad: 1 sigma when nothing is known
 
-// Whether shaking rows move the angle by more than a small part of its error. The size of that effect is
-// known only roughly, because the matches cannot tell a slow shake from a motion.
-bool isShaken(const MotionEstimate& estimate, double angle_variance) {
+// Sets how much rows that move on their own move the angle. Returns whether that is more than the claim can
+// carry. The size of the effect is known only roughly, because the matches cannot tell a slow shake from a
+// motion.
+bool isShaken(const MotionEstimate& estimate, ApproachAngleResult::Motion& motion) {
   constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
-  return angleVariance(estimate, estimate.of_shake) > kSmallPart * kSmallPart * angle_variance;
+  motion.row_motion = std::sqrt(angleVariance(estimate, estimate.of_shake));
+  motion.row_motion_limit = kSmallPart * std::sqrt(motion.angle_variance);
+  return motion.row_motion > motion.row_motion_limit;
 }
 
 // Adds the error of an estimated readout time to the covariances.
@@ -307,7 +310,8 @@ ApproachAngleResult::Motion MotionTracker::describe(
   const double of_matches = angleVariance(*estimate, estimate->covariance) - of_normal;
   angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
            angleByReadout(*estimate, readout)};
-  angle->shaken = isShaken(*estimate, motion.angle_variance);
+  const bool rolling = !times_.atOnce() || !unit_times_.atOnce();
+  angle->shaken = rolling && isShaken(*estimate, motion);
   if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;
 }

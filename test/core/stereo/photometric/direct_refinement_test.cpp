@@ -9,6 +9,7 @@
 
 #include "support/consistency.h"
 #include "support/refined_pair.h"
+#include "support/rolling_camera.h"
 
 namespace uav_landing {
 namespace {
@@ -53,6 +54,26 @@ TEST(DirectRefinement, FindsThePlaneFromAFractionOfAPixelOff) {
     }
   }
   EXPECT_GT(scene.error(scene.off(0.4, 0.005)), 0.4);
+}
+
+// Where g changes along z only, all rows of a rolling shutter together show another plane: the one that the
+// images are rendered with.
+TEST(DirectRefinement, OfARollingShutterFindsThePlaneAtTheStamp) {
+  RefinedPair scene;
+  scene.render();
+  const RowTimes times(test::calibrationOf(scene.rig), {0.03, 0});
+  const double rate = 3 / (scene.rig.fb() * times.readoutTime());  // 1/m/s: 3 px in a readout
+  const Eigen::Vector3d& t = times.plane();
+  const Eigen::Vector3d by_rows = rate * Eigen::Vector3d(0, t[2] * scene.rig.fy, t[0] + t[2] * scene.rig.cy);
+  const Eigen::Vector3d at_stamp = scene.truth - by_rows;
+  for (const double pixels : {-0.3, 0.0}) {
+    RefinementStart start{scene.off(pixels, 0) - by_rows, scene.rows};
+    start.drift = {{0, 0, rate}, &times};
+    const Expected<PlaneFit> fit =
+        DirectRefinement(scene.model, 4).refine(scene.left, scene.right, start, test::groundLimits(), 0);
+    ASSERT_TRUE(fit) << fit.error().message();
+    EXPECT_LT(scene.error(scene.truth + fit->plane.g - at_stamp), 0.05) << pixels;
+  }
 }
 
 TEST(DirectRefinement, IsBlindToGainOffsetAndVignetting) {
