@@ -67,7 +67,7 @@ function(uav_landing_setup_test_program name)
     ${PROJECT_SOURCE_DIR}/test)
   target_include_directories(${name} SYSTEM PRIVATE ${catkin_INCLUDE_DIRS})
   target_compile_definitions(${name} PRIVATE UAV_LANDING_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_link_libraries(${name} uav_landing_core ${ARGN} GTest::gtest_main)
+  target_link_libraries(${name} uav_landing_core ${ARGN} ${gtest_main})
 endfunction()
 
 # rostests run one at a time: their timing must not depend on what else runs.
@@ -81,8 +81,10 @@ function(uav_landing_test_sources)
   set_property(GLOBAL APPEND PROPERTY uav_landing_test_sources ${ARGN})
 endfunction()
 
-if(NOT TARGET GTest::gtest_main)
-  add_library(GTest::gtest_main ALIAS gtest_main)
+# catkin gives gtest's main one name or the other; CMake before 3.18 cannot make an alias of an imported library.
+set(gtest_main gtest_main)
+if(TARGET GTest::gtest_main)
+  set(gtest_main GTest::gtest_main)
 endif()
 
 file(GLOB test_areas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/*/tests.cmake)

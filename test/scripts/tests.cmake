@@ -15,3 +15,4 @@ uav_landing_add_python_test(test/scripts/soak_test.py SERIAL
   DEPENDENCIES process_bag simulate_approach uav_landing_nodelets)
 uav_landing_add_python_test(test/scripts/flightgear_test.py)
 uav_landing_add_python_test(test/scripts/mutation_test.py)
+uav_landing_add_python_test(test/scripts/check_compilers_test.py)

@@ -29,8 +29,9 @@ constexpr int kLeft = 3, kRight = 4;  // pixels loaded together with the middle 
   constexpr short kBase = 8, kPlace = 3, kBefore = 4 + 0, kMiddle = 4 + 1, kAfter = 2;
   const cv::v_int16x8 coded = cv::v_mul_wrap(steps, cv::v_setall_s16(static_cast<short>(kBase * sign))) +
                               cv::v_int16x8(0, kBefore, kMiddle, kAfter, 0, 0, 0, 0);
-  const int strongest = cv::v_extract_n<1>(
-      cv::v_max(coded, cv::v_max(cv::v_rotate_right<1>(coded), cv::v_rotate_right<2>(coded))));
+  const cv::v_int16x8 best =
+      cv::v_max(coded, cv::v_max(cv::v_rotate_right<1>(coded), cv::v_rotate_right<2>(coded)));
+  const int strongest = cv::v_rotate_right<1>(best).get0();
   return strongest < kBase * least ? -1 : middle - 1 + (strongest & kPlace);
 }
 
