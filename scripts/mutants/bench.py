@@ -5,7 +5,7 @@ import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-from .results import file_fingerprint, folder_fingerprint
+from .results import code_fingerprint, folder_fingerprint
 from .workshop import LONGEST
 
 SHORTEST = 20  # s, that a test may take at least
@@ -52,7 +52,7 @@ class Bench:
     def _source(self, path):
         """Returns the fingerprint of a source file without a mutant. known() asks for it before the file is changed."""
         if path not in self._sources:
-            self._sources[path] = file_fingerprint(self._workshop.tree / path)
+            self._sources[path] = code_fingerprint(self._workshop.tree / path)
         return self._sources[path]
 
     def judge(self, mutants):

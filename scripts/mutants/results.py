@@ -3,9 +3,13 @@
 import hashlib
 import json
 
+from .source_text import without_comments_and_texts
 
-def file_fingerprint(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+def code_fingerprint(path):
+    """Returns a fingerprint of a source file's code: comments, texts and the breaks between lines do not change it."""
+    code = " ".join(without_comments_and_texts(path.read_text(encoding="utf-8")).split())
+    return hashlib.sha256(code.encode()).hexdigest()[:12]
 
 
 def folder_fingerprint(folder):
@@ -29,7 +33,7 @@ class Results:
                 self._by_name[result["name"]] = result
 
     def add(self, mutant, outcome, by, seconds, source, tests):
-        """Adds a result. by: the test that killed the mutant. source, tests: fingerprints of the file and of the tests then."""
+        """Adds a result. by: the test that killed the mutant. source, tests: fingerprints of the code and of the tests then."""
         result = {**mutant._asdict(), "outcome": outcome, "by": by, "seconds": round(seconds, 1), "source": source, "tests": tests}
         self._by_name[mutant.name] = result
         self._path.parent.mkdir(parents=True, exist_ok=True)
@@ -38,9 +42,14 @@ class Results:
         return result
 
     def of(self, mutant, source, tests):
-        """The result that still holds. One that survived has to face new tests, unless `tests` is None; one that was killed
-        stays so while its file is the same."""
+        """Returns the result that still holds, with the mutant's line of today.
+
+        A mutant that survived has to face new tests, unless `tests` is None. One that was killed stays so while the code of
+        its file is the same.
+        """
         result = self._by_name.get(mutant.name)
         if not result or result["source"] != source:
             return None
-        return result if result["outcome"] != "survived" or tests in (None, result["tests"]) else None
+        if result["outcome"] == "survived" and tests not in (None, result["tests"]):
+            return None
+        return {**result, **mutant._asdict()}

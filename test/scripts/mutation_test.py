@@ -14,7 +14,7 @@ from mutants import candidates, operators, page  # noqa: E402 (only there after 
 from mutants.bench import Bench, TestTimes  # noqa: E402
 from mutants.candidates import Mutant  # noqa: E402
 from mutants.concern import Concern, Test  # noqa: E402
-from mutants.results import Results  # noqa: E402
+from mutants.results import Results, code_fingerprint  # noqa: E402
 from mutants.source_text import without_comments_and_texts  # noqa: E402
 from mutants.workshop import Workshop  # noqa: E402
 
@@ -298,6 +298,23 @@ class ResultsTest(TreeTest):
         self.assertEqual(again.of(other, "source", "tests")["outcome"], "survived")
         self.assertIsNone(again.of(other, "source", "new tests"))
         self.assertEqual(again.of(other, "source", None)["outcome"], "survived")
+
+
+    def test_the_line_of_a_result_is_that_of_today(self):
+        results = Results(self.tree / "results.jsonl")
+        results.add(MUTANT, "killed", "a_test", 1, "source", "tests")
+        moved = MUTANT._replace(line=MUTANT.line + 5)
+        self.assertEqual(results.of(moved, "source", "tests")["line"], moved.line)
+        self.assertEqual(results.of(moved, "source", "tests")["by"], "a_test")
+
+    def test_comments_texts_and_lines_do_not_change_the_fingerprint_of_code_and_numbers_do(self):
+        def fingerprint(text):
+            self.write("src/a.cpp", text)
+            return code_fingerprint(self.tree / "src/a.cpp")
+
+        code = fingerprint('int a = 1;  // one\nconst char* b = "b";\n')
+        self.assertEqual(fingerprint('// begins\nint a =\n    1;\nconst char* b = "c";\n'), code)
+        self.assertNotEqual(fingerprint('int a = 2;  // one\nconst char* b = "b";\n'), code)
 
 
 class PageTest(TreeTest):
