@@ -67,7 +67,7 @@ struct TestLimit {
        "approach angle as uncertain as this step changes it; no velocity by this step")                                \
   TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kReported, TestLimit::fixed(1), "rad",                    \
        "1 σ by which rows of a rolling shutter that move on their own, as vibration moves them, move the approach "    \
-       "angle: at most a third of the angle's own 1 σ. A fast `imu` takes that motion out",                            \
+       "angle: at most a third of the angle's own 1 σ",                                                                \
        "approach angle not valid")                                                                                     \
   TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()),   \
        "rad",                                                                                                          \
