@@ -5,6 +5,7 @@ Each command has its own mount and process namespace, so that nothing stays moun
 
 import fnmatch
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -22,10 +23,20 @@ def make_base(folder):
     settings = subprocess.run(["apt-config", "dump"], stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout
     fetching = [line for line in settings.splitlines() if line.startswith(("Acquire::Check", "Acquire::http", "Acquire::Retries"))
                 and not line.endswith('"";')]
-    command = ["mmdebstrap", "--quiet", "--variant=minbase", "--mode=root", "--dpkgopt=force-unsafe-io"]
-    command += [f"--aptopt={line.rstrip(';')}" for line in fetching]
-    if subprocess.run([*command, "bookworm", str(folder)]).returncode != 0:
-        raise Failed("mmdebstrap did not make a Debian 12; see above")
+    # In a namespace of its own: mmdebstrap mounts, and what is mounted has to go also when somebody ends it.
+    command = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "mmdebstrap", "--variant=minbase", "--mode=root",
+               "--dpkgopt=force-unsafe-io", *(f"--aptopt={line.rstrip(';')}" for line in fetching), "bookworm", str(folder)]
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    if result.returncode != 0:
+        raise Failed(why_no_base(result.stdout))
+
+
+def why_no_base(messages):
+    """One line from the messages of mmdebstrap and apt."""
+    if re.search("Could not (resolve|connect)|Temporary failure resolving|Unable to connect|Network is unreachable|timed out", messages):
+        return "Debian's packages cannot be fetched: look at the network and at apt's proxy, until apt-get update works"
+    errors = [line for line in messages.splitlines() if line.startswith("E:")] or messages.splitlines() or ["no message"]
+    return f"mmdebstrap did not make a Debian 12: {errors[0]}"
 
 
 class Room:

@@ -51,6 +51,7 @@ class DockerfileTest(unittest.TestCase):
                 ("FROM debian:12\nLABEL a=b\n", "line 2: LABEL is not understood, only FROM, RUN, COPY, ENV, USER, WORKDIR, ENTRYPOINT"),
                 ("FROM debian:12\nENV A=$B\n", "line 2: ENV has a variable; write out its value"),
                 ("FROM debian:12\n\nCOPY --from=build a b\n", "line 3: COPY --from=build: there is no such stage before"),
+                ("FROM debian:12 AS build\nCOPY --from=build a b\n", "line 2: COPY --from=build: there is no such stage before"),
                 ("FROM debian:12\nCOPY *.cpp b\n", "line 2: COPY has to be names of sources and a destination, without * ? ["),
                 ("FROM debian:12\nENTRYPOINT entry\n", 'line 2: ENTRYPOINT has to be a list, for example ["/bin/entry"]'),
                 ("FROM --platform=arm64 debian:12\n", "line 1: FROM has to be FROM IMAGE or FROM IMAGE AS STAGE"),
