@@ -3,12 +3,14 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from project import SOURCE_DIR, run
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
 
-from container.dockerfile import NotUnderstood, parse  # noqa: E402 (it stands in scripts/)
+from container.checks import check, check_image  # noqa: E402 (they stand in scripts/)
+from container.dockerfile import NotUnderstood, parse  # noqa: E402
 from container.rooms import Failed, Room, copy, ignored  # noqa: E402
 
 TWO_STAGES = """# Comment
@@ -103,6 +105,40 @@ class RoomTest(unittest.TestCase):
         room.user = "pilot"
         with self.assertRaises(Failed):
             room.home()
+
+
+class LastStage:
+    """A room whose commands end as given."""
+
+    def __init__(self, status=0, output="", user="pilot", entry=("/bin/entry",)):
+        self.result = mock.Mock(returncode=status, stdout=output)
+        self.user, self.entry, self.commands = user, entry, []
+
+    def run(self, words, **_):
+        self.commands.append(words)
+        return self.result
+
+
+class ChecksTest(unittest.TestCase):
+    def refusal(self, function, *arguments):
+        with self.assertRaises(Failed) as caught:
+            function(*arguments)
+        return str(caught.exception)
+
+    def test_a_last_stage_of_root_or_without_entry_point_is_refused(self):
+        self.assertEqual(self.refusal(check_image, LastStage(user="root")), "the last stage has no USER: it would run as root")
+        self.assertEqual(self.refusal(check_image, LastStage(entry=())),
+                         "the last stage has no ENTRYPOINT: commands would not find the package")
+
+    def test_a_check_fails_by_its_status_or_for_want_of_the_text(self):
+        self.assertEqual(self.refusal(check, LastStage(status=1, output="libx.so => not found"), "libraries", "true"),
+                         "libraries: failed:\nlibx.so => not found")
+        self.assertEqual(self.refusal(check, LastStage(output="a"), "text", "true", "b"), "text: failed:\na")
+
+    def test_checks_go_through_the_entry_point(self):
+        room = LastStage(output="yes")
+        self.assertEqual(check(room, "all", "true", "yes"), "yes")
+        self.assertEqual(room.commands, [["/bin/entry", "bash", "-c", "true"]])
 
 
 class TestContainerTest(unittest.TestCase):
