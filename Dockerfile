@@ -7,7 +7,8 @@ WORKDIR /src
 COPY scripts/setup scripts/usage.bash scripts/
 RUN scripts/setup
 COPY . .
-RUN scripts/build && cmake --install build --prefix /opt/uav_landing
+# catkin takes the prefix for setup.bash when it configures, not from cmake --install --prefix.
+RUN scripts/build && cmake -DCMAKE_INSTALL_PREFIX=/opt/uav_landing build && cmake --install build
 
 # What flies: no compiler, no headers, no sources.
 FROM debian:12-slim AS runtime
