@@ -9,13 +9,14 @@ INSTALLED = "/opt/uav_landing"
 PROGRAMS = f"export PATH={INSTALLED}/lib/uav_landing:$PATH && cd $(mktemp -d) && "
 LIBRARIES = f"""linked=$(ldd {INSTALLED}/lib/*.so {INSTALLED}/lib/uav_landing/* 2>/dev/null)
     grep -q 'libroscpp.so.* => /' <<<"$linked" || {{ echo 'nothing is linked with roscpp'; exit 1; }}
-    ! grep 'not found' <<<"$linked" | sort -u"""
+    missing=$(grep 'not found' <<<"$linked" | sort -u); echo "$missing"; test -z "$missing" """
 APPROACH = f"""simulate_approach --config {INSTALLED}/share/uav_landing/config/simulator/lab.yaml --output a.bag --dataset d &&
     process_bag --input a.bag --csv a.csv && evaluate --truth d/frames.csv --estimates a.csv"""
 # The launch file has to end by the signal that container engines send.
 NODELETS = """
     export ROS_MASTER_URI=http://localhost:PORT ROS_IP=127.0.0.1
-    roscore -p PORT >/dev/null 2>&1 & until rostopic list >/dev/null 2>&1; do sleep 1; done
+    roscore -p PORT >~/roscore.log 2>&1 & core=$!
+    until rostopic list >/dev/null 2>&1; do kill -0 $core || { cat ~/roscore.log; exit 1; }; sleep 1; done
     roslaunch uav_landing simulate.launch >~/launch.log 2>&1 & launch=$!
     timeout 300 rostopic echo -n 20 /uav_landing/landing_estimate/height || { cat ~/launch.log; exit 1; }
     kill -TERM $launch; timeout 60 tail --pid=$launch -f /dev/null || { echo 'roslaunch goes on after SIGTERM'; exit 1; }"""
