@@ -2,6 +2,8 @@ uav_landing_add_python_test(test/scripts/completion_test.py DEPENDENCIES process
 uav_landing_add_python_test(test/scripts/accuracy_test.py)
 uav_landing_add_python_test(test/scripts/built_space_test.py DEPENDENCIES process_bag)
 uav_landing_add_python_test(test/scripts/setup_test.py DEPENDENCIES process_bag uav_landing_nodelets)
+uav_landing_add_python_test(test/scripts/container_test.py)
+uav_landing_add_python_test(test/scripts/container_machine_test.py)
 uav_landing_add_python_test(test/scripts/change_indicator_test.py
   DEPENDENCIES process_bag simulate_approach simulate_campaign dataset_to_bag)
 uav_landing_add_python_test(test/scripts/calibrate_test.py DEPENDENCIES dataset_to_bag process_bag)
