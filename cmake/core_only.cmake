@@ -8,6 +8,7 @@ find_package(GTest REQUIRED)
 find_path(UAV_LANDING_OPENCV_INCLUDE_DIR opencv2/calib3d.hpp PATH_SUFFIXES opencv4 REQUIRED)
 
 include(cmake/compile_options.cmake)
+add_compile_options(-fpch-preprocess)  # ccache asks for it where headers are compiled beforehand
 include(cmake/core.cmake)
 target_include_directories(uav_landing_core SYSTEM PUBLIC ${UAV_LANDING_OPENCV_INCLUDE_DIR})
 # Most of the time to compile goes into these headers.

@@ -8,7 +8,7 @@ from .commands import Unusable
 
 # The files of src/core/kernels that take the most time of a pair in flight.
 HOTTEST = ("window/parabolic_window", "image/smoothing", "block/pair_sums", "block/block_sums", "window/strip",
-           "samples/seen_rays", "window/window_planes", "image/harris_rows", "lanes/order_statistic", "window/window_copy")
+           "samples/seen_rays", "window/window_planes", "image/harris_rows", "lanes/order_statistic", "edges/edge_growth")
 LEAST_SHARE = 0.05  # of what a kernel executes
 # A full vector register as an operand. What only loads, stores or copies vectors does not count.
 VECTOR = re.compile(r"\bv\d+\.(16b|8h|4s|2d)\b")
