@@ -1,5 +1,6 @@
 uav_landing_add_python_test(test/scripts/completion_test.py DEPENDENCIES process_bag)
 uav_landing_add_python_test(test/scripts/accuracy_test.py)
+uav_landing_add_python_test(test/scripts/arm64_test.py)
 uav_landing_add_python_test(test/scripts/built_space_test.py DEPENDENCIES process_bag)
 uav_landing_add_python_test(test/scripts/setup_test.py DEPENDENCIES process_bag uav_landing_nodelets)
 uav_landing_add_python_test(test/scripts/container_test.py)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "kernels/lanes/comparison.h"
 #include "kernels/lanes/lanes.h"
 #include "kernels/lanes/multiversion.h"
 
@@ -58,10 +59,6 @@ UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const fl
   }
 }
 
-[[gnu::always_inline]] inline void larger(const Lanes& a, const Lanes& b, Lanes& larger) {
-  larger = a > b ? a : b;
-}
-
 /// Whether pixels are larger than their neighbours before them, and not smaller than those after them.
 [[gnu::always_inline]] inline void findMaxima(const float* above, const float* row, const float* below,
                                               IntLanes& is_maximum) {
@@ -81,7 +78,10 @@ UAV_LANDING_MULTIVERSION void respond(const float* xx, const float* xy, const fl
   larger(right, beside, right);
   larger(left, right, after);
   load(row, middle);
-  is_maximum = (middle > before) & (middle >= after);
+  IntLanes above_before, not_below_after;
+  less(before, middle, above_before);
+  atMost(after, middle, not_below_after);
+  is_maximum = above_before & not_below_after;
 }
 
 [[gnu::always_inline]] inline cv::v_int16x8 packed(const IntLanes& m) {

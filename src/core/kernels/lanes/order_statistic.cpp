@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/lanes/comparison.h"
 #include "kernels/lanes/multiversion.h"
 
 namespace uav_landing {
@@ -27,7 +28,9 @@ constexpr int kTries = 10;  // limits after the samples
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
-    below -= v < limits;
+    IntLanes less_here;
+    less(v, limits, less_here);
+    below -= less_here;
   }
   return sumOf(below);
 }
@@ -39,21 +42,42 @@ constexpr int kTries = 10;  // limits after the samples
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
-    up_to -= v <= limits;
+    IntLanes at_most_here;
+    atMost(v, limits, at_most_here);
+    up_to -= at_most_here;
   }
   return sumOf(up_to);
 }
 
+/// The values that are not below a limit, and infinity in place of the others.
+template <class Vector>
+[[gnu::always_inline]] inline void keepFrom(const Vector& v, const Vector& limits, Vector& kept) {
+  compareByParts(
+      v, limits, kept, [](const auto& x, const auto& limit, auto& to) __attribute__((always_inline)) {
+        to = x >= limit ? x
+                        : std::decay_t<decltype(x)>{} +
+                              std::numeric_limits<std::decay_t<decltype(x[0])>>::infinity();
+      });
+}
+/// The values below a limit, and minus infinity in place of the others.
+[[gnu::always_inline]] inline void keepBelow(const Lanes& v, const Lanes& limits, Lanes& kept) {
+  compareByParts(
+      v, limits, kept, [](const auto& x, const auto& limit, auto& to) __attribute__((always_inline)) {
+        to = x < limit ? x : std::decay_t<decltype(x)>{} - kInfinity;
+      });
+}
+
 /// The smallest value that is not below a limit.
 [[gnu::always_inline]] inline float smallestFrom(const float* values, int count, float limit) {
-  const Lanes limits = Lanes{} + limit, infinity = Lanes{} + kInfinity;
-  Lanes smallest = infinity;
+  const Lanes limits = Lanes{} + limit;
+  Lanes smallest = Lanes{} + kInfinity;
   UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
-    const Lanes candidate = v >= limits ? v : infinity;
-    smallest = candidate < smallest ? candidate : smallest;
+    Lanes candidate;
+    keepFrom(v, limits, candidate);
+    smaller(candidate, smallest, smallest);
   }
   float result = smallest[0];
   for (int i = 1; i < kLanes; ++i) result = smallest[i] < result ? smallest[i] : result;
@@ -62,14 +86,15 @@ constexpr int kTries = 10;  // limits after the samples
 
 /// The largest value below a limit; there must be one.
 [[gnu::always_inline]] inline float largestBelow(const float* values, int count, float limit) {
-  const Lanes limits = Lanes{} + limit, lowest = Lanes{} - kInfinity;
-  Lanes largest = lowest;
+  const Lanes limits = Lanes{} + limit;
+  Lanes largest = Lanes{} - kInfinity;
   UAV_LANDING_UNROLL
   for (int i = 0; i < count; i += kLanes) {
     Lanes v;
     load(values + i, v);
-    const Lanes candidate = v < limits ? v : lowest;
-    largest = candidate > largest ? candidate : largest;
+    Lanes candidate;
+    keepBelow(v, limits, candidate);
+    larger(candidate, largest, largest);
   }
   float result = largest[0];
   for (int i = 1; i < kLanes; ++i) result = largest[i] > result ? largest[i] : result;
@@ -88,8 +113,11 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
     DoubleLanes a, b;
     load(values + i, a);
     load(values + i + kDoubleLanes, b);
-    first -= a < limits;
-    second -= b < limits;
+    LongLanes a_less, b_less;
+    less(a, limits, a_less);
+    less(b, limits, b_less);
+    first -= a_less;
+    second -= b_less;
   }
   first += second;
   size_t below = static_cast<size_t>((first[0] + first[1]) + (first[2] + first[3]));
@@ -99,14 +127,15 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// The smallest value that is not below a limit.
 [[gnu::always_inline]] inline double smallestFrom(const double* values, size_t count, double limit) {
-  const DoubleLanes limits = DoubleLanes{} + limit, far = DoubleLanes{} + kFar;
-  DoubleLanes smallest = far;
+  const DoubleLanes limits = DoubleLanes{} + limit;
+  DoubleLanes smallest = DoubleLanes{} + kFar;
   size_t i = 0;
   for (; i + kDoubleLanes <= count; i += kDoubleLanes) {
     DoubleLanes v;
     load(values + i, v);
-    const DoubleLanes candidate = v >= limits ? v : far;
-    smallest = candidate < smallest ? candidate : smallest;
+    DoubleLanes candidate;
+    keepFrom(v, limits, candidate);
+    smaller(candidate, smallest, smallest);
   }
   double result = kFar;
   for (int k = 0; k < kDoubleLanes; ++k) result = smallest[k] < result ? smallest[k] : result;

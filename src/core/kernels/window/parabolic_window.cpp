@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/lanes/comparison.h"
 #include "kernels/lanes/lanes.h"
 #include "kernels/lanes/multiversion.h"
 
@@ -103,7 +104,8 @@ class AlongRows {
         const Lanes last = start + drift_ * (kLanes - 1);
         IntLanes first;
         Lanes before;
-        truncate(last < start ? last : start, first);
+        smaller(last, start, before);
+        truncate(before, first);
         convert(first, before);
         store(first, &begin.first[j]);
         store(start - before, &begin.behind[j]);
