@@ -257,7 +257,7 @@ std::string toldOf(const std::vector<std::pair<Reason, std::string>>& pairs, int
     Pipeline::Output output;
     output.landing.status = Status::kTracking;
     output.landing.height_valid = output.landing.angle_valid = reason == Reason::kNone;
-    output.landing.failure = {reason, ""};
+    output.landing.failure = {reason, reason == Reason::kUniformImage ? "right image has no contrast" : ""};
     output.stereo.left_repeated = repeated > 1;
     output.stereo.right_repeated = repeated > 0;
     TestResult test;
@@ -298,7 +298,9 @@ TEST(PairCount, TellsEachCauseByWhatShowsIt) {
   };
   hasCause(times(10, Reason::kNegativeDisparity), "left and right images are swapped");
   hasCause(times(10, Reason::kInconsistent, "repeated_image"), "images of one camera come twice");
-  hasCause(times(10, Reason::kUniformImage), "the images are black, saturated or uniform");
+  hasCause(times(10, Reason::kUniformImage),
+           "images are black, saturated or uniform (right image has no contrast): exposure");
+  hasCause(times(10, Reason::kUniformImage, "repeated_image"), "images are black, saturated or uniform");
   hasCause(times(10, Reason::kInconsistent, "row_agreement"),
            "the rows of left and right images do not belong together");
   hasCause(times(10, Reason::kInconsistent, "sink_rate"), "heights change otherwise than the motion says");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/text.h"
 #include "integrity/test_catalogue.h"
 
 namespace uav_landing {
@@ -33,6 +34,13 @@ std::string causeOf(const PairTally& tally) {
   if (share.reason(Reason::kNegativeDisparity) > 0.3)
     return "left and right images are swapped, or the calibration was made with them swapped: give each "
            "camera its own topic (convert_recording bag … --left … --right …)";
+  if (share.of(tally.alternating) > 0.6)
+    return "every second image is black or uniform: exposure bracketing, or a lamp or projector that "
+           "blinks; switch it off, or record the bright images alone";
+  // Black images are also those of the pair before, bit by bit.
+  if (share.reason(Reason::kUniformImage) > 0.3)
+    return text("images are black, saturated or uniform (", tally.uniform,
+                "): exposure, lens cap, a dead camera, or an encoding that is not what it says");
   const double repeating = share.test(IntegrityTest::kRepeatedImage);
   // If one camera alone repeats its images, it is frozen. If both do, they may just see nothing that moves.
   if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
@@ -40,12 +48,6 @@ std::string causeOf(const PairTally& tally) {
            "(a simulator), or the driver sends no new images";
   if (repeating > 0.3)
     return "images of one camera come twice, bit by bit: its driver repeats them, or hangs";
-  if (share.of(tally.alternating) > 0.6)
-    return "every second image is black or uniform: exposure bracketing, or a lamp or projector that "
-           "blinks; switch it off, or record the bright images alone";
-  if (share.reason(Reason::kUniformImage) > 0.3)
-    return "the images are black, saturated or uniform: exposure, lens cap, or an encoding that is not "
-           "what it says";
   if (share.test(IntegrityTest::kBaselineDirection) > 0.2)
     return "the images of a pair were not taken at the same time (test baseline_direction): the right "
            "images are late or early by some frames, their stamps are not those of the exposure, or there "
@@ -72,9 +74,10 @@ std::string causeOf(const PairTally& tally) {
 
 void PairTally::add(const ProcessedPair& pair) {
   const LandingResult& landing = pair.output.landing;
-  const bool uniform = landing.failure.reason == Reason::kUniformImage;
-  if (pairs > 0 && uniform != uniform_) ++alternating;
-  uniform_ = uniform;
+  const bool is_uniform = landing.failure.reason == Reason::kUniformImage;
+  if (pairs > 0 && is_uniform != uniform_) ++alternating;
+  uniform_ = is_uniform;
+  if (is_uniform) uniform = landing.failure.detail;
   ++pairs;
   if (pair.output.stereo.left_repeated && pair.output.stereo.right_repeated) ++repeating;
   if (landing.valid())

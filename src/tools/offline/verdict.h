@@ -13,6 +13,7 @@ struct PairTally {
   std::size_t pairs = 0, valid = 0;
   std::size_t alternating = 0;  ///< pairs that are uniform while the previous one is not, or the reverse
   std::size_t repeating = 0;    ///< pairs whose left and right images both equal those of the previous pair
+  std::string uniform;          ///< what the last uniform pair says of its images
   std::map<std::string, std::size_t> reasons;       ///< of pairs that are not valid
   std::map<std::string, std::size_t> failed_tests;  ///< of all pairs
 
