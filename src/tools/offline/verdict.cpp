@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/text.h"
 #include "integrity/test_catalogue.h"
 
 namespace uav_landing {
@@ -39,8 +38,8 @@ std::string causeOf(const PairTally& tally) {
            "blinks; switch it off, or record the bright images alone";
   // Black images are also those of the pair before, bit by bit.
   if (share.reason(Reason::kUniformImage) > 0.3)
-    return text("images are black, saturated or uniform (", tally.uniform,
-                "): exposure, lens cap, a dead camera, or an encoding that is not what it says");
+    return "images are black, saturated or uniform (" + tally.uniform +
+           "): exposure, lens cap, a dead camera, or an encoding that is not what it says";
   const double repeating = share.test(IntegrityTest::kRepeatedImage);
   // If one camera alone repeats its images, it is frozen. If both do, they may just see nothing that moves.
   if (repeating > 0.3 && share.of(tally.repeating) > 0.5 * repeating)
