@@ -126,6 +126,7 @@ TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
 struct Angles {
   double least_variance = 100, largest_variance = 0;
   int pairs = 0, failed = 0;  ///< with an angle; with rows that the test finds to move it too much
+  int heights = 0;            ///< that are valid
 };
 
 /// vibration: of the pitch, rad.
@@ -154,6 +155,7 @@ Angles anglesWith(double vibration) {
     angles.least_variance = std::min(angles.least_variance, variance);
     angles.largest_variance = std::max(angles.largest_variance, variance);
     ++angles.pairs;
+    angles.heights += output.landing.height_valid;
     for (const TestResult& test : output.landing.tests)
       angles.failed += test.name == "row_motion" && test.failed();
   }
@@ -166,6 +168,7 @@ TEST(RollingShutter, ThatShakesTellsNoAngle) {
   EXPECT_EQ(shaken.largest_variance, 1);
   EXPECT_GT(shaken.pairs, 5);
   EXPECT_EQ(shaken.failed, shaken.pairs);
+  EXPECT_EQ(shaken.heights, shaken.pairs) << "stereo needs no motion";
   const Angles still = anglesWith(0);
   EXPECT_LT(still.largest_variance, 1e-3);
   EXPECT_EQ(still.failed, 0);

@@ -303,6 +303,7 @@ TEST(PairCount, TellsEachCauseByWhatShowsIt) {
   hasCause(times(10, Reason::kUniformImage, "repeated_image"), "images are black, saturated or uniform");
   hasCause(times(10, Reason::kInconsistent, "row_agreement"),
            "the rows of left and right images do not belong together");
+  hasCause(times(10, Reason::kUncertain, "row_motion"), "rows of the images move on their own");
   hasCause(times(10, Reason::kInconsistent, "sink_rate"), "heights change otherwise than the motion says");
   hasCause(times(10, Reason::kNoPlane), "the images show hardly any texture");
   hasCause(times(10, Reason::kNoMotion), "the cameras stand still");

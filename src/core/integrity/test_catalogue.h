@@ -68,7 +68,7 @@ struct TestLimit {
   TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kReported, TestLimit::fixed(1), "rad",                    \
        "1 σ by which rows of a rolling shutter that move on their own, as vibration moves them, move the approach "    \
        "angle: at most a third of the angle's own 1 σ",                                                                \
-       "approach angle not valid")                                                                                     \
+       "approach angle not valid; the vertical speed by this motion counts for nothing")                               \
   TEST(kTilt, "tilt", TestStep::kGround, OnFailure::kPairLeftOut, TestLimit::fixed(AttitudeFilter::kGate.squared()),   \
        "rad",                                                                                                          \
        "ground normal of the pair, with that of the pairs before, turned by the rotation since (5 σ); needs "          \

@@ -55,6 +55,9 @@ std::string causeOf(const PairTally& tally) {
   if (share.test(IntegrityTest::kRowAgreement) + share.reason(Reason::kRigBent) > 0.3)
     return "the rows of left and right images do not belong together (test row_agreement): this is another "
            "rig's calibration, or a camera has turned since: calibrate again";
+  if (share.test(IntegrityTest::kRowMotion) > 0.5)
+    return "rows of the images move on their own (test row_motion): vibration with a rolling shutter. Mount "
+           "the cameras softer, or use global shutters; heights are valid alone (column height_valid)";
   if (share.test(IntegrityTest::kSinkRate) + share.test(IntegrityTest::kMotionNormal) > 0.4)
     return "heights change otherwise than the motion says (tests motion_normal, sink_rate): a camera has "
            "turned sideways since the calibration: calibrate again";

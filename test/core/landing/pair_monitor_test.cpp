@@ -251,12 +251,14 @@ TEST(PairMonitor, RowsThatMoveTheAngleByMoreThanItsClaimCoversAreNamedAndLeaveNo
     }
     EXPECT_TRUE(pairs.check().tests.result(IntegrityTest::kRowMotion).possible());
     (pairs.approach.*which).row_motion = 0.0009;
-    EXPECT_EQ(Pairs::failed(pairs.check()), "");
+    const PairVerdict covered = pairs.check();
+    EXPECT_EQ(Pairs::failed(covered), "");
+    EXPECT_TRUE(covered.knowsDown());
     (pairs.approach.*which).row_motion = 0.002;
     const PairVerdict verdict = pairs.check();
     EXPECT_EQ(Pairs::failed(verdict), "row_motion");
     EXPECT_NEAR(verdict.tests.result(IntegrityTest::kRowMotion).ratio, 4, 1e-9);
-    EXPECT_FALSE(verdict.leftOut() || verdict.angle_refused);
+    EXPECT_FALSE(verdict.leftOut() || verdict.angle_refused || verdict.knowsDown());
     pairs.stereo.left_repeated = true;
     EXPECT_FALSE(pairs.check().tests.result(IntegrityTest::kRowMotion).possible()) << "of the pair before";
   }

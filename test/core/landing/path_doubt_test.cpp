@@ -176,6 +176,15 @@ TEST(PathDoubt, CountsForMoreOnASteepPath) {
   EXPECT_NEAR(flight.stddev(), 2 * level, 1e-6);
 }
 
+TEST(PathDoubt, OfAMotionWhoseRowsMoveOnTheirOwnNothingIsKnown) {
+  Flight flight;
+  flight.approach.step.row_motion_limit = 0.001;
+  flight.approach.step.row_motion = 0.0009;
+  EXPECT_LT(flight.stddev(), 1e-3);
+  flight.approach.step.row_motion = 0.002;
+  EXPECT_EQ(flight.stddev(), 1);
+}
+
 TEST(PathDoubt, ThereIsNoneWhereNoNormalIsKnown) {
   Flight flight;
   flight.approach.n.setConstant(kUnknown);

@@ -28,9 +28,11 @@ struct PairVerdict {
   VelocityWatch::Verdict velocity;
 
   bool leftOut() const { return static_cast<bool>(failure); }
-  /// Whether the sources agree on the vertical direction of the motion.
+  /// Whether the sources agree on the vertical direction of the motion, and its rows do not move on their
+  /// own.
   bool knowsDown() const {
-    return !tests.failed(IntegrityTest::kVanishingPoint) && !tests.failed(IntegrityTest::kMotionNormal);
+    return !tests.failed(IntegrityTest::kVanishingPoint) && !tests.failed(IntegrityTest::kMotionNormal) &&
+           !tests.failed(IntegrityTest::kRowMotion);
   }
 };
 

@@ -17,7 +17,8 @@ class PathDoubt {
   explicit PathDoubt(const KalmanHeightParameters& parameters);
 
   /// Variance of this motion's angle from other possible normals, rad^2. Before update() it contains the
-  /// doubt of the previous pairs only.
+  /// doubt of the previous pairs only. Of a motion whose rows move on their own by more than its claim
+  /// covers, nothing is known.
   double variance(const PairInput& in, const Ground& ground, const ApproachAngleResult::Motion& motion) const;
   /// Do not call it for a repeated image. tests: of this pair.
   void update(const PairInput& in, const Ground& ground, const PairTests& tests);
