@@ -16,6 +16,7 @@ scripts/mutation --seed 1 --number 300 --page              # writes this page
 ```
 - It works on a copy of the tree in `build/mutation/`. There it builds each mutant and runs the tests that reach the changed file by
   includes. The nearest come first, and of these the quickest. A test that fails has to pass without the mutant.
+  Remove `build/mutation/tree` before you run the tests of the tree itself: `roslaunch` would find each launch file twice.
 - A header that many sources see is compiled into the nearest ones first, and into all of them when that kills nothing.
 - It keeps every result and goes on where it was stopped. A killed mutant counts as long as the code of its file is the same,
   whatever happens to comments and texts. A survivor has to face new tests again. A mutant that cannot be compiled does not count.
