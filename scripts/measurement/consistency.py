@@ -42,9 +42,9 @@ Each cell has three numbers. The first is the share of the errors within the cla
 (Wilson) stands in brackets. The last is the ratio of errors to claimed standard deviations, root mean square. It is 1 when the claim is
 true, and less when it is too cautious. Counted are valid frames; *n* is their number for the columns that follow.
 
-**Ground.** The height is that over ground that bends as much and as often as the estimator is told to expect. 60 of 100 snippets are flat. 10
-each have one vertical curve of 100 m that changes the slope by 1/16, 1/4, 1 and 2 times `slope_change_deg` (1 σ). It lies somewhere from
-100 m behind the aircraft to 300 m ahead. The other quantities are over flat ground: where it bends, the surface ahead has no one
+**Ground.** The height is that over ground that bends as much and as often as the estimator is told to expect. Of 100 snippets 60 are
+flat. The others have one vertical curve of 100 m. It changes the slope by 1/16, 1/4, 1 or 2 times `slope_change_deg` (1 σ), for ten
+snippets each. It lies somewhere from 100 m behind the aircraft to 300 m ahead. The other quantities are over flat ground: where it bends, the surface ahead has no one
 direction. One column shows the height there. It must be too cautious: from 30 m most of its claim is for a bend between the ground seen
 and the ground below.
 

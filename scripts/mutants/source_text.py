@@ -1,20 +1,20 @@
-"""Reads C++ source for the mutation test: line by line, with comments and texts blanked out."""
+"""Reads C++ source line by line, with comments and texts blanked out: for the mutation test and for newer_api.py."""
 
 import re
 
 _QUIET = re.compile(r"""
     //[^\n]*                      # comment to the end of the line
   | /\*.*?\*/                     # comment
-  | R"\((?:.|\n)*?\)"             # raw text
+  | R"(?P<mark>\w*)\(.*?\)(?P=mark)"  # raw text
   | "(?:\\.|[^"\\\n])*"           # text
-  | '(?:\\.|[^'\\\n])'            # character
+  | (?<!\w)'(?:\\.|[^'\\\n])+'    # character; between digits it separates
 """, re.VERBOSE | re.DOTALL)
 
 _OPERATOR = re.compile(r" (?:[-+*/%<>?:|&^=]|[<>=!]=|&&|\|\|) ")
 
 
 def without_comments_and_texts(source):
-    """Returns the source with the same lines and columns, and blanks where no mutant may change anything."""
+    """Returns the source with the same lines and columns, and blanks in place of comments and texts."""
     def blank(match):
         return "".join("\n" if c == "\n" else " " for c in match.group())
     return _QUIET.sub(blank, source)

@@ -3,17 +3,18 @@
 import ast
 import functools
 import re
+import sys
 from collections import namedtuple
 from pathlib import Path
 
 import newer_names as names
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+from mutants.source_text import without_comments_and_texts  # noqa: E402 (only there after the line before)
+
 Finding = namedtuple("Finding", "file line api version")
 OLDEST_PYTHON = (3, 8)
 OLDEST_CMAKE = (3, 16)
-# Comments and texts name what they like. A comment sign within a text is none, a quote within a comment neither.
-CPP_ASIDE = re.compile(r"""//[^\n]*|/\*.*?\*/|R"(?P<mark>\w*)\(.*?\)(?P=mark)"|"(?:[^"\\\n]|\\.)*"|"""
-                       r"""(?<!\w)'(?:[^'\\\n]|\\.)+'""", re.S)
 CMAKE_ASIDE = re.compile(r"#[^\n]*")
 SHELL_ASIDE = re.compile(r"(?<![^\s;])#[^\n]*")
 
@@ -42,7 +43,7 @@ def _search(file, text, table):
 
 
 def in_cpp(file, text):
-    return list(_search(file, _without(text, CPP_ASIDE), names.CPP))
+    return list(_search(file, without_comments_and_texts(text), names.CPP))
 
 
 def in_cmake(file, text):

@@ -148,8 +148,8 @@ class Model {
   }
 
  private:
-  /// Where a pixel is: along each side (a share of it) and inward of it (px), with how much of the pixel is
-  /// inside and the derivative of that. beyond: how far from the near side to the far one. scale: px a metre.
+  /// Where a pixel is. share: along each side. inward: distance inward of it, px. rise: derivative of the
+  /// share of the pixel that is inside. beyond: from the near side (0) to the far one (1). scale: px a metre.
   struct Place {
     double share[kSides], inward[kSides], rise[kSides];
     double across, along, beyond, scale;

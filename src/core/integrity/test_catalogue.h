@@ -65,7 +65,7 @@ struct TestLimit {
        "random, and by 1 g as long as steps contradict. Finds steps that are one period of a pattern too long, lead "  \
        "to the other camera, or backwards",                                                                            \
        "approach angle as uncertain as this step changes it; no velocity by this step")                                \
-  TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kReported, TestLimit::fixed(1), "rad",                    \
+  TEST(kRowMotion, "row_motion", TestStep::kPair, OnFailure::kAngleDoubted, TestLimit::fixed(1), "rad",                \
        "1 σ by which rows of a rolling shutter that move on their own, as vibration moves them, move the approach "    \
        "angle: at most a third of the angle's own 1 σ",                                                                \
        "approach angle not valid; the vertical speed by this motion counts for nothing")                               \

@@ -95,7 +95,8 @@ void keepMotion(ApproachAngleResult::Motion& motion) {
   }
   if (motion.failure || !within(motion.angle, M_PI / 2) || !isVariance(motion.angle_variance))
     motion.angle = motion.angle_variance = kUnknown;
-  if (motion.failure || !within(motion.row_motion, M_PI) || !(motion.row_motion_limit > 0))
+  if (motion.failure || !(motion.row_motion >= 0 && motion.row_motion <= M_PI) ||
+      !(motion.row_motion_limit > 0))
     motion.row_motion = motion.row_motion_limit = kUnknown;
   if (!possible) motion.normal.setConstant(kUnknown);
   keepDirection(motion.normal, motion.normal_covariance);

@@ -74,7 +74,7 @@ TEST(ResultCheck, AMotionThatDidNotFailKeepsItsNumbers) {
 
 TEST(ResultCheck, AMotionOfRowsThatIsNoAngleIsLeftOutAlone) {
   for (const auto& [motion, limit] :
-       {std::pair(-4.0, 0.003), {0.001, 0.0}, {0.001, kUnknown}, {kUnknown, 0.003}}) {
+       {std::pair(-0.001, 0.003), {4.0, 0.003}, {0.001, 0.0}, {0.001, kUnknown}, {kUnknown, 0.003}}) {
     ApproachAngleResult result;
     result.step = possibleMotion();
     result.step.row_motion = motion;

@@ -15,6 +15,7 @@ constexpr int kComparedParts = 2;
 constexpr int kComparedParts = 1;
 #endif
 constexpr int kComparedBytes = sizeof(Lanes) / kComparedParts;
+// One by one, because GCC ignores the attribute on a type that depends on a template.
 template <class Number>
 struct ComparedPart;
 template <>

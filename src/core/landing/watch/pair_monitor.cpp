@@ -32,17 +32,14 @@ void testImages(const PairInput& in, PairTests& tests) {
     tests.addRatio(IntegrityTest::kRowAgreement, stereo.row_agreement, 1 - stereo.row_agreement);
 }
 
-/// The angle of one pair enters the published one, and so does that of the window. The worse one is tested.
+/// Both motions enter the published angle. The worse one is tested.
 void testRowMotion(const ApproachAngleResult& approach, PairTests& tests) {
-  const ApproachAngleResult::Motion* worse = nullptr;
-  for (const ApproachAngleResult::Motion* motion : {&approach.window, &approach.step}) {
-    if (!std::isfinite(motion->row_motion)) continue;
-    if (worse == nullptr ||
-        motion->row_motion * worse->row_motion_limit > worse->row_motion * motion->row_motion_limit)
-      worse = motion;
-  }
-  if (worse != nullptr)
-    tests.add(IntegrityTest::kRowMotion, worse->row_motion, std::pow(worse->row_motion_limit, 2));
+  const auto ratio = [](const ApproachAngleResult::Motion& motion) {
+    return std::isfinite(motion.row_motion) ? motion.row_motion / motion.row_motion_limit : -1;
+  };
+  const ApproachAngleResult::Motion& worse =
+      ratio(approach.step) > ratio(approach.window) ? approach.step : approach.window;
+  tests.add(IntegrityTest::kRowMotion, worse.row_motion, std::pow(worse.row_motion_limit, 2));
 }
 
 void testRegions(const MeasuredHeight& measured, PairTests& tests) {

@@ -5,14 +5,13 @@
 #include <cmath>
 
 #include "geometry/rotation.h"
+#include "results/row_motion.h"
 
 namespace uav_landing {
 namespace {
 
 // Limit of the squared normalised error that noise alone exceeds in 5 % of the cases.
 const double kCertain = chiSquareLimit(0.05, 1);
-
-constexpr double kAnyAngle = 1;  // rad: 1 sigma when nothing is known
 
 double along(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& t) {
   return t.allFinite() ? t.dot(covariance * t) / t.squaredNorm() : covariance.trace();
@@ -37,7 +36,7 @@ PathDoubt::PathDoubt(const KalmanHeightParameters& parameters)
 
 double PathDoubt::variance(const PairInput& in, const Ground& ground,
                            const ApproachAngleResult::Motion& motion) const {
-  if (motion.row_motion > motion.row_motion_limit) return kAnyAngle * kAnyAngle;
+  if (rowsMove(motion)) return kAnyAngle * kAnyAngle;
   const GroundNormal used = normalOfAngle(in.approach, motion);
   double variance = 0;
   for (const OtherNormal& other : otherNormals(in, ground, used))

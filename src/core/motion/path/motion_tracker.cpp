@@ -13,6 +13,7 @@
 #include "image/windows/corners.h"
 #include "motion/path/approach_angle.h"
 #include "motion/step/plane_proof.h"
+#include "results/row_motion.h"
 
 namespace uav_landing {
 namespace {
@@ -59,16 +60,12 @@ double angleByReadout(const MotionEstimate& estimate, const ReadoutEstimate& rea
   return std::sqrt(readout.variance) * by_time / std::sqrt(1 - std::pow(sineOfAngle(estimate), 2));
 }
 
-constexpr double kAnyAngle = 1;  // rad: 1 sigma when nothing is known
-
-// Sets how much rows that move on their own move the angle. Returns whether that is more than the claim can
-// carry. The size of the effect is known only roughly, because the matches cannot tell a slow shake from a
-// motion.
-bool isShaken(const MotionEstimate& estimate, ApproachAngleResult::Motion& motion) {
+// Sets how much rows that move on their own move the angle. The size of the effect is known only roughly,
+// because the matches cannot tell a slow shake from a motion.
+void setRowMotion(const MotionEstimate& estimate, ApproachAngleResult::Motion& motion) {
   constexpr double kSmallPart = 1.0 / 3;  // of 1 sigma
   motion.row_motion = std::sqrt(angleVariance(estimate, estimate.of_shake));
   motion.row_motion_limit = kSmallPart * std::sqrt(motion.angle_variance);
-  return motion.row_motion > motion.row_motion_limit;
 }
 
 // Adds the error of an estimated readout time to the covariances.
@@ -311,7 +308,8 @@ ApproachAngleResult::Motion MotionTracker::describe(
   angle = {motion.angle, std::max(of_matches, 0.0), duration, std::sqrt(of_normal),
            angleByReadout(*estimate, readout)};
   const bool rolling = !times_.atOnce() || !unit_times_.atOnce();
-  angle->shaken = rolling && isShaken(*estimate, motion);
+  if (rolling) setRowMotion(*estimate, motion);
+  angle->shaken = rowsMove(motion);
   if (angle->shaken) motion.angle_variance = kAnyAngle * kAnyAngle;
   return motion;
 }
