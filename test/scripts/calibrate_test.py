@@ -17,6 +17,7 @@ from cv_bridge import CvBridge
 from sensor_msgs.msg import CompressedImage, Image
 
 from project import DEVEL_DIR, SOURCE_DIR, run
+from python_program import run_here
 from test_data import dataset
 
 sys.path.insert(0, str(SOURCE_DIR / "src/tools"))
@@ -27,7 +28,7 @@ BOARD = ["--size", "8x6", "--square", "0.1"]
 
 
 def calibrate(images, output, *options, board=BOARD):
-    return run([SOURCE_DIR / "scripts/calibrate", "--images", images, "--output", output, *board, *options])
+    return run_here(SOURCE_DIR / "scripts/calibrate", "--images", images, "--output", output, *board, *options)
 
 
 def rays(pixels, K, D):

@@ -11,13 +11,17 @@ import rosbag
 import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from project import SOURCE_DIR, rosrun
+from project import BUILD_DIR, SOURCE_DIR, run
+from python_program import run_here
 from stereo_bag import CALIBRATION_FILE, HEIGHT, WIDTH, image, noise, noise_frames, write_bag
 
 sys.path.insert(0, str(SOURCE_DIR / "src/tools"))
 from conversion.errors import LeftOut  # noqa: E402
 from conversion.pictures import decoded  # noqa: E402
 from conversion.sources import Videos  # noqa: E402
+
+CONVERT = SOURCE_DIR / "src/tools/convert_recording"
+PROCESS = BUILD_DIR / "devel/lib/uav_landing/process_bag"
 
 SENSOR = """%YAML:1.0
 T_BS:
@@ -39,7 +43,7 @@ class ConvertRecordingTest(unittest.TestCase):
         self.output = self.folder / "out.bag"
 
     def convert(self, kind, *arguments):
-        return rosrun("convert_recording", kind, *arguments, "--output", self.output)
+        return run_here(CONVERT, kind, *arguments, "--output", self.output)
 
     def converted(self, *arguments):
         """Messages by topic."""
@@ -268,7 +272,7 @@ class ConvertRecordingTest(unittest.TestCase):
     def made_from(self, *arguments):
         """What was printed, and the two cameras that came of it."""
         folder = self.folder / "made"
-        result = rosrun("convert_recording", "calibration", *arguments, "--output", folder)
+        result = run_here(CONVERT, "calibration", *arguments, "--output", folder)
         self.assertEqual(result.returncode, 0, result.stderr)
         good, also = self.video("v.avi", 2), self.video("w.avi", 2)
         messages = self.converted("videos", good, also, "--left-calibration", folder / "left.yaml", "--right-calibration",
@@ -305,7 +309,7 @@ class ConvertRecordingTest(unittest.TestCase):
 
     def test_what_a_stereo_calibration_does_not_say_is_asked_for(self):
         def refusal(*arguments):
-            result = rosrun("convert_recording", "calibration", *arguments, "--output", self.folder / "made")
+            result = run_here(CONVERT, "calibration", *arguments, "--output", self.folder / "made")
             self.assertEqual((result.returncode, "Traceback" in result.stderr), (1, False), result.stderr)
             return result.stderr
         files = self.opencv_files(1000)
@@ -368,7 +372,7 @@ class ConvertRecordingTest(unittest.TestCase):
             self.assertEqual({topic: len(found) for topic, found in messages.items()},
                              {f"/stereo/{side}/{kind}": 3 for side in ("left", "right") for kind in ("image_raw", "camera_info")})
             self.assertEqual(messages["/stereo/right/image_raw"][1].data, noise(3).tobytes())
-            result = rosrun("process_bag", "--input", self.output)
+            result = run([PROCESS, "--input", self.output])
             self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_calibration_files_replace_those_of_the_bag(self):
@@ -398,7 +402,7 @@ class ConvertRecordingTest(unittest.TestCase):
                     messages = self.converted("bag", self.late_bag(seconds), *topics, *calibrations, f"--right-delay={seconds}")
                     for topic, found in messages.items():
                         self.assertEqual([m.header.stamp.to_nsec() for m in found], [10 ** 10 + 10 ** 8 * i for i in range(4)], topic)
-                    self.assertIn("4 pairs, ", rosrun("process_bag", "--input", self.output).stdout)
+                    self.assertIn("4 pairs, ", run([PROCESS, "--input", self.output]).stdout)
 
     def test_a_message_without_a_stamp_has_none_after_a_delay_was_taken_out(self):
         bag = self.late_bag(0)
@@ -447,7 +451,7 @@ class ConvertRecordingTest(unittest.TestCase):
             f"convert_recording: left out: /cam/left/image_raw/compressed: an image with format 'mono8; jpeg compressed ' at {stamp} "
             "s cannot be decoded to grey or colour of 8 or 16 bits\n" for stamp in ("10.300000", "10.500000", "10.800000"))
             + "convert_recording: 3 broken images were left out\n")
-        result = rosrun("process_bag", "--input", self.output)
+        result = run([PROCESS, "--input", self.output])
         self.assertEqual(result.returncode, 0)
         self.assertIn("9 pairs, ", result.stdout)
 
@@ -548,7 +552,7 @@ class ConvertRecordingTest(unittest.TestCase):
                     infos = messages[f"/stereo/{side}/camera_info"]
                     self.assertEqual([m.header.stamp for m in infos], [m.header.stamp for m in found])
                     self.assertEqual({info.width for info in infos}, {WIDTH})
-                self.assertEqual(rosrun("process_bag", "--input", self.output).returncode, 0)
+                self.assertEqual(run([PROCESS, "--input", self.output]).returncode, 0)
 
     def test_what_is_wrong_with_halves_is_named(self):
         bag, _ = self.joined_bag(1, "mono8")
@@ -630,7 +634,7 @@ class ConvertRecordingTest(unittest.TestCase):
                      "/cam0/image/compressed", "--right", "/cam4/image/compressed", "--right-info", "/cam1/camera_info")
         (self.folder / "text.bag").write_text("no bag")
         self.refused("", "bag", self.folder / "text.bag", "--left", "/a", "--right", "/b")
-        self.assertEqual(rosrun("convert_recording", "bag").returncode, 2)
+        self.assertEqual(run_here(CONVERT, "bag").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -36,6 +36,15 @@ class SimulateApproachTest(unittest.TestCase):
         result = self.simulate(LAB, "--duration", 0.2, *options, output=output)
         self.assertEqual(result.returncode, 0, result.stderr)
 
+    def assert_refused(self, result, *texts):
+        """Exit status 1, a message with these texts, and nothing left behind."""
+        self.assertEqual(result.returncode, 1, result.stderr)
+        for text in texts:
+            self.assertIn(text, result.stderr)
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.suffix != ".yaml"], [])
+
+
+class OutputTest(SimulateApproachTest):
     def test_every_scene_flies_to_its_end_and_is_listed(self):
         scenes = sorted((SOURCE_DIR / "config/simulator/scenes").glob("*.yaml"))
         listed = (SOURCE_DIR / "config/simulator/scenes/README.md").read_text()
@@ -54,15 +63,6 @@ class SimulateApproachTest(unittest.TestCase):
                     heights = [float(row["height_m"]) for row in csv.DictReader(file)]
                 self.assertGreater(heights[0], 3 * heights[-1])
 
-    def assert_refused(self, result, *texts):
-        """Exit status 1, a message with these texts, and nothing left behind."""
-        self.assertEqual(result.returncode, 1, result.stderr)
-        for text in texts:
-            self.assertIn(text, result.stderr)
-        self.assertEqual([path.name for path in self.folder.iterdir() if path.suffix != ".yaml"], [])
-
-
-class OutputTest(SimulateApproachTest):
     def test_every_pair_has_its_calibration_and_truth(self):
         self.simulate_short()
         topics = [topic for topic, _ in messages(self.bag)]
