@@ -34,10 +34,15 @@ target_link_libraries(process_bag PRIVATE uav_landing_tools)
 add_executable(simulate_campaign src/tools/simulation/campaign_csv.cpp src/tools/simulation/simulate_campaign.cpp)
 target_link_libraries(simulate_campaign PRIVATE uav_landing_tools)
 
-add_executable(inject_faults
-  src/tools/faults/fault_choice.cpp src/tools/faults/fault_effects.cpp src/tools/faults/fault_flight.cpp
-  src/tools/faults/fault_score.cpp src/tools/faults/faults.cpp src/tools/faults/flight.cpp
-  src/tools/faults/inject_faults.cpp)
+set(UAV_LANDING_FAULT_SOURCES
+  src/tools/faults/fault_flight.cpp src/tools/faults/fault_makers.cpp src/tools/faults/fault_score.cpp
+  src/tools/faults/faults.cpp src/tools/faults/flight.cpp src/tools/faults/ground_faults.cpp
+  src/tools/faults/lens_effects.cpp src/tools/faults/lens_faults.cpp src/tools/faults/light_faults.cpp
+  src/tools/faults/output_score.cpp src/tools/faults/rig_faults.cpp src/tools/faults/row_faults.cpp
+  src/tools/faults/sensor_effects.cpp src/tools/faults/sensor_faults.cpp src/tools/faults/timing_faults.cpp
+  src/tools/faults/view_effects.cpp)
+add_executable(inject_faults src/tools/faults/fault_choice.cpp src/tools/faults/inject_faults.cpp
+  ${UAV_LANDING_FAULT_SOURCES})
 target_link_libraries(inject_faults PRIVATE uav_landing_tools)
 
 # rosrun looks everywhere in the source folder but in its folder build/, which is where a plain cmake build puts the

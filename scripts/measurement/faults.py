@@ -5,6 +5,7 @@ import math
 import platform
 import re
 from collections import defaultdict
+from typing import NamedTuple
 
 from .markdown import table
 from .programs import save_figure
@@ -18,28 +19,45 @@ SCENERY = ("town", "fields", "shore", "airport", "hills", "random")
 UNEVEN = ("hills",)
 # Nothing in the images or between the sources tells these: docs/integrity.md says why.
 UNOBSERVABLE = ("baseline_2", "baseline_8")
-# The road's 0 degrees are not the car's, which moves up and down on its springs.
-WITHOUT_TRUE_ANGLE = ("kitti_road",)
-# A principal point that is wrong turns every direction, and the runway's like all others.
-WITHOUT_TRUE_YAW = ("camera_info",)
 MOST_FALSE_ALARMS = 0.005
 LEAST_DRAWN = 0.01  # error over protection level, where the plot begins
 AIM = 100000  # faulted frames
 HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "runs misled", "95 % bound",
           "error / level, worst", "error / limit, worst", "longest, s")
-ANGLE_HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "runs misled", "95 % bound",
-                "error / bound, worst")
-ANGLE_TEXT = """## Approach angles with a fault
-The same runs, without those of `kitti_road`: the truth there is the road's 0° and not the car's own movement. An angle has no
-protection level. *Misleading* frames have a valid angle that is off by more than 5 claimed standard deviations and by more than 0.3°.
-A monitor of a glide path of 3° may leave a tenth of it unnoticed (ICAO Annex 10). *Error / bound* is over the larger of the two. On
-frames of the runs without a fault, {healthy} are misleading.
-"""
-YAW_TEXT = """## Yaw with a fault
-The same runs, where the truth of the yaw is known. Runs with `camera_info` are left out: a wrong principal point turns all directions
-alike, and nothing can tell. *Available* is the share of frames with a known yaw. *Misleading* ones are off by more than 5 claimed
-standard deviations and by more than 0.5°. *Error / bound* is over the larger of the two. On frames of the runs without a fault it is
-known on {known} of {frames}, and {healthy} are misleading.
+OUTPUT_HEADER = ("fault", "runs", "frames", "available", "misleading", "95 % bound", "runs misled", "95 % bound",
+                 "error / bound, worst", "longest, s")
+
+
+class Output(NamedTuple):
+    """An output besides the height. Its name is in the columns of inject_faults."""
+    name: str
+    plural: str
+    title: str
+    text: str
+    unobservable: tuple  # faults that nothing could tell, of this output
+    without_truth: tuple  # sources
+
+
+SIGMAS = "*Misleading* frames are off by more than 5 claimed standard deviations and by more than "
+OUTPUTS = (
+    Output("angle", "angles", "Approach angles", "*Available* are valid angles. " + SIGMAS + """0.3°. A monitor of a glide path of 3°
+may leave a tenth of it unnoticed (ICAO Annex 10). Runs of `kitti_road` are left out. The truth there is the road's 0° and not the car's
+own movement on its springs.""", (), ("kitti_road",)),
+    Output("yaw", "yaws", "Yaw", "*Available* are known yaws. " + SIGMAS + """0.5°. Runs with `camera_info` are left out. A wrong
+principal point turns all directions alike, and nothing can tell.""", ("camera_info",), ("kitti_road",)),
+    Output("x", "places along the runway", "Place along the runway", "*Available* are frames with a known `x`. " + SIGMAS + """3 m and
+by more than 3 % of the distance to the threshold.""", UNOBSERVABLE, ()),
+    Output("y", "places beside the centre line", "Place beside the centre line", "*Available* are frames with a known `y`. " + SIGMAS +
+           """1.5 m
+and by more than 3 % of the runway's width.""", UNOBSERVABLE, ("kitti_road",)),
+    Output("velocity", "velocities", "Velocity", "*Available* are frames with a velocity. The error is a vector, and of recordings the "
+           "error of the speed.\n" + SIGMAS + "0.3 m/s and by\nmore than 3 % of the speed.", UNOBSERVABLE, ()),
+    Output("runway_height", "heights above the runway", "Height above the runway", """*Available* are frames on which it is known.
+*Misleading* ones are off by more than their protection level.""", UNOBSERVABLE, ("kitti_road",)),
+)
+OUTPUT_TEXT = """## {title} with a fault
+{text} *Error / bound* is over the larger one. *Longest* is the time to alert. On the {frames} frames of the runs without a fault it is
+available on {known}, and {healthy} are misleading.
 """
 TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}. What it shows and what is open: [integrity](integrity.md).
 
@@ -127,24 +145,26 @@ class Campaign:
              f"{self.worst(rows, 'time_to_alert_s'):.2f}")
             for rows, cells in self.counts(self.rows, "faulted_valid", "misleading")])
 
-    def angle_rows(self):
-        """Returns the runs with a true approach angle."""
-        return [row for row in self.rows if row["source"] not in WITHOUT_TRUE_ANGLE]
+    def output_rows(self, output):
+        """Returns the runs in which the truth of an output is known, and could be told."""
+        return [row for row in self.rows if row["source"] not in output.without_truth
+                and not any(name in output.unobservable for name in row["faults"].split("+"))]
 
-    def angle_table(self):
-        return table(ANGLE_HEADER, [
-            (*cells, f"{self.worst(rows, 'worst_angle_ratio'):.2f}")
-            for rows, cells in self.counts(self.angle_rows(), "faulted_angle_valid", "angle_misleading")])
+    def output_table(self, output):
+        return table(OUTPUT_HEADER, [
+            (*cells, f"{self.worst(rows, f'{output.name}_worst_ratio'):.2f}", f"{self.worst(rows, f'{output.name}_time_to_alert_s'):.2f}")
+            for rows, cells in self.counts(self.output_rows(output), f"{output.name}_known", f"{output.name}_misleading")])
 
-    def yaw_rows(self):
-        """Returns the runs with a yaw that the images could tell."""
-        return [row for row in self.rows
-                if not any(name in WITHOUT_TRUE_YAW for name in row["faults"].split("+")) and row["source"] != "kitti_road"]
+    def healthy_output(self, output):
+        """Counts of frames of healthy runs: those with this output, and misleading ones."""
+        rows = [row for row in self.healthy_rows() if row["source"] not in output.without_truth]
+        return (self.total(rows, "healthy"), self.total(rows, f"{output.name}_healthy_known"),
+                self.total(rows, f"{output.name}_healthy_misleading"))
 
-    def yaw_table(self):
-        return table(ANGLE_HEADER, [
-            (*cells, f"{self.worst(rows, 'worst_yaw_ratio'):.2f}")
-            for rows, cells in self.counts(self.yaw_rows(), "faulted_yaw_known", "yaw_misleading")])
+    def output_section(self, output):
+        frames, known, healthy = self.healthy_output(output)
+        text = OUTPUT_TEXT.format(title=output.title, text=output.text, frames=frames, known=known, healthy=healthy or "none")
+        return f"{text}\n{self.output_table(output)}\n"
 
     def counts(self, rows, valid, misleading):
         """Yields the runs of each fault with the cells of its row: counts of frames and of runs, with their bounds."""
@@ -198,18 +218,19 @@ class Campaign:
             problems.append(f"{misleading} misleading frames without a fault")
         if alarms > MOST_FALSE_ALARMS * frames:
             problems.append(f"{alarms} false alarms on {frames} healthy frames")
-        angles = self.healthy_angles()
-        if angles:
-            problems.append(f"{angles} misleading angles without a fault")
-        yaws = self.total(self.healthy_rows(), "healthy_yaw_misleading")
-        if yaws:
-            problems.append(f"{yaws} misleading yaws without a fault")
         heights = {name: rows for name, rows in self.groups(self.rows).items()
                    if name not in UNOBSERVABLE and name != "pairs, unobservable"}
-        # The baseline's length is in no angle.
-        return (problems + self.misled(heights, "misleading", "frames")
-                + self.misled(self.groups(self.angle_rows()), "angle_misleading", "angles")
-                + self.misled(self.groups(self.yaw_rows()), "yaw_misleading", "yaws"))
+        problems += self.misled(heights, "misleading", "frames")
+        for output in OUTPUTS:
+            problems += self.output_problems(output)
+        return problems
+
+    def output_problems(self, output):
+        problems = []
+        misleading = self.healthy_output(output)[2]
+        if misleading:
+            problems.append(f"{misleading} misleading {output.plural} without a fault")
+        return problems + self.misled(self.groups(self.output_rows(output)), f"{output.name}_misleading", output.plural)
 
     @staticmethod
     def misled(groups, column, what):
@@ -221,11 +242,6 @@ class Campaign:
                 runs = sorted({f"{row['faults']} {row['source']} {row['seed']}" for row in rows if int(row[column])})
                 found.append(f"{name}: {count} misleading {what} ({', '.join(runs[:8])})")
         return found
-
-    def healthy_angles(self):
-        """Counts the misleading angles without a fault."""
-        return self.total([row for row in self.healthy_rows() if row["source"] not in WITHOUT_TRUE_ANGLE],
-                          "healthy_angle_misleading")
 
     def page(self, seeds):
         frames, alarms, misleading = self.healthy()
@@ -239,25 +255,28 @@ class Campaign:
         return (f"{TITLE}{text}\n{self.false_alarms()}\n## Heights with a fault\n"
                 f"Of {faulted} frames with a fault ({AIM:,} are aimed at) {misled} are misleading, {self.unobservable()} of these by a "
                 "baseline that is wrong, which no image shows.\n\n"
-                f"{self.table()}\n{ANGLE_TEXT.format(healthy=self.healthy_angles() or 'none')}\n{self.angle_table()}\n"
-                f"{self.yaw_text()}\n{self.yaw_table()}\n"
+                f"{self.table()}\n{''.join(map(self.output_section, OUTPUTS))}"
                 f"{self.remarks()}\n## Figure\n"
                 "![error over protection level, and availability, by fault](images/integrity.png)\n")
 
     def summary(self):
-        """Says what the campaign shows, with a bullet each for healthy frames, heights and angles."""
+        """Says what the campaign shows, with a bullet each for healthy frames, heights and the other outputs."""
         frames, alarms, misleading = self.healthy()
         runs = [row for row in self.rows if int(row["faulted"])]
         misled, unobservable = self.total(self.rows, "misleading"), self.unobservable()
         others = sum(int(row["misleading"]) > 0 for row in self.rows if not self.is_unobservable(row))
-        angles = self.angle_rows()
         return (f"- **Without a fault**: {frames + self.uncertain()} frames. On {self.uncertain()} the protection level is above the "
                 f"alert limit, so\n  the height is not valid. On the other {frames} there are {alarms} false alarms and {misleading} misleading "
-                f"heights.\n  {self.healthy_angles()} angles are misleading.\n"
+                f"heights.\n"
                 f"- **Heights with a fault**: {self.total(runs, 'faulted')} frames in {len(runs)} runs. {misled} are misleading, {unobservable} "
                 f"of these by a\n  baseline that is wrong, which no image shows. The other {misled - unobservable} are in {others} runs.\n"
-                f"- **Angles with a fault**: {self.total(angles, 'angle_misleading')} of {self.total(angles, 'faulted')} frames are misleading, in "
-                f"{sum(int(row['angle_misleading']) > 0 for row in angles)} runs.\n")
+                + "".join(map(self.output_summary, OUTPUTS)))
+
+    def output_summary(self, output):
+        rows, misleading = self.output_rows(output), f"{output.name}_misleading"
+        return (f"- **{output.title} with a fault**: {self.total(rows, f'{output.name}_known')} of {self.total(rows, 'faulted')} frames have it. "
+                f"{self.total(rows, misleading)} are misleading, in\n  {sum(int(row[misleading]) > 0 for row in rows)} runs. Without a fault "
+                f"{self.healthy_output(output)[2] or 'none'} are.\n")
 
     @staticmethod
     def is_unobservable(row):
@@ -266,11 +285,6 @@ class Campaign:
     def unobservable(self):
         """Counts the misleading heights of faults that nothing can tell."""
         return self.total([row for row in self.rows if self.is_unobservable(row)], "misleading")
-
-    def yaw_text(self):
-        rows = [row for row in self.healthy_rows() if row["source"] != "kitti_road"]
-        return YAW_TEXT.format(known=self.total(rows, "healthy_yaw_known"), frames=self.total(rows, "healthy"),
-                               healthy=self.total(rows, "healthy_yaw_misleading") or "none")
 
     def remarks(self):
         """Writes what should not be as a list."""

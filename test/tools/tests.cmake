@@ -18,13 +18,13 @@ uav_landing_add_gtest(old_bag_structure_test test/tools/old_bag_structure_test.c
 uav_landing_add_gtest(dataset_calibrations_test test/tools/dataset_calibrations_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(random_approach_test test/tools/random_approach_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(fast_low_pass_test test/tools/fast_low_pass_test.cpp LIBS uav_landing_tools)
-uav_landing_add_gtest(fault_score_test test/tools/fault_score_test.cpp SOURCES src/tools/faults/fault_score.cpp
+uav_landing_add_gtest(fault_score_test test/tools/fault_score_test.cpp
+  SOURCES src/tools/faults/fault_score.cpp src/tools/faults/output_score.cpp
   LIBS uav_landing_tools)
 uav_landing_add_gtest(campaign_csv_test test/tools/campaign_csv_test.cpp SOURCES src/tools/simulation/campaign_csv.cpp
   LIBS uav_landing_tools)
 uav_landing_add_gtest(faults_test test/tools/faults_test.cpp
-  SOURCES src/tools/faults/fault_effects.cpp src/tools/faults/fault_flight.cpp src/tools/faults/fault_score.cpp
-  src/tools/faults/faults.cpp src/tools/faults/flight.cpp LIBS uav_landing_tools)
+  SOURCES ${UAV_LANDING_FAULT_SOURCES} LIBS uav_landing_tools)
 uav_landing_add_gtest(offline_sinks_test test/tools/offline_sinks_test.cpp
   SOURCES src/tools/offline/estimate_csv.cpp src/tools/offline/pair_count.cpp src/tools/offline/timing_table.cpp
   src/tools/offline/verdict.cpp

@@ -122,7 +122,8 @@ struct KalmanHeightStage::Implementation {
     judgeAngle(in, refusalOf(measured, pair, waiting ? result.failure : jump),
                parameters.max_angle_stddev_deg, result);
     reportDirections(in, ground, pair, result);
-    if (motionBelieved(ground, pair))
+    // The velocity's scale is that of the height. It waits with it.
+    if (!waiting && motionBelieved(ground, pair))
       reportTwist(believedTwist(rig, in, ground, pair, result, doubtOfStep(in, ground)), result);
     result.height_origin = originOf(measured, result);
     timer.emplace(timings, "runway_filter");

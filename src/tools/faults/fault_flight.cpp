@@ -30,7 +30,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
   Parameters told = parameters;
   for (const Fault* fault : faults) {
     if (fault->calibrate) fault->calibrate(left, right);
-    if (fault->tell) fault->tell(told);
+    if (fault->tell) fault->tell(told, flight);
   }
   FaultScore score;
   Expected<Pipeline> pipeline = workingPair(left, right, told.rig).and_then([&](const CameraPair& working) {
@@ -40,7 +40,7 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     score.alarm = "refused: " + pipeline.error().detail;
     return score;
   }
-  FaultRun run{flight, in_flight, cv::RNG(seed)};
+  FaultRun run{flight, in_flight, cv::RNG(seed), seed};
   double last = flight.frames.front().time;
   StampOrder order(told.rectify.max_late);
   for (int frame = 0; frame < static_cast<int>(flight.frames.size()); ++frame) {
@@ -55,10 +55,9 @@ FaultScore flyWithFaults(const Flight& flight, const FaultCombination& faults, i
     const Pipeline::Output& output = pipeline->process(kStart + pair.time, exchanged ? pair.right : pair.left,
                                                        exchanged ? pair.left : pair.right);
     if (now - flight.frames.front().time < flight.settled) continue;
-    const FaultTruth truth{trueHeight(flight, pair.time), trueAngle(flight, pair.time),
-                           trueYaw(flight, pair.time)};
+    const FaultTruth truth = truthAt(flight, pair.time);
     score.take(output.landing, truth, frame >= onset, now - last);
-    if (observe) observe(now, output.landing, pair.time, frame >= onset);
+    if (observe) observe(now, output.landing, truth, frame >= onset);
     last = now;
   }
   return score;

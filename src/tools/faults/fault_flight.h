@@ -8,9 +8,9 @@
 
 namespace uav_landing {
 
-/// Called after each pair that counts. It gets the time, the result, the pair's time on the flight, and
-/// whether the fault was there.
-using FaultObserver = std::function<void(double time, const LandingResult&, double pair_time, bool faulted)>;
+/// Called after each pair that counts. It gets the time, the result, the truth at the pair's time on the
+/// flight, and whether the fault was there.
+using FaultObserver = std::function<void(double time, const LandingResult&, const FaultTruth&, bool faulted)>;
 
 /// Flies a flight with faults through the chain.
 /// in_flight: first frame with the faults that begin in flight.

@@ -19,8 +19,9 @@ struct Delivery {
 /// Knowledge of a fault about the run.
 struct FaultRun {
   const Flight& flight;
-  int onset = 0;  ///< first frame with the fault
-  cv::RNG random;
+  int onset = 0;      ///< first frame with the fault
+  cv::RNG random;     ///< of what differs between images
+  uint64_t seed = 1;  ///< of what stays the same in a run
 };
 
 /// One fault. The two faults of a pair are applied in the order of their places between the scene and the
@@ -40,7 +41,7 @@ struct Fault {
   bool needs_scene = false;  ///< only when simulated
   bool from_first = false;   ///< from the first pair on, so nothing was healthy before
   /// Other parameters of the chain, for the whole run; empty: none.
-  std::function<void(Parameters&)> tell = {};
+  std::function<void(Parameters&, const Flight&)> tell = {};
 
   /// Whether the fault is there from the first pair on.
   bool wholeRun() const { return calibrate || build || from_first; }

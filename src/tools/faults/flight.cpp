@@ -31,18 +31,31 @@ double timeOfKnownGround(const Flight& flight, const GroundProfile& profile) {
   return (above == flight.frames.end() ? flight.frames.back() : *above).time - first.time;
 }
 
-double interpolate(const Flight& flight, double time, double Truth::*value) {
+/// A time between two frames.
+struct Moment {
+  const Flight::Frame &before, &after;
+  double share;  ///< of the way from the one to the other
+
+  double operator()(double Truth::*value) const {
+    return before.truth.*value + share * (after.truth.*value - before.truth.*value);
+  }
+};
+
+Moment momentAt(const Flight& flight, double time) {
   const auto& frames = flight.frames;
   size_t next = 1;
   while (next + 1 < frames.size() && frames[next].time < time) ++next;
   const Flight::Frame &a = frames[next - 1], &b = frames[next];
-  return a.truth.*value + (time - a.time) / (b.time - a.time) * (b.truth.*value - a.truth.*value);
+  return {a, b, (time - a.time) / (b.time - a.time)};
 }
 
 }  // namespace
 
-SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile)
+SimulatedFlight::SimulatedFlight(const ApproachSimulator& simulator, const SimulatorParameters& parameters)
     : rig(simulator.rig()) {
+  const GroundProfile profile(parameters.profile);
+  flight.runway_width = parameters.runway.width;
+  flight.runway_is_level = profile.height(0) == 0 && profile.height(parameters.runway.length) == 0;
   flight.left = rig.left.calibration;
   flight.right = rig.right.calibration;
   flight.rig = &rig;
@@ -70,7 +83,7 @@ SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& para
 std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn) {
   const Expected<ApproachSimulator> simulator = ApproachSimulator::create(drawn);
   if (!simulator) return nullptr;
-  return std::make_unique<SimulatedFlight>(*simulator, GroundProfile(drawn.profile));
+  return std::make_unique<SimulatedFlight>(*simulator, drawn);
 }
 
 Flight readFlight(const std::string& folder) {
@@ -90,18 +103,28 @@ Flight readFlight(const std::string& folder) {
 }
 
 Flight cutFlight(const Flight& whole, int first, int frames) {
-  Flight part{whole.left, whole.right, whole.rig, {}};
+  Flight part{whole.left, whole.right, whole.rig, {}, 1.0, whole.runway_width, whole.runway_is_level};
   const auto begin = whole.frames.begin() + first;
   part.frames.assign(begin, begin + frames);
   return part;
 }
 
-double trueHeight(const Flight& flight, double time) { return interpolate(flight, time, &Truth::height); }
-
-double trueAngle(const Flight& flight, double time) {
-  return interpolate(flight, time, &Truth::approach_angle);
+FaultTruth truthAt(const Flight& flight, double time) {
+  const Moment at = momentAt(flight, time);
+  FaultTruth truth;
+  truth.height = at(&Truth::height);
+  truth.angle = at(&Truth::approach_angle);
+  truth.yaw = at(&Truth::yaw);
+  truth.x = at(&Truth::x);
+  truth.y = at(&Truth::y);
+  truth.speed = at(&Truth::speed);
+  truth.runway_width = flight.runway_width;
+  if (flight.rig == nullptr) return truth;
+  const Eigen::Vector3d way = at.after.pose.position - at.before.pose.position;
+  truth.velocity =
+      runwayFromOptical(at.after.pose.attitude).transpose() * way / (at.after.time - at.before.time);
+  if (flight.runway_is_level) truth.height_above_runway = at.before.pose.position.z() + at.share * way.z();
+  return truth;
 }
-double trueYaw(const Flight& flight, double time) { return interpolate(flight, time, &Truth::yaw); }
-double trueSpeed(const Flight& flight, double time) { return interpolate(flight, time, &Truth::speed); }
 
 }  // namespace uav_landing

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "faults/output_score.h"
 #include "simulation/random_approach.h"
-#include "simulator/ground/ground_profile.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/parameters/parameters.h"
 #include "uav_landing/results/truth.h"
@@ -26,12 +26,14 @@ struct Flight {
   CameraCalibration left, right;
   const CameraRig* rig = nullptr;  ///< null when not simulated; then nothing can be painted on the ground
   std::vector<Frame> frames;
-  double settled = 1.0;  ///< s at the start that do not count
+  double settled = 1.0;            ///< s at the start that do not count
+  double runway_width = kUnknown;  ///< m; only when simulated
+  bool runway_is_level = false;    ///< the whole of it lies at z = 0; only when simulated
 };
 
 /// A flight, and the rig that it points to.
 struct SimulatedFlight {
-  SimulatedFlight(const ApproachSimulator& simulator, const GroundProfile& profile);
+  SimulatedFlight(const ApproachSimulator& simulator, const SimulatorParameters& parameters);
   SimulatedFlight(const SimulatedFlight&) = delete;
   SimulatedFlight& operator=(const SimulatedFlight&) = delete;
   CameraRig rig;
@@ -48,11 +50,8 @@ std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn
 Flight readFlight(const std::string& folder);
 /// A number of its frames, from `first` on.
 Flight cutFlight(const Flight& whole, int first, int frames);
-/// True height, approach angle, yaw and speed at any time between the frames, of which there must be two.
-/// Stamps and images may belong to different times.
-double trueHeight(const Flight& flight, double time);
-double trueAngle(const Flight& flight, double time);
-double trueYaw(const Flight& flight, double time);
-double trueSpeed(const Flight& flight, double time);
+/// The truth at any time between the frames, of which there must be two. Stamps and images may belong to
+/// different times.
+FaultTruth truthAt(const Flight& flight, double time);
 
 }  // namespace uav_landing

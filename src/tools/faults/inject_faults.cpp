@@ -12,6 +12,7 @@
 #include "faults/fault_flight.h"
 #include "pending_file.h"
 #include "progress_bar.h"
+#include "simulator/ground/ground_profile.h"
 #include "uav_landing/geometry/rig_check.h"
 
 namespace {
@@ -28,13 +29,16 @@ struct Options {
 constexpr const char* kHeader =
     "source,seed,faults,onset_s,healthy,healthy_valid,healthy_misleading,faulted,faulted_valid,beyond_level,"
     "beyond_limit,misleading,time_to_alert_s,worst_level_ratio,worst_limit_ratio,alarm,healthy_uncertain,"
-    "healthy_tests,faulted_angle_valid,angle_misleading,worst_angle_ratio,healthy_angle_misleading,"
-    "faulted_yaw_known,yaw_misleading,worst_yaw_ratio,healthy_yaw_known,healthy_yaw_misleading";
+    "healthy_tests";
+/// Columns of each output besides the height; its name comes before them.
+constexpr const char* kOutputColumns[] = {"healthy_known", "healthy_misleading", "known",
+                                          "misleading",    "worst_ratio",        "time_to_alert_s"};
 constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
     "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
     "valid,true_speed_m_s,speed_m_s,speed_stddev_m_s,true_yaw_deg,yaw_deg,yaw_stddev_deg,yaw_reason,"
-    "other_runway_probability";
+    "other_runway_probability,true_x_m,x_m,x_stddev_m,true_y_m,y_m,y_stddev_m,true_height_above_runway_m,"
+    "height_above_runway_m,height_above_runway_protection_level_m,height_above_runway_known";
 
 std::string withoutCommas(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');
@@ -50,11 +54,16 @@ class Campaign {
         pending_(options.csv),
         file_(pending_.temporary()) {
     if (!file_) throw std::runtime_error(options.csv + ": cannot be written");
-    file_ << kHeader << '\n';
+    file_ << kHeader;
+    for (const char* output : kOutputNames)
+      for (const char* column : kOutputColumns) file_ << ',' << output << '_' << column;
+    file_ << '\n';
     if (!options.trace.empty()) {
       trace_.open(options.trace);
       if (!trace_) throw std::runtime_error(options.trace + ": cannot be written");
-      trace_ << kTraceHeader << '\n';
+      trace_ << kTraceHeader;
+      for (const char* output : kOutputNames) trace_ << ',' << output << "_ratio";
+      trace_ << '\n';
     }
   }
 
@@ -146,8 +155,8 @@ class Campaign {
     const bool healthy = faults.size() == 1 && faults[0]->name == "none";
     const int onset = healthy ? frames : whole ? 0 : chance.in_flight;
     const std::string from = source + "," + std::to_string(seed) + "," + nameOf(faults);
-    const FaultObserver observe = [&](double time, const LandingResult& said, double pair_time,
-                                      bool faulted) { trace(from, time, said, flight, pair_time, faulted); };
+    const FaultObserver observe = [&](double time, const LandingResult& said, const FaultTruth& truth,
+                                      bool faulted) { trace(from, time, said, truth, faulted); };
     const FaultScore score = flyWithFaults(flight, faults, chance.in_flight, onset, chance.hash, parameters_,
                                            trace_.is_open() ? observe : FaultObserver());
     CsvRow row(file_);
@@ -162,32 +171,39 @@ class Campaign {
     row.number(score.misleading).number(score.time_to_alert).number(score.worst_level_ratio);
     row.number(score.worst_limit_ratio).text(withoutCommas(score.alarm));
     row.number(score.healthy_uncertain).text(score.testCounts());
-    row.number(score.faulted_angle_valid).number(score.angle_misleading).number(score.worst_angle_ratio);
-    row.number(score.healthy_angle_misleading);
-    row.number(score.faulted_yaw_known).number(score.yaw_misleading).number(score.worst_yaw_ratio);
-    row.number(score.healthy_yaw_known).number(score.healthy_yaw_misleading);
+    for (const OutputScore& output : score.outputs) {
+      row.number(output.healthy_known).number(output.healthy_misleading);
+      row.number(output.faulted_known).number(output.misleading);
+      row.number(output.worst_ratio).number(output.time_to_alert);
+    }
     file_ << std::endl;  // flushed, so that finished rows can be looked at
   }
 
-  void trace(const std::string& from, double time, const LandingResult& said, const Flight& flight,
-             double pair_time, bool faulted) {
+  void trace(const std::string& from, double time, const LandingResult& said, const FaultTruth& truth,
+             bool faulted) {
     constexpr double kDegree = M_PI / 180;
     CsvRow row(trace_);
     row.text(from)
         .number(time)
         .flag(faulted)
-        .number(trueHeight(flight, pair_time))
+        .number(truth.height)
         .number(said.height)
         .flag(said.height_valid);
     row.number(said.height_protection_level).text(said.protection_source).number(said.height_alert_limit);
     row.number(said.raw_height).text(toString(said.status)).text(toString(said.failure.reason));
     row.text(failedTests(said.tests));
-    row.number(trueAngle(flight, pair_time) / kDegree).number(said.approach_angle / kDegree);
+    row.number(truth.angle / kDegree).number(said.approach_angle / kDegree);
     row.number(std::sqrt(said.approach_angle_variance) / kDegree).flag(said.angle_valid);
-    row.number(trueSpeed(flight, pair_time)).number(said.speed()).number(std::sqrt(said.speedVariance()));
-    row.number(trueYaw(flight, pair_time) / kDegree).number(said.yaw / kDegree);
+    row.number(truth.speed).number(said.speed()).number(std::sqrt(said.speedVariance()));
+    row.number(truth.yaw / kDegree).number(said.yaw / kDegree);
     row.number(std::sqrt(said.yaw_variance) / kDegree).text(toString(said.yaw_failure.reason));
     row.number(said.other_runway_probability);
+    row.number(truth.x).number(said.x).number(std::sqrt(said.x_variance));
+    row.number(truth.y).number(said.y).number(std::sqrt(said.y_variance));
+    row.number(truth.height_above_runway).number(said.height_above_runway);
+    row.number(said.height_above_runway_protection_level).flag(said.height_above_runway_known);
+    for (const OutputError& error : outputErrors(said, truth))
+      row.number(error.known ? error.ratio : kUnknown);
     trace_ << std::endl;
   }
 
@@ -208,9 +224,8 @@ Failure run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Flies approaches with faults through the chain and counts misleading heights, angles and yaws.",
-      "inject_faults");
+  CLI::App app("Flies approaches with faults through the chain and counts what misleads, of each output.",
+               "inject_faults");
   Options options;
   app.add_option("--csv", options.csv, "rows to write, one per run");
   app.add_option("--trace", options.trace, "rows of every frame to write, to see what a run was misled by");

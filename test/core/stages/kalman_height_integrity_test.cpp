@@ -206,30 +206,32 @@ TEST(KalmanHeightIntegrity, AHeightThatContradictionsTookAwayIsBelievedAfterASec
     parameters.recovery_time = recovery_time;
     KalmanHeightStage stage(test::usualRig(), parameters);
     double stamp = 1;
-    int angles = 0;
+    int angles = 0, velocities = 0;
     const auto valid = [&](double agreement) {
       StereoDepthResult stereo = stereoAt(stamp, 10);
       stereo.row_agreement = agreement;
       const LandingResult result = stage.process(stereo, levelFlight(stamp, 10));
       stamp += 0.05;
       angles += result.angle_valid;
+      velocities += result.velocity.allFinite();
       return result.height_valid;
     };
     for (int i = 0; i < 20; ++i) valid(0.9);
+    EXPECT_GT(velocities, 10);
     // A short burst does not take the height away.
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(valid(0.4));
     for (int i = 0; i < 10; ++i) EXPECT_TRUE(valid(0.9));
     for (int i = 0; i < 10; ++i) valid(0.4);
     // The fault goes on: in between pairs pass by chance.
-    int believed = angles = 0;
+    int believed = angles = velocities = 0;
     for (int burst = 0; burst < 4; ++burst) {
       for (int i = 0; i < 10; ++i) believed += valid(0.9);
       for (int i = 0; i < 10; ++i) believed += valid(0.4);
     }
     if (recovery_time > 0)
-      EXPECT_EQ(believed + angles, 0);
+      EXPECT_EQ(believed + angles + velocities, 0);
     else
-      EXPECT_GT(std::min(believed, angles), 0);
+      EXPECT_GT(std::min({believed, angles, velocities}), 0);
     // Of the pairs that pass the first two are still left out, but are part of the second without a
     // contradiction: the 20th healthy pair, 0.95 s after the first, has a height again.
     int until = 1;
