@@ -122,6 +122,60 @@ TEST(RunwayEdges, NorAreTheyWhenTheOtherEdgeIsSeenAsFarBeyond) {
   EXPECT_FALSE(findRunwayEdges(level(1e-4), halfOfARunway(), 0, ExpectedCentre{0, 0.1}));
 }
 
+TEST(RunwayEdges, AnEdgeOfAWiderRunwayThatOneViewSeesIsEvidenceAgainstAPair) {
+  const StereoRig rig;
+  const std::vector<GroundEdge> edges = runway(0);  // 2.2 wide
+  const auto found = [&](const std::vector<GroundEdge>& seen, double width = 0) {
+    const Outlook outlook{rig, seen};
+    return findRunwayEdges(level(1e-4), edges, width, std::nullopt, &outlook);
+  };
+  std::vector<GroundEdge> seen = edges;
+  EXPECT_TRUE(found(seen));
+  seen.push_back(edge(3.3, true, 1.5));
+  EXPECT_EQ(found(seen).error().detail, "the runway reaches as far again beyond its seeming edges");
+  EXPECT_TRUE(found(seen, 2.25)) << "a known width";
+  seen.push_back(edge(-3.3, false, 1.5));
+  EXPECT_TRUE(found(seen)) << "the middle of something symmetric";
+}
+
+/// Three bars of a threshold to the left of its middle, which are symmetric about their own.
+std::vector<GroundEdge> bars() {
+  std::vector<GroundEdge> edges;
+  for (const double middle : {0.1, 0.4, 0.7}) addStripe(edges, middle, middle == 0.4 ? 0.08 : 0.1, 0.6);
+  return edges;
+}
+
+TEST(RunwayEdges, BarsAreNoRunwayWhereFarLongerEdgesLieBeyondThem) {
+  const StereoRig rig;
+  const auto found = [&](double lateral, double extent, double width = 0) {
+    std::vector<GroundEdge> seen = bars();
+    seen.push_back(edge(lateral, true, extent));
+    const Outlook outlook{rig, seen};
+    return findRunwayEdges(level(1e-4), bars(), width, std::nullopt, &outlook);
+  };
+  ASSERT_TRUE(found(2, 0.6)) << found(2, 0.6).error().message();
+  EXPECT_EQ(found(2, 1.6).error().detail, "far longer edges lie beyond those that look like the runway's");
+  EXPECT_FALSE(found(-1.1, 1.6)) << "on the other side";
+  EXPECT_TRUE(found(2, 1.6, 0.7)) << "a known width";
+}
+
+TEST(RunwayEdges, BarsAreNoRunwayWhereALongerLineGoesOnBehindThem) {
+  const StereoRig rig;
+  std::vector<GroundEdge> seen = bars();
+  GroundEdge line = edge(0.4, true, 0.7);
+  const auto found = [&](double far) {
+    seen = bars();
+    line.far = far * bars()[0].far;
+    seen.push_back(line);
+    const Outlook outlook{rig, seen};
+    return static_cast<bool>(findRunwayEdges(level(1e-4), bars(), 0, std::nullopt, &outlook));
+  };
+  EXPECT_TRUE(found(1.9));
+  EXPECT_FALSE(found(2.1));
+  line.extent = 0.5;
+  EXPECT_TRUE(found(2.1)) << "one that is shorter itself";
+}
+
 TEST(RunwayEdges, TwoLinesOfTheKnownWidthAreTheRunwayWhateverIsBeyond) {
   const auto found = findRunwayEdges(level(1e-4), halfOfARunway(), 2.05, std::nullopt);
   ASSERT_TRUE(found) << found.error().message();

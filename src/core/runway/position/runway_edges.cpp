@@ -26,6 +26,8 @@ constexpr double kOtherWidth =
     1.5;                         // ratio between the widths of two pairs that are not the sides of one line
 constexpr double kStripe = 0.1;  // share of the runway's width; the centre line is narrower
 constexpr double kLeastDash = 0.1;       // log(far / near) of a dash of 30 m at 300 m
+constexpr double kLongestMark = 1;       // log(far / near) of bars of 30 m that begin 17 m ahead
+constexpr double kGoesOn = 2;            // ratio of the distances at which two lines end
 constexpr double kThinner = 2;           // ratio by which a line may look thinner at another place
 constexpr double kHalf = 0.5;            // share of the extent
 constexpr double kHalfTolerance = 0.15;  // share of a pair's width, between marks and edges side by side
@@ -108,9 +110,30 @@ class Search {
   /// Whether one edge of the pair seems to be the centre line of a wider runway. It would lie halfway between
   /// the other edge and a long edge beyond it. With such edges beyond both sides, the pair is the middle of a
   /// symmetric whole.
-  bool isHalf(const MirroredPair& pair) const {
+  bool isHalf(const MirroredPair& pair, const std::vector<GroundEdge>& edges) const {
     const double left = edges_[pair.left].lateral, right = edges_[pair.right].lateral;
-    return hasLongEdge(2 * left - right, pair) != hasLongEdge(2 * right - left, pair);
+    const double extent = std::max(kLong * pair.extent, kLeastExtent);
+    return hasEdge(edges, 2 * left - right, pair, extent) != hasEdge(edges, 2 * right - left, pair, extent);
+  }
+  /// Whether much longer edges lie beyond the pair. The runway's own are the longest but for a river or a
+  /// road, and those are not that much longer. So the pair is of marks.
+  bool isDwarfed(const MirroredPair& pair, const std::vector<GroundEdge>& edges) const {
+    const double left = edges_[pair.left].lateral + kHalfTolerance * pair.width;
+    const double right = edges_[pair.right].lateral - kHalfTolerance * pair.width;
+    return std::any_of(edges.begin(), edges.end(), [&](const GroundEdge& edge) {
+      return (edge.lateral > left || edge.lateral < right) && kLong * edge.extent > pair.extent;
+    });
+  }
+  /// Whether all pairs are short, and end where a longer line goes on, as bars of a threshold do.
+  bool areMarks(const Symmetry& symmetry, const std::vector<GroundEdge>& edges) const {
+    double extent = 0, end = 0;
+    for (const MirroredPair* pair : symmetry.pairs) {
+      extent = std::max(extent, pair->extent);
+      end = std::max(end, std::min(edges_[pair->left].far, edges_[pair->right].far));
+    }
+    return extent < kLongestMark && std::any_of(edges.begin(), edges.end(), [&](const GroundEdge& edge) {
+             return edge.extent > extent && edge.far > kGoesOn * end;
+           });
   }
   /// Whether both edges begin at the same distance, or neither begins within the image.
   bool beginAlike(const MirroredPair& pair) const {
@@ -150,11 +173,6 @@ class Search {
             0.25 * (l.variance + r.variance) + std::pow(kAsymmetry * width, 2),
             0.5 * (l.by_rotation + r.by_rotation),
             std::min(l.extent, r.extent)};
-  }
-
-  /// Whether there is an edge at this lateral place that is long compared with the pair's.
-  bool hasLongEdge(double lateral, const MirroredPair& pair) const {
-    return hasEdge(edges_, lateral, pair, std::max(kLong * pair.extent, kLeastExtent));
   }
 
   static bool hasEdge(const std::vector<GroundEdge>& edges, double lateral, const MirroredPair& pair,
@@ -319,9 +337,13 @@ Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::
   if (best == found.end())
     return tl::make_unexpected(noRunway(text("none of ", edges.size(), " edges are those of the runway")));
   const MirroredPair& outermost = *outermostPair(*best, width.known, longest);
-  if (width.known <= 0 && search.isHalf(outermost))
+  // What one view alone sees is no evidence for a pair, but it is evidence against it.
+  const std::vector<GroundEdge>& seen = outlook != nullptr ? outlook->edges : edges;
+  if (width.known <= 0 && search.isHalf(outermost, seen))
     return tl::make_unexpected(noRunway("the runway reaches as far again beyond its seeming edges"));
   if (!expected) {
+    if (width.known <= 0 && (search.isDwarfed(outermost, seen) || search.areMarks(*best, seen)))
+      return tl::make_unexpected(noRunway("far longer edges lie beyond those that look like the runway's"));
     const bool outermost_lines = outlook != nullptr && search.areOutermost(*best, outermost, *outlook);
     if (width.known <= 0 && !hasMoreThanTwoLines(*best, outermost, edges) && !search.areTwoLines(*best) &&
         !search.isStrip(outermost) && !outermost_lines)
