@@ -108,6 +108,8 @@ uav_landing_add_gtest(band_disparities_test test/core/stereo/photometric/band_di
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(band_evidence_test test/core/stereo/photometric/band_evidence_test.cpp)
 uav_landing_add_gtest(texture_bands_test test/core/stereo/photometric/texture_bands_test.cpp)
+uav_landing_add_gtest(block_disparity_test test/core/stereo/photometric/block_disparity_test.cpp
+  SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(block_disparities_test test/core/stereo/photometric/block_disparities_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(pair_disparities_test test/core/stereo/photometric/pair_disparities_test.cpp

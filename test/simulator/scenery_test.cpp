@@ -229,6 +229,31 @@ TEST(Scenery, AsManyPlotsAreBuiltOnAsAsked) {
   EXPECT_NEAR(half, 0.5 * 100 * 130 * 43 / (140.0 * 53) * 0.625 * 0.625, 2);
 }
 
+TEST(Scenery, TheTwoHalvesOfARoofLieSideBySide) {
+  SimulatedSceneryParameters p = withTown();
+  p.town.street_brightness = p.town.garden_brightness = 0;
+  p.town.roof_brightness = 100;
+  p.town.roof_spread = 0;
+  p.town.built = 1;
+  const Scenery scenery = sceneryOf(p);
+  // One half is up to 20 % brighter, the other one as much darker. Nowhere are there two roofs or a gap
+  // within one: along a line across, a roof is one piece of at least 0.45 of a plot.
+  int roofs = 0;
+  for (double x = -260; x < -140; x += 1.5) {
+    double begun = -1e9;
+    for (double y = -132; y < 132; y += 0.5) {
+      const float grey = greyAt(scenery, x, y);
+      ASSERT_LE(grey, 120.1f) << x << ", " << y;
+      if (grey > 0 && begun < -1e8) begun = y;
+      if (grey > 0 || begun < -1e8) continue;
+      EXPECT_GT(y - begun, 6) << x << ", " << y;
+      begun = -1e9;
+      ++roofs;
+    }
+  }
+  EXPECT_GT(roofs, 100);
+}
+
 TEST(Scenery, FieldsFillTheirRectangleAndDifferByTheirSpread) {
   const SimulatedSceneryParameters p = withFields();
   const Scenery scenery = sceneryOf(p);

@@ -32,6 +32,15 @@ TEST(OutlineSearch, FindsOneThatIsBrighterThanTheGround) {
   expectFound(picture, {{-2000, 30, 110}, 0, -2 * kDegree, -3 * kDegree}, 3);
 }
 
+TEST(OutlineSearch, DoesNotEndAtAMarkAcross) {
+  // At 1 km the runway is 25 px wide. The mark covers one row and blurs into the next, close to the near end.
+  RunwayPicture picture;
+  picture.stripe = picture.bars = 0;
+  picture.across_from = 60;
+  picture.across_to = 90;
+  expectFound(picture, {{-1000, 0, 55}, 3 * kDegree, -3 * kDegree, 1 * kDegree}, 3);
+}
+
 TEST(OutlineSearch, FindsNothingOnBareGround) {
   RunwayPicture picture;
   picture.surface = picture.paint = picture.ground;

@@ -13,6 +13,7 @@ struct RunwayPicture {
   double width = 45, length = 2500;                // m
   double stripe = 0.9, inset = 0.5, bars = 30;     // m; 0: none
   double ground = 105, surface = 70, paint = 205;  // grey levels
+  double across_from = 0, across_to = 0;           // m: paint from edge to edge
   double noise = 2, blur = 0.5;                    // grey levels, px
   cv::Size size{640, 480};
   double focal = 554;
@@ -20,6 +21,7 @@ struct RunwayPicture {
   double greyAt(double x, double y) const {
     const double aside = std::abs(y), end = std::min(x, length - x);
     if (aside > width / 2 || end < 0) return ground;
+    if (x > across_from && x < across_to) return paint;
     const double inside = width / 2 - aside;
     if (inside > inset && inside < inset + stripe) return paint;
     if (end > 6 && end < 6 + bars && aside < width / 2 - 3 && std::fmod(aside, 3.5) > 1.75) return paint;

@@ -98,6 +98,21 @@ TEST(HeightTrack, OfTwoFirstHeightsThatContradictEachOtherTheNewOneIsTaken) {
   EXPECT_TRUE(pairs.see(10).height_valid);
 }
 
+TEST(HeightTrack, ALostTrackHasNoRejectionsInARow) {
+  KalmanHeightParameters parameters;
+  parameters.reset_timeout = 1;
+  Pairs pairs(parameters);
+  pairs.settle();
+  TrackVerdict verdict = pairs.leaveOut(14);
+  for (int i = 1; i < 100 && verdict.status != Status::kLost; ++i) {
+    EXPECT_EQ(verdict.consecutive_rejections, i);
+    verdict = pairs.leaveOut(14);
+  }
+  ASSERT_EQ(verdict.status, Status::kLost);
+  EXPECT_EQ(verdict.consecutive_rejections, 0);
+  EXPECT_EQ(pairs.see(14).consecutive_rejections, 0);
+}
+
 TEST(HeightTrack, AnOutlierIsRejectedAndChangesNothing) {
   Pairs pairs;
   pairs.settle();

@@ -101,6 +101,25 @@ TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
   EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
 }
 
+TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const auto count = [&](double y, double far) {
+    LineSegment line = seen(rig, pose, y, 25, 90, 0, true);
+    // Beyond the horizon by this share of its length.
+    line.b = line.a + far * (line.b - line.a);
+    return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
+  };
+  EXPECT_EQ(count(2, 1), 1u);
+  // 25 m ahead the line is 8 m / 25 m below the horizon, 90 m ahead 8 m / 90 m.
+  EXPECT_EQ(count(2, 1.3), 1u);
+  EXPECT_EQ(count(2, 1.5), 0u);
+  LineSegment above = seen(rig, pose, 2, 25, 90, 0, true);
+  std::swap(above.a, above.b);
+  above.a = above.b + 1.5 * (above.a - above.b);
+  EXPECT_TRUE(groundEdges(rig, axesOf(pose), {above}, {1}, rig.cx, 0).empty()) << "by its first end";
+}
+
 TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
   const StereoRig rig = test::makeRig(640, 480, 1.0);
   const Pose pose = banked();

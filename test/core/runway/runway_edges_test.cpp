@@ -205,6 +205,19 @@ std::vector<GroundEdge> twoLines(double half = 1) {
   return edges;
 }
 
+TEST(RunwayEdges, TwoLinesAlikeAreARunwayUnlessOneOfThemIsDashed) {
+  const auto found = [](double dashed) {
+    std::vector<GroundEdge> edges;
+    for (const int side : {-1, 1}) addStripe(edges, side, 0.05);
+    for (GroundEdge& e : edges)
+      if (e.lateral * dashed > 0) e.far *= 2;  // as long in all, over a longer way
+    return static_cast<bool>(findRunwayEdges(level(1e-4), edges, 0, std::nullopt));
+  };
+  EXPECT_TRUE(found(0));
+  EXPECT_FALSE(found(1)) << "the left one";
+  EXPECT_FALSE(found(-1)) << "the right one";
+}
+
 TEST(RunwayEdges, TextureOrOneMarkBetweenTwoLinesDoesNotMakeThemARunway) {
   std::vector<GroundEdge> edges = twoLines();
   EXPECT_FALSE(findRunwayEdges(level(1e-4), edges, 0, std::nullopt));
