@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "lines/vanishing/vanishing_consensus.h"
 #include "lines/vanishing/vanishing_search.h"
 #include "uav_landing/geometry/ground_plane.h"
 
@@ -400,6 +401,34 @@ TEST(NormalFromVanishingPoint, CovarianceIsThatOfSamples) {
     spread += d * d.transpose() / kSamples;
   }
   EXPECT_LT((normal.covariance - spread).norm() / spread.norm(), 0.05);
+}
+
+TEST(VanishingConsensus, TriesAllPairsOfFewLinesAndDrawsAmongMany) {
+  Scene scene(2 * kDegree, -4 * kDegree, 1 * kDegree);
+  std::vector<LineSegment> all = scene.runway(0.01);
+  all.push_back(scene.transverse(5, 0.01));
+  for (int i = 0; i < 12; ++i) all.push_back(scene.clutter());
+  ApproachAngleParameters parameters;
+  const auto found = [&](size_t count) {
+    const std::vector<LineSegment> some(all.begin(), all.begin() + static_cast<long>(count));
+    const VanishingLines lines(some, makeK(), parameters, &scene.n);
+    double meetings = 0;
+    Eigen::Vector3d anywhere;
+    for (int i = 0; i < lines.count(); ++i)
+      for (int j = i + 1; j < lines.count(); ++j) meetings += lines.meeting(i, j, anywhere);
+    const auto consensus = findConsensus(lines);
+    EXPECT_TRUE(consensus &&
+                consensus->direction.normalized().dot(scene.direction) > std::cos(0.2 * kDegree));
+    return std::make_pair(consensus ? consensus->meetings : 0, meetings);
+  };
+  // 11 lines have 55 pairs, 23 lines 253.
+  parameters.ransac_iterations = 100;
+  const auto [counted, meetings] = found(11);
+  EXPECT_EQ(counted, meetings);
+  const auto [drawn, more] = found(all.size());
+  EXPECT_NE(drawn, more) << "an estimate";
+  EXPECT_GT(drawn, 0.5 * more);
+  EXPECT_LT(drawn, 2.5 * more) << "long lines are drawn more often, and meet along the runway";
 }
 
 }  // namespace
