@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "support/ground_renderer.h"
+#include "support/ground_line.h"
 
 namespace uav_landing {
 namespace {
@@ -28,23 +28,6 @@ GroundAxes axesOf(const Pose& pose) {
   // The direction of the vanishing point need not lie in the ground exactly.
   const Eigen::Vector3d direction = (pose.seen(Eigen::Vector3d::UnitX()) + 0.01 * pose.down()).normalized();
   return GroundAxes(pose.down(), kExact, direction, kExact);
-}
-
-/// Image of the ground line at y from x to x, drawn from near to far so that the left side is the brighter
-/// one when asked for. offset: of the camera to the right of the left one, m.
-LineSegment seen(const StereoRig& rig, const Pose& pose, double y, double from, double to, double offset,
-                 bool brighter_left) {
-  const auto pixel = [&](double x) -> Eigen::Vector2d {
-    const Eigen::Vector3d point =
-        pose.seen(Eigen::Vector3d(x, y, 0) - pose.position) - Eigen::Vector3d(offset, 0, 0);
-    const double cx = offset > 0 ? rig.cx_right : rig.cx;
-    return {rig.fx * point.x() / point.z() + cx, rig.fy * point.y() / point.z() + rig.cy};
-  };
-  const Eigen::Vector2d a = pixel(from), b = pixel(to), along = (b - a).normalized();
-  // Left of the direction of travel is -u when going up the picture.
-  Eigen::Vector2d normal(along.y(), -along.x());
-  if (!brighter_left) normal = -normal;
-  return {a, b, {normal.x(), normal.y(), -normal.dot(a)}, 0.1, 1e-3};
 }
 
 TEST(GroundAxes, MeetTheGroundWhereTheRayDoes) {
@@ -79,7 +62,7 @@ TEST(GroundEdges, HaveTheLateralPositionOfTheLineInBothViews) {
   const GroundAxes axes = axesOf(pose);
   for (const double y : {-6.0, 0.4, 9.0}) {
     for (const bool right : {false, true}) {
-      const LineSegment line = seen(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
+      const LineSegment line = groundLine(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
       const auto edges =
           groundEdges(rig, axes, {line}, {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
       ASSERT_EQ(edges.size(), 1u);
@@ -93,10 +76,11 @@ TEST(GroundEdges, HaveTheLateralPositionOfTheLineInBothViews) {
 TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
   const StereoRig rig = test::makeRig(640, 480, 1.0);
   const Pose pose = banked();
-  const auto edges = groundEdges(rig, axesOf(pose),
-                                 {seen(rig, pose, 2, 25, 40, 0, true), seen(rig, pose, 2, 50, 80, 0, true),
-                                  seen(rig, pose, 2, 25, 40, 0, false)},
-                                 {1, 1, 1}, rig.cx, 0);
+  const auto edges =
+      groundEdges(rig, axesOf(pose),
+                  {groundLine(rig, pose, 2, 25, 40, 0, true), groundLine(rig, pose, 2, 50, 80, 0, true),
+                   groundLine(rig, pose, 2, 25, 40, 0, false)},
+                  {1, 1, 1}, rig.cx, 0);
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
 }
@@ -105,7 +89,7 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   const StereoRig rig = test::makeRig(640, 480, 1.0);
   const Pose pose = banked();
   const auto count = [&](double y, double far) {
-    LineSegment line = seen(rig, pose, y, 25, 90, 0, true);
+    LineSegment line = groundLine(rig, pose, y, 25, 90, 0, true);
     // Beyond the horizon by this share of its length.
     line.b = line.a + far * (line.b - line.a);
     return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
@@ -114,7 +98,7 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   // 25 m ahead the line is 8 m / 25 m below the horizon, 90 m ahead 8 m / 90 m.
   EXPECT_EQ(count(2, 1.3), 1u);
   EXPECT_EQ(count(2, 1.5), 0u);
-  LineSegment above = seen(rig, pose, 2, 25, 90, 0, true);
+  LineSegment above = groundLine(rig, pose, 2, 25, 90, 0, true);
   std::swap(above.a, above.b);
   above.a = above.b + 1.5 * (above.a - above.b);
   EXPECT_TRUE(groundEdges(rig, axesOf(pose), {above}, {1}, rig.cx, 0).empty()) << "by its first end";
@@ -127,8 +111,8 @@ TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
   Pose from_above = pose;  // the edge of a roof 2 m up is seen as from a camera 2 m lower
   from_above.position.z() -= 2;
   const auto view = [&](bool right, const Pose& edge_pose) {
-    return groundEdges(rig, axes, {seen(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)}, {1},
-                       right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+    return groundEdges(rig, axes, {groundLine(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)},
+                       {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
   };
   EXPECT_EQ(matchEdges(axes, view(false, pose), view(true, pose)).size(), 1u);
   EXPECT_TRUE(matchEdges(axes, view(false, from_above), view(true, from_above)).empty());
@@ -141,10 +125,11 @@ TEST(GroundEdges, AreTheLongestFirstOfOneViewAndOfBoth) {
   // Each view sees one edge that the other does not.
   const auto edgesOf = [&](bool right) {
     const double offset = right ? rig.baseline : 0;
-    return groundEdges(rig, axes,
-                       {seen(rig, pose, 0.4, 25, 40, offset, true), seen(rig, pose, 2, 25, 60, offset, true),
-                        seen(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
-                       {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+    return groundEdges(
+        rig, axes,
+        {groundLine(rig, pose, 0.4, 25, 40, offset, true), groundLine(rig, pose, 2, 25, 60, offset, true),
+         groundLine(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
+        {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
   };
   const auto lateralsOf = [](const std::vector<GroundEdge>& edges) {
     std::vector<double> places;  // across, m

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "support/ground_renderer.h"
+#include "support/ground_line.h"
 
 namespace uav_landing {
 namespace {
@@ -24,6 +24,7 @@ struct Approach {
   ApproachAngleParameters parameters;
   RunwayTracker tracker;
   int frame = 0;
+  bool third_line = false;       ///< the other edge line of a runway whose left half the two lines are
   double time = 0, climbed = 0;  // s, m
   std::optional<Pose> last;
 
@@ -55,8 +56,9 @@ struct Approach {
     RunwayDirectionMemory memory;
     const Eigen::Vector3d n = now.down();
     const SeenGround ground_seen{{n / now.height(), Eigen::Matrix3d::Identity() * 1e-8}, {}};
-    const RunwayDirection direction = findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
-                                                          &ground_seen, parameters, memory, timings);
+    RunwayDirection direction = findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
+                                                    &ground_seen, parameters, memory, timings);
+    if (third_line) addThirdLine(now, direction);
     ApproachAngleResult approach;
     approach.left = direction.left;
     approach.right = direction.right;
@@ -71,6 +73,12 @@ struct Approach {
     last = now;
     ++frame;
     return tracker.process(time += 0.05, left, approach, direction, now.height());
+  }
+  /// One view alone sees it.
+  void addThirdLine(const Pose& now, RunwayDirection& direction) const {
+    const double from = now.position.x() + 4, to = from + 20;
+    for (const int side : {-1, 1})
+      direction.left_lines.push_back(test::groundLine(rig, now, -3.3 + 0.06 * side, from, to, 0, side < 0));
   }
   /// A pair that shows nothing, after which the motion begins.
   void skip() {
@@ -189,6 +197,28 @@ TEST(RunwayTracker, IsSettledWhileThePairsShowTheSameRunway) {
   EXPECT_FALSE(approach.tracker.isSettled(approach.time + 1.1)) << "long ago";
   approach.time -= 5;
   settle();
+}
+
+TEST(RunwayTracker, RemembersThatTwoLinesAreHalfOfAWiderRunway) {
+  const auto pairsUntilBelieved = [](int halves) {
+    Approach approach;
+    approach.third_line = true;
+    for (int i = 0; i < halves; ++i)
+      EXPECT_EQ(approach.next().failure.detail, "the runway reaches as far again beyond its seeming edges");
+    approach.third_line = false;
+    int pairs = 1;
+    while (approach.next().failure && pairs < 200) {
+      approach.frame = 0;  // it hovers
+      approach.last = approach.pose();
+      ++pairs;
+    }
+    return pairs;
+  };
+  EXPECT_EQ(pairsUntilBelieved(0), 3);
+  EXPECT_EQ(pairsUntilBelieved(2), 3) << "two pairs may be wrong";
+  const int known = pairsUntilBelieved(3);
+  EXPECT_GT(known, 60) << "3 s";
+  EXPECT_LT(known, 70);
 }
 
 TEST(RunwayTracker, ForgetsOnReset) {

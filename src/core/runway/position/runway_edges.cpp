@@ -319,14 +319,15 @@ bool hasMoreThanTwoLines(const Symmetry& symmetry, const MirroredPair& outermost
   return lines > 2 || marks > 1 || widest > kOtherWidth * narrowest;
 }
 
-Failure noRunway(const std::string& detail) { return {Reason::kNoRunway, detail}; }
+EdgeRefusal noRunway(const std::string& detail) { return {{Reason::kNoRunway, detail}, std::nullopt}; }
 
 }  // namespace
 
-Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
-                                             const RunwayWidth& width,
-                                             const std::optional<ExpectedCentre>& expected,
-                                             const Outlook* outlook) {
+tl::expected<RunwayCrossSection, EdgeRefusal> findRunwayEdges(const GroundAxes& axes,
+                                                              const std::vector<GroundEdge>& edges,
+                                                              const RunwayWidth& width,
+                                                              const std::optional<ExpectedCentre>& expected,
+                                                              const Outlook* outlook) {
   const Search search(axes, edges, width.widest);
   const double longest = search.longest();
   const std::vector<Symmetry> found = search.symmetries();
@@ -339,8 +340,11 @@ Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::
   const MirroredPair& outermost = *outermostPair(*best, width.known, longest);
   // What one view alone sees is no evidence for a pair, but it is evidence against it.
   const std::vector<GroundEdge>& seen = outlook != nullptr ? outlook->edges : edges;
-  if (width.known <= 0 && search.isHalf(outermost, seen))
-    return tl::make_unexpected(noRunway("the runway reaches as far again beyond its seeming edges"));
+  if (width.known <= 0 && search.isHalf(outermost, seen)) {
+    EdgeRefusal half = noRunway("the runway reaches as far again beyond its seeming edges");
+    half.half = {outermost.centre, outermost.variance, outermost.width};
+    return tl::make_unexpected(half);
+  }
   if (!expected) {
     if (width.known <= 0 && (search.isDwarfed(outermost, seen) || search.areMarks(*best, seen)))
       return tl::make_unexpected(noRunway("far longer edges lie beyond those that look like the runway's"));

@@ -31,6 +31,16 @@ struct RunwayWidth {
       : known(width), widest(limit) {}
 };
 
+/// Centre line and width of two lines, in multiples of the height.
+struct LinePair {
+  double centre = 0, variance = 0, width = 0;
+};
+
+/// Why there is no runway.
+struct EdgeRefusal : Failure {
+  std::optional<LinePair> half;  ///< lines that would be it, but are half of a wider one
+};
+
 /// Finds the runway's edges and measures its cross section.
 ///
 /// A runway is painted symmetrically. Each edge on its left has a counterpart on the right whose brighter
@@ -49,9 +59,10 @@ struct RunwayWidth {
 /// - the edges are two unbroken lines that look alike, each with both of its sides;
 /// - they are two painted lines, and the outlook shows free ground where a third one would be;
 /// - the outermost pair is a dark strip that begins within the image.
-Expected<RunwayCrossSection> findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
-                                             const RunwayWidth& width,
-                                             const std::optional<ExpectedCentre>& expected,
-                                             const Outlook* outlook = nullptr);
+tl::expected<RunwayCrossSection, EdgeRefusal> findRunwayEdges(const GroundAxes& axes,
+                                                              const std::vector<GroundEdge>& edges,
+                                                              const RunwayWidth& width,
+                                                              const std::optional<ExpectedCentre>& expected,
+                                                              const Outlook* outlook = nullptr);
 
 }  // namespace uav_landing

@@ -19,6 +19,7 @@ constexpr double kSameWidth = 0.1;
 constexpr double kVague = 0.1;  // share of the width; an expected centre with a larger tolerance is useless
 constexpr double kPatience = 1.0;  // s without the edges, after which they are forgotten
 constexpr double kThresholdPatience = 0.5;
+constexpr double kHalfPatience = 3.0;  // s for which half of a runway is known to be one
 // 1 sigma of the movement in an unknown step, as a share of the height.
 constexpr double kUnknownMotion = 0.1;
 constexpr double kLongestStep = 1.0;  // s
@@ -67,7 +68,7 @@ void RunwayTracker::reset() {
 }
 
 void RunwayTracker::forgetRunway() {
-  centre_ = threshold_ = width_ = wider_ = Follower();
+  centre_ = threshold_ = width_ = wider_ = half_ = Follower();
   contradicted_ = 0;
 }
 
@@ -131,6 +132,7 @@ void RunwayTracker::predict(const GroundAxes* axes, const ApproachAngleResult::M
   if (axes == nullptr || step.failure || !step.translation_over_height.allFinite()) {
     const double variance = kUnknownMotion * kUnknownMotion;
     centre_.predict(1, 0, variance);
+    half_.predict(1, 0, variance);
     width_.predict(1, 0, variance);
     wider_.predict(1, 0, variance);
     threshold_.predict(1, 0, variance);
@@ -143,6 +145,7 @@ void RunwayTracker::predict(const GroundAxes* axes, const ApproachAngleResult::M
     return axis.dot(covariance * axis) + t.squaredNorm() * axes->covariance(2, 2);
   };
   centre_.predict(scale, axes->left.dot(t), variance(axes->left));
+  half_.predict(scale, axes->left.dot(t), variance(axes->left));
   width_.predict(scale, 0, 0);
   wider_.predict(scale, 0, 0);
   threshold_.predict(scale, axes->forward.dot(t), variance(axes->forward));
@@ -168,12 +171,13 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   const Outlook outlook{model_.rig, edges.either};
   const auto find = [&](const std::vector<GroundEdge>& among, const std::optional<ExpectedCentre>& expected,
                         const Outlook* outlook) {
-    Expected<RunwayCrossSection> found = findRunwayEdges(axes, among, width, expected, outlook);
+    auto found = findRunwayEdges(axes, among, width, expected, outlook);
     if (found || width.known <= 0) return found;
     // The visible edges may be those of stripes within the chart's width.
     return findRunwayEdges(axes, among, {0, width.widest}, expected, outlook);
   };
-  Expected<RunwayCrossSection> seen = find(edges.both, std::nullopt, &outlook);
+  auto seen = find(edges.both, std::nullopt, &outlook);
+  rememberHalf(seconds, seen);
   if (centre_.confirmations() >= kConfirmations) {
     const ExpectedCentre expected = *centre_.expected(kSlack * width_.value());
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;
@@ -198,6 +202,25 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   result.y = -seen->centre;
   result.y_variance = seen->variance;
   followWidth(*seen, result);
+}
+
+void RunwayTracker::rememberHalf(double seconds, tl::expected<RunwayCrossSection, EdgeRefusal>& seen) {
+  const auto isKnownHalf = [this](double centre, double width) {
+    if (half_.confirmations() < kConfirmations) return false;
+    const ExpectedCentre half = *half_.expected(kSlack * width);
+    return std::abs(centre - half.centre) <= half.tolerance;
+  };
+  const std::optional<LinePair> half = seen ? std::nullopt : seen.error().half;
+  // What is known is not forgotten for a single pair that shows something else.
+  if (half && (half_.confirmations() < kConfirmations || isKnownHalf(half->centre, half->width))) {
+    half_.update(half->centre, half->variance, kSlack * half->width);
+    return;
+  }
+  half_.miss(seconds, kHalfPatience);
+  if (seen && centre_.confirmations() < kConfirmations && isKnownHalf(seen->centre, seen->width))
+    seen = tl::make_unexpected(EdgeRefusal{
+        {Reason::kNoRunway, "these lines were half of a wider runway, whose other half is out of sight"},
+        std::nullopt});
 }
 
 void RunwayTracker::followWidth(const RunwayCrossSection& seen, ApproachAngleResult::Runway& result) {

@@ -79,6 +79,8 @@ class RunwayTracker {
   void findThresholdLine(double seconds, const cv::Mat& left, const StampMap& rows, const GroundAxes& axes,
                          ApproachAngleResult::Runway& result);
 
+  /// Refuses two lines that were half of a wider runway before, while its other half is out of sight.
+  void rememberHalf(double seconds, tl::expected<RunwayCrossSection, EdgeRefusal>& seen);
   void missAll(double seconds);
   void missCentre(double seconds);
   void forgetRunway();
@@ -92,6 +94,7 @@ class RunwayTracker {
   Follower centre_, threshold_;
   // Width between the outermost edges, and a larger one that is not confirmed yet.
   Follower width_, wider_;
+  Follower half_;                // centre of lines that were half of a wider runway
   std::vector<LineGreys> rows_;  // memory for the view from above
   double contradicted_ = 0;      // s for which pairs have shown another runway
 };
