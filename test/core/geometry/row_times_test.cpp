@@ -39,6 +39,20 @@ TEST(RowTimes, RunFromTheFirstRowToTheLastAroundTheOneOfTheStamp) {
   EXPECT_NEAR(times.plane()[1], 0, 1e-12);
 }
 
+TEST(LaterRows, AreThoseOfTheMiddleUntilATenthOfTheLongerReadoutLiesBetweenOthers) {
+  const RowTimes longer(plainCamera(), {kReadout, 0.5});
+  const cv::Size size(640, 480);
+  // The first and the last row differ by half of the difference of both readout times.
+  const auto apart = [&](double shorter, bool exchanged) {
+    const RowTimes other(plainCamera(), {shorter, 0.5});
+    return std::abs(exchanged ? laterRows(other, longer, size) : laterRows(longer, other, size));
+  };
+  for (const bool exchanged : {false, true}) {
+    EXPECT_LT(apart(0.82 * kReadout, exchanged), 1e-4) << "nothing in the middle row";
+    EXPECT_NEAR(apart(0.78 * kReadout, exchanged), 0.11 * kReadout, 0.01 * kReadout);
+  }
+}
+
 TEST(RowTimes, RunAlongTheColumnsOfAPortraitCamera) {
   const RowTimes times(plainCamera(), {kReadout, 0.5, RowDirection::kColumns});
   for (const double u : {0.0, 300.7, 639.0})

@@ -81,6 +81,17 @@ TEST(ReadoutShift, CarriesMatchesToTheStamps) {
   EXPECT_GT((left->motion.t - step.truth.t).norm(), 1e-3) << "the shutter must matter";
 }
 
+TEST(ReadoutShift, CarriesMatchesToTheSamePlaceAgain) {
+  const RollingStep step;
+  std::vector<TemporalMatch> all = step.shifted(kReadout, kReadout);
+  const std::vector<TemporalMatch> once = all;
+  const RowMotion rows = evenMotion(step.motion, kPeriod);
+  const RowMotion rows_then{rows.w,
+                            step.motion.R.transpose() * rows.v / (1 + step.truth.n.dot(step.truth.t))};
+  shiftByReadout(motionRig(), {&step.unit, rows, rows_then}, step.motion, step.truth.n, kReadout, all);
+  for (size_t i = 0; i < all.size(); ++i) EXPECT_LT((all[i].then - once[i].then).norm(), 1e-6) << i;
+}
+
 TEST(ReadoutShift, TellsWhatTheTimeDoesToTheMotion) {
   const RollingStep step;
   for (const double readout : {kReadout, -kReadout}) {

@@ -62,7 +62,7 @@ TEST(GroundEdges, HaveTheLateralPositionOfTheLineInBothViews) {
   const GroundAxes axes = axesOf(pose);
   for (const double y : {-6.0, 0.4, 9.0}) {
     for (const bool right : {false, true}) {
-      const LineSegment line = groundLine(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
+      const LineSegment line = test::groundLine(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
       const auto edges =
           groundEdges(rig, axes, {line}, {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
       ASSERT_EQ(edges.size(), 1u);
@@ -78,18 +78,35 @@ TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
   const Pose pose = banked();
   const auto edges =
       groundEdges(rig, axesOf(pose),
-                  {groundLine(rig, pose, 2, 25, 40, 0, true), groundLine(rig, pose, 2, 50, 80, 0, true),
-                   groundLine(rig, pose, 2, 25, 40, 0, false)},
+                  {test::groundLine(rig, pose, 2, 25, 40, 0, true), groundLine(rig, pose, 2, 50, 80, 0, true),
+                   test::groundLine(rig, pose, 2, 25, 40, 0, false)},
                   {1, 1, 1}, rig.cx, 0);
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
+}
+
+TEST(GroundEdges, PiecesFarAsideMayBeFartherApart) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  // Lines that are known exactly, so what is left is 0.3 % of the distance from the camera: 8 m above, and
+  // so far aside.
+  const auto count = [&](double aside, double apart) {
+    std::vector<LineSegment> lines{test::groundLine(rig, pose, 1.5 + aside, 60, 75, 0, true),
+                                   test::groundLine(rig, pose, 1.5 + aside + apart, 80, 95, 0, true)};
+    for (LineSegment& line : lines) line.offset_stddev = line.angle_stddev = 1e-9;
+    return groundEdges(rig, axesOf(pose), lines, {1, 1}, rig.cx, 0).size();
+  };
+  EXPECT_EQ(count(0, 0.02), 1u);
+  EXPECT_EQ(count(0, 0.05), 2u);
+  EXPECT_EQ(count(24, 0.05), 1u) << "25 m from the camera";
+  EXPECT_EQ(count(24, 0.12), 2u);
 }
 
 TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   const StereoRig rig = test::makeRig(640, 480, 1.0);
   const Pose pose = banked();
   const auto count = [&](double y, double far) {
-    LineSegment line = groundLine(rig, pose, y, 25, 90, 0, true);
+    LineSegment line = test::groundLine(rig, pose, y, 25, 90, 0, true);
     // Beyond the horizon by this share of its length.
     line.b = line.a + far * (line.b - line.a);
     return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
@@ -98,7 +115,7 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   // 25 m ahead the line is 8 m / 25 m below the horizon, 90 m ahead 8 m / 90 m.
   EXPECT_EQ(count(2, 1.3), 1u);
   EXPECT_EQ(count(2, 1.5), 0u);
-  LineSegment above = groundLine(rig, pose, 2, 25, 90, 0, true);
+  LineSegment above = test::groundLine(rig, pose, 2, 25, 90, 0, true);
   std::swap(above.a, above.b);
   above.a = above.b + 1.5 * (above.a - above.b);
   EXPECT_TRUE(groundEdges(rig, axesOf(pose), {above}, {1}, rig.cx, 0).empty()) << "by its first end";
@@ -111,8 +128,9 @@ TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
   Pose from_above = pose;  // the edge of a roof 2 m up is seen as from a camera 2 m lower
   from_above.position.z() -= 2;
   const auto view = [&](bool right, const Pose& edge_pose) {
-    return groundEdges(rig, axes, {groundLine(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)},
-                       {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+    return groundEdges(rig, axes,
+                       {test::groundLine(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)}, {1},
+                       right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
   };
   EXPECT_EQ(matchEdges(axes, view(false, pose), view(true, pose)).size(), 1u);
   EXPECT_TRUE(matchEdges(axes, view(false, from_above), view(true, from_above)).empty());
@@ -125,11 +143,11 @@ TEST(GroundEdges, AreTheLongestFirstOfOneViewAndOfBoth) {
   // Each view sees one edge that the other does not.
   const auto edgesOf = [&](bool right) {
     const double offset = right ? rig.baseline : 0;
-    return groundEdges(
-        rig, axes,
-        {groundLine(rig, pose, 0.4, 25, 40, offset, true), groundLine(rig, pose, 2, 25, 60, offset, true),
-         groundLine(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
-        {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+    return groundEdges(rig, axes,
+                       {test::groundLine(rig, pose, 0.4, 25, 40, offset, true),
+                        groundLine(rig, pose, 2, 25, 60, offset, true),
+                        test::groundLine(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
+                       {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
   };
   const auto lateralsOf = [](const std::vector<GroundEdge>& edges) {
     std::vector<double> places;  // across, m

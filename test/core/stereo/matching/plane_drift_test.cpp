@@ -51,6 +51,18 @@ TEST(PlaneDrift, LeadsTheDisparitiesOfRowsToThePlaneAtTheStamp) {
     EXPECT_NEAR(sample.others.front(), sample.disparity + 7, 1e-9);
 }
 
+TEST(PlaneDrift, TakesTheTimeOfEachPixelOfAPortraitCamera) {
+  const Scene scene;
+  const RowTimes columns(test::calibrationOf(scene.rig), {kReadout, 0, RowDirection::kColumns});
+  std::vector<DisparitySample> samples = scene.samples();
+  carryToStamp(scene.rig, {scene.drift.rate, &columns}, samples);
+  for (const DisparitySample& sample : samples) {
+    const double time = (sample.u + 0.5) / 640 * kReadout;
+    const double added = time * scene.rig.fb() * scene.drift.rate.dot(scene.rig.ray(sample.u, sample.v));
+    EXPECT_NEAR(sample.disparity, scene.seen(sample.u, sample.v) - added, 1e-6);
+  }
+}
+
 TEST(PlaneDrift, OfRowsThatAreExposedAtOnceIsNone) {
   const Scene scene;
   std::vector<DisparitySample> samples = scene.samples();
