@@ -243,7 +243,7 @@ UAV_LANDING_MULTIVERSION void weighRays(const double* squares, const double* rat
     load(squares + i, square);
     load(ratios + i, ratio);
     const DoubleLanes left = 1 - unit / end * ratio;
-    store((square < kRayBehind) & (left > 0) ? unit * left * left : none, weights + i);
+    store(((square < kRayBehind) & (left > 0)) ? unit * left * left : none, weights + i);
   }
 }
 

@@ -19,7 +19,7 @@ UAV_LANDING_MULTIVERSION float sumOfShares(const float* us, const float* vs, siz
     u -= at_u;
     v -= at_v;
     const Lanes across = 1 - share * (u < 0 ? -u : u), down = 1 - share * (v < 0 ? -v : v);
-    sums += (across > 0) & (down > 0) & (index < 0) ? across * down : none;
+    sums += ((across > 0) & (down > 0) & (index < 0)) ? across * down : none;
   }
   return sum(sums);
 }
