@@ -91,7 +91,8 @@ void addGroundFaults(std::vector<Fault>& all) {
   all.push_back(
       changesGround("lamps", "lamps along the runway's edges that flicker with the shutter", lightLamps));
   all.push_back(onGround("half_runway", "sand on the left half of the runway", sandOnTheLeft));
-  Fault told = onGround("half_runway_told", "the same, and the chain is told the runway's width", sandOnTheLeft);
+  Fault told =
+      onGround("half_runway_told", "the same, and the chain is told the runway's width", sandOnTheLeft);
   told.tell = [](Parameters& p, const Flight& flight) { p.runway.width = flight.runway_width; };
   all.push_back(told);
   all.push_back(built("slope", "ground that rises by 1.5 deg up to 60 m before the place below",
