@@ -115,6 +115,13 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   // 25 m ahead the line is 8 m / 25 m below the horizon, 90 m ahead 8 m / 90 m.
   EXPECT_EQ(count(2, 1.3), 1u);
   EXPECT_EQ(count(2, 1.5), 0u);
+  // So flat that nobody can tell how far away the end is: 8 m below over 16 km.
+  const auto countTo = [&](double far) {
+    const LineSegment line = test::groundLine(rig, pose, 2, 25, far, 0, true);
+    return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
+  };
+  EXPECT_EQ(countTo(1000), 1u);
+  EXPECT_EQ(countTo(16000), 0u);
   LineSegment above = test::groundLine(rig, pose, 2, 25, 90, 0, true);
   std::swap(above.a, above.b);
   above.a = above.b + 1.5 * (above.a - above.b);
