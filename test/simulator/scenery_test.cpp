@@ -95,6 +95,16 @@ SimulatedSceneryParameters withTown() {
   return p;
 }
 
+/// A town with a roof of 100 grey levels on each plot, and nothing else.
+SimulatedSceneryParameters withRoofsAlone() {
+  SimulatedSceneryParameters p = withTown();
+  p.town.street_brightness = p.town.garden_brightness = 0;
+  p.town.roof_brightness = 100;
+  p.town.roof_spread = 0;
+  p.town.built = 1;
+  return p;
+}
+
 SimulatedSceneryParameters withFields() {
   SimulatedSceneryParameters p;
   p.fields.x = 200;
@@ -212,11 +222,7 @@ TEST(Scenery, StreetsOfATownAreAGridFromItsCornerOn) {
 }
 
 TEST(Scenery, AsManyPlotsAreBuiltOnAsAsked) {
-  SimulatedSceneryParameters p = withTown();
-  p.town.street_brightness = p.town.garden_brightness = 0;
-  p.town.roof_brightness = 100;
-  p.town.roof_spread = 0;
-  p.town.built = 1;
+  SimulatedSceneryParameters p = withRoofsAlone();
   const double all = sceneryOf(p).shown(square(0, 0, 260)).grey;
   p.town.length = p.town.width = 2000;  // some hundreds of plots
   p.town.built = 0.5;
@@ -230,12 +236,7 @@ TEST(Scenery, AsManyPlotsAreBuiltOnAsAsked) {
 }
 
 TEST(Scenery, TheTwoHalvesOfARoofLieSideBySide) {
-  SimulatedSceneryParameters p = withTown();
-  p.town.street_brightness = p.town.garden_brightness = 0;
-  p.town.roof_brightness = 100;
-  p.town.roof_spread = 0;
-  p.town.built = 1;
-  const Scenery scenery = sceneryOf(p);
+  const Scenery scenery = sceneryOf(withRoofsAlone());
   // One half is up to 20 % brighter, the other one as much darker. Nowhere are there two roofs or a gap
   // within one: along a line across, a roof is one piece of at least 0.45 of a plot.
   int roofs = 0;

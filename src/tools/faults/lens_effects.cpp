@@ -104,11 +104,4 @@ void wipe(cv::Mat& image, double angle) {
   darken(image, cover, image.cols / 200.0);
 }
 
-void displace(cv::Mat& image, const cv::Point2d& by) {
-  const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, by.x, 0, 1, by.y);
-  cv::Mat moved;
-  cv::warpAffine(image, moved, shift, image.size(), cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-  image = moved;
-}
-
 }  // namespace uav_landing

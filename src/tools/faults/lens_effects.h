@@ -22,7 +22,5 @@ void glare(cv::Mat& image);
 void spinPropeller(cv::Mat& image, const cv::Point2d& hub, double angle);
 /// A dark arm that turns about a point below the middle of the image. angle: from upright, rad.
 void wipe(cv::Mat& image, double angle);
-/// Moves the image, as a lens does that was hit. by: px.
-void displace(cv::Mat& image, const cv::Point2d& by);
 
 }  // namespace uav_landing

@@ -58,7 +58,7 @@ void addLensFaults(std::vector<Fault>& all) {
   all.push_back(spoils("lens_hit", Place::kOptics, "the left lens moves by 2 px in its mount",
                        [](FaultRun& run, int, Delivery& pair) {
                          const double towards = randomOf(run).uniform(0.0, 2 * M_PI);
-                         displace(pair.left, 2 * cv::Point2d(std::cos(towards), std::sin(towards)));
+                         displace(pair.left, 2 * Eigen::Vector2d(std::cos(towards), std::sin(towards)));
                        }));
   all.push_back(spoils("autofocus", Place::kOptics, "each focal length breathes by 0.5 % in 2 s",
                        [](FaultRun& run, int frame, Delivery& pair) {

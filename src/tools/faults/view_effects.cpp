@@ -60,6 +60,12 @@ void zoomCamera(cv::Mat& image, const CameraCalibration& camera, double factor) 
   warp(image, H);
 }
 
+void displace(cv::Mat& image, const Eigen::Vector2d& by) {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Identity();
+  H.topRightCorner<2, 1>() = by;
+  warp(image, H);
+}
+
 void paintGround(cv::Mat& image, const SimulatedCamera& camera, const CameraPose& pose,
                  const GroundPaint& paint) {
   visitGround(image, camera, pose, [&](const Eigen::Vector3d& point, const Eigen::Vector3d&, double grey) {

@@ -11,6 +11,8 @@ namespace uav_landing {
 void turnCamera(cv::Mat& image, const CameraCalibration& camera, const Eigen::Vector3d& w);
 /// Enlarges an image about its principal point.
 void zoomCamera(cv::Mat& image, const CameraCalibration& camera, double factor);
+/// Moves the image, as a lens does that was hit. by: px.
+void displace(cv::Mat& image, const Eigen::Vector2d& by);
 
 /// Gives every pixel that sees the ground another grey level, by paint(x, y, grey). x, y: on the ground in
 /// the runway frame, m.

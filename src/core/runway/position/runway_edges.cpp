@@ -298,11 +298,11 @@ const MirroredPair* outermostPair(const Symmetry& symmetry, double width, double
 /// Whether more than two lines share the symmetry.
 ///
 /// Any two lines are symmetric about their middle with both of their sides. A piece of texture may be as
-/// well, and so may the sides of one mark. But these cases are more than that:
-/// - a narrow bright stripe in the middle, which is the centre line;
-/// - two marks or more, such as bars of a threshold;
-/// - more than two long pairs, such as edge lines with the edges of the pavement beyond;
-/// - long pairs of very different widths, which cannot be the sides of two lines.
+/// well, and so may the sides of one mark. These are more than that:
+/// - A narrow bright stripe lies in the middle: the centre line.
+/// - There are two marks or more, such as bars of a threshold.
+/// - There are more than two long pairs, such as edge lines with the edges of the pavement beyond.
+/// - Long pairs have very different widths, so they cannot be the sides of two lines.
 bool hasMoreThanTwoLines(const Symmetry& symmetry, const MirroredPair& outermost,
                          const std::vector<GroundEdge>& edges) {
   double narrowest = outermost.width, widest = outermost.width;
@@ -323,11 +323,9 @@ EdgeRefusal noRunway(const std::string& detail) { return {{Reason::kNoRunway, de
 
 }  // namespace
 
-tl::expected<RunwayCrossSection, EdgeRefusal> findRunwayEdges(const GroundAxes& axes,
-                                                              const std::vector<GroundEdge>& edges,
-                                                              const RunwayWidth& width,
-                                                              const std::optional<ExpectedCentre>& expected,
-                                                              const Outlook* outlook) {
+FoundRunway findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
+                            const RunwayWidth& width, const std::optional<ExpectedCentre>& expected,
+                            const Outlook* outlook) {
   const Search search(axes, edges, width.widest);
   const double longest = search.longest();
   const std::vector<Symmetry> found = search.symmetries();
@@ -346,8 +344,10 @@ tl::expected<RunwayCrossSection, EdgeRefusal> findRunwayEdges(const GroundAxes& 
     return tl::make_unexpected(half);
   }
   if (!expected) {
-    if (width.known <= 0 && (search.isDwarfed(outermost, seen) || search.areMarks(*best, seen)))
+    if (width.known <= 0 && search.isDwarfed(outermost, seen))
       return tl::make_unexpected(noRunway("far longer edges lie beyond those that look like the runway's"));
+    if (width.known <= 0 && search.areMarks(*best, seen))
+      return tl::make_unexpected(noRunway("a longer line goes on behind what looks like the runway's edges"));
     const bool outermost_lines = outlook != nullptr && search.areOutermost(*best, outermost, *outlook);
     if (width.known <= 0 && !hasMoreThanTwoLines(*best, outermost, edges) && !search.areTwoLines(*best) &&
         !search.isStrip(outermost) && !outermost_lines)

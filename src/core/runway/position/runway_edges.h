@@ -41,6 +41,8 @@ struct EdgeRefusal : Failure {
   std::optional<LinePair> half;  ///< lines that would be it, but are half of a wider one
 };
 
+using FoundRunway = tl::expected<RunwayCrossSection, EdgeRefusal>;
+
 /// Finds the runway's edges and measures its cross section.
 ///
 /// A runway is painted symmetrically. Each edge on its left has a counterpart on the right whose brighter
@@ -52,17 +54,15 @@ struct EdgeRefusal : Failure {
 ///
 /// edges: along the runway on the ground. expected: from earlier pairs. outlook: or null.
 ///
-/// Without an expected centre, a symmetry must also be clearly better than any other one with long edges. And
-/// if the width is unknown, one of these must show that it is more than two lines with a middle:
-/// - a narrow bright stripe lies in the middle;
-/// - several marks or long edges besides the outermost pair share the symmetry;
-/// - the edges are two unbroken lines that look alike, each with both of its sides;
-/// - they are two painted lines, and the outlook shows free ground where a third one would be;
-/// - the outermost pair is a dark strip that begins within the image.
-tl::expected<RunwayCrossSection, EdgeRefusal> findRunwayEdges(const GroundAxes& axes,
-                                                              const std::vector<GroundEdge>& edges,
-                                                              const RunwayWidth& width,
-                                                              const std::optional<ExpectedCentre>& expected,
-                                                              const Outlook* outlook = nullptr);
+/// Without an expected centre, a symmetry must also be clearly better than any other one with long edges. If
+/// the width is unknown, it must be more than two lines with a middle as well. Any of these shows that:
+/// - A narrow bright stripe lies in the middle.
+/// - Several marks or long edges besides the outermost pair share the symmetry.
+/// - The edges are two unbroken lines that look alike, each with both of its sides.
+/// - They are two painted lines, and the outlook shows free ground where a third one would be.
+/// - The outermost pair is a dark strip that begins within the image.
+FoundRunway findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge>& edges,
+                            const RunwayWidth& width, const std::optional<ExpectedCentre>& expected,
+                            const Outlook* outlook = nullptr);
 
 }  // namespace uav_landing

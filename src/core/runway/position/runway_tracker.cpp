@@ -171,13 +171,12 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   const Outlook outlook{model_.rig, edges.either};
   const auto find = [&](const std::vector<GroundEdge>& among, const std::optional<ExpectedCentre>& expected,
                         const Outlook* outlook) {
-    auto found = findRunwayEdges(axes, among, width, expected, outlook);
+    FoundRunway found = findRunwayEdges(axes, among, width, expected, outlook);
     if (found || width.known <= 0) return found;
     // The visible edges may be those of stripes within the chart's width.
     return findRunwayEdges(axes, among, {0, width.widest}, expected, outlook);
   };
-  auto seen = find(edges.both, std::nullopt, &outlook);
-  rememberHalf(seconds, seen);
+  FoundRunway seen = withoutKnownHalf(seconds, find(edges.both, std::nullopt, &outlook));
   if (centre_.confirmations() >= kConfirmations) {
     const ExpectedCentre expected = *centre_.expected(kSlack * width_.value());
     const bool contradicts = seen && std::abs(seen->centre - expected.centre) > expected.tolerance;
@@ -204,7 +203,7 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   followWidth(*seen, result);
 }
 
-void RunwayTracker::rememberHalf(double seconds, tl::expected<RunwayCrossSection, EdgeRefusal>& seen) {
+FoundRunway RunwayTracker::withoutKnownHalf(double seconds, FoundRunway seen) {
   const auto isKnownHalf = [this](double centre, double width) {
     if (half_.confirmations() < kConfirmations) return false;
     const ExpectedCentre half = *half_.expected(kSlack * width);
@@ -214,13 +213,14 @@ void RunwayTracker::rememberHalf(double seconds, tl::expected<RunwayCrossSection
   // What is known is not forgotten for a single pair that shows something else.
   if (half && (half_.confirmations() < kConfirmations || isKnownHalf(half->centre, half->width))) {
     half_.update(half->centre, half->variance, kSlack * half->width);
-    return;
+    return seen;
   }
   half_.miss(seconds, kHalfPatience);
-  if (seen && centre_.confirmations() < kConfirmations && isKnownHalf(seen->centre, seen->width))
-    seen = tl::make_unexpected(EdgeRefusal{
-        {Reason::kNoRunway, "these lines were half of a wider runway, whose other half is out of sight"},
-        std::nullopt});
+  if (!seen || centre_.confirmations() >= kConfirmations || !isKnownHalf(seen->centre, seen->width))
+    return seen;
+  return tl::make_unexpected(EdgeRefusal{
+      {Reason::kNoRunway, "these lines were half of a wider runway, whose other half is out of sight"},
+      std::nullopt});
 }
 
 void RunwayTracker::followWidth(const RunwayCrossSection& seen, ApproachAngleResult::Runway& result) {

@@ -79,8 +79,9 @@ class RunwayTracker {
   void findThresholdLine(double seconds, const cv::Mat& left, const StampMap& rows, const GroundAxes& axes,
                          ApproachAngleResult::Runway& result);
 
-  /// Refuses two lines that were half of a wider runway before, while its other half is out of sight.
-  void rememberHalf(double seconds, tl::expected<RunwayCrossSection, EdgeRefusal>& seen);
+  /// Follows lines that are half of a wider runway. Returns what was seen, or a refusal when it is such a
+  /// half and its other half is out of sight.
+  FoundRunway withoutKnownHalf(double seconds, FoundRunway seen);
   void missAll(double seconds);
   void missCentre(double seconds);
   void forgetRunway();
