@@ -4,6 +4,7 @@ import datetime
 import math
 import platform
 import re
+import textwrap
 from collections import defaultdict
 from typing import NamedTuple
 
@@ -38,27 +39,30 @@ class Output(NamedTuple):
     without_truth: tuple  # sources
 
 
-SIGMAS = "*Misleading* frames are off by more than 5 claimed standard deviations and by more than "
+SIGMAS = "Misleading frames are off by more than 5 claimed standard deviations and by more than "
 OUTPUTS = (
-    Output("angle", "angles", "Approach angles", "*Available* are valid angles. " + SIGMAS + """0.3°. A monitor of a glide path of 3°
-may leave a tenth of it unnoticed (ICAO Annex 10). Runs of `kitti_road` are left out. The truth there is the road's 0° and not the car's
-own movement on its springs.""", (), ("kitti_road",)),
-    Output("yaw", "yaws", "Yaw", "*Available* are known yaws. " + SIGMAS + """0.5°. Runs with `camera_info` are left out. A wrong
-principal point turns all directions alike, and nothing can tell.""", ("camera_info",), ("kitti_road",)),
-    Output("x", "places along the runway", "Place along the runway", "*Available* are frames with a known `x`. " + SIGMAS + """3 m and
-by more than 3 % of the distance to the threshold.""", UNOBSERVABLE, ()),
-    Output("y", "places beside the centre line", "Place beside the centre line", "*Available* are frames with a known `y`. " + SIGMAS +
-           """1.5 m
-and by more than 3 % of the runway's width.""", UNOBSERVABLE, ("kitti_road",)),
-    Output("velocity", "velocities", "Velocity", "*Available* are frames with a velocity. The error is a vector, and of recordings the "
-           "error of the speed.\n" + SIGMAS + "0.3 m/s and by\nmore than 3 % of the speed.", UNOBSERVABLE, ()),
-    Output("runway_height", "heights above the runway", "Height above the runway", """*Available* are frames on which it is known.
-*Misleading* ones are off by more than their protection level.""", UNOBSERVABLE, ("kitti_road",)),
+    Output("angle", "angles", "Approach angles",
+           f"Available are valid angles. {SIGMAS}0.3°. A monitor of a glide path of 3° may leave a tenth of it unnoticed (ICAO Annex 10). "
+           "Runs of `kitti_road` are left out. The truth there is the road's 0° and not the car's own movement on its springs.",
+           (), ("kitti_road",)),
+    Output("yaw", "yaws", "Yaw",
+           f"Available are known yaws. {SIGMAS}0.5°. Runs with `camera_info` are left out. A wrong principal point turns all directions "
+           "alike, and nothing can tell.", ("camera_info",), ("kitti_road",)),
+    Output("x", "places along the runway", "Place along the runway",
+           f"Available are frames with a known `x`. {SIGMAS}3 m and by more than 3 % of the distance to the threshold.", UNOBSERVABLE, ()),
+    Output("y", "places beside the centre line", "Place beside the centre line",
+           f"Available are frames with a known `y`. {SIGMAS}1.5 m and by more than 3 % of the runway's width.",
+           UNOBSERVABLE, ("kitti_road",)),
+    Output("velocity", "velocities", "Velocity",
+           "Available are frames with a velocity. The error is a vector, and of recordings the error of the speed. "
+           f"{SIGMAS}0.3 m/s and by more than 3 % of the speed.", UNOBSERVABLE, ()),
+    Output("runway_height", "heights above the runway", "Height above the runway",
+           "Available are frames on which it is known. Misleading ones are off by more than their protection level.",
+           UNOBSERVABLE, ("kitti_road",)),
 )
-OUTPUT_TEXT = """## {title} with a fault
-{text} *Error / bound* is over the larger one. *Longest* is the time to alert. On the {frames} frames of the runs without a fault it is
-available on {known}, and {healthy} are misleading.
-"""
+OUTPUT_TEXT = ("{text} Error / bound is over what misleads. Longest is the time to alert. On the {frames} frames of the runs without a fault "
+               "it is available on {known}, and {healthy} are misleading.")
+LONGEST_LINE = 139
 TEXT = """Made by `scripts/fault_campaign`{date}, {seeds}, on {machine}. What it shows and what is open: [integrity](integrity.md).
 
 A run is a piece of an approach of at most {frames} frames, with one fault or with two. A fault begins at a random moment. Faults with
@@ -163,8 +167,8 @@ class Campaign:
 
     def output_section(self, output):
         frames, known, healthy = self.healthy_output(output)
-        text = OUTPUT_TEXT.format(title=output.title, text=output.text, frames=frames, known=known, healthy=healthy or "none")
-        return f"{text}\n{self.output_table(output)}\n"
+        text = OUTPUT_TEXT.format(text=output.text, frames=frames, known=known, healthy=healthy or "none")
+        return f"## {output.title} with a fault\n{textwrap.fill(text, LONGEST_LINE)}\n\n{self.output_table(output)}\n"
 
     def counts(self, rows, valid, misleading):
         """Yields the runs of each fault with the cells of its row: counts of frames and of runs, with their bounds."""

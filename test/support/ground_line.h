@@ -6,8 +6,9 @@
 namespace uav_landing {
 namespace test {
 
-/// Image of the ground line at y from x to x, drawn from near to far so that the left side is the brighter
-/// one when asked for. offset: of the camera to the right of the left one, m.
+/// Image of a line along x on the ground, from near to far. y, from, to: m.
+/// offset: of the camera to the right of the left one, m.
+/// brighter_left: whether its left side is the brighter one.
 inline LineSegment groundLine(const StereoRig& rig, const Pose& pose, double y, double from, double to,
                               double offset, bool brighter_left) {
   const auto pixel = [&](double x) -> Eigen::Vector2d {
