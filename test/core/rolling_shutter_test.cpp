@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/stamp_map.h"
 #include "support/rolling_camera.h"
 #include "uav_landing/pipeline.h"
 
@@ -119,6 +120,29 @@ TEST(RollingShutter, IsEstimatedWhereItIsAskedForAndNotGiven) {
           Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
       EXPECT_EQ(pipeline.process(0, image, image).approach.readout.known(), asked && !given);
     }
+  }
+}
+
+TEST(RollingShutter, StereoTellsHowFastThePlaneMovesByThePairsBefore) {
+  const StereoRig rig = test::makeRig(320, 240, 0.3);
+  const test::GroundRenderer ground(12);
+  for (const bool given : {true, false}) {
+    Parameters parameters;
+    if (given) parameters.rig.readout_time = kReadout;
+    parameters.rig.estimate_readout_time = !given;
+    Pipeline pipeline =
+        Pipeline::create(test::calibrationOf(rig), test::calibrationOf(rig, true), parameters).value();
+    Eigen::Vector3d rate, wanted;
+    for (int i = 0; i < 6; ++i) {
+      const double stamp = i * kPeriod;
+      const test::Pose now = test::movingPose(stamp);
+      rate = pipeline
+                 .process(stamp, test::rollingImage(ground, rig, stamp, kReadout),
+                          test::rollingImage(ground, rig, stamp, kReadout, true))
+                 .stereo.plane_rate;
+      wanted = planeRate(now.down() / now.height(), test::motionAt(stamp));
+    }
+    EXPECT_LT((rate - wanted).norm(), 0.2 * wanted.norm()) << rate.transpose() << " / " << wanted.transpose();
   }
 }
 

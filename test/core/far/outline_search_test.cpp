@@ -41,6 +41,15 @@ TEST(OutlineSearch, DoesNotEndAtAMarkAcross) {
   expectFound(picture, {{-1000, 0, 55}, 3 * kDegree, -3 * kDegree, 1 * kDegree}, 3);
 }
 
+TEST(OutlineSearch, DoesNotEndAtAWideMarkOnAWideRunway) {
+  // At 400 m the runway is 62 px wide. The mark covers two rows, four rows before the near end.
+  RunwayPicture picture;
+  picture.stripe = picture.bars = 0;
+  picture.across_from = 33;
+  picture.across_to = 50;
+  expectFound(picture, {{-400, 0, 40}, 3 * kDegree, -3 * kDegree, 0}, 3);
+}
+
 TEST(OutlineSearch, FindsNothingOnBareGround) {
   RunwayPicture picture;
   picture.surface = picture.paint = picture.ground;

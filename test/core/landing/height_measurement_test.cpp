@@ -330,6 +330,30 @@ TEST(HeightMeasurement, WithoutARegionWhoseMatchesAreWrongItIsAnother) {
   EXPECT_GT(std::abs(wrong.without[far].height - 10), 0.05);
 }
 
+TEST(HeightMeasurement, AVanishingPointThatIsNotFusedIsNotInTheHeightsWithoutARegionEither) {
+  StereoDepthResult stereo = stereoAt(0, 10);
+  stereo.points = test::matchesOn(usualRig(), stereo.plane.g);
+  const Eigen::Vector3d n = stereo.plane.normal();
+  ApproachAngleResult seen = test::angleAt(0);
+  // A hundredth of a degree off the ground ahead, and known as well as that.
+  seen.vanishing_direction =
+      ((Eigen::Vector3d::UnitZ() - n.z() * n).normalized() + 0.01 * test::kDegree * n).normalized();
+  seen.vanishing_covariance = std::pow(0.01 * test::kDegree, 2) * Eigen::Matrix3d::Identity();
+  const auto measure = [&](bool fuse, const ApproachAngleResult& approach) {
+    KalmanHeightParameters parameters;
+    parameters.fuse_vanishing_point = fuse;
+    return HeightMeasurement(usualRig(), parameters)
+        .propose(pairOf(stereo, approach), groundOf(stereo.plane), measuredHeight(10), priorAt(10));
+  };
+  const MeasuredHeight none = measure(false, test::angleAt(0)), ignored = measure(false, seen),
+                       fused = measure(true, seen);
+  for (int i = indexOf(FaultySource::kNear); i <= indexOf(FaultySource::kRight); ++i) {
+    EXPECT_EQ(ignored.without[i].height, none.without[i].height) << i;
+    EXPECT_EQ(ignored.without[i].variance, none.without[i].variance) << i;
+    EXPECT_LT(fused.without[i].variance, none.without[i].variance) << i;
+  }
+}
+
 TEST(HeightMeasurement, WhatAllPointsHaveInCommonIsInTheHeightsWithoutARegion) {
   Eigen::Matrix3d common = Eigen::Matrix3d::Zero();
   common(1, 1) = 1e-3 * 1e-3;

@@ -69,6 +69,17 @@ TEST(RunwayTrack, AnElementThatContradictsRaisesTheLevel) {
   EXPECT_LT(level, 10);
 }
 
+TEST(RunwayTrack, AnElementThatDiffersByLessThanItsErrorLeavesTheLevelAsItIs) {
+  RunwayTrack plain({}, chart()), uncertain({}, chart());
+  for (int i = 0; i < 30; ++i) {
+    ApproachAngleResult::Sight sight = sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3});
+    const double level = plain.follow(i == 0 ? 0 : 0.2, sight).protection_level;
+    sight.height_without[0] = sight.position.z() - 12;
+    sight.variance_without[0] = 10 * 10;
+    EXPECT_EQ(uncertain.follow(i == 0 ? 0 : 0.2, sight).protection_level, level) << i;
+  }
+}
+
 TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
   RunwayTrack track({}, chart());
   TrackedPosition found;
@@ -84,6 +95,25 @@ TEST(RunwayTrack, ASizeThatStereoContradictsTakesThePositionAway) {
   EXPECT_EQ(found.contradiction.reason, Reason::kInconsistent);
   EXPECT_NE(found.contradiction.detail.find("runway/width"), std::string::npos);
   EXPECT_FALSE(found.known());
+}
+
+TEST(RunwayTrack, OnlyASizeThatIsMeasuredWellBringsThePositionBack) {
+  RunwayTrack track({}, chart());
+  bool first = true;
+  const auto knownAfterTen = [&](double size, double stddev) {
+    TrackedPosition found;
+    for (int i = 0; i < 10; ++i) {
+      ApproachAngleResult::Sight sight = sightAt({-800, 0, 45}, {5, 1, 0.3});
+      sight.size_over_chart = size;
+      sight.size_over_chart_variance = stddev * stddev;
+      found = track.follow(first ? 0 : 0.2, sight);
+      first = false;
+    }
+    return found.known();
+  };
+  EXPECT_FALSE(knownAfterTen(0.9, 0.01));
+  EXPECT_FALSE(knownAfterTen(1, 0.2)) << "says nothing against a tenth less";
+  EXPECT_TRUE(knownAfterTen(1, 0.01));
 }
 
 TEST(RunwayTrack, CarriesOnByTheSpeedForSomeSeconds) {

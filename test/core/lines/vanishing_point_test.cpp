@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -429,6 +430,24 @@ TEST(VanishingConsensus, TriesAllPairsOfFewLinesAndDrawsAmongMany) {
   EXPECT_NE(drawn, more) << "an estimate";
   EXPECT_GT(drawn, 0.5 * more);
   EXPECT_LT(drawn, 2.5 * more) << "long lines are drawn more often, and meet along the runway";
+}
+
+TEST(VanishingConsensus, DrawsAmongManyLinesUntilItHasMetThoseThatAgree) {
+  ApproachAngleParameters parameters;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Scene scene(2 * kDegree, -7 * kDegree, 0, seed);
+    std::vector<LineSegment> all = scene.runway(0.01);
+    for (int i = 0; i < 100; ++i) all.push_back(scene.clutter());
+    std::rotate(all.begin(), all.begin() + 10 * seed, all.end());
+    const VanishingLines lines(all, makeK(), parameters, &scene.n);
+    const auto directionBy = [&](int iterations) {
+      parameters.ransac_iterations = iterations;
+      return findConsensus(lines)->direction.normalized();
+    };
+    // 110 lines have 5995 pairs.
+    EXPECT_LT(angleBetween(directionBy(5995), scene.direction), 0.2 * kDegree) << "of all pairs, " << seed;
+    EXPECT_LT(angleBetween(directionBy(5994), scene.direction), 0.2 * kDegree) << "of drawn pairs, " << seed;
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "motion/path/angle_by_foe.h"
 #include "support/counting_allocator.h"
 #include "support/ground_renderer.h"
 
@@ -171,6 +172,29 @@ TEST(FoeSlidingWindow, AllocatesNoImagePerVector) {
   const int few = images(10);
   EXPECT_GT(few, 0);
   EXPECT_LE(images(1000), few + 1);
+}
+
+TEST(AngleByFoe, IsAsUncertainAsTheFocusAndTheNormal) {
+  // No roll and no drift: the angle is that of the camera below the horizontal plus that of the focus below
+  // the optical axis, and their errors are independent.
+  const double below = 8 * kDegree, below_stddev = 0.2 * kDegree, down_stddev = 0.004;
+  const Eigen::Vector3d tip(0, -std::sin(below), std::cos(below));
+  const GroundNormal normal{{0, std::cos(below), std::sin(below)},
+                            below_stddev * below_stddev * tip * tip.transpose()};
+  MotionTracker::Result motion;
+  motion.step_estimate.emplace();
+  motion.step_estimate->motion.t = {0, 0.02, 0.3};
+  motion.step_estimate->covariance.setZero();
+  motion.step_estimate->covariance(4, 4) = down_stddev * down_stddev;
+  motion.step.angle = below + std::atan2(0.02, 0.3);
+  motion.step.angle_variance = 1e-9;  // of the motion, which is another estimate
+  const double focus_stddev = down_stddev * 0.3 / (0.02 * 0.02 + 0.3 * 0.3);
+  ApproachAngleParameters parameters;
+  parameters.angle_formula = AngleFormula::kEq1;
+  const StepFoe found =
+      findStepFoe(rig(), MotionTracker(test::makeModel(rig()), parameters), motion, normal, parameters);
+  EXPECT_NEAR(found.step.angle, motion.step.angle, 1e-9);
+  EXPECT_NEAR(std::sqrt(found.step.angle_variance), std::hypot(below_stddev, focus_stddev), 1e-6);
 }
 
 }  // namespace

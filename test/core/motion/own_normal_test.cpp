@@ -120,6 +120,26 @@ TEST(OwnNormal, ContradictsOneThatWasTrustedWrongly) {
   EXPECT_NEAR(axis.dot(found->own_normal), 0, 0.6 * kDegree);
 }
 
+TEST(OwnNormal, MovesWithAReadoutTimeThatIsEstimatedAsItSays) {
+  constexpr double kLater = 1e-3;  // s
+  const Step step = Step::make();
+  std::vector<TemporalMatch> matches = Matcher(step, 31).ground(100, 0), later;
+  for (TemporalMatch& match : matches) {
+    const double row = match.now.y() / test::motionRig().size.height - 0.5;
+    const double column = match.now.x() / test::motionRig().size.width - 0.5;
+    match.by_readout = {40 * row * column, 5 + 20 * row * row};  // px/s
+  }
+  later = matches;
+  for (TemporalMatch& match : later) match.then += kLater * match.by_readout;
+  const Expected<MotionEstimate> found = test::estimate(matches, step.n, kLoose),
+                                 moved = test::estimate(later, step.n, kLoose);
+  ASSERT_TRUE(found && moved);
+  const Eigen::Vector3d wanted = (moved->own_normal - found->own_normal) / kLater;
+  ASSERT_GT(wanted.norm(), 1e-3);
+  EXPECT_LT((found->readout.own_normal_by_time - wanted).norm(), 0.02 * wanted.norm())
+      << found->readout.own_normal_by_time.transpose() << " instead of " << wanted.transpose();
+}
+
 TEST(OwnNormal, IsUnknownWhereNothingMoves) {
   Step step = Step::make();
   step = Step(step.now, step.now);

@@ -149,6 +149,22 @@ TEST(RowShake, IsTheSameWhereMatchesClaimTooLittle) {
   EXPECT_TRUE(found);
 }
 
+// Matches that agree better than they claim are trusted more, so the shake is told nearly as well.
+TEST(RowShake, IsNearlyTheSameWhereMatchesClaimTooMuch) {
+  ShakeMemory memory, memory_of_timid;
+  for (int i = 0; i < 20; ++i) {
+    const ShakenStep step({0.05 * kDegree, 37, 0}, kPeriod * i, i);
+    ShakenStep timid = step;
+    for (TemporalMatch& match : timid.matches) match.covariance *= 9;
+    const Expected<MotionEstimate> usual = step.estimate(&memory),
+                                   of_timid = timid.estimate(&memory_of_timid);
+    ASSERT_TRUE(usual && of_timid) << i;
+    if (i < 3) continue;
+    EXPECT_LT((usual->motion.t - of_timid->motion.t).norm(), 0.03 * usual->motion.t.norm()) << i;
+    EXPECT_LT((usual->covariance - of_timid->covariance).norm(), 0.5 * usual->covariance.norm()) << i;
+  }
+}
+
 TEST(RowShake, IsForgottenWhenItEnds) {
   ShakeMemory memory;
   const auto isFound = [&](double amplitude, int first, int end) {

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "support/ground_line.h"
 
@@ -83,6 +86,31 @@ TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
                   {1, 1, 1}, rig.cx, 0);
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
+}
+
+TEST(GroundEdges, AShortPieceBelongsToTheLongEdgeInWhateverOrderTheyCome) {
+  const StereoRig rig = test::makeRig(640, 480, 1.0);
+  const Pose pose = banked();
+  const auto lineAt = [&](double y, double from, double to, double offset_stddev) {
+    LineSegment line = test::groundLine(rig, pose, y, from, to, 0, true);
+    line.offset_stddev = offset_stddev;
+    return line;
+  };
+  const auto edgesOf = [&](const std::vector<LineSegment>& lines) {
+    return groundEdges(rig, axesOf(pose), lines, std::vector<char>(lines.size(), 1), rig.cx, 0);
+  };
+  const double stddev = 8 * std::sqrt(edgesOf({lineAt(2, 30, 40, 2)}).front().variance);  // m
+  // A piece of the long edge that is off by 2 sigma, and one of another edge, 4 sigma from the long one.
+  const std::vector<LineSegment> lines{lineAt(2, 25, 90, 0.01), lineAt(2 + 2 * stddev, 30, 36, 2),
+                                       lineAt(2 + 4 * stddev, 30, 40, 2)};
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    const auto edges = edgesOf({lines[order[0]], lines[order[1]], lines[order[2]]});
+    ASSERT_EQ(edges.size(), 2u);
+    EXPECT_NEAR(8 * edges[0].lateral + 1.5, 2, 0.1 * stddev);
+    EXPECT_NEAR(8 * edges[1].lateral + 1.5, 2 + 4 * stddev, 0.1 * stddev);
+    EXPECT_EQ(edges[0].pieces.size(), 2u);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(GroundEdges, PiecesFarAsideMayBeFartherApart) {

@@ -117,6 +117,30 @@ TEST(RunwayHypothesis, EdgesThatAreNotSideBySideAreNone) {
   EXPECT_FALSE(scene.find());
 }
 
+TEST(RunwayHypothesis, ReachesAsFarAsBothEdgesAreSeen) {
+  Scene scene;
+  scene.add({0, 22}, {1200, 22}, Brighter::kLeft);
+  scene.add({150, -22}, {1500, -22}, Brighter::kRight);
+  const auto found = scene.find();
+  ASSERT_TRUE(found) << found.error().message();
+  EXPECT_NEAR(found->best.near * 30, 300 + 150, 1);
+  EXPECT_NEAR(found->best.far * 30, 300 + 1200, 5);
+}
+
+TEST(RunwayHypothesis, MarksThatLieCloseToAnEndBelongToIt) {
+  // An end is known to 3 % of its distance.
+  const auto belongs = [](double from, double to) {
+    Scene scene;
+    scene.addStrip({0, 0}, 45, 300);
+    scene.add({from, 0}, {to, 0}, Brighter::kLeft);
+    return scene.find()->best.members[2] != 0;
+  };
+  EXPECT_TRUE(belongs(-300 + 600 * 1.02, 700));
+  EXPECT_FALSE(belongs(-300 + 600 * 1.04, 700));
+  EXPECT_TRUE(belongs(-150, -300 + 300 * 0.98));
+  EXPECT_FALSE(belongs(-150, -300 + 300 * 0.96));
+}
+
 TEST(RunwayHypothesis, AStripThatIsHardlyLongerThanWideHasLessEvidence) {
   Scene runway, field;
   runway.addStrip({0, 0}, 45, 1500);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <opencv2/core.hpp>
+#include <vector>
 
 #include "support/ground_pair.h"
 
@@ -13,7 +15,8 @@ namespace {
 struct Blocks : test::GroundPair {
   BlockDisparities disparities{level()};
 
-  explicit Blocks(const test::Exposure& exposure) : GroundPair({640, 480}, 5, 4, -8, 3) {
+  explicit Blocks(const test::Exposure& exposure, double height = 4)
+      : GroundPair({640, 480}, 5, height, -8, 3) {
     render(exposure, exposure);
     disparities.choose(left, truth);
   }
@@ -29,6 +32,27 @@ TEST(BlockDisparities, AreThoseOfTheGroundWhateverTheWarp) {
     for (const BlockDisparity& found : blocks.disparities.disparities())
       lowest = std::max(lowest, static_cast<int>(found.sample.v));
     EXPECT_GT(lowest, 400);
+  }
+}
+
+TEST(BlockDisparities, LeaveOutWhatTheWarpPutsBesideTheRightImage) {
+  // Low ground leans so much that a block begins columns farther to the left in its last row.
+  Blocks blocks({1, 0, 1}, 0.6);
+  blocks.disparities.choose(blocks.left, blocks.off(-12));
+  const auto measure = [&](uchar beside) {
+    constexpr int kBeside = 40;
+    cv::Mat wide;
+    cv::copyMakeBorder(blocks.right, wide, 0, 0, kBeside, kBeside, cv::BORDER_CONSTANT, cv::Scalar(beside));
+    blocks.disparities.measure(wide.colRange(kBeside, kBeside + blocks.right.cols), blocks.truth,
+                               blocks.rows);
+    return blocks.disparities.disparities();
+  };
+  const std::vector<BlockDisparity> black = measure(0), white = measure(255);
+  ASSERT_GT(black.size(), 100u);
+  ASSERT_EQ(black.size(), white.size());
+  for (size_t i = 0; i < black.size(); ++i) {
+    EXPECT_EQ(black[i].sample.disparity, white[i].sample.disparity) << i;
+    EXPECT_EQ(black[i].alike, white[i].alike) << i;
   }
 }
 
