@@ -34,7 +34,7 @@ def is_claim(column):
     """Says whether the column tells how uncertain another one is."""
     return "_stddev" in column or column in (
         "height_protection_level_m", "height_alert_limit_m", "height_above_runway_protection_level_m",
-        "height_above_runway_limit_m")
+        "height_above_runway_limit_m", "y_protection_level_m")
 
 
 def unit_of(column):

@@ -83,6 +83,8 @@ LandingResult referTo(const Eigen::Vector3d& point, const LandingResult& camera,
   if (std::isfinite(camera.yaw_variance)) {
     body.x_variance += across.y() * across.y() * camera.yaw_variance;
     body.y_variance += across.x() * across.x() * camera.yaw_variance;
+    body.y_protection_level +=
+        normalQuantile(parameters.integrity_risk) * std::abs(across.x()) * std::sqrt(camera.yaw_variance);
   }
 
   const double angle = step.rotation.norm();

@@ -198,6 +198,7 @@ LandingEstimate toMessage(const LandingResult& result, const std_msgs::Header& h
   message.x_variance = result.x_variance;
   message.y = result.y;
   message.y_variance = result.y_variance;
+  message.y_protection_level = result.y_protection_level;
   message.height_above_runway = result.height_above_runway;
   message.height_above_runway_variance = result.height_above_runway_variance;
   message.height_above_runway_known = result.height_above_runway_known;
@@ -259,6 +260,7 @@ LandingResult toResult(const LandingEstimate& message) {
   result.x_variance = message.x_variance;
   result.y = message.y;
   result.y_variance = message.y_variance;
+  result.y_protection_level = message.y_protection_level;
   result.height_above_runway = message.height_above_runway;
   result.height_above_runway_variance = message.height_above_runway_variance;
   result.height_above_runway_known = message.height_above_runway_known;

@@ -114,6 +114,10 @@ RunwayPosition toMessage(const ApproachAngleResult::Runway& runway) {
   message.reason = runway.failure.message();
   message.y = runway.y;
   message.y_variance = runway.y_variance;
+  for (int i = 0; i < kCentreSources; ++i) {
+    message.y_without[i] = runway.y_without.without[i].value;
+    message.y_variance_without[i] = runway.y_without.without[i].variance;
+  }
   message.width = runway.width;
   message.width_variance = runway.width_variance;
   message.threshold_reason = runway.threshold_failure.message();
@@ -128,6 +132,8 @@ ApproachAngleResult::Runway toResult(const RunwayPosition& message) {
   runway.failure = parseFailure(message.reason);
   runway.y = message.y;
   runway.y_variance = message.y_variance;
+  for (int i = 0; i < kCentreSources; ++i)
+    runway.y_without.without[i] = {message.y_without[i], message.y_variance_without[i]};
   runway.width = message.width;
   runway.width_variance = message.width_variance;
   runway.threshold_failure = parseFailure(message.threshold_reason);

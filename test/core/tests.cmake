@@ -181,6 +181,8 @@ uav_landing_add_gtest(ground_direction_test test/core/runway/ground_direction_te
 uav_landing_add_gtest(ground_edges_test test/core/runway/ground_edges_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(position_filter_test test/core/runway/position_filter_test.cpp)
+uav_landing_add_gtest(position_separation_test test/core/runway/position_separation_test.cpp)
+uav_landing_add_gtest(centre_solutions_test test/core/runway/centre_solutions_test.cpp)
 uav_landing_add_gtest(runway_direction_test test/core/runway/runway_direction_test.cpp
   SOURCES test/support/ground_renderer.cpp)
 uav_landing_add_gtest(right_view_test test/core/runway/right_view_test.cpp

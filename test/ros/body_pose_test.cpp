@@ -200,11 +200,14 @@ TEST_F(ReferToTest, AnUncertainYawSwingsThePointAcross) {
   camera_.x_variance = 0.5;
   camera_.y = 3;
   camera_.y_variance = 0.25;
+  camera_.y_protection_level = 2;
   camera_.yaw_variance = 1e-4;
   const LandingResult body = refer({1, 0, -2});
   // By a radian it swings 1 m along the runway, which it is to the right, and 2 m across, which it is behind.
   EXPECT_NEAR(body.x_variance, 0.5 + 1e-4, 1e-12);
   EXPECT_NEAR(body.y_variance, 0.25 + 4e-4, 1e-12);
+  // With a risk of 1e-5 the yaw is within 4.417 sigma.
+  EXPECT_NEAR(body.y_protection_level, 2 + 4.417 * 0.02, 1e-4);
 }
 
 TEST_F(ReferToTest, AnUncertainRotationOfTheStepMakesTheVerticalSpeedUncertain) {

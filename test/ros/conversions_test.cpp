@@ -161,6 +161,7 @@ ApproachAngleResult distinctApproachAngle() {
        {&result.runway.x, &result.runway.x_variance, &result.runway.y, &result.runway.y_variance,
         &result.runway.width, &result.runway.width_variance, &result.runway.x_systematic_variance})
     *number = next();
+  for (CentreSolutions::Solution& solution : result.runway.y_without.without) solution = {next(), next()};
   return result;
 }
 
@@ -195,6 +196,7 @@ LandingResult distinctLanding() {
                          &result.x_variance,
                          &result.y,
                          &result.y_variance,
+                         &result.y_protection_level,
                          &result.height_above_runway,
                          &result.height_above_runway_variance,
                          &result.height_above_runway_protection_level,
@@ -326,8 +328,31 @@ TEST(Conversions, ApproachAngleComesBackBitForBit) {
   EXPECT_EQ(back.runway.x_systematic_variance, result.runway.x_systematic_variance);
   EXPECT_EQ(back.runway.y, result.runway.y);
   EXPECT_EQ(back.runway.y_variance, result.runway.y_variance);
+  for (int i = 0; i < kCentreSources; ++i) {
+    EXPECT_EQ(back.runway.y_without.without[i].value, result.runway.y_without.without[i].value);
+    EXPECT_EQ(back.runway.y_without.without[i].variance, result.runway.y_without.without[i].variance);
+  }
   EXPECT_EQ(back.runway.width, result.runway.width);
   EXPECT_EQ(back.runway.width_variance, result.runway.width_variance);
+}
+
+TEST(Conversions, TheSightOfTheRunwayComesBackBitForBit) {
+  const ApproachAngleResult result = distinctApproachAngle();
+  const ApproachAngleResult::Sight &sight = result.sight,
+                                   back = toResult(toMessage(result, header(), 1)).sight;
+  EXPECT_EQ(back.failure.message(), sight.failure.message());
+  EXPECT_EQ(back.position, sight.position);
+  EXPECT_EQ(back.covariance, sight.covariance);
+  EXPECT_EQ(back.yaw, sight.yaw);
+  EXPECT_EQ(back.yaw_variance, sight.yaw_variance);
+  EXPECT_EQ(back.width, sight.width);
+  EXPECT_EQ(back.width_variance, sight.width_variance);
+  EXPECT_EQ(back.length, sight.length);
+  EXPECT_EQ(back.length_variance, sight.length_variance);
+  EXPECT_EQ(back.height_without, sight.height_without);
+  EXPECT_EQ(back.variance_without, sight.variance_without);
+  EXPECT_EQ(back.size_over_chart, sight.size_over_chart);
+  EXPECT_EQ(back.size_over_chart_variance, sight.size_over_chart_variance);
 }
 
 TEST(Conversions, LandingEstimateComesBackBitForBit) {
@@ -355,6 +380,7 @@ TEST(Conversions, LandingEstimateComesBackBitForBit) {
   EXPECT_TRUE(message.y_known);
   EXPECT_EQ(message.x, result.x);
   EXPECT_EQ(message.y_variance, result.y_variance);
+  EXPECT_EQ(message.y_protection_level, result.y_protection_level);
   EXPECT_EQ(message.height_above_runway, result.height_above_runway);
   EXPECT_EQ(message.height_above_runway_variance, result.height_above_runway_variance);
   EXPECT_FALSE(toMessage(LandingResult(), header(), "base_link", 0, 0).x_known);
@@ -504,6 +530,8 @@ TEST(Conversions, EachFieldOfApproachAngleHasItsOwnNumber) {
   EXPECT_FIELD(message.runway, result.runway, x_systematic_variance);
   EXPECT_FIELD(message.runway, result.runway, y);
   EXPECT_FIELD(message.runway, result.runway, y_variance);
+  EXPECT_EQ(message.runway.y_without[2], result.runway.y_without[CentreSource::kStripe].value);
+  EXPECT_EQ(message.runway.y_variance_without[2], result.runway.y_without[CentreSource::kStripe].variance);
   EXPECT_FIELD(message.runway, result.runway, width);
   EXPECT_FIELD(message.runway, result.runway, width_variance);
   EXPECT_EQ(message.sight.reason, "no_runway: no outline");
@@ -561,6 +589,7 @@ TEST(Conversions, EachFieldOfALandingEstimateHasItsOwnNumber) {
   EXPECT_FIELD(message, result, x_variance);
   EXPECT_FIELD(message, result, y);
   EXPECT_FIELD(message, result, y_variance);
+  EXPECT_FIELD(message, result, y_protection_level);
   EXPECT_FIELD(message, result, height_above_runway);
   EXPECT_FIELD(message, result, height_above_runway_variance);
   EXPECT_FIELD(message, result, height_above_runway_protection_level);

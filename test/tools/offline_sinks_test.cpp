@@ -82,6 +82,7 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   landing.runway_width = 45;
   landing.width_height = 12.25;
   landing.width_height_variance = 0.16;
+  landing.y_protection_level = 2.125;
   landing.height_above_runway = 13.5;
   landing.height_above_runway_variance = 0.36;
   landing.height_above_runway_known = true;
@@ -119,6 +120,7 @@ TEST(EstimateCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                               {"x_stddev_m", 2},
                                               {"y_m", 1.5},
                                               {"y_stddev_m", 0.5},
+                                              {"y_protection_level_m", 2.125},
                                               {"foe_u_px", 310},
                                               {"foe_v_px", 250},
                                               {"compute_ms", 7},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -111,6 +112,25 @@ struct StereoDepthResult {
   bool left_repeated = false, right_repeated = false;
 };
 
+/// Sources of the runway's centre line. One of them at a time may be wrong without anything showing it.
+/// - kLeftEdge, kRightEdge: the long outermost edges.
+/// - kStripe: the line along the middle.
+/// - kMarks: all other paint, such as the bars of the threshold.
+/// - kDirection: the vanishing point.
+/// - kWholeRunway: the assumption that the outermost edges are not those of half a runway.
+enum class CentreSource { kLeftEdge, kRightEdge, kStripe, kMarks, kDirection, kWholeRunway };
+constexpr int kCentreSources = 6;
+
+/// A position across the runway without each source of it. Unknown where nothing else tells the position.
+struct CentreSolutions {
+  struct Solution {
+    double value = kUnknown, variance = kUnknown;
+  };
+  std::array<Solution, kCentreSources> without;
+  Solution& operator[](CentreSource source) { return without[static_cast<int>(source)]; }
+  const Solution& operator[](CentreSource source) const { return without[static_cast<int>(source)]; }
+};
+
 /// Result of the monocular branch (paper 2) for one pair. Mirrors ApproachAngle.msg.
 struct ApproachAngleResult {
   struct Line {
@@ -152,6 +172,7 @@ struct ApproachAngleResult {
     Failure threshold_failure;                           ///< set when the threshold is not seen
     double x = kUnknown, x_variance = kUnknown;  ///< camera past the threshold, over h; negative before it
     double x_systematic_variance = 0;            ///< part of x_variance that is the same error in every frame
+    CentreSolutions y_without;                   ///< y without each source of it, over h
   };
   /// Position over the runway by the runway's outline in the image and its size in charts (sighting.h).
   struct Sight {
@@ -229,6 +250,7 @@ struct LandingResult {
   double other_runway_probability = 1;  ///< probability that the direction seen is not the runway's, 0 to 1
   double x = kUnknown, x_variance = kUnknown;  ///< past the threshold, m; unknown until that is seen
   double y = kUnknown, y_variance = kUnknown;  ///< left of the centre line, m; unknown until that is seen
+  double y_protection_level = kUnknown;        ///< m; unknown while nothing checks the edges
   /// Height of the point above the plane of the runway's surface, m, m^2. Unknown until the runway is found.
   double height_above_runway = kUnknown, height_above_runway_variance = kUnknown;
   bool height_above_runway_known = false;                  ///< its protection level is within its limit
@@ -243,7 +265,7 @@ struct LandingResult {
     height_above_runway_known = false;
   }
   void forgetPosition() {
-    x = x_variance = y = y_variance = kUnknown;
+    x = x_variance = y = y_variance = y_protection_level = kUnknown;
     forgetHeightAboveRunway();
   }
   double runway_width = kUnknown, runway_width_variance = kUnknown;  ///< of this pair, m

@@ -128,6 +128,8 @@ void keepRunway(ApproachAngleResult::Runway& runway) {
     runway.y = runway.y_variance = kUnknown;
     refuse("y", runway.failure);
   }
+  for (CentreSolutions::Solution& solution : runway.y_without.without)
+    if (!isLength(solution.value, solution.variance)) solution = {};
   if (!isLength(runway.width, runway.width_variance) || runway.width <= 0)
     runway.width = runway.width_variance = kUnknown;
   const bool is_part = runway.x_systematic_variance >= 0 && runway.x_systematic_variance <= runway.x_variance;

@@ -48,6 +48,7 @@ struct Parts {
         recovery(parameters),
         below(rig, parameters.gate),
         doubt(parameters),
+        position(parameters),
         runway(parameters, runway) {}
 };
 

@@ -65,6 +65,7 @@ LandingEstimate truthMessage(const Truth& truth, const sensor_msgs::CameraInfo& 
   message.x_variance = varianceOf(truth.x);
   message.y = truth.y;
   message.y_variance = varianceOf(truth.y);
+  message.y_protection_level = kUnknown;
   message.height_above_runway_protection_level = message.height_above_runway_limit = kUnknown;
   message.runway_width = message.runway_width_variance = kUnknown;
   message.width_height = message.width_height_variance = kUnknown;

@@ -20,7 +20,7 @@ const char* const kHeader =
     "height_above_runway_m,height_above_runway_stddev_m,speed_m_s,speed_stddev_m_s,yaw_stddev_deg,yaw_known,"
     "yaw_reason,other_runway_probability,estimated_readout_time_s,estimated_readout_time_stddev_s,"
     "height_above_runway_known,height_above_runway_protection_level_m,height_above_runway_limit_m,"
-    "height_origin,runway_reason";
+    "height_origin,runway_reason,y_protection_level_m";
 
 }  // namespace
 
@@ -59,6 +59,7 @@ void EstimateCsv::take(const ProcessedPair& pair) {
   row.flag(landing.height_above_runway_known);
   row.number(landing.height_above_runway_protection_level).number(landing.height_above_runway_limit);
   row.text(toString(landing.height_origin)).text(toString(landing.runway_failure.reason));
+  row.number(landing.y_protection_level);
   file_ << '\n';
 }
 

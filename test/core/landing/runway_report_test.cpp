@@ -66,6 +66,20 @@ TEST(RunwayReport, NothingJumpsWhereStereoTakesOver) {
   EXPECT_LT(before, 30.35) << "stereo counts more and more";
 }
 
+TEST(RunwayReport, TheLevelOfTheEdgesCoversTheMeanWithTheOutline) {
+  LandingResult landing;
+  landing.y = 1;
+  landing.y_variance = 0.25;
+  landing.y_protection_level = 2.5;
+  handOver(outlineAt(-1000, 60, 1), {}, landing);
+  EXPECT_DOUBLE_EQ(landing.y, 1.2) << "the outline says 2 m with 1 sigma of 1 m";
+  EXPECT_DOUBLE_EQ(landing.y_protection_level, 2.7);
+  LandingResult alone;
+  handOver(outlineAt(-1000, 60, 1), {}, alone);
+  EXPECT_EQ(alone.y, 2);
+  EXPECT_TRUE(std::isnan(alone.y_protection_level));
+}
+
 TEST(RunwayReport, SaysWhereOutlineAndStereoContradictEachOther) {
   LandingResult landing = stereoAt(30);
   const TrackedPosition outline = outlineAt(-100, 36, 0.4);  // the ground slopes by 1 m at most there

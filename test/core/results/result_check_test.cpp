@@ -325,6 +325,20 @@ ApproachAngleResult::Runway checkedRunway(const std::function<void(ApproachAngle
   return checked(result).runway;
 }
 
+TEST(ResultCheck, OneOfItsSolutionsMayBeNoneWithoutHarmToTheOthers) {
+  using Runway = ApproachAngleResult::Runway;
+  for (const CentreSolutions::Solution bad : {CentreSolutions::Solution{2, -1}, {1e9, 1}, {kUnknown, 1}}) {
+    const Runway runway = checkedRunway([&](Runway& r) {
+      r.y_without.without.fill({2.5, 0.04});
+      r.y_without[CentreSource::kMarks] = bad;
+    });
+    EXPECT_TRUE(std::isnan(runway.y_without[CentreSource::kMarks].value));
+    EXPECT_TRUE(std::isnan(runway.y_without[CentreSource::kMarks].variance));
+    EXPECT_EQ(runway.y_without[CentreSource::kDirection].value, 2.5);
+    EXPECT_FALSE(runway.failure);
+  }
+}
+
 TEST(ResultCheck, ARunwayLosesWhatIsNoLengthAndKeepsTheRest) {
   using Runway = ApproachAngleResult::Runway;
   const Runway kept = checkedRunway([](Runway&) {});

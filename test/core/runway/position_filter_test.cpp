@@ -13,7 +13,7 @@ constexpr double kPeriod = 0.1;
 
 /// A level camera that flies 2 m forward and 0.1 m to the left in every step, over a runway 30 m wide.
 struct Flight {
-  PositionFilter filter;
+  PositionFilter filter{KalmanHeightParameters()};
   int frame = 0;
   double x = -100, y = 3;
   double x_error = 0, x_systematic = 0;  // of x as seen, and what is claimed of it, m
@@ -34,6 +34,7 @@ struct Flight {
       approach.runway.y = (y + error) / kHeight;
       approach.runway.width = 30 / kHeight;
       approach.runway.y_variance = approach.runway.width_variance = std::pow(0.1 / kHeight, 2);
+      approach.runway.y_without.without.fill({y / kHeight, std::pow(0.1 / kHeight, 2)});
     }
     if (x_seen) {
       approach.runway.threshold_failure = {};
@@ -43,6 +44,7 @@ struct Flight {
     }
     LandingResult result;
     result.stamp = kPeriod * frame++;
+    result.height_protection_level = 0.2;
     filter.process(approach, Eigen::Vector3d::UnitY(), approach.step, kHeight, 1e-4, result);
     return result;
   }
@@ -84,7 +86,7 @@ TEST(PositionFilter, FollowsTheMotionWithGrowingVarianceWhileNothingIsSeen) {
 }
 
 TEST(PositionFilter, AStepOverTwoPairsOfWhichTheFirstWasGuessedCountsOnce) {
-  PositionFilter filter;
+  PositionFilter filter{KalmanHeightParameters()};
   LandingResult result;
   const auto process = [&](double stamp, double duration, bool seen) {
     ApproachAngleResult approach;
@@ -141,7 +143,7 @@ TEST(PositionFilter, OneSightWithoutTheSystematicErrorTellsItForThoseAfter) {
 
 /// Flies straight on at 20 m/s; for half a second nothing is seen, and after that the motion alone.
 struct Blind {
-  PositionFilter filter;
+  PositionFilter filter{KalmanHeightParameters()};
   LandingResult result;
   double stamp = 0;
 
@@ -216,6 +218,27 @@ TEST(PositionFilter, AWidthIsAsUncertainAsItIsSeenAndAsTheHeightMakesIt) {
   // 0.1 m as it is seen, and 30 m by a height that is known to a thousandth.
   EXPECT_NEAR(result.runway_width_variance, std::pow(0.1, 2) + std::pow(0.03, 2), 1e-9);
   EXPECT_NEAR(result.y_variance, std::pow(0.1, 2) + std::pow(3.1e-3, 2), 1e-9);
+}
+
+TEST(PositionFilter, ItsProtectionLevelCoversWhatTheSourcesContradict) {
+  Flight agreed, off;
+  LandingResult level, wrong;
+  for (int i = 0; i < 5; ++i) {
+    level = agreed.next(false, true);
+    wrong = off.next(false, true, 0.3);  // each source is 0.3 m from all together
+  }
+  EXPECT_GT(level.y_protection_level, 4 * std::sqrt(level.y_variance));
+  EXPECT_LT(level.y_protection_level, 5 * std::sqrt(level.y_variance));
+  EXPECT_GT(wrong.y_protection_level, 0.3);
+  const double seen = level.y_protection_level;
+  for (int i = 0; i < 5; ++i) level = agreed.next(false, false);
+  EXPECT_GT(level.y_protection_level, seen) << "by the motion alone";
+}
+
+TEST(PositionFilter, NoProtectionLevelBeforeTheRunwayIsSeen) {
+  Flight flight;
+  EXPECT_TRUE(std::isnan(flight.next(false, false).y_protection_level));
+  EXPECT_FALSE(std::isnan(flight.next(false, true).y_protection_level));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace uav_landing {
 namespace {
@@ -384,6 +385,25 @@ TEST(RunwayEdges, AnUncertainRollMakesWideEdgesUncertain) {
   EXPECT_GE(std::sqrt(unsure->variance), 0.01);
   EXPECT_LE(std::sqrt(unsure->variance), 0.01 * (1 + 1.15 * 1.15) + 0.002);
   EXPECT_LT(std::sqrt(sure->variance), 0.005);
+}
+
+/// Whether the edges are known not to be those of half a runway, or of something else.
+bool isWhole(const std::vector<GroundEdge>& edges, double known_width) {
+  const auto found = findRunwayEdges(level(1e-4), edges, known_width, std::nullopt);
+  if (!found) throw std::runtime_error(found.error().message());
+  return std::isfinite(found->centre_without[CentreSource::kWholeRunway].value);
+}
+
+TEST(RunwayEdges, APairOfTheChartsWidthIsDoubtedWhileOtherEdgesAreAsSymmetric) {
+  std::vector<GroundEdge> edges{edge(1.5, false), edge(-0.5, true)};
+  EXPECT_TRUE(isWhole(edges, 2.0));
+  // A strip beside it, of another width.
+  edges.push_back(edge(3.2, false));
+  edges.push_back(edge(-1.6, true));
+  EXPECT_FALSE(isWhole(edges, 2.0));
+  // A stripe in the middle of the pair tells which one is the runway.
+  addStripe(edges, 0.5, 0.04);
+  EXPECT_TRUE(isWhole(edges, 2.0));
 }
 
 }  // namespace

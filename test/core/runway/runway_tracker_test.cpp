@@ -101,6 +101,9 @@ TEST(RunwayTracker, TellsThePositionAfterThreePairsThatAgree) {
     EXPECT_LT(std::abs(error), 3 * std::sqrt(runway.y_variance) * pose.height());
     EXPECT_NEAR(runway.width * pose.height(), 2 * 1.1 + 0.12, 0.05);
     EXPECT_TRUE(runway.threshold_failure) << "there is none";
+    const auto& [without, variance] = runway.y_without[CentreSource::kDirection];
+    EXPECT_LT(std::abs(without - runway.y), 3 * std::sqrt(variance)) << "two lines show their direction";
+    EXPECT_TRUE(std::isnan(runway.y_without[CentreSource::kLeftEdge].value)) << "and nothing checks them";
   }
 }
 

@@ -67,6 +67,8 @@ void handOver(const TrackedPosition& outline, const ApproachAngleResult::Sight& 
                              std::max(kLeastY, kLargestY * distance), result);
   result.x = x.value;
   result.x_variance = x.variance;
+  // The bound of the edges' y holds for what the outline makes of it, too, if it grows by the difference.
+  result.y_protection_level += std::abs(y.value - result.y);
   result.y = y.value;
   result.y_variance = y.variance;
   if (!outline.measured || std::isfinite(result.yaw) || !std::isfinite(sight.yaw)) return;

@@ -11,7 +11,8 @@ HeightOrigin originOf(const MeasuredHeight& measured, const LandingResult& resul
 /// Reports position and direction from the runway's outline until edges and threshold give them. Alone, a
 /// position from the outline is reported only if it is certain enough. When both are known and agree, the
 /// result is their weighted mean. So nothing jumps when one takes over from the other. When they contradict
-/// each other, the outline is not used, and runway_failure says why. sight: of this pair.
+/// each other, the outline is not used, and runway_failure says why. The outline alone gives no protection
+/// level of y. sight: of this pair.
 void handOver(const TrackedPosition& outline, const ApproachAngleResult::Sight& sight, LandingResult& result);
 
 /// Reports the height above the runway with its protection level, limit and origin. It comes from stereo (see

@@ -5,16 +5,12 @@
 #include <cmath>
 
 #include "estimation/aircraft.h"
-#include "estimation/limits.h"
 #include "geometry/rotation.h"
 #include "height/attitude_filter.h"
 
 namespace uav_landing {
 namespace {
 
-constexpr Sigmas kGate(5);
-constexpr double kRestart = 1.0;      // s of rejected measurements after which they are accepted
-constexpr double kCommon = 0.5;       // share of a measurement's variance that the next ones have in common
 constexpr double kAlongError = 0.01;  // share of the distance flown, 1 sigma
 // Share of the distance flown, 1 sigma: error of the runway's direction, rad.
 constexpr double kAcrossError = 0.005;
@@ -24,46 +20,7 @@ constexpr double kWorthlessY = 0.1;  // 1 sigma as a share of the runway's width
 
 }  // namespace
 
-void PositionFilter::Axis::predict(double movement, double stddev) {
-  if (!known_) return;
-  state_(0) += movement;
-  const double by_offset = std::pow(covariance_(0, 1), 2) / covariance_(1, 1);
-  const double own = std::max(covariance_(0, 0) - by_offset, 0.0);
-  covariance_(0, 0) = by_offset + std::pow(std::sqrt(own) + stddev, 2);
-}
-
-void PositionFilter::Axis::update(double value, double variance, double systematic, double seconds) {
-  const Eigen::RowVector2d h(1, std::sqrt(systematic));
-  const double innovation = value - h * state_, random = variance - systematic;
-  const double predicted = h * covariance_ * h.transpose();
-  if (known_ && !kGate.admits(innovation, predicted + common_ + random)) {
-    rejected_ += seconds;
-    if (rejected_ < kRestart) return;
-    known_ = false;
-  }
-  rejected_ = 0;
-  common_ = kCommon * random;
-  const double own = random - common_;
-  if (!known_) {
-    known_ = true;
-    state_ << value, 0;
-    covariance_ << own + systematic, -h(1), -h(1), 1;
-    return;
-  }
-  const Eigen::Vector2d gain = covariance_ * h.transpose() / (predicted + own);
-  state_ += gain * innovation;
-  covariance_ -= gain * (predicted + own) * gain.transpose();
-}
-
-void PositionFilter::Axis::forgetAbove(double stddev) {
-  if (variance() > stddev * stddev) *this = Axis();
-}
-
-void PositionFilter::Axis::report(double& value, double& reported) const {
-  if (!known_) return;
-  value = state_(0);
-  reported = variance();
-}
+PositionFilter::PositionFilter(const KalmanHeightParameters& parameters) : separation_(parameters) {}
 
 void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::Vector3d& normal,
                              const ApproachAngleResult::Motion& turn, double height, double height_variance,
@@ -82,14 +39,22 @@ void PositionFilter::process(const ApproachAngleResult& approach, const Eigen::V
       result.runway_width_variance = metric(seen.width, seen.width_variance);
     }
     y_.update(seen.y * height, metric(seen.y, seen.y_variance), 0, seconds);
+    separation_.update(seen.y_without, {height, height_variance, result.height_protection_level}, seconds);
     if (!seen.threshold_failure && seen.x_variance > 0)
       x_.update(seen.x * height, metric(seen.x, seen.x_variance),
                 seen.x_systematic_variance * height * height, seconds);
   }
   x_.forgetAbove(kWorthlessX * width_);
   y_.forgetAbove(kWorthlessY * width_);
-  x_.report(result.x, result.x_variance);
-  y_.report(result.y, result.y_variance);
+  separation_.forgetAbove(kWorthlessY * width_);
+  if (x_.known()) {
+    result.x = x_.value();
+    result.x_variance = x_.variance();
+  }
+  if (!y_.known()) return;
+  result.y = y_.value();
+  result.y_variance = y_.variance();
+  result.y_protection_level = separation_.protectionLevel(result.y, result.y_variance);
 }
 
 void PositionFilter::followDirection(const Eigen::Vector3d& seen, const ApproachAngleResult::Motion& turn,
@@ -115,14 +80,19 @@ void PositionFilter::move(const ApproachAngleResult& approach, const Eigen::Vect
     const Eigen::Vector3d t = share * height * step.translation_over_height;
     const Eigen::Vector2d movement(forward.dot(t), forward.cross(normal).dot(t));
     x_.predict(movement.x(), kAlongError * t.norm() + unseen_turn_ * std::abs(movement.y()));
-    y_.predict(movement.y(), kAcrossError * t.norm() + unseen_turn_ * std::abs(movement.x()));
+    moveAcross(movement.y(), kAcrossError * t.norm() + unseen_turn_ * std::abs(movement.x()));
     if (step.duration > 0) velocity_ = movement / (share * step.duration);
     return;
   }
   const Eigen::Vector2d movement = velocity_.value_or(Eigen::Vector2d::Zero()) * seconds;
   const double unseen = kBlindError * movement.norm();
   x_.predict(movement.x(), unseen);
-  y_.predict(movement.y(), unseen);
+  moveAcross(movement.y(), unseen);
+}
+
+void PositionFilter::moveAcross(double movement, double stddev) {
+  y_.predict(movement, stddev);
+  separation_.predict(movement, stddev);
 }
 
 }  // namespace uav_landing

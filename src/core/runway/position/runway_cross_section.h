@@ -2,7 +2,11 @@
 
 #include <Eigen/Core>
 
+#include "uav_landing/results/stage_results.h"
+
 namespace uav_landing {
+
+constexpr double kStripeShare = 0.1;  // of the runway's width; the line along the middle is narrower
 
 /// Position of the runway across the landing direction. Units are multiples of the left camera's height; left
 /// of the camera is positive.
@@ -16,6 +20,7 @@ struct RunwayCrossSection {
   /// left.
   Eigen::Matrix2d by_normal = Eigen::Matrix2d::Zero();
   Eigen::RowVector2d width_by_normal = Eigen::RowVector2d::Zero();
+  CentreSolutions centre_without = {};  ///< the centre without each of its sources
 };
 
 }  // namespace uav_landing

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runway/direction/ground_edges.h"
+#include "runway/position/pair_evidence.h"
 #include "runway/position/runway_cross_section.h"
 #include "uav_landing/base/failure.h"
 
@@ -13,12 +14,6 @@ namespace uav_landing {
 /// Expected place of the centre line, and its largest distance from there, in multiples of the height.
 struct ExpectedCentre {
   double centre = 0, tolerance = 0;
-};
-
-/// The view beside the runway. With it, a missing edge is evidence, too.
-struct Outlook {
-  const StereoRig& rig;
-  const std::vector<GroundEdge>& edges;  ///< edges seen by at least one view
 };
 
 /// Knowledge about the runway's width, in multiples of the height.

@@ -200,6 +200,8 @@ void RunwayTracker::findCentre(double seconds, const GroundAxes& axes, const Run
   }
   result.y = -seen->centre;
   result.y_variance = seen->variance;
+  result.y_without = seen->centre_without;
+  for (CentreSolutions::Solution& solution : result.y_without.without) solution.value *= -1;
   followWidth(*seen, result);
 }
 
