@@ -116,6 +116,20 @@ TEST(ApproachSimulator, MotionBlurIsTheAverageOverTheExposureAroundTheStamp) {
   EXPECT_GT(cv::norm(smeared, sharp.frame(60).left, cv::NORM_INF), 5);
 }
 
+TEST(ApproachSimulator, ADriftingClockExposesItsCameraLaterThanTheStamp) {
+  SimulatorParameters p = smallApproach();
+  p.path.rate = 20;
+  const ApproachSimulator alike = ApproachSimulator::create(p).value();
+  p.right_camera.clock_drift = 0.1;
+  p.right_camera.clock_drift_start = 0.5;
+  const ApproachSimulator drifting = ApproachSimulator::create(p).value();
+  // A second after the start it has drifted for half of that time: one frame.
+  EXPECT_TRUE(same(drifting.light(20).left, alike.light(20).left));
+  EXPECT_TRUE(same(drifting.light(20).right, alike.light(21).right));
+  EXPECT_TRUE(same(drifting.light(10).right, alike.light(10).right));
+  EXPECT_EQ(drifting.frame(20).truth.height, alike.frame(20).truth.height) << "of the stamp";
+}
+
 TEST(ApproachSimulator, PathIntoTheGroundIsRefusedWithTheTimeOfTheTouch) {
   SimulatorParameters p = smallApproach();
   p.path.start_height = 1;

@@ -157,6 +157,26 @@ TEST_F(FaultsTest, VibrationBeginsInFlightAndRowsAreThereAllTheTime) {
   EXPECT_TRUE(fault("readout_untold").wholeRun());
 }
 
+TEST(ThresholdFlights, PassTheThresholdInTheLaterHalf) {
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    const SimulatorParameters p = drawThresholdFlight(seed, 110, Parameters());
+    const double way = p.path.speed * std::cos(p.path.glide_angle_deg * M_PI / 180) * p.path.duration;
+    EXPECT_LE(p.path.start_x + 0.5 * way, 1e-9) << seed;
+    EXPECT_GE(p.path.start_x + 0.8 * way, -1e-9) << seed;
+    EXPECT_EQ(p.image.width, 640);
+  }
+  EXPECT_NE(drawThresholdFlight(1, 110, Parameters()).path.start_x,
+            drawThresholdFlight(2, 110, Parameters()).path.start_x);
+}
+
+TEST_F(FaultsTest, TheClocksOfTheCamerasDriftApartFromTheOnsetOn) {
+  SimulatorParameters changed;
+  fault("clock_drift").disturb(changed, 1.5);
+  EXPECT_EQ(changed.right_camera.clock_drift, 0.005);
+  EXPECT_EQ(changed.right_camera.clock_drift_start, 1.5);
+  EXPECT_EQ(changed.left_camera.clock_drift, 0);
+}
+
 TEST_F(FaultsTest, ReadoutTimeIsToldShorterThanItIsByAThird) {
   SimulatorParameters scene;
   Parameters parameters;

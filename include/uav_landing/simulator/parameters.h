@@ -57,6 +57,7 @@ struct SimulatedCameraParameters {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0, k4 = 0;
   double gain = 1.0;
   double offset = 0.0;
+  double clock_drift = 0, clock_drift_start = 0;
 
   template <class Visitor>
   void visit(Visitor&& v) {
@@ -74,6 +75,10 @@ struct SimulatedCameraParameters {
     v.number("k4", k4, -2.0, 2.0, "", "radial distortion of the lens equidistant");
     v.number("gain", gain, 0.1, 10.0, "", "grey level = gain x scene + offset");
     v.number("offset", offset, -200.0, 200.0, "grey levels", "see gain");
+    v.number("clock_drift", clock_drift, -0.1, 0.1, "s/s",
+             "by which its exposures get later than their stamps; 0: the clocks of both cameras go alike");
+    v.number("clock_drift_start", clock_drift_start, 0.0, 3600.0, "s",
+             "since the start of the sequence, until which they go alike");
   }
 };
 

@@ -80,6 +80,14 @@ SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& para
   return p;
 }
 
+SimulatorParameters drawThresholdFlight(uint64_t seed, int frames, const Parameters& parameters) {
+  cv::RNG random(seed * 0x9E3779B97F4A7C15ULL + 2);
+  SimulatorParameters p = drawSnippet(seed * 1000003, random.uniform(4.0, 8.0), frames, parameters);
+  const double way = p.path.speed * std::cos(p.path.glide_angle_deg * M_PI / 180) * p.path.duration;
+  p.path.start_x = -way * random.uniform(0.5, 0.8);
+  return p;
+}
+
 std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn) {
   const Expected<ApproachSimulator> simulator = ApproachSimulator::create(drawn);
   if (!simulator) return nullptr;

@@ -44,6 +44,9 @@ struct SimulatedFlight {
 /// m. Over scenery the flight is higher, so that more of it is in view. scenery: around the runway, or null.
 SimulatorParameters drawFlight(uint64_t seed, int frames, const Parameters& parameters,
                                const SceneryKind* scenery = nullptr);
+/// Draws a flight in images of 640 x 480 that crosses the threshold in its later half. There x and the height
+/// above the runway are known, which need to see the threshold well.
+SimulatorParameters drawThresholdFlight(uint64_t seed, int frames, const Parameters& parameters);
 /// Null when the scene is in the aircraft's way.
 std::unique_ptr<SimulatedFlight> simulateFlight(const SimulatorParameters& drawn);
 /// The flight of a dataset folder. Throws std::runtime_error with what cannot be read.

@@ -21,6 +21,7 @@ using namespace uav_landing;
 
 struct Options {
   std::string config, csv, dataset, scenery, trace;
+  bool threshold = false;
   std::vector<std::string> faults;
   uint64_t first = 1;
   int count = 10, frames = 70, pairs = 0;
@@ -37,8 +38,9 @@ constexpr const char* kTraceHeader =
     "source,seed,faults,time_s,faulted,true_height_m,height_m,valid,protection_level_m,protection_source,"
     "alert_limit_m,raw_height_m,status,reason,failed_tests,true_angle_deg,angle_deg,angle_stddev_deg,angle_"
     "valid,true_speed_m_s,speed_m_s,speed_stddev_m_s,true_yaw_deg,yaw_deg,yaw_stddev_deg,yaw_reason,"
-    "other_runway_probability,true_x_m,x_m,x_stddev_m,true_y_m,y_m,y_stddev_m,true_height_above_runway_m,"
-    "height_above_runway_m,height_above_runway_protection_level_m,height_above_runway_known";
+    "other_runway_probability,true_x_m,x_m,x_stddev_m,true_y_m,y_m,y_stddev_m,y_protection_level_m,"
+    "true_height_above_runway_m,height_above_runway_m,height_above_runway_protection_level_m,height_above_"
+    "runway_known";
 
 std::string withoutCommas(std::string text) {
   std::replace(text.begin(), text.end(), ',', ';');
@@ -111,8 +113,15 @@ class Campaign {
   }
 
   SimulatorParameters draw(uint64_t seed) const {
+    if (options_.threshold) return drawThresholdFlight(seed, options_.frames, parameters_);
     if (options_.scenery.empty()) return drawFlight(seed, options_.frames, parameters_);
     return drawFlight(seed, options_.frames, parameters_, &sceneryKinds().at(options_.scenery));
+  }
+
+  /// Name of the simulated flights.
+  std::string source() const {
+    if (options_.threshold) return "threshold";
+    return options_.scenery.empty() ? "simulator" : options_.scenery;
   }
 
   void flySimulated(uint64_t seed) {
@@ -127,8 +136,7 @@ class Campaign {
       const std::string name = changeScene(faults, seed, changed);
       if (!name.empty() && others.count(name) == 0) others[name] = simulateFlight(changed);
       const SimulatedFlight* flight = name.empty() ? plain.get() : others[name].get();
-      if (flight != nullptr)
-        flyOne(flight->flight, options_.scenery.empty() ? "simulator" : options_.scenery, faults, seed);
+      if (flight != nullptr) flyOne(flight->flight, source(), faults, seed);
     }
   }
 
@@ -199,7 +207,7 @@ class Campaign {
     row.number(std::sqrt(said.yaw_variance) / kDegree).text(toString(said.yaw_failure.reason));
     row.number(said.other_runway_probability);
     row.number(truth.x).number(said.x).number(std::sqrt(said.x_variance));
-    row.number(truth.y).number(said.y).number(std::sqrt(said.y_variance));
+    row.number(truth.y).number(said.y).number(std::sqrt(said.y_variance)).number(said.y_protection_level);
     row.number(truth.height_above_runway).number(said.height_above_runway);
     row.number(said.height_above_runway_protection_level).flag(said.height_above_runway_known);
     for (const OutputError& error : outputErrors(said, truth))
@@ -232,10 +240,16 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
   CLI::Option* dataset =
       app.add_option("--dataset", options.dataset, "dataset folder to spoil; without it the simulator");
-  app.add_option("--scenery", options.scenery,
-                 "what is around the simulator's runways; without it grass, and lower flights")
-      ->check(CLI::IsMember(sceneryKinds()))
-      ->excludes(dataset);
+  CLI::Option* scenery =
+      app.add_option("--scenery", options.scenery,
+                     "what is around the simulator's runways; without it grass, and lower flights")
+          ->check(CLI::IsMember(sceneryKinds()))
+          ->excludes(dataset);
+  app.add_flag(
+         "--threshold", options.threshold,
+         "flights over the threshold in larger images, where x and the height above the runway are known")
+      ->excludes(dataset)
+      ->excludes(scenery);
   app.add_option("--faults", options.faults, "only these, pairs as a+b; without it all")->delimiter(',');
   app.add_option("--pairs", options.pairs, "pairs of faults besides, for each seed")->capture_default_str();
   app.add_option("--first", options.first, "first seed")->capture_default_str();

@@ -57,6 +57,11 @@ void addTimingFaults(std::vector<Fault>& all) {
   all.push_back(spoils(
       "unsynchronised", Place::kTiming, "right image is the one of the pair before",
       [=](FaultRun& run, int frame, Delivery& pair) { pair.right = frameOf(run, frame - 1).right.clone(); }));
+  all.push_back(disturbed("clock_drift", "right camera exposes later and later, by 5 ms each second",
+                          [](SimulatorParameters& p, double onset) {
+                            p.right_camera.clock_drift = 0.005;
+                            p.right_camera.clock_drift_start = onset;
+                          }));
 }
 
 }  // namespace uav_landing

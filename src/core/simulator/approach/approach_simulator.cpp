@@ -90,13 +90,18 @@ struct ApproachSimulator::World {
     });
   }
 
-  cv::Mat lightIn(const SimulatedCamera& camera, const OwnFrame& own, int index) const {
+  /// When a camera exposes the frame, s. Its stamp is timeOf(index).
+  double exposureOf(int index, const SimulatedCameraParameters& camera) const {
+    return timeOf(index) + camera.clock_drift * std::max(0.0, timeOf(index) - camera.clock_drift_start);
+  }
+
+  cv::Mat lightIn(const SimulatedCamera& camera, const OwnFrame& own, double time) const {
     const SimulatedImageParameters& image = parameters.image;
     const int samples = image.exposure_time > 0 ? image.exposure_samples : 1;
     cv::Mat grey, sum;
     for (int i = 0; i < samples; ++i) {
       const double shift = image.exposure_time * ((i + 0.5) / samples - 0.5);
-      render(camera, timeOf(index) + shift, grey);
+      render(camera, time + shift, grey);
       if (i == 0)
         grey.copyTo(sum);
       else
@@ -140,8 +145,10 @@ SimulatedImu ApproachSimulator::imu() const {
 }
 
 ApproachSimulator::Light ApproachSimulator::light(int index) const {
-  return {index, world_->lightIn(world_->rig.left, world_->left_frame, index),
-          world_->lightIn(world_->rig.right, world_->right_frame, index)};
+  const World& world = *world_;
+  const SimulatorParameters& p = world.parameters;
+  return {index, world.lightIn(world.rig.left, world.left_frame, world.exposureOf(index, p.left_camera)),
+          world.lightIn(world.rig.right, world.right_frame, world.exposureOf(index, p.right_camera))};
 }
 
 ApproachSimulator::Frame ApproachSimulator::expose(const Light& light, double noise) const {
