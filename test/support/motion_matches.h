@@ -129,7 +129,7 @@ inline Eigen::Matrix3d across(const Eigen::Vector3d& n, double stddev) {
 
 inline Expected<MotionEstimate> estimate(const std::vector<TemporalMatch>& matches, const Eigen::Vector3d& n,
                                          double stddev, const CameraMotion& start = {}) {
-  return estimateMotion(motionRig(), matches, n, across(n, stddev), start, 15);
+  return estimateMotion(motionRig(), matches, {start, {n, across(n, stddev)}}, 15);
 }
 
 }  // namespace test

@@ -297,10 +297,10 @@ struct ApproachAngleStage::Implementation {
         !stereo                                     ? SearchTime::kLeast
         : lines_left_out || runway.isSettled(stamp) ? SearchTime::kAmple
                                                     : SearchTime::kShort,
-        result.readout, normal.by_time};
-    const MotionTracker::Result motion = repeated ? tracker.repeat(stamp)
-                                                  : tracker.process(stamp, left, result.n, normal.covariance,
-                                                                    corners, timings, result.imu, conditions);
+        result.readout, result.imu};
+    const GroundInView seen{{result.n, normal.covariance}, normal.by_time, corners};
+    const MotionTracker::Result motion =
+        repeated ? tracker.repeat(stamp) : tracker.process(stamp, left, seen, timings, conditions);
     if (readout_time && motion.step_estimate) readout_time->learn(motion.readout, motion.step.duration);
     ScopedTimer timer(timings, "foe_and_angle");
     const StepFoe found =

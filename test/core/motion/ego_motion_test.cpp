@@ -107,7 +107,7 @@ TEST(EstimateMotion, FindsThatOfMostMatchesWhereOthersAreAsExpected) {
   // Of what stands still in the picture: a part of the camera, or what the expected motion was found by.
   for (size_t i = 0; i < matches.size(); i += 3) matches[i].then = matches[i].now;
   const Expected<MotionEstimate> found =
-      estimateMotion(rig(), matches, step.n, Eigen::Matrix3d::Identity() * 1e-6, CameraMotion(), 12);
+      estimateMotion(rig(), matches, {{}, {step.n, Eigen::Matrix3d::Identity() * 1e-6}}, 12);
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_LT((found->motion.t - step.t).norm(), 0.1 * step.t.norm());
   EXPECT_NEAR(found->inlier_count, 100, 10);
@@ -128,7 +128,7 @@ TEST(EstimateMotion, ClaimsTheScatterItHas) {
     const Eigen::Vector3d e1 = step.n.cross(Eigen::Vector3d::UnitX()).normalized(), e2 = step.n.cross(e1);
     const Eigen::Vector3d prior = (step.n + a.x() * e1 + a.y() * e2).normalized();
     const Expected<MotionEstimate> found =
-        estimateMotion(rig(), matches, prior, across(prior, normal_stddev), {}, 15);
+        estimateMotion(rig(), matches, {{}, {prior, across(prior, normal_stddev)}}, 15);
     ASSERT_TRUE(found);
     Eigen::Matrix<double, 8, 1> error;
     error << rotationError(found->motion.R, step.movement.R), found->motion.t - step.t,
@@ -281,7 +281,7 @@ TEST(EstimateMotion, WeighsARotationKnownBeforehandAgainstTheMatches) {
   const auto with = [&](double stddev, double share = 1) {
     const RotationPrior prior{Eigen::AngleAxisd(share * off.norm(), off.normalized()) * step.movement.R,
                               stddev * stddev * Eigen::Matrix3d::Identity()};
-    const auto found = estimateMotion(rig(), matches, step.n, across(step.n, 1e-4), {}, 15, &prior);
+    const auto found = estimateMotion(rig(), matches, {{}, {step.n, across(step.n, 1e-4)}, &prior}, 15);
     EXPECT_TRUE(found);
     return *found;
   };

@@ -50,11 +50,17 @@ struct Flight {
     std::vector<TrackedCorner> corners;
     for (const cv::Point& p : findCorners(ground.left(rig, at(i * period)), below, 250, 1e-7, 4, 0.04))
       corners.push_back({p.x, p.y, true, 0, 0});
-    CornerTextures textures;
+    memory.matching.textures.clear();
     const Eigen::Vector3d n = at(0).down();
-    return search.advance(matching,
-                          {now, then, period, corners, textures, memory, n,
-                           1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose()), rotation, false, time});
+    return search.advance(matching, {now,
+                                     then,
+                                     period,
+                                     corners,
+                                     memory,
+                                     {n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose())},
+                                     rotation,
+                                     false,
+                                     time});
   }
   /// Pairs until the motion is known; 0: not within twenty.
   int pairsUntilKnown(std::optional<CameraMotion>& found) {

@@ -56,8 +56,8 @@ struct Scene {
       corners.push_back(corner);
     }
     const Eigen::Vector3d n = pose.down();
-    return tracker.process(stamp, left, n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose()), corners,
-                           timings, {}, conditions);
+    const GroundNormal normal{n, 1e-7 * (Eigen::Matrix3d::Identity() - n * n.transpose())};
+    return tracker.process(stamp, left, {normal, Eigen::Vector3d::Zero(), corners}, timings, conditions);
   }
 };
 

@@ -63,7 +63,7 @@ struct RollingStep {
     std::vector<TemporalMatch> all = matches(readout);
     const RowMotion rows = evenMotion(motion, kPeriod);
     const RowMotion rows_then{rows.w, motion.R.transpose() * rows.v / (1 + truth.n.dot(truth.t))};
-    shiftByReadout(motionRig(), {&unit, rows, rows_then}, motion, truth.n, given, all);
+    shiftByReadout(motionRig(), {motion, truth.n, {&unit, rows, rows_then}}, given, all);
     return all;
   }
 
@@ -88,7 +88,7 @@ TEST(ReadoutShift, CarriesMatchesToTheSamePlaceAgain) {
   const RowMotion rows = evenMotion(step.motion, kPeriod);
   const RowMotion rows_then{rows.w,
                             step.motion.R.transpose() * rows.v / (1 + step.truth.n.dot(step.truth.t))};
-  shiftByReadout(motionRig(), {&step.unit, rows, rows_then}, step.motion, step.truth.n, kReadout, all);
+  shiftByReadout(motionRig(), {step.motion, step.truth.n, {&step.unit, rows, rows_then}}, kReadout, all);
   for (size_t i = 0; i < all.size(); ++i) EXPECT_LT((all[i].then - once[i].then).norm(), 1e-6) << i;
 }
 
@@ -123,10 +123,12 @@ TEST(ReadoutShift, IsNotTakenForRowsThatShake) {
   ShakeMemory memory;
   MotionMemory work;
   for (int i = 0; i < 60; ++i) {
-    const Expected<MotionEstimate> found =
-        estimateMotion(motionRig(), all, step.truth.n,
-                       1e-6 * (Eigen::Matrix3d::Identity() - step.truth.n * step.truth.n.transpose()),
-                       step.motion, 20, work, nullptr, {&step.unit, &memory, Eigen::Vector3d::Zero()});
+    const Expected<MotionEstimate> found = estimateMotion(motionRig(), all,
+                                                          {step.motion,
+                                                           {step.truth.n, test::across(step.truth.n, 1e-3)},
+                                                           nullptr,
+                                                           {&step.unit, &memory, Eigen::Vector3d::Zero()}},
+                                                          20, work);
     ASSERT_TRUE(found);
     EXPECT_TRUE(found->of_shake.isZero(0)) << i;
   }
@@ -136,7 +138,7 @@ TEST(ReadoutShift, LeavesMatchesWithoutDoubtAsTheyAre) {
   const RollingStep step;
   std::vector<TemporalMatch> matches = step.matches(kReadout);
   const Eigen::Vector2d before = matches.front().then;
-  shiftByReadout(motionRig(), {}, step.motion, step.truth.n, 1, matches);
+  shiftByReadout(motionRig(), {step.motion, step.truth.n}, 1, matches);
   EXPECT_EQ(matches.front().then, before);
   EXPECT_TRUE(matches.front().by_readout.isZero(0));
   const Expected<MotionEstimate> found = test::estimate(matches, step.truth.n, 1e-3, step.motion);

@@ -76,10 +76,12 @@ struct ShakenStep {
   Expected<MotionEstimate> estimate(ShakeMemory* memory) const {
     constexpr double kSlope = 1e-4;  // rad
     MotionMemory work;
-    return estimateMotion(motionRig(), matches, truth.n,
-                          kSlope * kSlope * (Eigen::Matrix3d::Identity() - truth.n * truth.n.transpose()),
-                          {truth.movement.R, truth.t}, 20, work, nullptr,
-                          {&unitTimes(), memory, Eigen::Vector3d::Zero()});
+    return estimateMotion(motionRig(), matches,
+                          {{truth.movement.R, truth.t},
+                           {truth.n, test::across(truth.n, kSlope)},
+                           nullptr,
+                           {&unitTimes(), memory, Eigen::Vector3d::Zero()}},
+                          20, work);
   }
   /// Error of the translation across the way, up and down, over its claimed standard deviation.
   double ratio(const MotionEstimate& found) const {

@@ -56,9 +56,8 @@ struct Frames {
   std::vector<TemporalMatch> match(const CameraMotion& predicted, int coarse_steps) const {
     TemporalMatchOptions options;
     options.coarse_steps = coarse_steps;
-    CornerTextures textures;
     MatchingMemory memory;
-    return matchOverTime(rig, image_now, image_then, mask, corners, now.down(), predicted, options, textures,
+    return matchOverTime({rig, image_now, image_then, mask}, corners, {predicted, now.down()}, options,
                          memory);
   }
 
@@ -161,10 +160,9 @@ TEST(MatchOverTime, HasNoBiasByPerspective) {
   const cv::Mat mask(rig.size, CV_8UC1, cv::Scalar(255));
   TemporalMatchOptions options;
   options.coarse_steps = 0;
-  CornerTextures textures;
   MatchingMemory memory;
   const std::vector<TemporalMatch> matches =
-      matchOverTime(rig, match_now, match_then, mask, corners, normal, truth, options, textures, memory);
+      matchOverTime({rig, match_now, match_then, mask}, corners, {truth, normal}, options, memory);
   ASSERT_GT(matches.size(), 500u);
   double sum = 0;
   for (const TemporalMatch& match : matches)

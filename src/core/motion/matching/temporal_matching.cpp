@@ -71,21 +71,20 @@ class PointWarp {
 // Predicts where to look for corners, and touches the pixels there so that they are in the cache in time.
 class Predictions {
  public:
-  Predictions(const StereoRig& rig, const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
-              const CameraMotion& motion, const Eigen::Vector3d& plane, int radius, int coarse_steps,
-              const RowsOverTime& rows = {})
-      : rig_(rig),
-        now_(now),
-        then_(then),
-        mask_(mask),
-        motion_(motion),
-        plane_(rig, motion, plane),
+  Predictions(const CameraFrames& frames, const MotionOverGround& predicted, int radius, int coarse_steps)
+      : rig_(frames.rig),
+        now_(frames.now),
+        then_(frames.then),
+        mask_(frames.mask),
+        motion_(predicted.motion),
+        plane_(rig_, motion_, predicted.normal),
         radius_(radius),
         coarse_steps_(coarse_steps),
-        height_then_(1 + plane.dot(motion.t)) {
+        height_then_(1 + predicted.normal.dot(motion_.t)) {
+    const RowsOverTime& rows = predicted.rows;
     if (rows.times == nullptr || rows.times->atOnce()) return;
-    rows_now_ = StampMap(rig.K(), *rows.times, rows.now, plane);
-    rows_then_ = StampMap(rig.K(), *rows.times, rows.then, motion.R.transpose() * plane);
+    rows_now_ = StampMap(rig_.K(), *rows.times, rows.now, predicted.normal);
+    rows_then_ = StampMap(rig_.K(), *rows.times, rows.then, motion_.R.transpose() * predicted.normal);
   }
 
   // Returns false when there is no prediction.
@@ -174,14 +173,13 @@ class Predictions {
 // Finds corners near their predicted places.
 class Follower {
  public:
-  Follower(const MatchImage& now, const MatchImage& then, const cv::Mat& mask,
-           const TemporalMatchOptions& options)
-      : now_(now),
-        then_(then),
-        mask_(mask),
+  Follower(const CameraFrames& frames, const TemporalMatchOptions& options)
+      : now_(frames.now),
+        then_(frames.then),
+        mask_(frames.mask),
         options_(options),
-        coarse_(now.coarse, then.coarse, options.window_radius),
-        fine_(now.fine, then.fine, options.window_radius) {}
+        coarse_(now_.coarse, then_.coarse, options.window_radius),
+        fine_(now_.fine, then_.fine, options.window_radius) {}
 
   // Returns a refinement that has not converged when the corner is not found.
   PatchRefinement find(const TrackedCorner& corner, const LocalWarp& predicted, OwnTexture& own) {
@@ -276,15 +274,13 @@ void claim(const MatchImage& now, const MatchImage& then, int radius, MatchingMe
 
 }  // namespace
 
-std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
-                                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                                         const Eigen::Vector3d& normal, const CameraMotion& predicted,
-                                         const TemporalMatchOptions& options, CornerTextures& textures,
-                                         MatchingMemory& memory, std::vector<TemporalMatch> list) {
-  const Predictions predictions(rig, now, then, mask, predicted, normal, options.window_radius,
-                                options.coarse_steps, options.rows);
-  Follower follower(now, then, mask, options);
-  std::vector<TemporalMatch> matches = std::move(list);
+std::vector<TemporalMatch> matchOverTime(const CameraFrames& frames,
+                                         const std::vector<TrackedCorner>& corners,
+                                         const MotionOverGround& predicted,
+                                         const TemporalMatchOptions& options, MatchingMemory& memory) {
+  const Predictions predictions(frames, predicted, options.window_radius, options.coarse_steps);
+  Follower follower(frames, options);
+  std::vector<TemporalMatch> matches = std::move(memory.spare);
   matches.clear();
   matches.reserve(corners.size());
   memory.windows.clear();
@@ -295,8 +291,8 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     const bool seen = next_seen;
     local = next;
     if (i + 1 < corners.size()) next_seen = predictions.at(corners[i + 1], &next);
-    if (!seen || !isSet(mask, local.centre.x(), local.centre.y())) continue;
-    const PatchRefinement refined = follower.find(corner, local, textures.of(i, corner));
+    if (!seen || !isSet(frames.mask, local.centre.x(), local.centre.y())) continue;
+    const PatchRefinement refined = follower.find(corner, local, memory.textures.of(i, corner));
     if (!refined.converged) continue;
     TemporalMatch match;
     match.now = {corner.u, corner.v};
@@ -309,21 +305,19 @@ std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage&
     matches.push_back(match);
     memory.windows.push_back({refined, local.perspective});
   }
-  claim(now, then, options.window_radius, memory, matches);
+  claim(frames.now, frames.then, options.window_radius, memory, matches);
   for (TemporalMatch& match : matches) predictions.carryToStamps(match);
   return matches;
 }
 
-double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
-                        const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                        const Eigen::Vector3d& normal, const CameraMotion& motion,
-                        const TemporalMatchOptions& options) {
-  const Predictions predictions(rig, now, then, mask, motion, normal, options.window_radius, 0, options.rows);
-  PatchSearch there(now.fine, then.fine, options.window_radius);
+double likenessOverTime(const CameraFrames& frames, const std::vector<TrackedCorner>& corners,
+                        const MotionOverGround& motion, const TemporalMatchOptions& options) {
+  const Predictions predictions(frames, motion, options.window_radius, 0);
+  PatchSearch there(frames.now.fine, frames.then.fine, options.window_radius);
   double likeness = 0;
   LocalWarp local;
   for (const TrackedCorner& corner : corners) {
-    if (!predictions.at(corner, &local) || !isSet(mask, local.centre.x(), local.centre.y())) continue;
+    if (!predictions.at(corner, &local) || !isSet(frames.mask, local.centre.x(), local.centre.y())) continue;
     likeness += std::max(0.0, there.run(corner.u, corner.v, local.centre, local.warp, 0).score);
   }
   return likeness;

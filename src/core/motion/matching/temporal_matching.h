@@ -13,6 +13,13 @@
 
 namespace uav_landing {
 
+/// Two rectified frames of one camera.
+struct CameraFrames {
+  const StereoRig& rig;  ///< with the camera's K
+  const MatchImage &now, &then;
+  const cv::Mat& mask;  ///< pixels that are usable in both frames
+};
+
 /// Row times, and the velocities of the camera while rows are exposed. Without times all rows are exposed at
 /// the stamp.
 struct RowsOverTime {
@@ -20,12 +27,18 @@ struct RowsOverTime {
   RowMotion now, then;  ///< each in its own image's frame and units of height
 };
 
+/// Motion of the camera between two frames, over the ground.
+struct MotionOverGround {
+  CameraMotion motion;
+  Eigen::Vector3d normal;  ///< unit ground normal now
+  RowsOverTime rows = {};
+};
+
 struct TemporalMatchOptions {
   int window_radius = 5;
   double min_zncc = 0.75;
   /// Distance of the search around the prediction at the coarse level; 0: the prediction is good enough.
   int coarse_steps = 10;
-  RowsOverTime rows = {};
 };
 
 /// Properties of the corners' windows that follow from one image alone. They are kept while that image is
@@ -60,27 +73,25 @@ struct WindowOverTime {
 
 /// Working memory of matching over time.
 struct MatchingMemory {
+  CornerTextures textures;           ///< of the image now; clear it before another image comes
+  std::vector<TemporalMatch> spare;  ///< a list that is no longer needed; the next one takes its memory
   std::vector<WindowOverTime> windows;
   std::vector<double> residuals;
   std::vector<WindowMeans> means;
 };
 
 /// The paper's image velocity field: finds corners of the image now in the image then. Windows are warped
-/// according to the ground plane (unit normal) and the predicted motion. Both places of a match are those
-/// that would be seen with all rows exposed at the stamps. textures: of the image now. list: a list that is
-/// no longer needed, for its memory.
-std::vector<TemporalMatch> matchOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
-                                         const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                                         const Eigen::Vector3d& normal, const CameraMotion& predicted,
-                                         const TemporalMatchOptions& options, CornerTextures& textures,
-                                         MatchingMemory& memory, std::vector<TemporalMatch> list = {});
+/// according to the ground plane and the predicted motion. Both places of a match are those that would be
+/// seen with all rows exposed at the stamps.
+std::vector<TemporalMatch> matchOverTime(const CameraFrames& frames,
+                                         const std::vector<TrackedCorner>& corners,
+                                         const MotionOverGround& predicted,
+                                         const TemporalMatchOptions& options, MatchingMemory& memory);
 
 /// Similarity between the surroundings of the corners and the places where the motion puts them then. It is
 /// the sum of their correlations, without any search. Corners that are out of view or have a negative
 /// correlation add nothing.
-double likenessOverTime(const StereoRig& rig, const MatchImage& now, const MatchImage& then,
-                        const cv::Mat& mask, const std::vector<TrackedCorner>& corners,
-                        const Eigen::Vector3d& normal, const CameraMotion& motion,
-                        const TemporalMatchOptions& options);
+double likenessOverTime(const CameraFrames& frames, const std::vector<TrackedCorner>& corners,
+                        const MotionOverGround& motion, const TemporalMatchOptions& options);
 
 }  // namespace uav_landing

@@ -133,9 +133,9 @@ void MotionTracker::reset() {
   last_window_.failure = {Reason::kNotYet, "no earlier frame"};
 }
 
-ReadoutDoubt MotionTracker::doubtOf(const StepConditions& conditions) const {
+ReadoutDoubt MotionTracker::doubtOf(const GroundInView& seen, const StepConditions& conditions) const {
   if (!conditions.readout.known()) return {};
-  return {&unit_times_, conditions.readout.time, conditions.normal_by_readout};
+  return {&unit_times_, conditions.readout.time, seen.normal_by_readout};
 }
 
 MotionTracker::Frame MotionTracker::takeFrame(double stamp, const cv::Mat& left) {
@@ -163,16 +163,15 @@ void MotionTracker::skip(double stamp, const cv::Mat& left) {
   advance(takeFrame(stamp, left), nothing);
 }
 
-MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
-                                             const Eigen::Matrix3d& normal_covariance,
-                                             const Corners& all_corners, Timings& timings,
-                                             const AttitudePrior& imu, const StepConditions& conditions) {
+MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, const GroundInView& seen,
+                                             Timings& timings, const StepConditions& conditions) {
   Result result;
   step_matches_.clear();
-  textures_.clear();
-  const Corners corners = thinned(
-      all_corners,
+  memory_.matching.textures.clear();
+  const std::vector<TrackedCorner> corners = thinned(
+      seen.corners,
       static_cast<size_t>(cornerBudget(rig_.size, parameters_.corner_count, parameters_.pixels_per_corner)));
+  const GroundInView followed{seen.normal, seen.normal_by_readout, corners};
   Frame now;
   {
     ScopedTimer timer(timings, "match_images_motion");
@@ -182,33 +181,40 @@ MotionTracker::Result MotionTracker::process(double stamp, const cv::Mat& left, 
     result.step.failure = {Reason::kNotYet, "no earlier frame"};
   } else {
     ScopedTimer timer(timings, "feature_matching_motion");
-    const std::optional<RotationPrior> rotation = rotationOf(imu, stamp - past_.back().stamp);
-    estimateStep(now, normal, normal_covariance, corners, rotation ? &*rotation : nullptr, conditions,
-                 result);
+    estimateStep(now, followed, conditions, result);
   }
   ScopedTimer timer(timings, "window_motion");
-  estimateWindow(now, normal, normal_covariance, corners, conditions, result);
+  estimateWindow(now, followed, conditions, result);
   smoothAngle(stamp, result);
   advance(std::move(now), result);
   return result;
 }
 
-void MotionTracker::estimateStep(const Frame& now, const Eigen::Vector3d& normal,
-                                 const Eigen::Matrix3d& covariance, const Corners& corners,
-                                 const RotationPrior* rotation, const StepConditions& conditions,
+void MotionTracker::estimateStep(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
                                  Result& result) {
   const double duration = now.stamp - past_.back().stamp;
+  const std::optional<RotationPrior> known = rotationOf(conditions.imu, duration);
+  const RotationPrior* rotation = known ? &*known : nullptr;
   const bool regular = last_step_ && duration < Steadiness::kLongestRegular * last_duration_;
-  const StepImages step{
-      now.image,    past_.back().image,  duration,           corners, textures_,       memory_,
-      normal,       covariance,          rotation,           regular, conditions.time, &times_,
-      &step_shake_, doubtOf(conditions), past_.back().motion};
+  const StepImages step{now.image,
+                        past_.back().image,
+                        duration,
+                        seen.corners,
+                        memory_,
+                        seen.normal,
+                        rotation,
+                        regular,
+                        conditions.time,
+                        &times_,
+                        &step_shake_,
+                        doubtOf(seen, conditions),
+                        past_.back().motion};
   Expected<MotionEstimate> estimate = search_.find(step, predictions(duration, rotation), step_matches_);
   if (estimate) {
     last_duration_ = duration;
     last_sink_ = estimate->normal.dot(estimate->motion.t);
     const Failure failure = conditions.proof == GroundProof::kMotion
-                                ? doubtOfPlane(now.image.fine, corners, step_matches_, *estimate)
+                                ? doubtOfPlane(now.image.fine, seen.corners, step_matches_, *estimate)
                                 : Failure();
     if (failure) {
       result.unproven = estimate->motion;
@@ -238,8 +244,7 @@ std::vector<CameraMotion> MotionTracker::predictions(double duration, const Rota
   return predictions;
 }
 
-void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& normal,
-                                   const Eigen::Matrix3d& covariance, const Corners& corners,
+void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
                                    const StepConditions& conditions, Result& result) {
   constexpr double kStampRounding = 1e-3;
   if (!result.step_estimate) {
@@ -257,19 +262,21 @@ void MotionTracker::estimateWindow(const Frame& now, const Eigen::Vector3d& norm
     if (!then.since) continue;
     const CameraMotion& step = result.step_estimate->motion;
     // Lengths are converted from units of the previous height to units of the height now.
-    const double unit = 1 + normal.dot(step.t);
+    const double unit = 1 + seen.normal.n.dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     const RowMotion motion = evenMotion(step, result.step.duration);
-    const TemporalMatchOptions options{
-        parameters_.window_radius, parameters_.min_zncc, 0, {&times_, motion, then.motion.value_or(motion)}};
-    window_matches_ = matchOverTime(rig_, now.image, then.image, mask_, corners, normal, predicted, options,
-                                    textures_, memory_.matching, std::move(window_matches_));
-    const ReadoutDoubt doubt = doubtOf(conditions);
-    shiftByReadout(rig_, {doubt.times, motion, then.motion.value_or(motion)}, predicted, normal, doubt.time,
+    const RowMotion motion_then = then.motion.value_or(motion);
+    memory_.matching.spare = std::move(window_matches_);
+    window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
+                                    {predicted, seen.normal.n, {&times_, motion, motion_then}},
+                                    {parameters_.window_radius, parameters_.min_zncc, 0}, memory_.matching);
+    const ReadoutDoubt doubt = doubtOf(seen, conditions);
+    shiftByReadout(rig_, {predicted, seen.normal.n, {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
-    const Expected<MotionEstimate> estimate = estimateMotion(
-        rig_, window_matches_, normal, covariance, predicted, parameters_.min_matches, memory_.motion,
-        nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time});
+    const MotionPrior prior{
+        predicted, seen.normal, nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time}};
+    const Expected<MotionEstimate> estimate =
+        estimateMotion(rig_, window_matches_, prior, parameters_.min_matches, memory_.motion);
     if (!estimate) continue;
     result.window =
         describe(estimate, duration, window_matches_.size(), conditions.readout, result.window_angle);

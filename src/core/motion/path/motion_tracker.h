@@ -22,12 +22,21 @@ enum class GroundProof {
   kMotion  ///< not known beforehand: most corners must move like points of one plane
 };
 
+/// The ground in the left image now.
+struct GroundInView {
+  GroundNormal normal;  ///< its covariance leaves out the error by the readout time
+  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();  ///< derivative of the normal, 1/s
+  const std::vector<TrackedCorner>& corners;                    ///< with depths in units of the height
+};
+
 struct StepConditions {
   GroundProof proof = GroundProof::kGiven;
   SearchTime time = SearchTime::kAmple;
   /// The readout time so far, when it has to be estimated.
   ReadoutEstimate readout = {};
-  Eigen::Vector3d normal_by_readout = Eigen::Vector3d::Zero();  ///< derivative of the ground normal, 1/s
+  /// The rotation since the previous frame leads the search and helps when the corners leave the rotation
+  /// uncertain. With it, half as many corners are enough. It is rejected when it contradicts them.
+  AttitudePrior imu = {};
 };
 
 /// Follows the motion of the left camera over each frame step and over the sliding window (angle_window). It
@@ -48,17 +57,11 @@ class MotionTracker {
   };
 
   /// Estimates the motion from the earlier frames to this one.
-  /// - normal: unit ground normal now. Its covariance has rank 2 (rad^2) and leaves out the error by the
-  ///   readout time.
-  /// - corners: of the left image now, with depths in units of the height.
-  /// - imu: its rotation since the previous frame leads the search and helps when the corners leave the
-  ///   rotation uncertain. With it, half as many corners are enough. It is rejected when it contradicts them.
   ///
   /// When the corners have to prove the plane by their motion and too few do, the step fails with
   /// plane_unproven. Without a ground normal, call skip() instead.
-  Result process(double stamp, const cv::Mat& left, const Eigen::Vector3d& normal,
-                 const Eigen::Matrix3d& normal_covariance, const std::vector<TrackedCorner>& corners,
-                 Timings& timings, const AttitudePrior& imu = {}, const StepConditions& conditions = {});
+  Result process(double stamp, const cv::Mat& left, const GroundInView& seen, Timings& timings,
+                 const StepConditions& conditions = {});
   /// Whether there is an earlier image but no motion up to it, so that the next step has no prediction.
   bool needsSearch() const { return !past_.empty() && !last_step_; }
   /// Velocities of the camera at the last stamp. Nothing when they are not known or too old for this stamp
@@ -84,15 +87,13 @@ class MotionTracker {
     std::optional<RowMotion> motion;    ///< velocities while its rows were exposed
   };
 
-  using Corners = std::vector<TrackedCorner>;
-  ReadoutDoubt doubtOf(const StepConditions& conditions) const;
+  ReadoutDoubt doubtOf(const GroundInView& seen, const StepConditions& conditions) const;
   Frame takeFrame(double stamp, const cv::Mat& left);
-  void estimateStep(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                    const Corners& corners, const RotationPrior* rotation, const StepConditions& conditions,
+  void estimateStep(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
                     Result& result);
   std::vector<CameraMotion> predictions(double duration, const RotationPrior* rotation) const;
-  void estimateWindow(const Frame& now, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                      const Corners& corners, const StepConditions& conditions, Result& result);
+  void estimateWindow(const Frame& now, const GroundInView& seen, const StepConditions& conditions,
+                      Result& result);
   void advance(Frame&& now, const Result& result);
   void smoothAngle(double stamp, Result& result);
   ApproachAngleResult::Motion describe(const Expected<MotionEstimate>& estimate, double duration,
@@ -108,7 +109,6 @@ class MotionTracker {
   std::vector<MatchImage> spare_;  // images no longer used, kept for their memory
   cv::Mat spare_coarse_;
   std::vector<TemporalMatch> step_matches_, window_matches_;  // kept for their memory
-  CornerTextures textures_;                                   // of the image now
   MotionSearchMemory memory_;
   std::optional<CameraMotion> last_step_;
   double last_duration_ = 0;  // of last_step_, s

@@ -76,6 +76,21 @@ void addRotation(const RotationPrior& prior, const MotionState& state, MotionNor
   sums.right.head<3>() += information * rotationVector(prior.R.transpose() * state.Q.transpose());
 }
 
+// The given ground normal as a prior, with the rotation when it is known.
+struct GivenPrior {
+  Eigen::Vector3d n;
+  Eigen::Matrix3d information;
+  const RotationPrior* rotation;
+
+  // The normal's contribution to the right side of the normal equations.
+  Eigen::Vector3d pull(const MotionState& state) const { return information * (n - state.n); }
+  void addTo(const MotionState& state, MotionNormal& sums) const {
+    sums.information.bottomRightCorner<3, 3>() += information;
+    sums.right.tail<3>() += pull(state);
+    if (rotation != nullptr) addRotation(*rotation, state, sums);
+  }
+};
+
 // The prior's covariance has rank 2. The normal must not change along itself, because its length sets the
 // scale.
 Eigen::Matrix3d priorInformation(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance) {
@@ -116,21 +131,29 @@ double overlapFactor(const std::vector<TemporalMatch>& matches) {
   return windows.factor();
 }
 
+// The motion that fits best, and the state of the last iteration.
+struct Fitted {
+  MotionState state, linearised;
+  Vector9d step;         // from linearised to state
+  Matrix9d information;  // prior included
+  double factor = 1;     // factor by which variances are larger than the rows claim
+  std::vector<char> inliers = {};
+  int inlier_count = 0;
+};
+
 // Extra covariance, because matches in one part of the image share errors. It uses the residuals at the
-// matches' own normal. factor: ratio of own.covariance to that of independent matches. last: step from the
-// point of linearisation to the motion that was found.
+// matches' own normal. rows: linearised as in `fitted`.
 Eigen::Matrix3d sharedVariance(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                               const MotionRows& rows, const std::vector<char>& inliers, const OwnNormal& own,
-                               double factor, const Vector9d& last) {
+                               const MotionRows& rows, const Fitted& fitted, const OwnNormal& own) {
   Vector9d step;
   step << own.by_it * own.step, own.step;
-  step += last;
+  step += fitted.step;
   Eigen::Matrix<double, 3, 9> by_scores;
   by_scores << own.covariance * own.by_it.transpose(), own.covariance;
-  by_scores /= factor;
+  by_scores /= fitted.factor;
   ClusterCovariance<3> clusters;
   for (size_t i = 0; i < matches.size(); ++i) {
-    if (!inliers[i]) continue;
+    if (!fitted.inliers[i]) continue;
     clusters.add(imageCell(rig, matches[i].now.x(), matches[i].now.y()), by_scores * rows.score(i, step));
   }
   return clusters.shared();
@@ -156,34 +179,18 @@ void tellTime(const SumsByTime& sums, const Matrix9d& without_prior, const Eigen
   effect.score = -sums.right - by_time.tail<3>().dot(by_prior);
 }
 
-// The motion that fits best, and the state of the last iteration.
-struct Fitted {
-  MotionState state, linearised;
-  Vector9d step;         // from linearised to state
-  Matrix9d information;  // prior included
-  double factor = 1;     // factor by which variances are larger than the rows claim
-};
-
-// The given ground normal as a prior.
-struct GivenNormal {
-  Eigen::Vector3d n;
-  Eigen::Matrix3d information;
-
-  // Contribution to the right side of the normal equations.
-  Eigen::Vector3d pull(const MotionState& state) const { return information * (n - state.n); }
-};
-
-Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const GivenNormal& given,
-                           const MotionState& start, int min_matches, const RotationPrior* rotation,
-                           MotionRows& rows, MotionEstimate& result) {
+// rows: of the matches. They stay linearised as in the result.
+Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const MotionState& start,
+                           const GivenPrior& given, int min_matches, MotionRows& rows) {
   constexpr int kIterations = 8;
   Fitted fitted{start, start, {}, {}};
+  fitted.inliers.assign(matches.size(), 0);
   const double overlap = overlapFactor(matches);
   Convergence convergence;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     rows.linearise(fitted.state);
-    MotionNormal sums = rows.accumulate(result.inliers);
-    result.inlier_count = sums.count;
+    MotionNormal sums = rows.accumulate(fitted.inliers);
+    fitted.inlier_count = sums.count;
     if (sums.count < min_matches) {
       return tl::make_unexpected(Failure{
           Reason::kMotionInconsistent, std::to_string(sums.count) + " of " + std::to_string(matches.size()) +
@@ -194,9 +201,7 @@ Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const Give
     fitted.factor = overlap * std::pow(std::clamp(sums.residual_scale, kLeastScale, 1.0), 2);
     sums.information /= fitted.factor;
     sums.right /= fitted.factor;
-    sums.information.bottomRightCorner<3, 3>() += given.information;
-    sums.right.tail<3>() += given.pull(fitted.state);
-    if (rotation != nullptr) addRotation(*rotation, fitted.state, sums);
+    given.addTo(fitted.state, sums);
     fitted.information = sums.information.selfadjointView<Eigen::Lower>();
     fitted.step = fitted.information.ldlt().solve(sums.right);
     fitted.linearised = std::exchange(fitted.state, fitted.state.apply(fitted.step));
@@ -208,10 +213,7 @@ Expected<Fitted> fitMotion(const std::vector<TemporalMatch>& matches, const Give
 }  // namespace
 
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                                        const Eigen::Vector3d& normal,
-                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, MotionMemory& memory, const RotationPrior* rotation,
-                                        const RowDoubt& doubt) {
+                                        const MotionPrior& prior, int min_matches, MotionMemory& memory) {
   if (static_cast<int>(matches.size()) < std::max(4, min_matches)) {
     return tl::make_unexpected(Failure{Reason::kTooFewMatches, std::to_string(matches.size()) +
                                                                    " corners followed, at least " +
@@ -219,17 +221,16 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   }
   MotionRows& rows = memory.all;
   rows.assign(rig, matches);
-  const GivenNormal given{normal, priorInformation(normal, normal_covariance)};
-  MotionEstimate result;
-  result.inliers.assign(matches.size(), 0);
+  const Eigen::Vector3d& normal = prior.normal.n;
+  const GivenPrior given{normal, priorInformation(normal, prior.normal.covariance), prior.rotation};
   Expected<Fitted> found =
-      fitMotion(matches, given, bestByConsensus({start.R.transpose(), start.t, normal}, memory), min_matches,
-                rotation, rows, result);
+      fitMotion(matches, bestByConsensus({prior.start.R.transpose(), prior.start.t, normal}, memory), given,
+                min_matches, rows);
   if (!found) return tl::make_unexpected(found.error());
   MotionState& state = found->state;
   Matrix9d& information = found->information;
   const RowUnknowns beside = findRowUnknowns(
-      rig, matches, {rows, found->linearised, found->step, information, found->factor}, doubt, memory);
+      rig, matches, {rows, found->linearised, found->step, information, found->factor}, prior.rows, memory);
   std::optional<Matrix9d> without_shake;
   if (beside.shake.found()) {
     without_shake = information.ldlt().solve(Matrix9d::Identity());
@@ -242,6 +243,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     return tl::make_unexpected(
         Failure{Reason::kMotionInconsistent, "the matches do not determine the motion"});
   }
+  MotionEstimate result;
   result.motion = {state.Q.transpose(), state.t};
   result.normal = state.n;
   // Converts perturbations of Q on the left (frame then) to those of R on the left (frame now): -R w.
@@ -252,7 +254,7 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   const Vector9d& with_time = beside.by_time.with_motion;
   if (beside.has_time) {
     Vector9d moved = with_time;
-    moved.tail<3>() += given.information * doubt.normal_by_readout;
+    moved.tail<3>() += given.information * prior.rows.normal_by_readout;
     result.readout.by_time = turn * covariance * moved;
     tellTime(beside.by_time, covarianceWithoutPrior(information, normal, given.information),
              given.pull(state), result.readout);
@@ -264,18 +266,17 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
     result.own_normal = (state.n + own->step).normalized();
     result.readout.own_normal_by_time =
         own->covariance * (with_time.tail<3>() + own->by_it.transpose() * with_time.head<6>());
-    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, result.inliers, *own,
-                                                                    found->factor, found->step);
+    result.own_normal_covariance = own->covariance + sharedVariance(rig, matches, rows, *found, *own);
   }
+  result.inliers = std::move(found->inliers);
+  result.inlier_count = found->inlier_count;
   return result;
 }
 
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                                        const Eigen::Vector3d& normal,
-                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, const RotationPrior* rotation) {
+                                        const MotionPrior& prior, int min_matches) {
   MotionMemory memory;
-  return estimateMotion(rig, matches, normal, normal_covariance, start, min_matches, memory, rotation);
+  return estimateMotion(rig, matches, prior, min_matches, memory);
 }
 
 }  // namespace uav_landing

@@ -8,6 +8,7 @@
 #include "motion/step/row_unknowns.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
+#include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/geometry/row_times.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -44,6 +45,14 @@ struct MotionEstimate {
   int inlier_count = 0;
 };
 
+/// What is known about a motion before its matches.
+struct MotionPrior {
+  CameraMotion start;                       ///< where the search begins; it has no weight of its own
+  GroundNormal normal;                      ///< of the ground now
+  const RotationPrior* rotation = nullptr;  ///< null: not known
+  RowDoubt rows = {};                       ///< what rows that are exposed one after the other may do
+};
+
 /// Robust estimate of the motion from the ground normal and the matches.
 ///
 /// RANSAC over triples of matches finds a start. It is skipped when most of the matches are close to the
@@ -55,17 +64,12 @@ struct MotionEstimate {
 /// that overlap enlarge them. Where the matches show that rows shake (RowShake), the shake is an additional
 /// unknown. Deterministic: the random numbers have a fixed seed.
 ///
-/// start: motion to begin with. Fails with too_few_matches when there are fewer than min_matches (or four),
-/// and with motion_inconsistent when fewer than min_matches agree or they do not determine the motion.
+/// Fails with too_few_matches when there are fewer than min_matches (or four), and with motion_inconsistent
+/// when fewer than min_matches agree or they do not determine the motion.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                                        const Eigen::Vector3d& normal,
-                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, MotionMemory& memory,
-                                        const RotationPrior* rotation = nullptr, const RowDoubt& doubt = {});
-/// The same, without shaking rows and with working memory of its own.
+                                        const MotionPrior& prior, int min_matches, MotionMemory& memory);
+/// The same, with working memory of its own.
 Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<TemporalMatch>& matches,
-                                        const Eigen::Vector3d& normal,
-                                        const Eigen::Matrix3d& normal_covariance, const CameraMotion& start,
-                                        int min_matches, const RotationPrior* rotation = nullptr);
+                                        const MotionPrior& prior, int min_matches);
 
 }  // namespace uav_landing

@@ -16,8 +16,9 @@ const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt) {
   return given != nullptr && !given->atOnce() ? given : nullptr;
 }
 
-void shiftByReadout(const StereoRig& rig, const RowsOverTime& unit, const CameraMotion& motion,
-                    const Eigen::Vector3d& normal, double time, std::vector<TemporalMatch>& matches) {
+void shiftByReadout(const StereoRig& rig, const MotionOverGround& over_ground, double time,
+                    std::vector<TemporalMatch>& matches) {
+  const auto& [motion, normal, unit] = over_ground;
   if (unit.times == nullptr || unit.times->atOnce()) return;
   const StampMap now(rig.K(), *unit.times, slowed(unit.now), normal);
   const StampMap then(rig.K(), *unit.times, slowed(unit.then), motion.R.transpose() * normal);

@@ -26,9 +26,9 @@ const RowTimes* rollingRows(const RowTimes* given, const ReadoutDoubt& doubt);
 /// the stamps, according to the estimated time (s). The whole shift is applied to the place then. The effect
 /// is linear in the readout time as long as that is much shorter than the step.
 ///
-/// unit: row times for a readout of 1 s. motion: of the step, as far as it is known. Call it again when the
-/// motion is known better; it takes back its earlier shift first.
-void shiftByReadout(const StereoRig& rig, const RowsOverTime& unit, const CameraMotion& motion,
-                    const Eigen::Vector3d& normal, double time, std::vector<TemporalMatch>& matches);
+/// over_ground: motion of the step, as far as it is known, with row times for a readout of 1 s. Call it again
+/// when the motion is known better; it takes back its earlier shift first.
+void shiftByReadout(const StereoRig& rig, const MotionOverGround& over_ground, double time,
+                    std::vector<TemporalMatch>& matches);
 
 }  // namespace uav_landing

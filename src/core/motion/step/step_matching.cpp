@@ -18,10 +18,6 @@ bool agrees(const MotionEstimate& estimate, const RotationPrior& prior) {
   return off.dot(prior.covariance.inverse() * off) <= gate;
 }
 
-RowDoubt rowDoubt(const StepImages& step) {
-  return {rollingRows(step.times, step.doubt), step.shake, step.doubt.normal_by_time};
-}
-
 }  // namespace
 
 StepMatching::StepMatching(const StereoRig& rig, cv::Mat mask, const ApproachAngleParameters& parameters)
@@ -33,31 +29,40 @@ std::vector<TemporalMatch> StepMatching::match(const StepImages& step,
                                                const std::vector<TrackedCorner>& corners,
                                                const CameraMotion& predicted, int coarse_steps,
                                                std::vector<TemporalMatch> list) const {
-  std::vector<TemporalMatch> matches = matchOverTime(rig_, step.now, step.then, mask_, corners, step.normal,
-                                                     predicted, options(step, predicted, coarse_steps),
-                                                     step.textures, step.memory.matching, std::move(list));
+  step.memory.matching.spare = std::move(list);
+  std::vector<TemporalMatch> matches =
+      matchOverTime(framesOf(step), corners, overGround(step, predicted, step.times), options(coarse_steps),
+                    step.memory.matching);
   shiftByReadout(step, predicted, matches);
   return matches;
 }
 
-TemporalMatchOptions StepMatching::options(const StepImages& step, const CameraMotion& predicted,
-                                           int coarse_steps) const {
-  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps, rowsBy(step, step.times, predicted)};
+TemporalMatchOptions StepMatching::options(int coarse_steps) const {
+  return {parameters_.window_radius, parameters_.min_zncc, coarse_steps};
 }
 
 void StepMatching::shiftByReadout(const StepImages& step, const CameraMotion& motion,
                                   std::vector<TemporalMatch>& matches) const {
-  uav_landing::shiftByReadout(rig_, rowsBy(step, step.doubt.times, motion), motion, step.normal,
-                              step.doubt.time, matches);
+  uav_landing::shiftByReadout(rig_, overGround(step, motion, step.doubt.times), step.doubt.time, matches);
 }
 
-RowsOverTime StepMatching::rowsBy(const StepImages& step, const RowTimes* times,
-                                  const CameraMotion& predicted) const {
-  if (times == nullptr || times->atOnce() || !(step.duration > 0)) return {};
-  const RowMotion now = evenMotion(predicted, step.duration);
-  const double height_then = 1 + step.normal.dot(predicted.t);
-  return {times, now,
-          step.rows_then.value_or(RowMotion{now.w, predicted.R.transpose() * now.v / height_then})};
+MotionOverGround StepMatching::overGround(const StepImages& step, const CameraMotion& motion,
+                                          const RowTimes* times) const {
+  MotionOverGround over_ground{motion, step.normal.n};
+  if (times == nullptr || times->atOnce() || !(step.duration > 0)) return over_ground;
+  const RowMotion now = evenMotion(motion, step.duration);
+  const double height_then = 1 + step.normal.n.dot(motion.t);
+  over_ground.rows = {times, now,
+                      step.rows_then.value_or(RowMotion{now.w, motion.R.transpose() * now.v / height_then})};
+  return over_ground;
+}
+
+MotionPrior StepMatching::priorOf(const StepImages& step, const CameraMotion& start,
+                                  const RotationPrior* rotation) const {
+  return {start,
+          step.normal,
+          rotation,
+          {rollingRows(step.times, step.doubt), step.shake, step.doubt.normal_by_time}};
 }
 
 Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const CameraMotion& start,
@@ -66,18 +71,15 @@ Expected<MotionEstimate> StepMatching::estimate(const StepImages& step, const Ca
     // The prior already gives three of the six unknowns.
     const int needed = std::max(kFewestScouts, fewest / 2);
     const Expected<MotionEstimate> aided =
-        estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, needed, step.memory.motion,
-                       step.rotation, rowDoubt(step));
+        estimateMotion(rig_, matches, priorOf(step, start, step.rotation), needed, step.memory.motion);
     if (aided && agrees(*aided, *step.rotation)) return aided;
   }
-  return estimateMotion(rig_, matches, step.normal, step.normal_covariance, start, fewest, step.memory.motion,
-                        nullptr, rowDoubt(step));
+  return estimateMotion(rig_, matches, priorOf(step, start, nullptr), fewest, step.memory.motion);
 }
 
 double StepMatching::likeness(const StepImages& step, const std::vector<TrackedCorner>& corners,
                               const CameraMotion& motion) const {
-  return likenessOverTime(rig_, step.now, step.then, mask_, corners, step.normal, motion,
-                          options(step, motion, 0));
+  return likenessOverTime(framesOf(step), corners, overGround(step, motion, step.times), options(0));
 }
 
 }  // namespace uav_landing

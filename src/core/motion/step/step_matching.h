@@ -30,10 +30,8 @@ struct StepImages {
   const MatchImage &now, &then;
   double duration;                            ///< time between the two images, s
   const std::vector<TrackedCorner>& corners;  ///< of the image now
-  CornerTextures& textures;
   MotionSearchMemory& memory;
-  Eigen::Vector3d normal;                   ///< unit ground normal now
-  Eigen::Matrix3d normal_covariance;        ///< rank 2, rad^2
+  GroundNormal normal;                      ///< of the ground now
   const RotationPrior* rotation = nullptr;  ///< from an inertial sensor; null: not known
   bool regular = false;  ///< the prediction still holds: hardly longer than the last step (see Steadiness)
   SearchTime time = SearchTime::kAmple;
@@ -74,10 +72,13 @@ class StepMatching {
   const StereoRig& rig() const { return rig_; }
 
  private:
-  TemporalMatchOptions options(const StepImages& step, const CameraMotion& predicted, int coarse_steps) const;
-  /// Row times and velocities for matching. While rows are exposed, the camera moves as the predicted motion
+  TemporalMatchOptions options(int coarse_steps) const;
+  CameraFrames framesOf(const StepImages& step) const { return {rig_, step.now, step.then, mask_}; }
+  /// The motion with velocities for these row times. While rows are exposed, the camera moves as the motion
   /// says.
-  RowsOverTime rowsBy(const StepImages& step, const RowTimes* times, const CameraMotion& predicted) const;
+  MotionOverGround overGround(const StepImages& step, const CameraMotion& motion,
+                              const RowTimes* times) const;
+  MotionPrior priorOf(const StepImages& step, const CameraMotion& start, const RotationPrior* rotation) const;
 
   StereoRig rig_;
   cv::Mat mask_;

@@ -108,7 +108,7 @@ double StepSearch::farthestOff(const StepImages& step, const CameraMotion& predi
     if (!found.inliers[i]) continue;
     const TemporalMatch& match = matches[i];
     const Eigen::Vector3d ray = matching_.rig().Kinv() * match.now.homogeneous();
-    const double inverse_depth = match.on_plane ? step.normal.dot(ray) : match.inverse_depth;
+    const double inverse_depth = match.on_plane ? step.normal.n.dot(ray) : match.inverse_depth;
     const Eigen::Vector3d there = matching_.rig().K() * found.motion.seenThen(ray, inverse_depth);
     const Eigen::Vector3d expected = matching_.rig().K() * predicted.seenThen(ray, inverse_depth);
     farthest = std::max(farthest, (there.hnormalized() - expected.hnormalized()).norm());
@@ -128,9 +128,8 @@ Expected<MotionEstimate> StepSearch::followFrom(const StepImages& step, const Ca
   const int wide = matching_.wideSteps();
   for (const int steps : {std::min(kSmallSteps, wide), wide}) {
     const std::vector<TemporalMatch> found = matching_.match(step, scouts, predicted, steps);
-    const Expected<MotionEstimate> scouted =
-        estimateMotion(matching_.rig(), found, step.normal, step.normal_covariance, predicted,
-                       StepMatching::kFewestScouts, step.memory.motion);
+    const Expected<MotionEstimate> scouted = estimateMotion(matching_.rig(), found, {predicted, step.normal},
+                                                            StepMatching::kFewestScouts, step.memory.motion);
     if (scouted) start = scouted->motion;
     if (scouted && scouted->inlier_count >= std::max(kEnough * scouts.size(), kAgreeing * found.size()))
       break;
