@@ -147,10 +147,10 @@ void AttitudeFilter::reset() {
   agreements_ = 0;
 }
 
-AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const Eigen::Vector3d& normal,
-                                                const Eigen::Matrix3d& covariance,
+AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const GroundNormal& seen,
                                                 const ApproachAngleResult::Motion& step,
                                                 const Eigen::Matrix3d& common, double fresh) {
+  const auto& [normal, covariance] = seen;
   Prediction predicted = predict(stamp, step);
   const Eigen::Matrix3d common_root = rootOf(common), of_pair = fresh * covariance;
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root, of_pair);

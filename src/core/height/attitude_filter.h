@@ -38,10 +38,9 @@ class AttitudeFilter {
     bool agrees = true;       ///< the pairs before and the rotation allow the pair's normal
   };
 
-  /// stamp: s. normal: unit vector, of this pair alone. covariance: rad^2, of errors that differ from pair to
-  /// pair. step: from the previous pair. common: covariance of errors that are the same in all pairs except
-  /// for their size. fresh: share of the covariance that is new in every pair; the rest is among the common
-  /// part.
+  /// stamp: s. seen: normal of this pair alone, with the covariance of errors that differ from pair to pair.
+  /// step: from the previous pair. common: covariance of errors that are the same in all pairs except for
+  /// their size. fresh: share of the covariance that is new in every pair; the rest is among the common part.
   /// Without a step the filter starts anew, but only after it has compared the normal with those before,
   /// using the turn that an aircraft may make. A normal that contradicts those before (another surface was
   /// taken for the ground) is not used, and agrees is false. After three seconds of contradictions the filter
@@ -49,8 +48,7 @@ class AttitudeFilter {
   /// The filter keeps an alternative for four pairs in three cases: the step turns by more than usual, the
   /// normal only just agrees, or no step leads to it. When a later normal contradicts the estimate and agrees
   /// with the alternative, the alternative is taken.
-  Estimate update(double stamp, const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance,
-                  const ApproachAngleResult::Motion& step,
+  Estimate update(double stamp, const GroundNormal& seen, const ApproachAngleResult::Motion& step,
                   const Eigen::Matrix3d& common = Eigen::Matrix3d::Zero(), double fresh = 1);
   /// Call it for a pair without a normal.
   void carry(double stamp, const ApproachAngleResult::Motion& step);

@@ -148,9 +148,10 @@ struct KalmanHeightStage::Implementation {
                               const PairVerdict& pair) const {
     if (!parameters.use_motion || !ground.plane.valid() || !pair.knowsDown()) return {};
     const double above_plane = measured.height - ground.surface.bend;
-    return withDurations(verticalSpeed(in.step(), ground.surface.below, above_plane, measured.variance,
-                                       parameters.height_model_error, parameters.acceleration_stddev),
-                         parts->measurement.durationVariance());
+    return withDurations(
+        verticalSpeed(in.step(), ground.surface.below, above_plane,
+                      {measured.variance, parameters.height_model_error, parameters.acceleration_stddev}),
+        parts->measurement.durationVariance());
   }
 
   // Before a pair is tested, only the doubt of the pairs before is known.

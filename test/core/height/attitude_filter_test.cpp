@@ -62,7 +62,7 @@ TEST(AttitudeFilter, AveragesThroughRotationAndClaimsATrueVariance) {
     AttitudeFilter filter;
     AttitudeFilter::Estimate estimate;
     for (int k = 1; k <= kFrames; ++k)
-      estimate = filter.update(k * kStep, flight.measured(k), flight.covariance(k), flight.step(k));
+      estimate = filter.update(k * kStep, {flight.measured(k), flight.covariance(k)}, flight.step(k));
     const double error = rollOf(estimate.normal) - rollOf(flight.truth(kFrames));
     squares += error * error / kFlights;
     ratios += error * error / rollVariance(estimate.normal, estimate.covariance) / kFlights;
@@ -88,7 +88,7 @@ TEST(AttitudeFilter, ClaimsWhatIsCommonAsLargeAsItWasInThePairsAveraged) {
     const Eigen::Matrix3d own =
         std::pow(0.1 * kDegree, 2) * (Eigen::Matrix3d::Identity() - n * n.transpose());
     const Eigen::Matrix3d common = std::pow(size(k), 2) * across * across.transpose();
-    estimate = filter.update(k * kStep, (n + size(k) * across).normalized(), own, flight.step(k), common);
+    estimate = filter.update(k * kStep, {(n + size(k) * across).normalized(), own}, flight.step(k), common);
   }
   const double error = pitchOf(estimate.normal) - pitchOf(flight.truth(kFrames));
   EXPECT_GT(std::abs(error), 1.3 * size(kFrames));
@@ -105,8 +105,8 @@ TEST(AttitudeFilter, ClaimsLessForTheAverageOfPairsWhoseErrorsAreNotAllNew) {
     const Eigen::Vector3d n = flight.measured(k);
     const Eigen::Matrix3d covariance = flight.covariance(k), lasting = (1 - kFresh) * covariance;
     const ApproachAngleResult::Motion step = flight.step(k);
-    of_all = all.update(k * kStep, n, covariance, step);
-    of_some = some.update(k * kStep, n, covariance, step, lasting, kFresh);
+    of_all = all.update(k * kStep, {n, covariance}, step);
+    of_some = some.update(k * kStep, {n, covariance}, step, lasting, kFresh);
   }
   const auto roll = [](const AttitudeFilter::Estimate& estimate, const Eigen::Matrix3d& covariance) {
     return rollVariance(estimate.normal, covariance);
@@ -123,7 +123,7 @@ TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
   Flight flight(1, 0.1 * kDegree, 0);
   AttitudeFilter filter;
   const Eigen::Vector3d n = flight.measured(1);
-  const AttitudeFilter::Estimate estimate = filter.update(1, n, flight.covariance(1), {});
+  const AttitudeFilter::Estimate estimate = filter.update(1, {n, flight.covariance(1)}, {});
   EXPECT_EQ(estimate.normal, n);
   EXPECT_EQ(estimate.covariance, flight.covariance(1));
   EXPECT_EQ(estimate.average_covariance, flight.covariance(1));
@@ -132,18 +132,18 @@ TEST(AttitudeFilter, FirstPairIsTakenAsItIs) {
 TEST(AttitudeFilter, StartsAnewWithoutAStepOfTheRightDurationAndAfterAReset) {
   Flight flight(1, 0.1 * kDegree, 0);
   AttitudeFilter filter;
-  filter.update(0.05, flight.measured(1), flight.covariance(1), flight.step(1));
+  filter.update(0.05, {flight.measured(1), flight.covariance(1)}, flight.step(1));
   Eigen::Vector3d n = flight.measured(3);
-  EXPECT_EQ(filter.update(0.15, n, flight.covariance(3), flight.step(3)).normal, n) << "a frame is missing";
+  EXPECT_EQ(filter.update(0.15, {n, flight.covariance(3)}, flight.step(3)).normal, n) << "a frame is missing";
   n = flight.measured(4);
   ApproachAngleResult::Motion none;
   none.failure = {Reason::kNoMotion, ""};
-  EXPECT_EQ(filter.update(0.20, n, flight.covariance(4), none).normal, n);
+  EXPECT_EQ(filter.update(0.20, {n, flight.covariance(4)}, none).normal, n);
   filter.reset();
   n = flight.measured(5);
-  EXPECT_EQ(filter.update(0.25, n, flight.covariance(5), flight.step(5)).normal, n);
+  EXPECT_EQ(filter.update(0.25, {n, flight.covariance(5)}, flight.step(5)).normal, n);
   n = flight.measured(6);
-  EXPECT_NE(filter.update(0.30, n, flight.covariance(6), flight.step(6)).normal, n);
+  EXPECT_NE(filter.update(0.30, {n, flight.covariance(6)}, flight.step(6)).normal, n);
 }
 
 /// A second of agreeing pairs, and from then on normals of a surface that is tilted by so much.
@@ -156,7 +156,7 @@ class TiltedSurface : public testing::Test {
   AttitudeFilter::Estimate update(double tilt, const ApproachAngleResult::Motion& step) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     seen_ = turn * flight_.measured(k_);
-    return filter_.update(k_ * kStep, seen_, flight_.covariance(k_), step);
+    return filter_.update(k_ * kStep, {seen_, flight_.covariance(k_)}, step);
   }
   double errorOf(const AttitudeFilter::Estimate& estimate) const {
     return std::acos(std::min(1.0, estimate.normal.dot(flight_.truth(k_))));
@@ -297,9 +297,10 @@ TEST(AttitudeFilter, OfTheFirstTwoNormalsThatContradictTheLaterOneIsTaken) {
   AttitudeFilter filter;
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(3 * kDegree, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (int k = 1; k <= 2; ++k)
-    filter.update(k * kStep, turn * flight.measured(k), flight.covariance(k), flight.step(k));
+    filter.update(k * kStep, {turn * flight.measured(k), flight.covariance(k)}, flight.step(k));
   const Eigen::Vector3d n = flight.measured(3);
-  const AttitudeFilter::Estimate estimate = filter.update(3 * kStep, n, flight.covariance(3), flight.step(3));
+  const AttitudeFilter::Estimate estimate =
+      filter.update(3 * kStep, {n, flight.covariance(3)}, flight.step(3));
   EXPECT_TRUE(estimate.agrees);
   EXPECT_EQ(estimate.normal, n);
 }
@@ -320,7 +321,7 @@ TEST(AttitudeFilter, TheCovarianceStaysOneOverAWholeApproach) {
         flight.covariance(k) + 4 * kNormal * kNormal * across * across.transpose();
     const auto motion = k > 0 ? flight.step(k) : ApproachAngleResult::Motion();
     const AttitudeFilter::Estimate estimate =
-        filter.update(k * kStep, flight.measured(k), covariance, motion);
+        filter.update(k * kStep, {flight.measured(k), covariance}, motion);
     const Eigen::Vector3d values =
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(estimate.covariance).eigenvalues();
     ASSERT_GT(values[0], -1e-9 * values[2]) << k;

@@ -33,8 +33,8 @@ VerticalSpeed estimate(const Stddevs& stddevs, double height, const Eigen::Vecto
   GroundPlane plane{normal / height, Eigen::Matrix3d::Zero()};
   // A normal that is tilted by a small angle moves along the optical axis.
   plane.covariance(2, 2) = std::pow(stddevs.tilt / height, 2);
-  return verticalSpeed(step, plane, height, stddevs.height * stddevs.height, stddevs.slope,
-                       stddevs.acceleration);
+  return verticalSpeed(step, plane, height,
+                       {stddevs.height * stddevs.height, stddevs.slope, stddevs.acceleration});
 }
 
 TEST(VerticalSpeed, IsTheWayAlongTheNormalOverTheTime) {
@@ -77,10 +77,10 @@ TEST(VerticalSpeed, OfAStepWithoutMotionOrTimeIsNotKnown) {
   step.covariance.setZero();
   const GroundPlane plane{kDown / kHeight, Eigen::Matrix3d::Zero()};
   step.failure = {Reason::kNoMotion, ""};
-  EXPECT_TRUE(std::isnan(verticalSpeed(step, plane, kHeight, 0, 0, 0).speed));
+  EXPECT_TRUE(std::isnan(verticalSpeed(step, plane, kHeight, {}).speed));
   step.failure = {};
   step.duration = 0;
-  EXPECT_TRUE(std::isnan(verticalSpeed(step, plane, kHeight, 0, 0, 0).variance));
+  EXPECT_TRUE(std::isnan(verticalSpeed(step, plane, kHeight, {}).variance));
 }
 
 }  // namespace

@@ -149,8 +149,8 @@ void GroundEstimate::averageNormal(const PairInput& in, Ground& ground) {
   const Eigen::Matrix3d common = GroundPlane{ground.plane.g, ground.common}.normalCovariance();
   const Eigen::Matrix3d own = average.covariance - common;
   const double lasting = lastingShare(in.stereo);
-  const AttitudeFilter::Estimate estimate =
-      attitude_.update(in.stamp(), ground.plane.normal(), own, in.turn, common + lasting * own, 1 - lasting);
+  const AttitudeFilter::Estimate estimate = attitude_.update(in.stamp(), {ground.plane.normal(), own},
+                                                             in.turn, common + lasting * own, 1 - lasting);
   average = {estimate.normal, estimate.average_covariance + estimate.commonCovariance()};
   ground.tilt = std::acos(std::min(1.0, ground.plane.normal().dot(estimate.normal)));
   ground.tilt_ratio = estimate.ratio;

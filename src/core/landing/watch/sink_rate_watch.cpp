@@ -35,7 +35,7 @@ void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scal
   const Eigen::Vector3d normal = ground.normalOr(in.normal()).n;
   if (!in.step().failure && level_known && normal.allFinite() && std::isfinite(scale) && scale > 0) {
     const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
-    speed = withDurations(verticalSpeed(in.step(), plane, scale, 0, 0, parameters_.acceleration_stddev),
+    speed = withDurations(verticalSpeed(in.step(), plane, scale, {0, 0, parameters_.acceleration_stddev}),
                           doubt.duration_variance);
     velocity = in.step().translation_over_height.norm() * scale / in.step().duration;
     // A doubtful normal makes the vertical speed as wrong as the angle.
