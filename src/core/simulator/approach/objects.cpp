@@ -124,21 +124,21 @@ std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& p, do
   return objects;
 }
 
-void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
-                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
-                 const cv::Rect& part, cv::Mat& image) {
+void drawObjects(const std::vector<StandingObject>& objects, const PlacedCamera& view,
+                 const PixelFilter& filter, const cv::Rect& part, cv::Mat& image) {
   if (objects.empty()) return;
+  const Eigen::Vector3d& centre = view.centre;
   std::vector<Visible> visible;
   for (const StandingObject& object : objects)
     visible.push_back({object.low.array() - centre.cast<float>().array(),
                        object.high.array() - centre.cast<float>().array(), object.brightness,
-                       outlineOf(object, rotation, centre)});
-  const Eigen::Matrix3f axes = rotation.cast<float>();
+                       outlineOf(object, view.rotation, centre)});
+  const Eigen::Matrix3f axes = view.rotation.cast<float>();
   const PixelFilter finer = filter.finer();  // only the samples show outlines
   cv::parallel_for_(cv::Range(part.y, part.br().y), [&](const cv::Range& rows) {
     std::vector<const Visible*> here;
     for (int row = rows.start; row < rows.end; ++row) {
-      const PixelRay* rays = &camera.rays[static_cast<size_t>(row) * image.cols];
+      const PixelRay* rays = &view.camera.rays[static_cast<size_t>(row) * image.cols];
       for (int column = part.x; column < part.br().x; ++column) {
         here.clear();
         for (const Visible& object : visible)

@@ -20,11 +20,16 @@ struct StandingObject {
 std::vector<StandingObject> placeObjects(const SimulatedObjectsParameters& objects, double runway_width,
                                          uint64_t seed);
 
-/// Draws the objects over a part of an image of the ground (32-bit float). rotation: from rectified camera
-/// axes to the runway frame. centre: of the camera, in the runway frame. filter: the one that the ground was
-/// drawn with.
-void drawObjects(const std::vector<StandingObject>& objects, const SimulatedCamera& camera,
-                 const Eigen::Matrix3d& rotation, const Eigen::Vector3d& centre, const PixelFilter& filter,
-                 const cv::Rect& part, cv::Mat& image);
+/// A camera at its place in the runway frame.
+struct PlacedCamera {
+  const SimulatedCamera& camera;
+  Eigen::Matrix3d rotation;  ///< from rectified camera axes to the runway frame
+  Eigen::Vector3d centre;    ///< m
+};
+
+/// Draws the objects over a part of an image of the ground (32-bit float). filter: the one that the ground
+/// was drawn with.
+void drawObjects(const std::vector<StandingObject>& objects, const PlacedCamera& view,
+                 const PixelFilter& filter, const cv::Rect& part, cv::Mat& image);
 
 }  // namespace uav_landing

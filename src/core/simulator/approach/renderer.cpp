@@ -130,7 +130,7 @@ void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, con
                      [&](const PixelRay& ray) { return pixel(view, ray); });
     }
   });
-  drawObjects(objects_, camera, rotation, centre, filter_, part, image);
+  drawObjects(objects_, {camera, rotation, centre}, filter_, part, image);
 }
 
 }  // namespace uav_landing
