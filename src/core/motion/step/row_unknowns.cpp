@@ -28,20 +28,19 @@ SumsByTime sumsByReadout(const MotionRows& rows, const MotionRows& later, const 
 }
 
 std::vector<RowNode> rowNodes(const RowTimes& times, const std::vector<TemporalMatch>& matches,
-                              const MotionRows& rows, const MotionRows* later, const Vector9d& step,
-                              double factor) {
+                              const FittedRows& fitted, const MotionRows* later) {
   std::vector<double> shares;
   shares.reserve(matches.size());
   for (const TemporalMatch& match : matches)
     shares.push_back(times.at(match.now.x(), match.now.y()) / times.readoutTime());
-  std::vector<RowNode> nodes = rows.rowNodes(shares, step, later, kApart);
+  std::vector<RowNode> nodes = fitted.rows.rowNodes(shares, fitted.step, later, kApart);
   for (RowNode& node : nodes) {
-    node.rotation /= factor;
-    node.with_next /= factor;
-    node.with_motion /= factor;
-    node.with_time /= factor;
-    node.score /= factor;
-    node.squares /= factor;
+    node.rotation /= fitted.factor;
+    node.with_next /= fitted.factor;
+    node.with_motion /= fitted.factor;
+    node.with_time /= fitted.factor;
+    node.score /= fitted.factor;
+    node.squares /= fitted.factor;
   }
   return nodes;
 }
@@ -62,9 +61,8 @@ RowUnknowns findRowUnknowns(const StereoRig& rig, const std::vector<TemporalMatc
   SumsByTime& by_time = found.by_time;
   if (later != nullptr) by_time = sumsByReadout(fitted.rows, *later, fitted.step, fitted.factor);
   if (doubt.times == nullptr || doubt.shake == nullptr) return found;
-  found.shake =
-      findRowShake(rowNodes(*doubt.times, matches, fitted.rows, later, fitted.step, fitted.factor),
-                   fitted.information, later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
+  found.shake = findRowShake(rowNodes(*doubt.times, matches, fitted, later), fitted.information,
+                             later != nullptr ? timeUnknown(by_time) : TimeUnknown(), *doubt.shake);
   if (!found.shake.found()) return found;
   by_time.right -= by_time.with_motion.dot(found.shake.step) + found.shake.time_right;
   by_time.with_motion -= found.shake.time_with_motion;
