@@ -27,13 +27,14 @@ cv::Mat fadingTexture(int width, int height) {
 cv::Mat everywhere(const cv::Mat& image) { return cv::Mat(image.size(), CV_8UC1, cv::Scalar(255)); }
 
 std::vector<cv::Point> find(const cv::Mat& image, const cv::Mat& mask, int count) {
-  return findCorners(image, mask, count, kQuality, kDistance, kHarrisK);
+  return findCorners(image, mask, {count, kQuality, kDistance, kHarrisK});
 }
 
 TEST(Corners, AreTheCornersOfASquare) {
   cv::Mat image(60, 80, CV_8UC1, cv::Scalar(40));
   cv::rectangle(image, cv::Rect(20, 15, 31, 27), cv::Scalar(200), cv::FILLED);
-  const std::vector<cv::Point> corners = findCorners(image, everywhere(image), 10, 0.1, kDistance, kHarrisK);
+  const std::vector<cv::Point> corners =
+      findCorners(image, everywhere(image), {10, 0.1, kDistance, kHarrisK});
   ASSERT_EQ(corners.size(), 4U);
   // The response of a 3x3 window peaks within a pixel or so of the geometric corner; sorted by row.
   for (const cv::Point expected :
@@ -62,7 +63,7 @@ TEST(Corners, AreTheMaximaOfTheHarrisResponse) {
             response.at<float>(v, u) == neighbourhood.at<float>(v, u))
           expected.emplace_back(u, v);
     ASSERT_GT(expected.size(), 50U);
-    EXPECT_EQ(findCorners(image, everywhere(image), 1000000, 0.05, 1, k), expected) << k;
+    EXPECT_EQ(findCorners(image, everywhere(image), {1000000, 0.05, 1, k}), expected) << k;
   }
 }
 
@@ -82,7 +83,7 @@ TEST(Corners, KeepTheMinimalDistanceAndTheCount) {
   const cv::Mat image = fadingTexture(200, 150);
   for (const double distance : {1.0, 4.0, 9.5}) {
     const std::vector<cv::Point> corners =
-        findCorners(image, everywhere(image), 5000, kQuality, distance, kHarrisK);
+        findCorners(image, everywhere(image), {5000, kQuality, distance, kHarrisK});
     ASSERT_GT(corners.size(), 30U);
     for (size_t i = 0; i < corners.size(); ++i)
       for (size_t j = 0; j < i; ++j) ASSERT_GE(cv::norm(corners[i] - corners[j]), distance);

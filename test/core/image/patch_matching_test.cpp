@@ -80,7 +80,7 @@ Errors matchGrid(const Pair& pair, const Eigen::Matrix2d& warp) {
       const PatchSearch::Best best = search.run(u, v, wanted + Eigen::Vector2d(2.4, -1.7), warp, 6);
       if (!best.found) continue;
       const PatchRefinement refined =
-          refinePatch(pair.reference.fine, pair.other.fine, u, v, best.position, warp, kRadius);
+          refinePatch(pair.reference.fine, pair.other.fine, {u, v, kRadius}, {best.position, warp});
       if (!refined.converged) continue;
       const Eigen::Vector2d error = refined.position - wanted;
       ++errors.matched;
@@ -154,7 +154,7 @@ TEST(RefinePatch, KnowsThatAnEdgeSaysNothingAlongIt) {
   MatchImage other;
   other.assign(noisy);
   const PatchRefinement refined =
-      refinePatch(match.fine, other.fine, 100, 100, {100.3, 100.2}, Eigen::Matrix2d::Identity(), kRadius);
+      refinePatch(match.fine, other.fine, {100, 100, kRadius}, {{100.3, 100.2}, Eigen::Matrix2d::Identity()});
   ASSERT_TRUE(refined.converged);
   EXPECT_NEAR(refined.position.x(), 100, 0.1);
   EXPECT_GT(refined.claim().covariance(1, 1), 10 * refined.claim().covariance(0, 0));
@@ -182,8 +182,8 @@ TEST(RefinePatch, DoesNotTakeNoiseAlongAnEdgeForTexture) {
   int found = 0;
   for (int v = 20; v < kSize - 20; v += 4) {
     const double off = v % 8 == 0 ? 1.0 : -1.0;
-    const PatchRefinement refined = refinePatch(reference.fine, other.fine, 100, v, {100.0, v + off},
-                                                Eigen::Matrix2d::Identity(), kRadius);
+    const PatchRefinement refined = refinePatch(reference.fine, other.fine, {100, v, kRadius},
+                                                {{100.0, v + off}, Eigen::Matrix2d::Identity()});
     if (!refined.converged) continue;
     ++found;
     const Eigen::Matrix2d covariance = refined.claim().covariance;
@@ -210,7 +210,7 @@ TEST(RefinePatch, TellsHowThePlaceFollowsFromTheWarp) {
     for (int u = 40; u <= kSize - 40; u += 6) {
       const Eigen::Vector2d wanted = pair.place(u, v);
       const PatchRefinement refined =
-          refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, look.A + E, kRadius);
+          refinePatch(pair.reference.fine, pair.other.fine, {u, v, kRadius}, {wanted, look.A + E});
       ASSERT_TRUE(refined.converged);
       const Eigen::Vector2d error = refined.position - wanted;
       const auto by_warp = refined.claim().by_warp;
@@ -234,7 +234,7 @@ ByPerspective movedByPerspective(const Pair& pair) {
     for (int u = 40; u <= kSize - 40; u += 6) {
       const Eigen::Vector2d wanted = pair.place(u, v);
       const PatchRefinement refined =
-          refinePatch(pair.reference.fine, pair.other.fine, u, v, wanted, pair.warp(u, v), kRadius);
+          refinePatch(pair.reference.fine, pair.other.fine, {u, v, kRadius}, {wanted, pair.warp(u, v)});
       if (!refined.converged) continue;
       const Eigen::Vector2d error = refined.position - wanted;
       EXPECT_TRUE(refined.covariance().isApprox(refined.claim().covariance));
@@ -309,14 +309,15 @@ TEST(PatchMatching, SaysNoWithoutContrastAndOutsideTheImage) {
   PatchSearch from_flat(flat, pair.other.fine, kRadius), to_flat(pair.reference.fine, flat, kRadius);
   EXPECT_FALSE(from_flat.run(100, 100, {100, 100}, upright, 3).found);
   EXPECT_FALSE(to_flat.run(100, 100, {100, 100}, upright, 3).found);
-  EXPECT_FALSE(refinePatch(flat, flat, 100, 100, {100, 100}, upright, kRadius).converged);
-  EXPECT_FALSE(refinePatch(pair.reference.fine, flat, 100, 100, {100, 100}, upright, kRadius).converged);
+  EXPECT_FALSE(refinePatch(flat, flat, {100, 100, kRadius}, {{100, 100}, upright}).converged);
+  EXPECT_FALSE(refinePatch(pair.reference.fine, flat, {100, 100, kRadius}, {{100, 100}, upright}).converged);
   PatchSearch search(pair.reference.fine, pair.other.fine, kRadius);
   for (const Eigen::Vector2d& at :
        {Eigen::Vector2d(2, 100), Eigen::Vector2d(100, kSize - 2), Eigen::Vector2d(-300, 100),
         Eigen::Vector2d(1e9, 1e9), Eigen::Vector2d(std::nan(""), 100)}) {
     EXPECT_FALSE(search.run(100, 100, at, upright, 3).found) << at.transpose();
-    EXPECT_FALSE(refinePatch(pair.reference.fine, pair.other.fine, 100, 100, at, upright, kRadius).converged)
+    EXPECT_FALSE(
+        refinePatch(pair.reference.fine, pair.other.fine, {100, 100, kRadius}, {at, upright}).converged)
         << at.transpose();
   }
   EXPECT_FALSE(search.run(3, 100, {100, 100}, upright, 3).found);

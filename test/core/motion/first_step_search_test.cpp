@@ -48,7 +48,7 @@ struct Flight {
     cv::Mat below = cv::Mat::zeros(rig.size, CV_8UC1);
     below.rowRange(110, 230) = 255;
     std::vector<TrackedCorner> corners;
-    for (const cv::Point& p : findCorners(ground.left(rig, at(i * period)), below, 250, 1e-7, 4, 0.04))
+    for (const cv::Point& p : findCorners(ground.left(rig, at(i * period)), below, {250, 1e-7, 4, 0.04}))
       corners.push_back({p.x, p.y, true, 0, 0});
     memory.matching.textures.clear();
     const Eigen::Vector3d n = at(0).down();

@@ -49,7 +49,7 @@ struct Scene {
     cv::Mat below = cv::Mat::zeros(left.size(), CV_8UC1);
     below.rowRange(110, 230) = 255;
     std::vector<TrackedCorner> corners;
-    for (const cv::Point& p : findCorners(left, below, 250, 1e-7, 4, 0.04)) {
+    for (const cv::Point& p : findCorners(left, below, {250, 1e-7, 4, 0.04})) {
       TrackedCorner corner;
       corner.u = p.x;
       corner.v = p.y;

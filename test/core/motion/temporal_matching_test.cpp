@@ -43,7 +43,7 @@ struct Frames {
     image_now.assign(grey);
     cv::Mat below = cv::Mat::zeros(rig.size, CV_8UC1);
     below.rowRange(rig.size.height * 45 / 100, rig.size.height - 8) = 255;
-    for (const cv::Point& p : findCorners(grey, below, 250, 1e-7, 4, 0.04)) {
+    for (const cv::Point& p : findCorners(grey, below, {250, 1e-7, 4, 0.04})) {
       TrackedCorner corner;
       corner.u = p.x;
       corner.v = p.y;
@@ -189,8 +189,9 @@ double ownGainsOverHeld(const test::Exposure& exposure_then,
       const Eigen::Vector3d y = H * match.now.homogeneous();
       const Eigen::Matrix2d warp = (H.topLeftCorner<2, 2>() - wanted * H.block<1, 2>(2, 0)) / y.z();
       const PatchRefinement alone =
-          refinePatch(frames.image_now.fine, frames.image_then.fine, cvRound(match.now.x()),
-                      cvRound(match.now.y()), wanted, warp, TemporalMatchOptions().window_radius);
+          refinePatch(frames.image_now.fine, frames.image_then.fine,
+                      {cvRound(match.now.x()), cvRound(match.now.y()), TemporalMatchOptions().window_radius},
+                      {wanted, warp});
       if (!alone.converged || (match.then - wanted).norm() > 1) continue;
       own += (alone.position - wanted).squaredNorm();
       held += (match.then - wanted).squaredNorm();

@@ -186,30 +186,30 @@ void accept(Candidate* begin, Candidate* end, Cells& cells,
 
 }  // namespace
 
-std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
-                                   double min_distance, double harris_k, CornerMemory& memory) {
+std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, const CornerOptions& options,
+                                   CornerMemory& memory) {
   const cv::Rect area = boundsOf(mask);
   if (area.width < 7 || area.height < 7) return {};
-  const Maxima maxima = findMaxima(image(area), mask(area), harris_k, memory.maxima);
-  const Classes classes(maxima, static_cast<float>(quality) * maxima.strongest, memory.sorted);
+  const Maxima maxima = findMaxima(image(area), mask(area), options.harris_k, memory.maxima);
+  const Classes classes(maxima, static_cast<float>(options.quality) * maxima.strongest, memory.sorted);
 
   // Sorted by the rank within cells first, so that strong markings do not take all corners, then by strength.
-  Cells cells(area.size(), std::max(min_distance, std::sqrt(double(area.area()) / count)), min_distance);
+  Cells cells(area.size(), std::max(options.min_distance, std::sqrt(double(area.area()) / options.count)),
+              options.min_distance);
   std::array<std::vector<Candidate>, Cells::kMost> ranked;
   for (int i = 0; i < Classes::kCount; ++i) accept(classes.begin(i), classes.end(i), cells, ranked);
   std::vector<cv::Point> corners;
   for (const std::vector<Candidate>& rank : ranked)
     for (const Candidate& corner : rank) corners.push_back(cv::Point(corner.x, corner.y) + area.tl());
-  if (corners.size() > static_cast<size_t>(count)) corners.resize(count);
+  if (corners.size() > static_cast<size_t>(options.count)) corners.resize(options.count);
   std::sort(corners.begin(), corners.end(),
             [](const cv::Point& a, const cv::Point& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   return corners;
 }
 
-std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
-                                   double min_distance, double harris_k) {
+std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, const CornerOptions& options) {
   CornerMemory memory;
-  return findCorners(image, mask, count, quality, min_distance, harris_k, memory);
+  return findCorners(image, mask, options, memory);
 }
 
 int cornerBudget(const cv::Size& image, int most, int pixels_per_corner) {

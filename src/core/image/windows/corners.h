@@ -16,14 +16,20 @@ struct CornerMemory {
   std::vector<CornerCandidate> maxima, sorted;
 };
 
-/// Harris corners spread over the image: the strongest of each cell first, at most count of them. Two corners
-/// are at least min_distance pixels apart. image: mono8 or float. mask: mono8, corners only where it is not
-/// 0. quality: weakest response kept, as a share of the strongest. Positions are whole pixels, sorted by row.
-std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
-                                   double min_distance, double harris_k, CornerMemory& memory);
+/// Which Harris corners of an image to take.
+struct CornerOptions {
+  int count;            ///< largest number of corners
+  double quality;       ///< weakest response kept, as a share of the strongest
+  double min_distance;  ///< between two corners, pixels
+  double harris_k;      ///< weight of the squared trace in the response
+};
+
+/// Harris corners spread over the image: the strongest of each cell first. image: mono8 or float. mask:
+/// mono8, corners only where it is not 0. Positions are whole pixels, sorted by row.
+std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, const CornerOptions& options,
+                                   CornerMemory& memory);
 /// The same with memory of its own.
-std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, int count, double quality,
-                                   double min_distance, double harris_k);
+std::vector<cv::Point> findCorners(const cv::Mat& image, const cv::Mat& mask, const CornerOptions& options);
 
 /// Number of corners for an image: at most most, at least 20, and so many pixels_per_corner for each. When
 /// windows overlap much, more corners cost time and tell little more.

@@ -40,18 +40,14 @@ class SecantSteps {
   Eigen::Vector2d wanted_ = Eigen::Vector2d::Zero(), made_ = Eigen::Vector2d::Zero();
 };
 
-bool windowInside(const cv::Mat& image, int u, int v, int radius) {
-  return u >= radius && v >= radius && u + radius < image.cols && v + radius < image.rows;
-}
-
 }  // namespace
 
-PatchRefinement refineWindow(const ReferenceWindow& window, const cv::Mat& other,
-                             const Eigen::Vector2d& position, const Eigen::Matrix2d& warp,
+PatchRefinement refineWindow(const ReferenceWindow& window, const cv::Mat& other, const WindowPlace& start,
                              const GainShift* first, bool distances) {
   constexpr int kIterations = 12;
   constexpr double kMaxDrift = 2.0;
   PatchRefinement result;
+  const auto& [position, warp] = start;
   const int radius = window.radius();
   const double reach_x = std::abs(warp(0, 0)) * window.paddedReach() + std::abs(warp(0, 1)) * radius;
   const double reach_y = std::abs(warp(1, 0)) * window.paddedReach() + std::abs(warp(1, 1)) * radius;
@@ -82,13 +78,12 @@ PatchRefinement refineWindow(const ReferenceWindow& window, const cv::Mat& other
   return result;
 }
 
-PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, int u, int v,
-                            const Eigen::Vector2d& position, const Eigen::Matrix2d& warp, int radius,
-                            OwnTexture& own) {
-  if (!windowInside(reference, u, v, radius + 1)) return {};
-  const ReferenceWindow window(reference, u, v, radius, own);
-  if (!window.usable()) return {};
-  return refineWindow(window, other, position, warp, nullptr, true);
+PatchRefinement refinePatch(const cv::Mat& reference, const cv::Mat& other, const SquareWindow& window,
+                            const WindowPlace& start, OwnTexture& own) {
+  if (!window.isInside(reference, 1)) return {};
+  const ReferenceWindow content(reference, window, own);
+  if (!content.usable()) return {};
+  return refineWindow(content, other, start, nullptr, true);
 }
 
 }  // namespace uav_landing

@@ -45,8 +45,8 @@ void findDistances(const WindowPlanes& planes, OwnTexture& own) {
 
 }  // namespace
 
-ReferenceWindow::ReferenceWindow(const cv::Mat& reference, int u, int v, int radius, OwnTexture& own)
-    : planes_(reference, u, v, radius), own_(own) {
+ReferenceWindow::ReferenceWindow(const cv::Mat& reference, const SquareWindow& window, OwnTexture& own)
+    : planes_(reference, window.u, window.v, window.radius), own_(own) {
   if (!own.known) findOwn(planes_, own);
 }
 

@@ -19,11 +19,23 @@ struct GainShift {
   double left_over = 0;       ///< contrast that no shift explains
 };
 
+/// A square window of an image.
+struct SquareWindow {
+  int u, v;    ///< middle pixel
+  int radius;  ///< pixels from the middle to each side
+
+  /// Whether the window, and so many more pixels around it, are inside an image.
+  bool isInside(const cv::Mat& image, int margin) const {
+    const int reach = radius + margin;
+    return u >= reach && v >= reach && u + reach < image.cols && v + reach < image.rows;
+  }
+};
+
 /// A window of the reference, for comparison with places in other images.
 class ReferenceWindow {
  public:
   /// own: of this very window. The window and one pixel around it must be inside the image.
-  ReferenceWindow(const cv::Mat& reference, int u, int v, int radius, OwnTexture& own);
+  ReferenceWindow(const cv::Mat& reference, const SquareWindow& window, OwnTexture& own);
 
   bool usable() const { return own_.usable; }  ///< for shifts in both directions
   const OwnTexture& own() const { return own_; }

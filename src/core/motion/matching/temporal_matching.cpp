@@ -214,7 +214,7 @@ class Follower {
 
   PatchRefinement refine(const TrackedCorner& corner, const Eigen::Vector2d& at, const Eigen::Matrix2d& warp,
                          OwnTexture& own) const {
-    return refinePatch(now_.fine, then_.fine, corner.u, corner.v, at, warp, options_.window_radius, own);
+    return refinePatch(now_.fine, then_.fine, {corner.u, corner.v, options_.window_radius}, {at, warp}, own);
   }
   bool isLike(const PatchRefinement& refined) const {
     return refined.converged && refined.score >= options_.min_zncc;

@@ -29,7 +29,7 @@ std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& im
   keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope, ground);
   const int count = cornerBudget(image.size(), parameters.corner_count, parameters.pixels_per_corner);
   std::vector<TrackedCorner> corners;
-  for (const cv::Point& point : findCorners(image, ground, count, kQuality, kDistance, kHarris, memory))
+  for (const cv::Point& point : findCorners(image, ground, {count, kQuality, kDistance, kHarris}, memory))
     corners.push_back({point.x, point.y, true, 0, 0});
   return corners;
 }

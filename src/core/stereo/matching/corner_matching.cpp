@@ -71,8 +71,8 @@ class CornerMatcher {
       parabola.stddev = kParabolaStddev;
       return parabola;
     }
-    RowRefinement refined = refineAlongRow(level_.left, level_.right, u, v, found, forward_warp_,
-                                           parameters_.window_radius, across);
+    RowRefinement refined = refineAlongRow(level_.left, level_.right, {u, v, parameters_.window_radius},
+                                           {found, forward_warp_}, across);
     refined.converged &= refined.score >= parameters_.min_zncc;
     refined.stddev = std::hypot(refined.stddev, kStddevFloor);
     return refined;
@@ -116,8 +116,9 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
     keepHalfPlane(mask, side.x(), side.y(), side.z(), kept);
     mask = kept;
   }
-  return findCorners(level.left, mask, count, parameters.corner_quality, parameters.min_corner_distance,
-                     parameters.harris_k, memory.corners);
+  return findCorners(level.left, mask,
+                     {count, parameters.corner_quality, parameters.min_corner_distance, parameters.harris_k},
+                     memory.corners);
 }
 
 std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,

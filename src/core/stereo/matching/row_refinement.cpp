@@ -45,7 +45,7 @@ RowRefinement::Across across(const ReferenceWindow& window, const cv::Mat& other
   if (!window.usable()) return {};
   const GainShift first = window.solve(sums);
   if (!first.solved) return {};
-  return RowRefinement::Across(refineWindow(window, other, looked_at, warp.matrix(), &first, false));
+  return RowRefinement::Across(refineWindow(window, other, {looked_at, warp.matrix()}, &first, false));
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ RowRefinement::Across::Across(const PatchRefinement& refined) {
   score = refined.score;
 }
 
-RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
-                             const RowWarp& warp, int radius, bool across_too) {
+RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, const SquareWindow& window,
+                             const RowPlace& start, bool across_too) {
   constexpr int kIterations = 8;
   // A step leaves about a tenth of itself, which is little beside the error of a match.
   constexpr double kConverged = 0.05, kMaxDrift = 1.5;
@@ -69,31 +69,30 @@ RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int
   // independent.
   constexpr double kIndependent = 0.25;
   RowRefinement result;
-  if (u < radius + 1 || v < radius + 1 || u + radius + 1 >= reference.cols ||
-      v + radius + 1 >= reference.rows)
-    return result;
+  if (!window.isInside(reference, 1)) return result;
   OwnTexture own;
-  const ReferenceWindow window(reference, u, v, radius, own);
+  const ReferenceWindow content(reference, window, own);
+  const RowWarp& warp = start.warp;
   if (own.energy <= 0 || own.gradient(0, 0) <= 0) return result;
-  const double reach = std::abs(warp.scale) * window.paddedReach() + std::abs(warp.shear) * radius;
-  double x0 = position;
+  const double reach = std::abs(warp.scale) * content.paddedReach() + std::abs(warp.shear) * window.radius;
+  double x0 = start.column;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     if (!(x0 - reach >= 2 && x0 + reach < other.cols - 3)) return result;
-    const WindowPlanes::OtherSums look = window.lookAlongRow(other, v, x0, warp.scale, warp.shear);
-    const RowSums sums(own, look, window.count());
+    const WindowPlanes::OtherSums look = content.lookAlongRow(other, window.v, x0, warp.scale, warp.shear);
+    const RowSums sums(own, look, content.count());
     const RowStep step(sums);
     if (!step.solved) return result;
     const double looked_at = x0, delta = step.shift * warp.scale;
     x0 += std::clamp(delta, -1.0, 1.0);
-    if (std::abs(x0 - position) > kMaxDrift) return result;
+    if (std::abs(x0 - start.column) > kMaxDrift) return result;
     if (std::abs(delta) < kConverged) {
       const double residual = std::max(0.0, sums.aa - step.gain * sums.ab - step.shift * sums.ag);
-      const double noise = residual / (window.count() - 3) / kIndependent;
+      const double noise = residual / (content.count() - 3) / kIndependent;
       result.stddev = std::abs(warp.scale) * std::sqrt(noise * step.shift_variance);
       result.score = sums.ab / std::sqrt(sums.aa * sums.bb);
       result.position = x0;
       result.converged = true;
-      if (across_too) result.across = across(window, other, look, {looked_at, v}, warp);
+      if (across_too) result.across = across(content, other, look, {looked_at, window.v}, warp);
       return result;
     }
   }

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "image/windows/patch_refinement.h"
+#include "image/windows/reference_window.h"
 #include "stereo/matching/row_warp.h"
 
 namespace uav_landing {
@@ -27,10 +27,16 @@ struct RowRefinement {
   } across;
 };
 
-/// Refines the window around (u, v) of the reference, from column `position` of the other image on. Both
-/// images are CV_32F of the same size. Not converged when the window leaves an image, has no contrast along
-/// the row, or moves by more than 1.5 px. across_too: fill `across`, too.
-RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, int u, int v, double position,
-                             const RowWarp& warp, int radius, bool across_too = false);
+/// Place of a reference's window in the same row of another image.
+struct RowPlace {
+  double column;  ///< of the window's middle
+  RowWarp warp;
+};
+
+/// Refines the place of the reference's window in the other image, from `start` on. Both images are CV_32F of
+/// the same size. Not converged when the window leaves an image, has no contrast along the row, or moves by more
+/// than 1.5 px. across_too: fill `across`, too.
+RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, const SquareWindow& window,
+                             const RowPlace& start, bool across_too = false);
 
 }  // namespace uav_landing

@@ -113,9 +113,10 @@ void PlaneSearch::beginOther(Phase phase) {
 void PlaneSearch::prepare(Tier& tier, size_t corners) {
   const StereoLevel& level = tier.level;
   addRoomBeside(level.right, tier.right);
-  tier.corners =
-      findCorners(level.left, level.left_mask, static_cast<int>(corners), parameters_.corner_quality,
-                  parameters_.min_corner_distance, parameters_.harris_k, memory_);
+  tier.corners = findCorners(level.left, level.left_mask,
+                             {static_cast<int>(corners), parameters_.corner_quality,
+                              parameters_.min_corner_distance, parameters_.harris_k},
+                             memory_);
 }
 
 double PlaneSearch::searchOn() {

@@ -54,7 +54,8 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
 // Place in the right image of the window around a corner, looked for from start on.
 RowRefinement::Across lookAcross(const StereoLevel& level, const cv::Point& corner,
                                  const Eigen::Vector2d& start, const Eigen::Matrix2d& warp, int radius) {
-  return RowRefinement::Across(refinePatch(level.left, level.right, corner.x, corner.y, start, warp, radius));
+  return RowRefinement::Across(
+      refinePatch(level.left, level.right, {corner.x, corner.y, radius}, {start, warp}));
 }
 
 // Only ground has the disparity of the plane. An object on it is found beside that place or not at all.

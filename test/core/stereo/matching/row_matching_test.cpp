@@ -96,7 +96,7 @@ Errors refine(const Pair& pair, const RowWarp& warp) {
   return matchGrid(pair, [&](int u, int v, double near, double* found, double* stddev) {
     if (!rows.run(u, v, near, 6, warp)) return false;
     const RowRefinement refined =
-        refineAlongRow(pair.left.fine, pair.right.fine, u, v, rows.best(nullptr).position, warp, kRadius);
+        refineAlongRow(pair.left.fine, pair.right.fine, {u, v, kRadius}, {rows.best(nullptr).position, warp});
     *found = refined.position;
     *stddev = refined.stddev;
     return refined.converged;
@@ -259,8 +259,8 @@ Errors refineAcross(const Pair& pair) {
   const double down = pair.look.down;
   for (int v = 20; v < kHeight - 20; v += 6)
     for (int u = 50; u < kWidth - 20; u += 6) {
-      const RowRefinement refined = refineAlongRow(pair.left.fine, pair.right.fine, u, v, pair.column(u, v),
-                                                   pair.warp(), kRadius, true);
+      const RowRefinement refined = refineAlongRow(pair.left.fine, pair.right.fine, {u, v, kRadius},
+                                                   {pair.column(u, v), pair.warp()}, true);
       ++result.tried;
       if (!refined.across.found || refined.across.score < 0.8) continue;
       const double error = refined.across.place.y() - v - down;
@@ -297,7 +297,7 @@ TEST(RefineAlongRow, SaysNoWhereTheRowIsFarAway) {
 TEST(RefineAlongRow, LooksAcrossWhenAskedOnly) {
   const Pair pair(shifted(20.3));
   const RowRefinement refined =
-      refineAlongRow(pair.left.fine, pair.right.fine, 100, 100, pair.column(100, 100), {}, kRadius);
+      refineAlongRow(pair.left.fine, pair.right.fine, {100, 100, kRadius}, {pair.column(100, 100), {}});
   EXPECT_TRUE(refined.converged);
   EXPECT_FALSE(refined.across.found);
 }
@@ -307,16 +307,18 @@ TEST(RowMatching, SaysNoWithoutContrastAndOutsideTheImage) {
   const cv::Mat flat(kHeight, kWidth, CV_32F, cv::Scalar(77));
   RowSearch nothing(flat, pair.right.fine, kRadius, MatchingCost::kZncc);
   EXPECT_FALSE(nothing.run(100, 100, 80, 3, {}));
-  EXPECT_FALSE(refineAlongRow(flat, flat, 100, 100, 80, {}, kRadius).converged);
+  EXPECT_FALSE(refineAlongRow(flat, flat, {100, 100, kRadius}, {80, {}}).converged);
   RowSearch rows(pair.left.fine, pair.right.fine, kRadius, MatchingCost::kZncc);
   for (const cv::Point p : {cv::Point(4, 100), cv::Point(100, 4), cv::Point(kWidth - 5, 100),
                             cv::Point(100, kHeight - 5), cv::Point(-50, 100)}) {
     EXPECT_FALSE(rows.run(p.x, p.y, 80, 3, {})) << p;
-    EXPECT_FALSE(refineAlongRow(pair.left.fine, pair.right.fine, p.x, p.y, 80, {}, kRadius).converged) << p;
+    EXPECT_FALSE(refineAlongRow(pair.left.fine, pair.right.fine, {p.x, p.y, kRadius}, {80, {}}).converged)
+        << p;
   }
   // Wholly or partly outside the other image.
   for (const double centre : {-40.0, 2.0, kWidth - 2.0, kWidth + 40.0}) {
-    EXPECT_FALSE(refineAlongRow(pair.left.fine, pair.right.fine, 100, 100, centre, {}, kRadius).converged);
+    EXPECT_FALSE(
+        refineAlongRow(pair.left.fine, pair.right.fine, {100, 100, kRadius}, {centre, {}}).converged);
     EXPECT_TRUE(!rows.run(100, 100, centre, 1, {}) || rows.best(nullptr).score <= -1) << centre;
   }
 }
