@@ -229,7 +229,7 @@ struct StereoDepthStage::Implementation {
     for (const DisparitySample& sample : samples)
       result.points.push_back({sample.u, sample.v, sample.disparity, sample.stddev, false});
     Expected<PlaneFit> plane =
-        fitCorners(model.rig, samples, result.corners, expected, limits, parameters.disparity_bias_stddev);
+        fitCorners(model.rig, {samples, parameters.disparity_bias_stddev}, result.corners, expected, limits);
     if (!plane) {
       result.failure = plane.error();
       return;
@@ -304,7 +304,7 @@ struct StereoDepthStage::Implementation {
     if (!parameters.surface_curvature) return;
     ScopedTimer timer(timings, "surface_profile");
     const std::optional<SurfaceProfile> profile =
-        fitSurfaceProfile(model.rig, seen, flat, limits, parameters.disparity_bias_stddev,
+        fitSurfaceProfile(model.rig, {seen, parameters.disparity_bias_stddev}, flat, limits,
                           parameters.slope_change_deg * kDegree);
     if (!profile) return;
     result.below = profile->below;

@@ -88,7 +88,7 @@ void BandDisparities::weigh() {
     addNeighbours(grid_, sums_, around_);
     const BandNoise noise = noiseOf(grid_, around_, *gain);
     residuals[band] = noise.residual;
-    addEvidence(grid_, sums_, around_, *gain, noise, TextureBands::noise(band), scores_, evidence_);
+    addEvidence(grid_, {sums_, around_, *gain, noise, TextureBands::noise(band)}, scores_, evidence_);
   }
   differ_by_noise_ = residuals[kCoarsest] <= kMostCoarse * residuals[0];
 }

@@ -30,18 +30,19 @@ struct BlockSignal {
   double chance = 0;    // excess of response times measured signal over response times true signal
 };
 
-BlockSignal signalOf(const BandSums& own, const BandSums& around, double gain, const BandNoise& noise,
-                     const TextureBands::Noise& white) {
+BlockSignal signalOf(const ComparedBand& band, size_t block) {
+  const BandSums &own = band.sums[block], &around = band.around[block];
+  const double gain = band.gain;
   const double share = own.count / around.count, usual = share * around.signal;
-  const double residual = std::max(residualOf(around, gain), noise.residual);
+  const double residual = std::max(residualOf(around, gain), band.noise.residual);
   // Variance of a signal, with half of the noise in each image.
-  const double scatter = white.signal * share * around.slopes * residual / (1 + gain * gain);
+  const double scatter = band.white.signal * share * around.slopes * residual / (1 + gain * gain);
   const double off = own.signal - usual, square = off * off / scatter;
   const double kept = square > 1 ? 1 - 1 / square : 0;
   const double slopes = share * around.slopes + kept * (own.slopes - share * around.slopes);
   BlockSignal signal;
   signal.response = std::max(0.0, usual + kept * off);
-  signal.variance = noise.colour * slopes * residual;
+  signal.variance = band.noise.colour * slopes * residual;
   // The excess follows from the derivative of the estimator (Stein 1981).
   signal.chance = scatter * (share + (square > 1 ? (1 - share) * (1 + 1 / square) : 0));
   return signal;
@@ -49,15 +50,13 @@ BlockSignal signalOf(const BandSums& own, const BandSums& around, double gain, c
 
 /// Share of the responses that is real. Weights and responses share some chance, which makes the sums too
 /// large.
-double trueShare(const BlockGrid& grid, const std::vector<BandSums>& sums,
-                 const std::vector<BandSums>& around, double gain, const BandNoise& noise,
-                 const TextureBands::Noise& white) {
+double trueShare(const BlockGrid& grid, const ComparedBand& band) {
   double there = 0, all = 0;
-  for (size_t i = 0; i < sums.size(); ++i) {
+  for (size_t i = 0; i < band.sums.size(); ++i) {
     if (!grid.seen[i]) continue;
-    const BlockSignal signal = signalOf(sums[i], around[i], gain, noise, white);
+    const BlockSignal signal = signalOf(band, i);
     if (!(signal.response > 0 && signal.variance > 0)) continue;
-    there += (signal.response * sums[i].signal - signal.chance) / signal.variance;
+    there += (signal.response * band.sums[i].signal - signal.chance) / signal.variance;
     all += signal.response * signal.response / signal.variance;
   }
   return all > 0 ? std::clamp(there / all, 0.0, 1.0) : 0;
@@ -104,11 +103,10 @@ BandNoise noiseOf(const BlockGrid& grid, const std::vector<BandSums>& around, do
   return noise;
 }
 
-void addEvidence(const BlockGrid& grid, const std::vector<BandSums>& sums,
-                 const std::vector<BandSums>& around, double gain, const BandNoise& noise,
-                 const TextureBands::Noise& white, std::vector<BandScore>& scores,
+void addEvidence(const BlockGrid& grid, const ComparedBand& band, std::vector<BandScore>& scores,
                  std::vector<BandEvidence>& evidence) {
-  const double share = trueShare(grid, sums, around, gain, noise, white);
+  const auto& [sums, around, gain, noise, white] = band;
+  const double share = trueShare(grid, band);
   scores.resize(sums.size());
   for (size_t i = 0; i < sums.size(); ++i) {
     const BandScore coarser = scores[i];
@@ -117,7 +115,7 @@ void addEvidence(const BlockGrid& grid, const std::vector<BandSums>& sums,
     BandEvidence& block = evidence[i];
     block.alike += std::max(0.0, gain * around[i].products / around[i].count) / noise.residual;
     block.other += std::max(0.0, residualOf(around[i], gain) / noise.residual - white.most);
-    const BlockSignal signal = signalOf(sums[i], around[i], gain, noise, white);
+    const BlockSignal signal = signalOf(band, i);
     if (!(share > 0 && signal.response > 0 && signal.variance > 0)) continue;
     scores[i] = {scoreOf(sums[i], gain), share * signal.response, gain * sums[i].down,
                  std::sqrt(signal.variance)};

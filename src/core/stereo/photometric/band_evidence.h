@@ -43,6 +43,15 @@ struct BandNoise {
 /// around: as by addNeighbours().
 BandNoise noiseOf(const BlockGrid& grid, const std::vector<BandSums>& around, double gain);
 
+/// The blocks of one band, as they were compared.
+struct ComparedBand {
+  const std::vector<BandSums>& sums;    ///< of each block
+  const std::vector<BandSums>& around;  ///< of each block with its neighbours (addNeighbours())
+  double gain;                          ///< of the right image over the left one
+  BandNoise noise;
+  TextureBands::Noise white;  ///< effect of white noise in this band
+};
+
 /// What a block tells in a band.
 struct BandScore {
   double score = 0;
@@ -55,11 +64,9 @@ struct BandScore {
 /// both images' slopes.
 /// The signal of a faint block is mostly chance, but much like that of its neighbours. So it is drawn towards
 /// their mean, unless it differs by more than chance (James, Stein 1961). The remaining effect of chance is
-/// known on average and taken out. white: of the band. scores: of the next coarser band on entry, whose share
+/// known on average and taken out. scores: of the next coarser band on entry, whose share
 /// in this band is taken out; of this band on return.
-void addEvidence(const BlockGrid& grid, const std::vector<BandSums>& sums,
-                 const std::vector<BandSums>& around, double gain, const BandNoise& noise,
-                 const TextureBands::Noise& white, std::vector<BandScore>& scores,
+void addEvidence(const BlockGrid& grid, const ComparedBand& band, std::vector<BandScore>& scores,
                  std::vector<BandEvidence>& evidence);
 
 }  // namespace uav_landing

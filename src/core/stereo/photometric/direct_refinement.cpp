@@ -102,7 +102,7 @@ struct DirectRefinement::Implementation {
     takeSamples(g, drift);
     for (DisparitySample& sample : samples)
       if (rough) sample.stddev = std::sqrt(sample.stddev * sample.stddev + kStartStddev * kStartStddev);
-    Expected<PlaneFit> fit = refinePlane(rig, samples, g, limits, bias_stddev, memory);
+    Expected<PlaneFit> fit = refinePlane(rig, {samples, bias_stddev}, g, limits, memory);
     if (!fit) return fit;
     agreeing = blocksOn(*fit);
     if (agreeing < kLeastShare * disparities.informative()) return tl::make_unexpected(tooFewOnThePlane());

@@ -38,10 +38,10 @@ double overlapFactor(const std::vector<DisparitySample>& samples, const PlaneFit
 
 }  // namespace
 
-Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
-                              const Eigen::Vector3d& expected, const PlaneLimits& limits,
-                              double bias_stddev) {
+Expected<PlaneFit> fitCorners(const StereoRig& rig, const Disparities& disparities, int corners,
+                              const Eigen::Vector3d& expected, const PlaneLimits& limits) {
   constexpr int kTrials = 200;
+  const std::vector<DisparitySample>& samples = disparities.samples;
   if (static_cast<int>(samples.size()) < limits.min_points) {
     return tl::make_unexpected(
         Failure{corners < limits.min_points ? Reason::kTooFewFeatures : Reason::kTooFewMatches,
@@ -53,7 +53,7 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparityS
     return tl::make_unexpected(Failure{
         Reason::kNoPlane, "no plausible ground plane in " + std::to_string(samples.size()) + " matches"});
   }
-  return refinePlane(rig, samples, consensus.g, limits, bias_stddev);
+  return refinePlane(rig, disparities, consensus.g, limits);
 }
 
 Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,

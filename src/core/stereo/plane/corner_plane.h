@@ -16,14 +16,14 @@ struct MatchedCorners {
 };
 
 /// Finds the plane that most disparities agree on, and fits it to these. corners: number that was looked for.
-/// expected: the plane that predicted their places, 1/m. bias_stddev: as for refinePlane(), pixels. Fails
-/// when there are too few matches, or when they have no common plane.
-Expected<PlaneFit> fitCorners(const StereoRig& rig, const std::vector<DisparitySample>& samples, int corners,
-                              const Eigen::Vector3d& expected, const PlaneLimits& limits, double bias_stddev);
+/// expected: the plane that predicted their places, 1/m. Fails when there are too few matches, or when they
+/// have no common plane.
+Expected<PlaneFit> fitCorners(const StereoRig& rig, const Disparities& disparities, int corners,
+                              const Eigen::Vector3d& expected, const PlaneLimits& limits);
 
 /// The part that the covariance of that plane leaves out, 1/m^2. It contains the noise of pixels that several
 /// windows share. It also contains errors that are alike in a part of the image (image_cells.h). window:
-/// width and height of the corners' windows, pixels. bias_stddev: as for fitCorners().
+/// width and height of the corners' windows, pixels. bias_stddev: as in Disparities.
 Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,
                                  double bias_stddev);
 

@@ -16,10 +16,13 @@ namespace uav_landing {
 namespace {
 
 struct NormalEquations {
+  double scale = 1;  // of the residuals, as a multiple of the claimed stddevs
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double weighted_squares = 0;
   int count = 0;
+
+  Eigen::Matrix3d scaledInformation() const { return information / (scale * scale); }
 };
 
 // The least squares problem, in the memory of the columns. x and y are the derivatives of a disparity by the
@@ -58,6 +61,7 @@ class PlaneProblem {
     constexpr double kEnd = TukeyEnd::kDisparity;
     const PlaneSums s = addUpTukey(1 / (kEnd * kEnd * scale * scale), columns_);
     NormalEquations sums;
+    sums.scale = scale;
     sums.information << s.wxx, s.wxy, fb_ * s.wx,  //
         s.wxy, s.wyy, fb_ * s.wy,                  //
         fb_ * s.wx, fb_ * s.wy, fb_ * fb_ * s.w;
@@ -82,40 +86,40 @@ class PlaneProblem {
 
 // Factor by which the covariance exceeds that of independent errors. Surfaces are not planes: neighbouring
 // points share undulations and errors of texture. So the scores are first summed over cells of the image
-// (cluster-robust covariance: Liang, Zeger 1986). information: normal matrix, already divided by the squared
-// scale of the residuals.
+// (cluster-robust covariance: Liang, Zeger 1986). sums: of the last step to the plane of the fit.
 double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                        const PlaneProblem& problem, const Eigen::Vector3d& g,
-                        const std::vector<char>& agrees, double scale, const Eigen::Matrix3d& information) {
+                        const PlaneProblem& problem, const NormalEquations& sums, const PlaneFit& fit) {
   constexpr int kColumns = 8, kRows = 8;
   std::array<Eigen::Vector3d, kColumns * kRows> scores;
   scores.fill(Eigen::Vector3d::Zero());
+  const double scale = sums.scale;
   double top = rig.size.height, bottom = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (!agrees[i]) continue;
+    if (!fit.agrees[i]) continue;
     top = std::min(top, samples[i].v);
     bottom = std::max(bottom, samples[i].v);
   }
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (!agrees[i]) continue;
+    if (!fit.agrees[i]) continue;
     const DisparitySample& sample = samples[i];
     const Eigen::Vector3d row = problem.row(i);
-    const double residual = sample.disparity - row.dot(g);
+    const double residual = sample.disparity - row.dot(fit.plane.g);
     const int column = std::min(kColumns - 1, static_cast<int>(kColumns * sample.u / rig.size.width));
     const int line = std::min(kRows - 1, static_cast<int>(kRows * (sample.v - top) / (bottom - top + 1)));
     scores[line * kColumns + column] += row * (residual / (sample.stddev * sample.stddev * scale * scale));
   }
   Eigen::Matrix3d middle = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& score : scores) middle += score * score.transpose();
-  return std::max(1.0, (information.inverse() * middle).trace() / 3.0);
+  return std::max(1.0, (sums.scaledInformation().inverse() * middle).trace() / 3.0);
 }
 
 }  // namespace
 
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev,
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
+                               const Eigen::Vector3d& start, const PlaneLimits& limits,
                                PlaneColumns& memory) {
   constexpr int kIterations = 6;
+  const std::vector<DisparitySample>& samples = disparities.samples;
   Eigen::Vector3d g = start;
   double scale = 1;
   PlaneProblem problem(rig, samples, memory);
@@ -142,17 +146,16 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<Disparity
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
   fit.plane.g = g;
-  const Eigen::Matrix3d information = sums.information / (scale * scale);
-  const double inflation = clusterInflation(rig, samples, problem, g, fit.agrees, scale, information);
-  fit.plane.covariance = inflation * information.inverse();
-  fit.plane.covariance(2, 2) += biasVariance(rig, bias_stddev);
+  const double inflation = clusterInflation(rig, samples, problem, sums, fit);
+  fit.plane.covariance = inflation * sums.scaledInformation().inverse();
+  fit.plane.covariance(2, 2) += biasVariance(rig, disparities.bias_stddev);
   return fit;
 }
 
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits, double bias_stddev) {
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
+                               const Eigen::Vector3d& start, const PlaneLimits& limits) {
   PlaneColumns memory;
-  return refinePlane(rig, samples, start, limits, bias_stddev, memory);
+  return refinePlane(rig, disparities, start, limits, memory);
 }
 
 }  // namespace uav_landing

@@ -15,13 +15,12 @@ CornerReach trackingReach(const StereoDepthParameters& parameters) {
   return {static_cast<int>(std::ceil(parameters.search_radius)), 0};
 }
 
-// At most so many of the full-size corners, from all of the image, at their places in a level reduced by
-// factor.
-std::vector<cv::Point> spread(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
-                              size_t most) {
+// At most so many of the corners, from all of the image, at their places in the level.
+std::vector<cv::Point> spread(const StereoLevel& level, const FullSizeCorners& corners, size_t most) {
   std::vector<cv::Point> places;
-  for (const cv::Point& corner : thinned(corners, most)) {
-    const cv::Point place(cvRound(toCoarse(corner.x, factor)), cvRound(toCoarse(corner.y, factor)));
+  for (const cv::Point& corner : thinned(corners.places, most)) {
+    const cv::Point place(cvRound(toCoarse(corner.x, corners.factor)),
+                          cvRound(toCoarse(corner.y, corners.factor)));
     if (isSet(level.left_mask, place.x, place.y)) places.push_back(place);
   }
   return places;
@@ -42,7 +41,7 @@ Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
   return consensus;
 }
 
-Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+Consensus trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
                              const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
                              const PlaneLimits& limits) {
   // Enough for a plane that is good to half a pixel at full size; the search there reaches farther.
@@ -51,7 +50,7 @@ Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Poi
   // Share of the votes of all scouts, with or without a match. When the majority is on a plane, no other has
   // as many.
   constexpr double kLeastShare = 0.5;
-  const std::vector<cv::Point> scouts = spread(level, corners, factor, kScouts);
+  const std::vector<cv::Point> scouts = spread(level, corners, kScouts);
   const std::vector<DisparitySample> samples =
       matchCorners(level, scouts, predicted, parameters, trackingReach(parameters)).samples;
   Consensus consensus = findPlane(level.rig, samples, limits, {kIterations, true});

@@ -17,9 +17,14 @@ Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
                      const StereoDepthParameters& parameters, const PlaneLimits& limits,
                      GroundCornerMemory& memory);
 
-/// The same by a few scouts among the corners, which were found at full size. factor: full size over the
-/// level's size. Not found unless most of the scouts agree.
-Consensus trackPlaneByScouts(const StereoLevel& level, const std::vector<cv::Point>& corners, int factor,
+/// Corners that were found at full size, for use at a smaller one.
+struct FullSizeCorners {
+  const std::vector<cv::Point>& places;  ///< at full size
+  int factor;                            ///< full size over the smaller one
+};
+
+/// The same by a few scouts among the corners. Not found unless most of the scouts agree.
+Consensus trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
                              const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
                              const PlaneLimits& limits);
 

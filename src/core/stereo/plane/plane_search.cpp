@@ -131,8 +131,7 @@ double PlaneSearch::lookAtCorners(const SlopeBand& band, const Tier& tier) {
   const auto first = tier.corners.begin() + static_cast<std::ptrdiff_t>(corner_);
   corner_ = std::min(corner_ + kAtOnce, tier.corners.size());
   const auto last = tier.corners.begin() + static_cast<std::ptrdiff_t>(corner_);
-  const BandCandidates found =
-      candidatesOf(band, tier.level, tier.right, {first, last}, parameters_, limits_);
+  const BandCandidates found = candidatesOf(band, tier, {first, last}, parameters_, limits_);
   candidates_.insert(candidates_.end(), found.samples.begin(), found.samples.end());
   return found.scored;
 }

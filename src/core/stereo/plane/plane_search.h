@@ -58,9 +58,7 @@ class PlaneSearch {
   // with the cameras turned over.
   enum class Phase { kNone, kAhead, kSample, kBehind, kOverhead };
   // Both images at one size, with the corners to look for.
-  struct Tier {
-    StereoLevel level;
-    cv::Mat right;  // of the level, with room beside it
+  struct Tier : RoomyLevel {
     std::vector<cv::Point> corners;
   };
   // The coarse level, and half of it. Where half is too small, both are the coarse level.

@@ -112,7 +112,7 @@ std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, con
   if (!has_last_) return std::nullopt;
   if (corners_.empty()) cornersOn(fine, last_, timings);
   ScopedTimer timer(timings, "feature_matching_coarse");
-  const Consensus scouted = trackPlaneByScouts(coarse, corners_, factor, last_, parameters_, limits_);
+  const Consensus scouted = trackPlaneByScouts(coarse, {corners_, factor}, last_, parameters_, limits_);
   if (scouted.found) return scouted.g;
   corners_.clear();
   return followFrom(last_, coarse);

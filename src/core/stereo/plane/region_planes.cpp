@@ -67,7 +67,7 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   for (const StereoDepthResult::Point& point : points)
     samples.push_back({point.u, point.v, point.disparity_stddev, {point.disparity}});
   PlaneColumns memory;
-  const Expected<PlaneFit> all = refinePlane(rig, samples, plane, limits, 0, memory);
+  const Expected<PlaneFit> all = refinePlane(rig, {samples}, plane, limits, memory);
   if (!all) return planes;
   planes.all = all->plane;
   // Points are sorted by the disparity that the plane predicts, so an object on the ground belongs to the
@@ -82,7 +82,7 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
     rest.clear();
     for (size_t k = 0; k < samples.size(); ++k)
       if (!isIn(static_cast<ImageRegion>(i), borders, samples[k].u, expected[k])) rest.push_back(samples[k]);
-    const Expected<PlaneFit> fit = refinePlane(rig, rest, plane, limits, 0, memory);
+    const Expected<PlaneFit> fit = refinePlane(rig, {rest}, plane, limits, memory);
     if (!fit) continue;
     planes.without[i] = fit->plane;
     const double least = planes.all.heightVariance() * all->count / fit->count;

@@ -74,16 +74,17 @@ void addRoomBeside(const cv::Mat& image, cv::Mat& wide) {
                      cv::Scalar(std::numeric_limits<float>::quiet_NaN()));
 }
 
-BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, const cv::Mat& right,
+BandCandidates candidatesOf(const SlopeBand& band, const RoomyLevel& images,
                             const std::vector<cv::Point>& corners, const StereoDepthParameters& parameters,
                             const PlaneLimits& limits) {
   constexpr double kMinScore = 0.6, kShareOfBest = 0.85, kStddev = 0.5;
   constexpr int kMostPeaks = 5;
+  const StereoLevel& level = images.level;
   const double offset = level.rig.principalOffset();
   const LargestDisparity largest(level.rig, limits, band.range.y(),
                                  parameters.max_disparity * level.rig.size.width);
   const RowWarp warp{1.0, parameters.warp_window ? -band.shear : 0.0};
-  RowSearch search(level.left, right, parameters.window_radius, parameters.matching_cost);
+  RowSearch search(level.left, images.right, parameters.window_radius, parameters.matching_cost);
   BandCandidates found;
   std::vector<double> disparities;
   for (const cv::Point& corner : corners) {

@@ -28,15 +28,20 @@ struct SlopeBands {
 /// Copies an image so that windows have room beside it. Places in that room get no score.
 void addRoomBeside(const cv::Mat& image, cv::Mat& wide);
 
+/// Both images at one size, with room beside the right one.
+struct RoomyLevel {
+  StereoLevel level;
+  cv::Mat right;  ///< of the level, by addRoomBeside()
+};
+
 /// Corners with all places along their rows that look like them.
 struct BandCandidates {
   std::vector<DisparitySample> samples;
   int scored = 0;  ///< number of places
 };
 
-/// Looks for corners on the planes of a band that are within the limits. right: the level's right image with
-/// room beside it (addRoomBeside()).
-BandCandidates candidatesOf(const SlopeBand& band, const StereoLevel& level, const cv::Mat& right,
+/// Looks for corners on the planes of a band that are within the limits.
+BandCandidates candidatesOf(const SlopeBand& band, const RoomyLevel& images,
                             const std::vector<cv::Point>& corners, const StereoDepthParameters& parameters,
                             const PlaneLimits& limits);
 

@@ -180,7 +180,7 @@ class ProfileFit {
     for (size_t i = 0; i < samples_.size(); ++i)
       samples_.takeOff(i, byKinks(samples_.expected(i), samples_.reach(i)).dot(bend));
     const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend;
-    Expected<PlaneFit> fit = refinePlane(rig_, samples_.flattened(), start, limits, bias_stddev, memory_);
+    Expected<PlaneFit> fit = refinePlane(rig_, {samples_.flattened(), bias_stddev}, start, limits, memory_);
     if (fit) plane_ = std::move(*fit);
     return fit.has_value();
   }
@@ -263,10 +263,10 @@ class ProfileFit {
 
 }  // namespace
 
-std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
-                                                const std::vector<DisparitySample>& samples,
+std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig, const Disparities& disparities,
                                                 const PlaneFit& flat, const PlaneLimits& limits,
-                                                double bias_stddev, double slope_change) {
+                                                double slope_change) {
+  const auto& [samples, bias_stddev] = disparities;
   ProfileFit fit(rig, samples, flat, bias_stddev);
   if (!fit.possible()) return std::nullopt;
   const double per_metre = std::pow(slope_change / 100, 2);

@@ -26,14 +26,12 @@ struct SurfaceProfile {
 };
 
 /// Fits plane and profile to disparities whose stddevs are true. flat: plane through all of them, where the
-/// fit starts. slope_change: 1 sigma of the change of slope over 100 m, rad. limits, bias_stddev: as for
-/// refinePlane().
+/// fit starts. slope_change: 1 sigma of the change of slope over 100 m, rad. limits: as for refinePlane().
 /// The likelihood of the disparities decides how much of slope_change this surface has; it may have none.
 /// While that is open, mean and covariance are those of the mixture. Nothing when there are too few samples,
 /// or when they are too near each other.
-std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig,
-                                                const std::vector<DisparitySample>& samples,
+std::optional<SurfaceProfile> fitSurfaceProfile(const StereoRig& rig, const Disparities& disparities,
                                                 const PlaneFit& flat, const PlaneLimits& limits,
-                                                double bias_stddev, double slope_change);
+                                                double slope_change);
 
 }  // namespace uav_landing

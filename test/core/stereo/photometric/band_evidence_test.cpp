@@ -68,7 +68,7 @@ struct Compared {
       addUp(of_left[band], of_right[band], TextureBands::factor(band), grid, sums);
       if (gain == 0) gain = gainOf(sums).value_or(0);
       addNeighbours(grid, sums, around);
-      addEvidence(grid, sums, around, gain, noiseOf(grid, around, gain), TextureBands::noise(band), scores,
+      addEvidence(grid, {sums, around, gain, noiseOf(grid, around, gain), TextureBands::noise(band)}, scores,
                   evidence);
     }
     for (const BandEvidence& block : evidence) all.add(block);

@@ -93,7 +93,7 @@ TEST(PlaneFit, IsExactOnExactData) {
         const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
         ASSERT_TRUE(consensus.found) << height << " " << pitch << " " << roll;
         EXPECT_GT(consensus.support, 190);
-        const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
+        const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus.g, makeLimits());
         ASSERT_TRUE(fit) << fit.error().message();
         EXPECT_TRUE(fit->plane.g.isApprox(g, 1e-9)) << height << " " << pitch << " " << roll;
         EXPECT_EQ(fit->count, 200);
@@ -108,7 +108,7 @@ TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
     sampler.lift(samples, 0.4);
     const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
     ASSERT_TRUE(consensus.found);
-    const Expected<PlaneFit> fit = refinePlane(rig(), samples, consensus.g, makeLimits(), 0);
+    const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus.g, makeLimits());
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->plane.height(), 6, 4 * std::sqrt(fit->plane.heightVariance())) << seed;
     EXPECT_NEAR(fit->plane.height(), 6, 0.005 * 6) << seed;
@@ -222,7 +222,7 @@ Nees simulate(const Eigen::Vector3d& g, int runs, double actual, double claimed,
       sample.stddev = claimed;
       sample.disparity += shift;
     }
-    const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), common);
+    const Expected<PlaneFit> fit = refinePlane(rig(), {samples, common}, g, makeLimits());
     EXPECT_TRUE(fit);
     if (!fit) continue;
     const Eigen::Vector3d error = fit->plane.g - g;
@@ -267,8 +267,8 @@ TEST(RefinePlane, WidensPitchByWhatACommonErrorTurnsTheHorizonAndNothingElse) {
   const double height = 6, e = 0.05;
   const Eigen::Vector3d g = plane(height, 0, 0);
   const std::vector<DisparitySample> samples = Sampler(12).ground(g, 200, 0.1);
-  const Expected<PlaneFit> without = refinePlane(rig(), samples, g, makeLimits(), 0);
-  const Expected<PlaneFit> with = refinePlane(rig(), samples, g, makeLimits(), e);
+  const Expected<PlaneFit> without = refinePlane(rig(), {samples}, g, makeLimits());
+  const Expected<PlaneFit> with = refinePlane(rig(), {samples, e}, g, makeLimits());
   ASSERT_TRUE(without && with);
   EXPECT_EQ(with->plane.g, without->plane.g);
   const auto added = [&](auto variance) { return variance(with->plane) - variance(without->plane); };
@@ -299,9 +299,9 @@ TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
   }
   PlaneLimits limits = makeLimits();
   limits.tolerance = 2;
-  const Expected<PlaneFit> of_flat = refinePlane(rig(), flat, g, limits, 0);
-  const Expected<PlaneFit> of_uneven = refinePlane(rig(), uneven, g, limits, 0);
-  const Expected<PlaneFit> of_noisy = refinePlane(rig(), noisy, g, limits, 0);
+  const Expected<PlaneFit> of_flat = refinePlane(rig(), {flat}, g, limits);
+  const Expected<PlaneFit> of_uneven = refinePlane(rig(), {uneven}, g, limits);
+  const Expected<PlaneFit> of_noisy = refinePlane(rig(), {noisy}, g, limits);
   ASSERT_TRUE(of_flat && of_uneven && of_noisy);
   EXPECT_NEAR(surfaceVariance(rig(), flat, *of_flat, kWindow), 0, std::pow(0.25 * bumps, 2));
   EXPECT_NEAR(surfaceVariance(rig(), noisy, *of_noisy, kWindow), 0, std::pow(0.4 * bumps, 2));
@@ -329,7 +329,7 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
         samples.push_back({static_cast<double>(x), static_cast<double>(y), match_stddev, {disparity}});
       }
     }
-    const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), 0);
+    const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, g, makeLimits());
     ASSERT_TRUE(fit);
     shared += surfaceVariance(rig(), samples, *fit, kWindow) / kScenes;
     independent += surfaceVariance(rig(), samples, *fit, 1) / kScenes;
@@ -352,7 +352,7 @@ TEST(RefinePlane, TakesTheScatterOfFarMatchesForNoBumps) {
       sample.stddev = 0.5 * std::pow(10 / sample.disparity, 2);
       sample.disparity += sample.stddev * sampler.normal();
     }
-    const Expected<PlaneFit> fit = refinePlane(rig(), samples, g, makeLimits(), 0);
+    const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, g, makeLimits());
     ASSERT_TRUE(fit);
     square += std::pow(surfaceVariance(rig(), samples, *fit, 1), 2) / kScenes;
   }
@@ -362,18 +362,18 @@ TEST(RefinePlane, TakesTheScatterOfFarMatchesForNoBumps) {
 TEST(RefinePlane, SaysWhyThereIsNone) {
   const Eigen::Vector3d g = plane(6, -6, 0);
   Sampler sampler(13);
-  const Expected<PlaneFit> few = refinePlane(rig(), sampler.ground(g, 19, 0.1), g, makeLimits(), 0);
+  const Expected<PlaneFit> few = refinePlane(rig(), {sampler.ground(g, 19, 0.1)}, g, makeLimits());
   ASSERT_FALSE(few);
   EXPECT_EQ(few.error().reason, Reason::kNoPlane);
   EXPECT_NE(few.error().detail.find("20"), std::string::npos) << few.error().detail;
   const Expected<PlaneFit> wrong =
-      refinePlane(rig(), sampler.ground(g, 100, 0.1), plane(3, -6, 0), makeLimits(), 0);
+      refinePlane(rig(), {sampler.ground(g, 100, 0.1)}, plane(3, -6, 0), makeLimits());
   EXPECT_FALSE(wrong) << "from a start that nothing agrees with";
   const Expected<PlaneFit> steep =
-      refinePlane(rig(), sampler.ground(plane(6, -35, 0), 100, 0.1), plane(6, -35, 0), makeLimits(), 0);
+      refinePlane(rig(), {sampler.ground(plane(6, -35, 0), 100, 0.1)}, plane(6, -35, 0), makeLimits());
   ASSERT_FALSE(steep);
   EXPECT_EQ(steep.error().reason, Reason::kNoPlane);
-  EXPECT_FALSE(refinePlane(rig(), {}, g, makeLimits(), 0));
+  EXPECT_FALSE(refinePlane(rig(), {{}}, g, makeLimits()));
 }
 
 }  // namespace

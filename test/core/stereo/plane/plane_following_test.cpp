@@ -48,7 +48,7 @@ struct Tracking {
     corners = findGroundCorners(fine, before, parameters.corner_count, parameters);
   }
   Consensus byScouts() const {
-    return trackPlaneByScouts(coarse, corners, left_images.factor, before, parameters, limits);
+    return trackPlaneByScouts(coarse, {corners, left_images.factor}, before, parameters, limits);
   }
   Consensus byAll() const {
     GroundCornerMemory memory;

@@ -46,7 +46,7 @@ struct Shifted {
   }
 
   BandCandidates look(const SlopeBand& band, const std::vector<cv::Point>& corners) const {
-    return candidatesOf(band, level, right, corners, parameters, limits);
+    return candidatesOf(band, {level, right}, corners, parameters, limits);
   }
 };
 

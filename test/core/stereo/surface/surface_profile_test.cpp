@@ -66,10 +66,10 @@ struct Fits {
 };
 
 Fits fit(const std::vector<DisparitySample>& samples, const test::Pose& pose) {
-  Expected<PlaneFit> flat = refinePlane(rig(), samples, pose.down() / pose.height(), makeLimits(), 0);
+  Expected<PlaneFit> flat = refinePlane(rig(), {samples}, pose.down() / pose.height(), makeLimits());
   if (!flat) throw std::runtime_error(flat.error().message());
   const std::optional<SurfaceProfile> profile =
-      fitSurfaceProfile(rig(), samples, *flat, makeLimits(), 0, kSlopeChange);
+      fitSurfaceProfile(rig(), {samples}, *flat, makeLimits(), kSlopeChange);
   EXPECT_TRUE(profile);
   return {*flat, *profile};
 }
@@ -180,9 +180,9 @@ TEST(SurfaceProfile, NeedsGroundAtDifferentDistances) {
   std::mt19937 random(6);
   const test::Pose pose = poseAt(6);
   std::vector<DisparitySample> samples = look(parabola(1e9), pose, 0.05, random, 20);
-  Expected<PlaneFit> flat = refinePlane(rig(), samples, pose.down() / 6, makeLimits(), 0);
+  Expected<PlaneFit> flat = refinePlane(rig(), {samples}, pose.down() / 6, makeLimits());
   ASSERT_TRUE(flat);
-  EXPECT_FALSE(fitSurfaceProfile(rig(), samples, *flat, makeLimits(), 0, kSlopeChange));
+  EXPECT_FALSE(fitSurfaceProfile(rig(), {samples}, *flat, makeLimits(), kSlopeChange));
 }
 
 }  // namespace
