@@ -164,10 +164,12 @@ struct ApproachAngleStage::Implementation {
     return {K, times, *motion, last_normal};
   }
 
-  ViewRows viewRows(double stamp) const {
-    Eigen::Matrix3d right = model.rig.K();
-    right(0, 2) = model.rig.cx_right;
-    return {rowsOf(stamp, model.rig.K(), model.left_times), rowsOf(stamp, right, model.right_times)};
+  StereoViews viewsOf(double stamp, const cv::Mat& left, const cv::Mat& right) const {
+    Eigen::Matrix3d right_K = model.rig.K();
+    right_K(0, 2) = model.rig.cx_right;
+    return {model.rig,
+            {left, left_mask, rowsOf(stamp, model.rig.K(), model.left_times)},
+            {right, right_mask, rowsOf(stamp, right_K, model.right_times)}};
   }
 
   // Sets motion and runway to not known, with the reason of the pair.
@@ -230,9 +232,8 @@ struct ApproachAngleStage::Implementation {
 
   RunwayDirection findDirection(const cv::Mat& left, const cv::Mat& right, const SeenGround* ground,
                                 ApproachAngleResult& result) {
-    RunwayDirection direction =
-        findRunwayDirection(model.rig, left, right, left_mask, right_mask, ground, parameters,
-                            direction_memory, timings, viewRows(result.stamp));
+    RunwayDirection direction = findRunwayDirection(viewsOf(result.stamp, left, right), ground, parameters,
+                                                    direction_memory, timings);
     result.left = direction.left;
     result.right = direction.right;
     if (!direction.combined) return direction;
@@ -315,7 +316,7 @@ struct ApproachAngleStage::Implementation {
 
   std::vector<TrackedCorner> cornersWithoutStereo(const cv::Mat& left, const Eigen::Vector3d& normal) {
     ScopedTimer timer(timings, "harris_corners_motion");
-    return groundCorners(model.rig, left, left_mask, normal, parameters, corner_memory);
+    return groundCorners(model.rig, {left, left_mask}, normal, parameters, corner_memory);
   }
 };
 

@@ -107,7 +107,7 @@ std::optional<Eigen::Vector3d> onUnknownGround(const Photograph& photo) {
   RunwayDirectionMemory memory;
   Timings timings;
   const RunwayDirection found =
-      findRunwayDirection(photo.rig, photo.image, photo.image, everywhere, everywhere, nullptr,
+      findRunwayDirection({photo.rig, {photo.image, everywhere}, {photo.image, everywhere}}, nullptr,
                           ApproachAngleParameters(), memory, timings);
   if (!found.combined || found.combined->runway_margin < kClear) return std::nullopt;
   return found.combined->direction;

@@ -67,7 +67,7 @@ TEST(GroundEdges, HaveTheLateralPositionOfTheLineInBothViews) {
     for (const bool right : {false, true}) {
       const LineSegment line = test::groundLine(rig, pose, y, 25, 90, right ? rig.baseline : 0, y < 0);
       const auto edges =
-          groundEdges(rig, axes, {line}, {1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+          groundEdges(rig, axes, {line}, {1}, {right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0});
       ASSERT_EQ(edges.size(), 1u);
       EXPECT_NEAR(edges[0].lateral, (y - 1.5) / 8, 1e-6);
       EXPECT_EQ(edges[0].brighter_left, y < 0);
@@ -83,7 +83,7 @@ TEST(GroundEdges, JoinThePiecesOfOneEdgeButNotTheTwoSidesOfAStripe) {
       groundEdges(rig, axesOf(pose),
                   {test::groundLine(rig, pose, 2, 25, 40, 0, true), groundLine(rig, pose, 2, 50, 80, 0, true),
                    test::groundLine(rig, pose, 2, 25, 40, 0, false)},
-                  {1, 1, 1}, rig.cx, 0);
+                  {1, 1, 1}, {rig.cx});
   ASSERT_EQ(edges.size(), 2u);
   EXPECT_NEAR(edges[0].extent, std::log(40.0 / 25) + std::log(80.0 / 50), 0.03);
 }
@@ -97,7 +97,7 @@ TEST(GroundEdges, AShortPieceBelongsToTheLongEdgeInWhateverOrderTheyCome) {
     return line;
   };
   const auto edgesOf = [&](const std::vector<LineSegment>& lines) {
-    return groundEdges(rig, axesOf(pose), lines, std::vector<char>(lines.size(), 1), rig.cx, 0);
+    return groundEdges(rig, axesOf(pose), lines, std::vector<char>(lines.size(), 1), {rig.cx});
   };
   const double stddev = 8 * std::sqrt(edgesOf({lineAt(2, 30, 40, 2)}).front().variance);  // m
   // A piece of the long edge that is off by 2 sigma, and one of another edge, 4 sigma from the long one.
@@ -122,7 +122,7 @@ TEST(GroundEdges, PiecesFarAsideMayBeFartherApart) {
     std::vector<LineSegment> lines{test::groundLine(rig, pose, 1.5 + aside, 60, 75, 0, true),
                                    test::groundLine(rig, pose, 1.5 + aside + apart, 80, 95, 0, true)};
     for (LineSegment& line : lines) line.offset_stddev = line.angle_stddev = 1e-9;
-    return groundEdges(rig, axesOf(pose), lines, {1, 1}, rig.cx, 0).size();
+    return groundEdges(rig, axesOf(pose), lines, {1, 1}, {rig.cx}).size();
   };
   EXPECT_EQ(count(0, 0.02), 1u);
   EXPECT_EQ(count(0, 0.05), 2u);
@@ -137,7 +137,7 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
     LineSegment line = test::groundLine(rig, pose, y, 25, 90, 0, true);
     // Beyond the horizon by this share of its length.
     line.b = line.a + far * (line.b - line.a);
-    return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
+    return groundEdges(rig, axesOf(pose), {line}, {1}, {rig.cx}).size();
   };
   EXPECT_EQ(count(2, 1), 1u);
   // 25 m ahead the line is 8 m / 25 m below the horizon, 90 m ahead 8 m / 90 m.
@@ -146,14 +146,14 @@ TEST(GroundEdges, ALineThatReachesTheHorizonOrLiesBehindIsNone) {
   // So flat that nobody can tell how far away the end is: 8 m below over 16 km.
   const auto countTo = [&](double far) {
     const LineSegment line = test::groundLine(rig, pose, 2, 25, far, 0, true);
-    return groundEdges(rig, axesOf(pose), {line}, {1}, rig.cx, 0).size();
+    return groundEdges(rig, axesOf(pose), {line}, {1}, {rig.cx}).size();
   };
   EXPECT_EQ(countTo(1000), 1u);
   EXPECT_EQ(countTo(16000), 0u);
   LineSegment above = test::groundLine(rig, pose, 2, 25, 90, 0, true);
   std::swap(above.a, above.b);
   above.a = above.b + 1.5 * (above.a - above.b);
-  EXPECT_TRUE(groundEdges(rig, axesOf(pose), {above}, {1}, rig.cx, 0).empty()) << "by its first end";
+  EXPECT_TRUE(groundEdges(rig, axesOf(pose), {above}, {1}, {rig.cx}).empty()) << "by its first end";
 }
 
 TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
@@ -165,7 +165,7 @@ TEST(GroundEdges, WhatStandsAboveTheGroundMatchesInNoOtherView) {
   const auto view = [&](bool right, const Pose& edge_pose) {
     return groundEdges(rig, axes,
                        {test::groundLine(rig, edge_pose, 9, 25, 90, right ? rig.baseline : 0, true)}, {1},
-                       right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+                       {right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0});
   };
   EXPECT_EQ(matchEdges(axes, view(false, pose), view(true, pose)).size(), 1u);
   EXPECT_TRUE(matchEdges(axes, view(false, from_above), view(true, from_above)).empty());
@@ -182,7 +182,7 @@ TEST(GroundEdges, AreTheLongestFirstOfOneViewAndOfBoth) {
                        {test::groundLine(rig, pose, 0.4, 25, 40, offset, true),
                         groundLine(rig, pose, 2, 25, 60, offset, true),
                         test::groundLine(rig, pose, right ? -6 : 9, 25, right ? 50 : 90, offset, true)},
-                       {1, 1, 1}, right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0);
+                       {1, 1, 1}, {right ? rig.cx_right : rig.cx, right ? rig.baseline / 8 : 0});
   };
   const auto lateralsOf = [](const std::vector<GroundEdge>& edges) {
     std::vector<double> places;  // across, m

@@ -50,7 +50,7 @@ struct Scene {
         std::nullopt,
         std::nullopt,
         runway};
-    return findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
+    return findRunwayDirection({rig, {left, model.left_mask}, {right, model.right_mask}},
                                with_normal ? &ground_seen : nullptr, parameters, memory, timings);
   }
   /// The runway runs along x.

@@ -59,7 +59,7 @@ struct Bars {
     const GroundAxes axes(pose.down(), covariance, pose.seen(Eigen::Vector3d::UnitX()), covariance);
     const double h = pose.height();
     std::vector<LineGreys> memory;
-    return findThreshold(image, model.left_mask, rig, axes, {-0.1 / h, 1e-6, 2 / h, 1e-6}, memory);
+    return findThreshold({image, model.left_mask}, rig, axes, {-0.1 / h, 1e-6, 2 / h, 1e-6}, memory);
   }
 };
 
@@ -180,7 +180,7 @@ TEST(RunwayThreshold, TextureIsNone) {
   const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity() * 1e-8;
   const GroundAxes axes(bars.pose.down(), covariance, bars.pose.seen(Eigen::Vector3d::UnitX()), covariance);
   std::vector<LineGreys> memory;
-  EXPECT_FALSE(findThreshold(grass.left(bars.rig, bars.pose), bars.model.left_mask, bars.rig, axes,
+  EXPECT_FALSE(findThreshold({grass.left(bars.rig, bars.pose), bars.model.left_mask}, bars.rig, axes,
                              {0, 1e-6, 2 / 1.5, 1e-6}, memory));
 }
 
@@ -192,8 +192,8 @@ TEST(RunwayThreshold, ARunwayBesideTheCameraIsOutsideThePicture) {
   const GroundAxes axes(Eigen::Vector3d::UnitY(), covariance, Eigen::Vector3d::UnitX(), covariance);
   const double step = 0.92 * 2 / 96;
   std::vector<LineGreys> memory;
-  EXPECT_FALSE(
-      findThreshold(image, bars.model.left_mask, bars.rig, axes, {0.5 * step + 1e-9, 1e-6, 2, 1e-6}, memory));
+  EXPECT_FALSE(findThreshold({image, bars.model.left_mask}, bars.rig, axes,
+                             {0.5 * step + 1e-9, 1e-6, 2, 1e-6}, memory));
 }
 
 }  // namespace

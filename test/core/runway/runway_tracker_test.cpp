@@ -56,7 +56,7 @@ struct Approach {
     RunwayDirectionMemory memory;
     const Eigen::Vector3d n = now.down();
     const SeenGround ground_seen{{n / now.height(), Eigen::Matrix3d::Identity() * 1e-8}, {}};
-    RunwayDirection direction = findRunwayDirection(rig, left, right, model.left_mask, model.right_mask,
+    RunwayDirection direction = findRunwayDirection({rig, {left, model.left_mask}, {right, model.right_mask}},
                                                     &ground_seen, parameters, memory, timings);
     if (third_line) addThirdLine(now, direction);
     ApproachAngleResult approach;

@@ -16,7 +16,7 @@ std::vector<TrackedCorner> stereoCorners(const StereoRig& rig, const StereoDepth
   return corners;
 }
 
-std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& image, const cv::Mat& mask,
+std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const RectifiedView& view,
                                          const Eigen::Vector3d& normal,
                                          const ApproachAngleParameters& parameters, CornerMemory& memory) {
   // The ground closer to the horizon than this (tangent of the angle) hardly moves.
@@ -26,10 +26,11 @@ std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& im
   constexpr double kQuality = 1e-7, kDistance = 4.0, kHarris = 0.04;
   const Eigen::Vector3d slope = rig.Kinv().transpose() * normal;  // n.r as a function of the pixel
   cv::Mat ground;
-  keepHalfPlane(mask, slope.x(), slope.y(), slope.z() - kLeastSlope, ground);
-  const int count = cornerBudget(image.size(), parameters.corner_count, parameters.pixels_per_corner);
+  keepHalfPlane(view.mask, slope.x(), slope.y(), slope.z() - kLeastSlope, ground);
+  const int count = cornerBudget(view.image.size(), parameters.corner_count, parameters.pixels_per_corner);
   std::vector<TrackedCorner> corners;
-  for (const cv::Point& point : findCorners(image, ground, {count, kQuality, kDistance, kHarris}, memory))
+  for (const cv::Point& point :
+       findCorners(view.image, ground, {count, kQuality, kDistance, kHarris}, memory))
     corners.push_back({point.x, point.y, true, 0, 0});
   return corners;
 }

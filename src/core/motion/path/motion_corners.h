@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "image/input/rectified_view.h"
 #include "image/windows/corners.h"
 #include "motion/path/motion_tracker.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
@@ -13,9 +14,9 @@ namespace uav_landing {
 /// pixel of disparity are not used.
 std::vector<TrackedCorner> stereoCorners(const StereoRig& rig, const StereoDepthResult& stereo);
 
-/// Corners for use without stereo; all are assumed to lie on the ground. mask: where they may be. normal: of
+/// Corners for use without stereo; all are assumed to lie on the ground. view: of the left camera. normal: of
 /// the ground; corners are looked for below its horizon only. memory: working memory.
-std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const cv::Mat& image, const cv::Mat& mask,
+std::vector<TrackedCorner> groundCorners(const StereoRig& rig, const RectifiedView& view,
                                          const Eigen::Vector3d& normal,
                                          const ApproachAngleParameters& parameters, CornerMemory& memory);
 

@@ -30,13 +30,13 @@ bool isSame(const GroundAxes& axes, const GroundEdge& a, const GroundEdge& b) {
 /// The lines of one view on the ground.
 class View {
  public:
-  View(const StereoRig& rig, const GroundAxes& axes, double cx, double baseline)
+  View(const StereoRig& rig, const GroundAxes& axes, const ViewCamera& camera)
       : rig_(rig),
         axes_(axes),
-        cx_(cx),
+        cx_(camera.cx),
         // The right camera stands to the right. When the rig is rolled, it is also lower or higher.
-        height_(1 - baseline * axes.down.x()),
-        place_(baseline * axes.forward.x(), baseline * axes.left.x()) {}
+        height_(1 - camera.baseline * axes.down.x()),
+        place_(camera.baseline * axes.forward.x(), camera.baseline * axes.left.x()) {}
 
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const {
     return {(pixel.x() - cx_) / rig_.fx, (pixel.y() - rig_.cy) / rig_.fy, 1};
@@ -173,7 +173,7 @@ Eigen::Matrix<double, 2, 3> GroundAxes::meetByRotation(const Eigen::Vector2d& po
 
 std::vector<char> linesAlong(const StereoRig& rig, const GroundAxes& axes,
                              const std::vector<LineSegment>& lines, double cx) {
-  const View view(rig, axes, cx, 0);
+  const View view(rig, axes, {cx});
   std::vector<char> along(lines.size(), 0);
   for (size_t i = 0; i < lines.size(); ++i) {
     if (!view.ends(lines[i])) continue;
@@ -190,8 +190,8 @@ std::vector<char> linesAlong(const StereoRig& rig, const GroundAxes& axes,
 
 std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes,
                                     const std::vector<LineSegment>& lines, const std::vector<char>& along,
-                                    double cx, double baseline) {
-  const View view(rig, axes, cx, baseline);
+                                    const ViewCamera& camera) {
+  const View view(rig, axes, camera);
   std::vector<GroundEdge> pieces;
   for (size_t i = 0; i < lines.size(); ++i) {
     const auto ends = along[i] != 0 ? view.ends(lines[i]) : std::nullopt;

@@ -54,19 +54,22 @@ struct GroundEdge {
   std::vector<EdgePiece> pieces;
 };
 
+/// Where the camera of a view stands, in the axes of the left camera.
+struct ViewCamera {
+  double cx;            ///< principal column
+  double baseline = 0;  ///< distance to the right of the left camera, in multiples of its height
+};
+
 /// Tells which lines of one view may run along the runway, given their own uncertainty and that of the axes:
 /// 1 for each of these. cx: principal column of the view.
 std::vector<char> linesAlong(const StereoRig& rig, const GroundAxes& axes,
                              const std::vector<LineSegment>& lines, double cx);
 
-/// Joins the lines of one view that run along the runway to edges, the longest one first.
-/// - along: 1 for each line along the runway.
-/// - cx: principal column of the view.
-/// - baseline: distance of the view's camera to the right of the left one, in multiples of the height; 0 for
-///   the left view.
+/// Joins the lines of one view that run along the runway to edges, the longest one first. along: 1 for each
+/// line along the runway.
 std::vector<GroundEdge> groundEdges(const StereoRig& rig, const GroundAxes& axes,
                                     const std::vector<LineSegment>& lines, const std::vector<char>& along,
-                                    double cx, double baseline);
+                                    const ViewCamera& camera);
 
 /// Edges that both views see at the same place on the ground, such as paint or the edge of the pavement. An
 /// object above the ground appears at two places, so it is rejected. The same holds for lines that do not

@@ -309,12 +309,12 @@ class Search {
 
 }  // namespace
 
-RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
-                                    const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    RunwayDirectionMemory& memory, Timings& timings, const ViewRows& rows) {
-  const View left_view{left, left_mask, viewK(rig, true), rows.left};
-  const View right_view{right, right_mask, viewK(rig, false), rows.right};
+RunwayDirection findRunwayDirection(const StereoViews& views, const SeenGround* ground,
+                                    const ApproachAngleParameters& parameters, RunwayDirectionMemory& memory,
+                                    Timings& timings) {
+  const StereoRig& rig = views.rig;
+  const View left_view{views.left.image, views.left.mask, viewK(rig, true), views.left.rows};
+  const View right_view{views.right.image, views.right.mask, viewK(rig, false), views.right.rows};
   const Search search(ground, parameters, memory, timings);
   Found in_left = search.in(left_view);
   Found in_right =

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/image_memory.h"
+#include "image/input/rectified_view.h"
 #include "lines/segments/line_segments.h"
 #include "lines/vanishing/vanishing_point.h"
 #include "runway/direction/seen_ground.h"
@@ -22,6 +23,12 @@ struct RunwayDirection {
   Expected<VanishingPoint> combined = tl::make_unexpected(Failure{Reason::kNotYet, ""});
 };
 
+/// Both rectified images of a pair. The masks are eroded.
+struct StereoViews {
+  const StereoRig& rig;
+  RectifiedView left, right;
+};
+
 /// Working memory of the search.
 struct RunwayDirectionMemory {
   LineMemory lines;
@@ -38,14 +45,10 @@ struct RunwayDirectionMemory {
 /// vanishing point is certain and on the ground, the right view is searched only where the ground puts the
 /// left view's lines.
 ///
-/// - ground: from stereo, or null.
-/// - masks: of the rectified views, eroded.
-/// - rows: row times of the views. left_lines and right_lines are as they would be with all rows exposed at
-///   the stamp; the reports `left` and `right` show lines as they are in the images.
-RunwayDirection findRunwayDirection(const StereoRig& rig, const cv::Mat& left, const cv::Mat& right,
-                                    const cv::Mat& left_mask, const cv::Mat& right_mask,
-                                    const SeenGround* ground, const ApproachAngleParameters& parameters,
-                                    RunwayDirectionMemory& memory, Timings& timings,
-                                    const ViewRows& rows = {});
+/// left_lines and right_lines are as they would be with all rows exposed at the stamp. The reports `left` and
+/// `right` show lines as they are in the images. ground: from stereo, or null.
+RunwayDirection findRunwayDirection(const StereoViews& views, const SeenGround* ground,
+                                    const ApproachAngleParameters& parameters, RunwayDirectionMemory& memory,
+                                    Timings& timings);
 
 }  // namespace uav_landing

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "geometry/stamp_map.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/parameters/runway_parameters.h"
 #include "uav_landing/results/stage_results.h"
@@ -19,11 +18,6 @@ struct SeenGround {
   std::optional<Eigen::Vector3d> path = std::nullopt, last = std::nullopt;
   RunwayParameters runway = {};  ///< data of the chart
   double last_doubt = 0;         ///< chance that `last` was not the runway's direction
-};
-
-/// Maps of both rectified views to the places that pixels would have with all rows exposed at the stamp.
-struct ViewRows {
-  StampMap left, right;
 };
 
 }  // namespace uav_landing

@@ -30,10 +30,9 @@ tl::unexpected<Failure> noThreshold(const Parts&... parts) {
 
 }  // namespace
 
-Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
-                                  const GroundAxes& axes, const RunwayCrossSection& runway,
-                                  std::vector<LineGreys>& memory, const StampMap& rows) {
-  const TopView view(image, mask, rig, axes, runway, memory, rows);
+Expected<Threshold> findThreshold(const RectifiedView& image, const StereoRig& rig, const GroundAxes& axes,
+                                  const RunwayCrossSection& runway, std::vector<LineGreys>& memory) {
+  const TopView view(image, rig, axes, runway, memory);
   const std::optional<ThresholdBars> bars = findThresholdBars(view);
   if (!bars) return noThreshold("no threshold bars in the image");
   const double begin = view.distance(bars->begin);

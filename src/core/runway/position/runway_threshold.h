@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "geometry/stamp_map.h"
+#include "image/input/rectified_view.h"
 #include "kernels/image/line_view.h"
 #include "runway/direction/ground_edges.h"
 #include "runway/position/runway_edges.h"
@@ -27,15 +27,12 @@ struct Threshold {
 /// On other runways the distance scales with that between the bars. The middle of that range is reported, and
 /// the systematic variance covers both of its ends.
 ///
-/// - image: left rectified, mono8.
-/// - mask: 255 where the image is valid.
+/// - image: of the left camera.
 /// - memory: for rows seen from above.
-/// - rows: row times of the image.
 ///
 /// Fails with no_runway when there are no bars or the ground before them is not in the image. It also fails
 /// when something before the bars is not clearly a line.
-Expected<Threshold> findThreshold(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig,
-                                  const GroundAxes& axes, const RunwayCrossSection& runway,
-                                  std::vector<LineGreys>& memory, const StampMap& rows = {});
+Expected<Threshold> findThreshold(const RectifiedView& image, const StereoRig& rig, const GroundAxes& axes,
+                                  const RunwayCrossSection& runway, std::vector<LineGreys>& memory);
 
 }  // namespace uav_landing

@@ -14,13 +14,13 @@ constexpr int kColumns = TopView::kColumns;
 
 }  // namespace
 
-TopView::TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
-                 const RunwayCrossSection& runway, std::vector<Across>& rows, const StampMap& exposed)
-    : image_(image),
-      mask_(mask),
+TopView::TopView(const RectifiedView& view, const StereoRig& rig, const GroundAxes& axes,
+                 const RunwayCrossSection& runway, std::vector<Across>& rows)
+    : image_(view.image),
+      mask_(view.mask),
       rig_(rig),
       axes_(axes),
-      exposed_(exposed),
+      exposed_(view.rows),
       centre_(runway.centre),
       step_(1 / rig.fy),
       rows_(rows) {

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "geometry/stamp_map.h"
+#include "image/input/rectified_view.h"
 #include "kernels/image/line_view.h"
 #include "runway/direction/ground_edges.h"
 #include "runway/position/runway_cross_section.h"
@@ -12,7 +12,7 @@
 namespace uav_landing {
 
 /// The runway seen from above. A row (station) corresponds to one pixel of distance. The object refers to the
-/// image, the mask, the rig, the axes and the rows, which must outlive it.
+/// view's image and mask, the rig, the axes and the rows, which must outlive it.
 class TopView {
  public:
   static constexpr int kColumns = kLineSamples;  ///< samples across the runway
@@ -23,9 +23,9 @@ class TopView {
   /// Grey levels across the runway from left to right. They are not finite outside the image.
   using Across = LineGreys;
 
-  /// rows: memory for the rows, kept by the caller. exposed: row times of the image.
-  TopView(const cv::Mat& image, const cv::Mat& mask, const StereoRig& rig, const GroundAxes& axes,
-          const RunwayCrossSection& runway, std::vector<Across>& rows, const StampMap& exposed = {});
+  /// view: of the left camera. rows: memory for the rows, kept by the caller.
+  TopView(const RectifiedView& view, const StereoRig& rig, const GroundAxes& axes,
+          const RunwayCrossSection& runway, std::vector<Across>& rows);
 
   int size() const { return static_cast<int>(rows_.size()); }
   const Across& row(int k) const { return rows_[static_cast<size_t>(k)]; }

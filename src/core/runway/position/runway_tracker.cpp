@@ -153,13 +153,13 @@ void RunwayTracker::predict(const GroundAxes* axes, const ApproachAngleResult::M
 
 RunwayTracker::Edges RunwayTracker::edgesOf(const GroundAxes& axes, const RunwayDirection& direction,
                                             double height) const {
-  const auto view = [&](const std::vector<LineSegment>& lines, double cx, double baseline) {
-    return groundEdges(model_.rig, axes, lines, linesAlong(model_.rig, axes, lines, cx), cx, baseline);
+  const auto view = [&](const std::vector<LineSegment>& lines, const ViewCamera& camera) {
+    return groundEdges(model_.rig, axes, lines, linesAlong(model_.rig, axes, lines, camera.cx), camera);
   };
-  const std::vector<GroundEdge> left = view(direction.left_lines, model_.rig.cx, 0);
+  const std::vector<GroundEdge> left = view(direction.left_lines, {model_.rig.cx});
   if (!std::isfinite(height)) return {left, left};
   const std::vector<GroundEdge> right =
-      view(direction.right_lines, model_.rig.cx_right, model_.rig.baseline / height);
+      view(direction.right_lines, {model_.rig.cx_right, model_.rig.baseline / height});
   return {matchEdges(axes, left, right), joinEdges(axes, left, right)};
 }
 
@@ -248,9 +248,8 @@ void RunwayTracker::findThresholdLine(double seconds, const cv::Mat& left, const
     threshold_.miss(seconds, kThresholdPatience);
     return;
   }
-  const Expected<Threshold> seen =
-      findThreshold(left, model_.left_mask, model_.rig, axes,
-                    {-result.y, result.y_variance, width_.value(), 0}, rows_, rows);
+  const Expected<Threshold> seen = findThreshold({left, model_.left_mask, rows}, model_.rig, axes,
+                                                 {-result.y, result.y_variance, width_.value(), 0}, rows_);
   if (!seen) {
     result.threshold_failure = seen.error();
     threshold_.miss(seconds, kThresholdPatience);
