@@ -18,8 +18,8 @@ struct VerticalSpeedErrors {
   double acceleration = 0;     ///< 1 sigma, m/s^2, because the step's mean speed is that of T/2 ago
 };
 
-/// Vertical speed v = -(n.t/h) h / T of the step from the previous pair. plane, height:
-/// ground plane and height (m) now. NaN when the step has no motion.
+/// Vertical speed v = -(n.t/h) h / T of the step from the previous pair. plane, height: ground plane
+/// and height (m) now. NaN when the step has no motion.
 VerticalSpeed verticalSpeed(const ApproachAngleResult::Motion& step, const GroundPlane& plane, double height,
                             const VerticalSpeedErrors& errors);
 
