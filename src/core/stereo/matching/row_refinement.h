@@ -34,8 +34,8 @@ struct RowPlace {
 };
 
 /// Refines the place of the reference's window in the other image, from `start` on. Both images are CV_32F of
-/// the same size. Not converged when the window leaves an image, has no contrast along the row, or moves by more
-/// than 1.5 px. across_too: fill `across`, too.
+/// the same size. Not converged when the window leaves an image, has no contrast along the row, or moves by
+/// more than 1.5 px. across_too: fill `across`, too.
 RowRefinement refineAlongRow(const cv::Mat& reference, const cv::Mat& other, const SquareWindow& window,
                              const RowPlace& start, bool across_too = false);
 
