@@ -30,6 +30,9 @@ namespace uav_landing {
 /// the add() that completed the set, without the lock.
 template <class... Messages>
 class Pairing {
+  static_assert(sizeof...(Messages) >= 2,
+                "one input needs no pairing: subscribe to it, and count with InputWatch");
+
  public:
   template <size_t kInput>
   using Pointer = boost::shared_ptr<const std::tuple_element_t<kInput, std::tuple<Messages...>>>;
