@@ -1,4 +1,4 @@
-#include "runway/position/centre_columns.h"
+#include "runway/edges/centre_columns.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runway/position/runway_threshold.h"
+#include "runway/threshold/runway_threshold.h"
 
 #include <gtest/gtest.h>
 

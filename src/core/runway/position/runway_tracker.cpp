@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "estimation/limits.h"
 #include "runway/direction/runway_object.h"
-#include "runway/position/runway_threshold.h"
+#include "runway/threshold/runway_threshold.h"
 
 namespace uav_landing {
 namespace {

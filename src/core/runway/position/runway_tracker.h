@@ -6,7 +6,7 @@
 
 #include "kernels/image/line_view.h"
 #include "runway/direction/runway_direction.h"
-#include "runway/position/runway_edges.h"
+#include "runway/edges/runway_edges.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/parameters/runway_parameters.h"

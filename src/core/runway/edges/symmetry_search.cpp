@@ -1,12 +1,12 @@
-#include "runway/position/symmetry_search.h"
+#include "runway/edges/symmetry_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "estimation/limits.h"
-#include "runway/position/centre_solutions.h"
-#include "runway/position/runway_fit.h"
+#include "runway/edges/centre_solutions.h"
+#include "runway/edges/runway_fit.h"
 
 namespace uav_landing {
 namespace {

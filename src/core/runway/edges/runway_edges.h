@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "runway/direction/ground_edges.h"
-#include "runway/position/pair_evidence.h"
-#include "runway/position/runway_cross_section.h"
+#include "runway/edges/pair_evidence.h"
+#include "runway/edges/runway_cross_section.h"
 #include "uav_landing/base/failure.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "runway/position/threshold_bars.h"
+#include "runway/threshold/threshold_bars.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runway/position/runway_threshold.h"
+#include "runway/threshold/runway_threshold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/text.h"
-#include "runway/position/runway_top_view.h"
-#include "runway/position/threshold_bars.h"
-#include "runway/position/threshold_line.h"
+#include "runway/threshold/runway_top_view.h"
+#include "runway/threshold/threshold_bars.h"
+#include "runway/threshold/threshold_line.h"
 
 namespace uav_landing {
 namespace {

@@ -1,4 +1,4 @@
-#include "runway/position/pair_evidence.h"
+#include "runway/edges/pair_evidence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runway/position/centre_solutions.h"
+#include "runway/edges/centre_solutions.h"
 
 #include <algorithm>
 #include <cmath>

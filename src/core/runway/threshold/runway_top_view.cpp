@@ -1,4 +1,4 @@
-#include "runway/position/runway_top_view.h"
+#include "runway/threshold/runway_top_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "runway/direction/ground_edges.h"
-#include "runway/position/runway_cross_section.h"
+#include "runway/edges/runway_cross_section.h"
 
 namespace uav_landing {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "runway/direction/ground_edges.h"
-#include "runway/position/symmetry_search.h"
+#include "runway/edges/symmetry_search.h"
 
 namespace uav_landing {
 

@@ -6,7 +6,7 @@
 #include "image/input/rectified_view.h"
 #include "kernels/image/line_view.h"
 #include "runway/direction/ground_edges.h"
-#include "runway/position/runway_edges.h"
+#include "runway/edges/runway_edges.h"
 #include "uav_landing/base/failure.h"
 
 namespace uav_landing {

@@ -1,4 +1,4 @@
-#include "runway/position/threshold_line.h"
+#include "runway/threshold/threshold_line.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "runway/position/runway_fit.h"
+#include "runway/edges/runway_fit.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

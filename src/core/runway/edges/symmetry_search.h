@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "runway/direction/ground_edges.h"
-#include "runway/position/centre_columns.h"
-#include "runway/position/runway_cross_section.h"
+#include "runway/edges/centre_columns.h"
+#include "runway/edges/runway_cross_section.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "runway/position/runway_fit.h"
+#include "runway/edges/runway_fit.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "runway/position/runway_top_view.h"
+#include "runway/threshold/runway_top_view.h"
 
 namespace uav_landing {
 

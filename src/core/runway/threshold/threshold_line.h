@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "runway/position/threshold_bars.h"
+#include "runway/threshold/threshold_bars.h"
 
 namespace uav_landing {
 

@@ -1,4 +1,4 @@
-#include "runway/position/runway_edges.h"
+#include "runway/edges/runway_edges.h"
 
 #include <algorithm>
 #include <cmath>
