@@ -11,6 +11,7 @@ _INCLUDE = re.compile(r'^\s*#include "([^"]+)"', re.MULTILINE)
 _ROOTS = ("include", "src", "src/core", "src/ros", "src/nodelets", "src/tools", "test")
 _DEFINED = re.compile(r"^[\w:<>,&*\s]*?\b([A-Z]\w+)::[~\w]+\(", re.MULTILINE)
 _DECLARED = re.compile(r"^(?:class|struct) (\w+)\b[^;]*$", re.MULTILINE)
+_FUNCTION = re.compile(r"^[A-Za-z][\w:<>,&* ]*[ &*>](\w+)\(", re.MULTILINE)
 # Nodelets that run in the tests of others as well.
 _WHOLE_CHAIN = ("chain_nodelet", "abuse_nodelet")
 
@@ -74,10 +75,14 @@ class Concern:
         return {name: count for name, count in steps.items() if name.endswith(".cpp")}
 
     def _headers_of(self, name):
-        """Returns the headers that a source implements: of its own name, and of the classes whose functions it defines."""
+        """Returns the headers that a source implements: of its own name, of classes, or else of functions that it defines."""
         stem = Path(name).stem
-        same = [header for header in self._includes[name] if Path(header).stem == stem]
-        return set(same) | {self._homes[kind] for kind in _DEFINED.findall(self._texts[name]) if kind in self._homes}
+        same = {header for header in self._includes[name] if Path(header).stem == stem}
+        same |= {self._homes[kind] for kind in _DEFINED.findall(self._texts[name]) if kind in self._homes}
+        if same:
+            return same
+        functions = set(_FUNCTION.findall(self._texts[name]))
+        return {header for header in self._includes[name] if functions & set(_FUNCTION.findall(self._texts[header]))}
 
     def _distances(self, name):
         """Returns the files that depend on this one, with the number of includes between."""

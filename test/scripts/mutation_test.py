@@ -133,6 +133,15 @@ class ConcernTest(TreeTest):
     def test_a_part_of_a_class_in_a_file_of_its_own(self):
         self.assertEqual(self.concern.tests_of("src/core/height/filter_part.cpp"), [self.filter])
 
+    def test_a_function_of_a_header_with_another_name(self):
+        self.write("src/core/base/gain.h", "class Gain {\n};\ndouble gainOf(int index);\n")
+        self.write("src/core/base/loud.cpp", '#include "base/gain.h"\ndouble gainOf(int index) { return index; }\n')
+        self.write("src/core/base/quiet.cpp", '#include "base/gain.h"\ndouble quiet(int index) { return gainOf(index); }\n')
+        sources = {"filter_test": ["test/core/filter_test.cpp"], "gain_test": ["test/core/gain_test.cpp"]}
+        concern = Concern(self.tree, [self.gain, self.filter], sources.get)
+        self.assertEqual(concern.tests_of("src/core/base/loud.cpp")[0], self.gain)
+        self.assertEqual(concern.tests_of("src/core/base/quiet.cpp"), [], "it only calls it")
+
     def test_a_program_is_tested_by_the_python_tests_that_name_it(self):
         self.assertEqual(self.concern.tests_of("src/tools/play.cpp"), [self.play])
 

@@ -157,6 +157,36 @@ TEST_F(FaultsTest, VibrationBeginsInFlightAndRowsAreThereAllTheTime) {
   EXPECT_TRUE(fault("readout_untold").wholeRun());
 }
 
+TEST_F(FaultsTest, EveryFourthPairChangesPlacesWithTheOneBehindIt) {
+  // Six pairs, of which each has its number as grey level and as tenths of a second.
+  flight_.frames.resize(6, flight_.frames[0]);
+  for (int i = 0; i < 6; ++i) {
+    Flight::Frame& frame = flight_.frames[static_cast<size_t>(i)];
+    frame.time = 0.1 * i;
+    frame.left = cv::Mat(2, 2, CV_8U, cv::Scalar(i));
+    frame.right = cv::Mat(2, 2, CV_8U, cv::Scalar(10 + i));
+  }
+  FaultRun run{flight_, 0, cv::RNG(1)};
+  const int expected[] = {1, 0, 2, 3, 5, 4};
+  for (int i = 0; i < 6; ++i) {
+    const Flight::Frame& own = flight_.frames[static_cast<size_t>(i)];
+    Delivery pair{own.time, own.left.clone(), own.right.clone(), true};
+    fault("out_of_order").spoil(run, i, pair);
+    EXPECT_DOUBLE_EQ(pair.time, 0.1 * expected[i]) << i;
+    EXPECT_EQ(pair.left.at<uchar>(0, 0), expected[i]) << i;
+    EXPECT_EQ(pair.right.at<uchar>(0, 0), 10 + expected[i]) << i;
+  }
+}
+
+TEST_F(FaultsTest, TheCameraInfoOfTheLeftCameraForBothKeepsTheBaseline) {
+  CameraCalibration left = flight_.left, right = flight_.right;
+  fault("camera_info").calibrate(left, right);
+  EXPECT_EQ(right.P(0, 3), flight_.right.P(0, 3));
+  EXPECT_NE(right.P(0, 3), 0);
+  EXPECT_EQ(right.K, flight_.left.K);
+  EXPECT_EQ(left.K(0, 2), flight_.left.K(0, 2) + 8);
+}
+
 TEST(ThresholdFlights, PassTheThresholdInTheLaterHalf) {
   for (uint64_t seed = 1; seed <= 50; ++seed) {
     const SimulatorParameters p = drawThresholdFlight(seed, 110, Parameters());
