@@ -219,7 +219,9 @@ TEST(RandomApproach, SceneryIsDrawnByItsSeedWithinItsRangesAndChangesNothingElse
     const SimulatedSceneryParameters& p = with.scenery;
     fields += p.fields.width > 0 ? 1 : 0;
     towns += p.town.width > 0 ? 1 : 0;
-    if (p.town.width > 0) EXPECT_NEAR(p.town.length, 1200, 800) << seed;
+    if (p.town.width > 0) {
+      EXPECT_NEAR(p.town.length, 1200, 800) << seed;
+    }
     rivers += p.river.width > 0 ? 1 : 0;
     shores += p.shore.width > 0 ? 1 : 0;
     strips += p.grass_strip.side > 0 ? 1 : 0;
