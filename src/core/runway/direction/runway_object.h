@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,12 +17,13 @@ constexpr double kLargestDoubt = 1e-3;
 
 /// Two edges side by side on the ground that may be a runway's, with what lies between them.
 struct RunwayHypothesis {
-  Eigen::Vector3d direction;  ///< vanishing direction of the edges, unit, frame of the view
-  double left, right;         ///< lateral places of the edges, in heights of the camera, left positive
-  double near, far;           ///< ends of the part where both are seen, forward, in heights
-  double evidence;            ///< log-likelihood ratio to a pair of lines that is there by chance
-  double marks = 0;           ///< part of it from lines along the runway between the edges
-  double lead;                ///< evidence, less the penalty for a turn since the previous pair
+  /// Vanishing direction of the edges, unit, frame of the view.
+  Eigen::Vector3d direction = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  double left = 0, right = 0;  ///< lateral places of the edges, in heights of the camera, left positive
+  double near = 0, far = 0;    ///< ends of the part where both are seen, forward, in heights
+  double evidence = 0;         ///< log-likelihood ratio to a pair of lines that is there by chance
+  double marks = 0;            ///< part of it from lines along the runway between the edges
+  double lead = 0;             ///< evidence, less the penalty for a turn since the previous pair
   /// Per line: 1 for the edges, and for lines along the runway between them.
   std::vector<char> members;
 
