@@ -1,9 +1,6 @@
 #include "integrity/solution_separation.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "uav_landing/results/consistency_test.h"
 
 namespace uav_landing {
 namespace {
@@ -34,8 +31,7 @@ const char* toString(FaultySource source) {
 }
 
 SolutionSeparation::SolutionSeparation(const KalmanHeightParameters& parameters)
-    : factor_(normalQuantile(parameters.integrity_risk)),
-      fault_factor_(normalQuantile(std::min(1.0, parameters.integrity_risk / parameters.fault_probability))),
+    : factors_(parameters),
       unwatched_scale_(parameters.unwatched_scale_error),
       acceleration_stddev_(parameters.acceleration_stddev),
       initial_speed_stddev_(parameters.initial_speed_stddev) {}
@@ -74,8 +70,8 @@ void SolutionSeparation::updateSpeed(double speed, double variance) {
 SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, double variance,
                                                               double factor) const {
   const double sigma = std::sqrt(variance);
-  Level level{factor_ * sigma, "noise"};
-  const double scaled = unwatched_scale_ * height + fault_factor_ * sigma;
+  Level level{factors_.healthy * sigma, "noise"};
+  const double scaled = unwatched_scale_ * height + factors_.faulty * sigma;
   if (!(scaled <= level.bound)) level = {scaled, "scale"};
   for (int i = 0; i < kFaultySources; ++i) {
     if (!solutions_[i]) continue;
@@ -89,7 +85,7 @@ SolutionSeparation::Level SolutionSeparation::protectionLevel(double height, dou
 
 SolutionSeparation::Level SolutionSeparation::larger(const Level& level, double height, double solution,
                                                      double variance, const char* source) const {
-  const double bound = std::abs(height - solution) + fault_factor_ * std::sqrt(variance);
+  const double bound = factors_.bound(height, solution, variance);
   return bound <= level.bound ? level : Level{bound, source};
 }
 

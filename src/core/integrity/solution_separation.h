@@ -5,6 +5,7 @@
 
 #include "height/height_filter.h"
 #include "image/input/image_region.h"
+#include "results/protection_factors.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -63,8 +64,8 @@ class SolutionSeparation {
   Level larger(const Level& level, double height, double solution, double variance, const char* source) const;
 
  private:
-  double factor_, fault_factor_;  // k without and with a fault
-  double unwatched_scale_;        // of height
+  ProtectionFactors factors_;
+  double unwatched_scale_;  // of height
   double acceleration_stddev_, initial_speed_stddev_;
   std::array<std::optional<HeightFilter>, kFaultySources> solutions_;
 };

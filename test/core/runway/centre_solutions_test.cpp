@@ -40,8 +40,9 @@ struct Ground {
   void add(double left, double right, bool bright = true) {
     pairs.push_back({edge(left, !bright), edge(right, bright)});
   }
-  CentreSolutions solutions(double known_width = 0, bool rivalled = false) {
-    return centreSolutions(axes, pairs, 0, known_width, rivalled);
+  CentreSolutions solutions(const ChartWidth& chart = {}) {
+    const RunwayCrossSection whole = fitRunway(axes, pairs, 0);
+    return centreSolutions(axes, pairs, 0, {whole.centre, whole.variance}, chart);
   }
 };
 
@@ -85,15 +86,16 @@ TEST(CentreSolutions, BarsDoNotTellAWholeRunwayFromHalfOfOne) {
   ground.add(2, -2, false);
   ground.add(1.2, -1.2);
   EXPECT_TRUE(std::isnan(without(CentreSource::kWholeRunway, ground.solutions())));
-  EXPECT_FALSE(std::isnan(without(CentreSource::kWholeRunway, ground.solutions(4)))) << "of a chart's width";
-  EXPECT_TRUE(std::isnan(without(CentreSource::kWholeRunway, ground.solutions(4, true))))
+  EXPECT_FALSE(std::isnan(without(CentreSource::kWholeRunway, ground.solutions({4}))))
+      << "of a chart's width";
+  EXPECT_TRUE(std::isnan(without(CentreSource::kWholeRunway, ground.solutions({4, true}))))
       << "while other edges look as much like a runway";
 }
 
 TEST(CentreSolutions, WithoutAnEdgeTheOtherOneAndTheChartsWidthTellTheCentre) {
   Ground ground;
   ground.add(2.1, -2, false);  // the left edge is 0.1 off
-  const CentreSolutions found = ground.solutions(4);
+  const CentreSolutions found = ground.solutions({4});
   EXPECT_NEAR(without(CentreSource::kLeftEdge, found), 0, 1e-6);
   EXPECT_NEAR(without(CentreSource::kRightEdge, found), 0.1, 1e-6);
   // Half of the width, which is known to 3 %.

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 #include "estimation/limits.h"
-#include "uav_landing/results/consistency_test.h"
+#include "results/protection_factors.h"
 
 namespace uav_landing {
 namespace {
@@ -134,21 +134,18 @@ void RunwayTrack::compareSize(double T, const ApproachAngleResult::Sight& sight)
 }
 
 double RunwayTrack::protectionLevel() const {
-  const double factor = normalQuantile(parameters_.integrity_risk);
-  const double fault_factor =
-      normalQuantile(std::min(1.0, parameters_.integrity_risk / parameters_.fault_probability));
+  const ProtectionFactors factors(parameters_);
   const double height = axes_[2].value(), stddev = std::sqrt(axes_[2].variance());
   const double distance = std::max(0.0, -axes_[0].value());
   // h = v D (D + L) / (f L), with D in proportion to the width. If only the width is wrong, h grows faster
   // than in proportion. Half of that excess is compensated by the length and the outline's taper.
   const double share = runway_.length > 0 ? distance / (distance + runway_.length) : 0;
   const double by_chart = kChartError * height * (1 + 0.5 * share);
-  double level = std::max(factor * stddev, by_chart + fault_factor * stddev);
+  double level = std::max(factors.healthy * stddev, by_chart + factors.faulty * stddev);
   for (const Axis& axis : without_) {
     if (!axis.known()) continue;
-    const double separation = std::abs(axis.value() - height);
-    if (kContradiction.admits(separation, axis.variance())) continue;
-    level = std::max(level, separation + fault_factor * std::sqrt(axis.variance()));
+    if (kContradiction.admits(axis.value() - height, axis.variance())) continue;
+    level = std::max(level, factors.bound(height, axis.value(), axis.variance()));
   }
   return level;
 }

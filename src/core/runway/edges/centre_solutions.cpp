@@ -43,13 +43,14 @@ class Solutions {
     return solve(axes, pairs_);
   }
 
-  Solution all() const { return solve(axes_, pairs_); }
-
-  /// By one of the outermost edges and half of this width. side: 1 for the left edge, -1 for the right one.
-  Solution byEdge(double side, double known_width) const {
+  /// By one of the outermost edges and half of the known width.
+  void takeSingleEdges(double known_width, CentreSolutions& found) const {
     const RunwayCrossSection edges = fitRunway(axes_, {outermost_}, 0);
-    return {edges.centre + side * 0.5 * (edges.width - known_width),
-            edges.variance + 0.25 * edges.width_variance + std::pow(0.5 * kWidthStddev * known_width, 2)};
+    const double off = 0.5 * (edges.width - known_width);
+    const double variance =
+        edges.variance + 0.25 * edges.width_variance + std::pow(0.5 * kWidthStddev * known_width, 2);
+    found[CentreSource::kLeftEdge] = {edges.centre - off, variance};
+    found[CentreSource::kRightEdge] = {edges.centre + off, variance};
   }
 
  private:
@@ -74,21 +75,19 @@ class Solutions {
 }  // namespace
 
 CentreSolutions centreSolutions(const GroundAxes& axes, const std::vector<MirroredEdges>& pairs,
-                                size_t outermost, double known_width, bool rivalled) {
+                                size_t outermost, const Solution& whole, const ChartWidth& chart) {
   const Solutions solutions(axes, pairs, outermost);
   const bool stripe = solutions.has(Part::kStripe), marks = solutions.has(Part::kMarks);
   CentreSolutions found;
   if (stripe || marks) {
     found[CentreSource::kLeftEdge] = found[CentreSource::kRightEdge] = solutions.without(Part::kEdges);
-  } else if (known_width > 0) {
-    found[CentreSource::kLeftEdge] = solutions.byEdge(-1, known_width);
-    found[CentreSource::kRightEdge] = solutions.byEdge(1, known_width);
+  } else if (chart.width > 0) {
+    solutions.takeSingleEdges(chart.width, found);
   }
-  const Solution all = solutions.all();
-  found[CentreSource::kStripe] = stripe ? solutions.without(Part::kStripe) : all;
-  found[CentreSource::kMarks] = marks ? solutions.without(Part::kMarks) : all;
+  found[CentreSource::kStripe] = stripe ? solutions.without(Part::kStripe) : whole;
+  found[CentreSource::kMarks] = marks ? solutions.without(Part::kMarks) : whole;
   found[CentreSource::kDirection] = solutions.withoutDirection();
-  if (stripe || (known_width > 0 && !rivalled)) found[CentreSource::kWholeRunway] = all;
+  if (stripe || (chart.width > 0 && !chart.rivalled)) found[CentreSource::kWholeRunway] = whole;
   return found;
 }
 

@@ -7,6 +7,12 @@
 
 namespace uav_landing {
 
+/// The runway's width by a chart.
+struct ChartWidth {
+  double width = 0;       ///< in multiples of the height; 0: unknown
+  bool rivalled = false;  ///< other edges than those of this width have a symmetry of their own
+};
+
 /// Centre line without each of its sources, in multiples of the height.
 ///
 /// A wrong source moves the centre line away from the solution without it. So the distance to that solution
@@ -16,9 +22,9 @@ namespace uav_landing {
 /// - Half of a runway has no stripe in its middle, and not the known width. Where one of them is seen, the
 ///   runway is whole. A width says nothing where other edges are about as symmetric.
 ///
-/// pairs, outermost: see fitRunway(). known_width: by a chart, in multiples of the height; 0: unknown.
-/// rivalled: whether other edges have a symmetry of their own.
+/// pairs, outermost: see fitRunway(). whole: the centre by all pairs.
 CentreSolutions centreSolutions(const GroundAxes& axes, const std::vector<MirroredEdges>& pairs,
-                                size_t outermost, double known_width, bool rivalled);
+                                size_t outermost, const CentreSolutions::Solution& whole,
+                                const ChartWidth& chart);
 
 }  // namespace uav_landing

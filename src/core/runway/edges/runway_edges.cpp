@@ -51,7 +51,7 @@ FoundRunway findRunwayEdges(const GroundAxes& axes, const std::vector<GroundEdge
         return tl::make_unexpected(noRunway("the edges have more than one symmetry"));
     }
   }
-  return search.measure(*best, outermost, width.known, search.isRivalled(*best, found));
+  return search.measure(*best, outermost, {width.known, width.known > 0 && search.isRivalled(*best, found)});
 }
 
 }  // namespace uav_landing

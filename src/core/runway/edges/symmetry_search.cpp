@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "estimation/limits.h"
-#include "runway/edges/centre_solutions.h"
 #include "runway/edges/runway_fit.h"
 
 namespace uav_landing {
@@ -60,7 +59,7 @@ std::vector<Symmetry> SymmetrySearch::symmetries() const {
 }
 
 RunwayCrossSection SymmetrySearch::measure(const Symmetry& symmetry, const MirroredPair& outermost,
-                                           double known_width, bool rivalled) const {
+                                           const ChartWidth& chart) const {
   std::vector<MirroredEdges> pairs;
   size_t widest = 0;
   for (const MirroredPair* pair : symmetry.pairs) {
@@ -68,18 +67,19 @@ RunwayCrossSection SymmetrySearch::measure(const Symmetry& symmetry, const Mirro
     pairs.push_back({&edges_[pair->left], &edges_[pair->right]});
   }
   RunwayCrossSection section = fitRunway(axes_, pairs, widest);
-  section.centre_without = centreSolutions(axes_, pairs, widest, known_width, rivalled);
+  section.centre_without = centreSolutions(axes_, pairs, widest, {section.centre, section.variance}, chart);
   return section;
 }
 
 bool SymmetrySearch::isRivalled(const Symmetry& symmetry, const std::vector<Symmetry>& all) const {
   std::vector<char> explained(edges_.size(), 0);
   for (const MirroredPair* pair : symmetry.pairs) explained[pair->left] = explained[pair->right] = 1;
+  const double long_extent = kRival * longest();
   return std::any_of(all.begin(), all.end(), [&](const Symmetry& other) {
     if (other.score < kRival * symmetry.score ||
         std::abs(other.centre - symmetry.centre) <= other.tolerance + symmetry.tolerance)
       return false;
-    const MirroredPair* outermost = outermostPair(other, 0, kRival * longest());
+    const MirroredPair* outermost = outermostPair(other, 0, long_extent);
     return outermost != nullptr && explained[outermost->left] + explained[outermost->right] < 2;
   });
 }

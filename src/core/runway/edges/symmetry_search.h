@@ -5,6 +5,7 @@
 
 #include "runway/direction/ground_edges.h"
 #include "runway/edges/centre_columns.h"
+#include "runway/edges/centre_solutions.h"
 #include "runway/edges/runway_cross_section.h"
 
 namespace uav_landing {
@@ -40,9 +41,8 @@ class SymmetrySearch {
 
   /// One around each pair, the best one first. They point to pairs of this search.
   std::vector<Symmetry> symmetries() const;
-  /// rivalled: see below.
-  RunwayCrossSection measure(const Symmetry& symmetry, const MirroredPair& outermost, double known_width,
-                             bool rivalled) const;
+  RunwayCrossSection measure(const Symmetry& symmetry, const MirroredPair& outermost,
+                             const ChartWidth& chart) const;
   /// Whether other long edges than those of this symmetry have another one that is about as good.
   bool isRivalled(const Symmetry& symmetry, const std::vector<Symmetry>& all) const;
   /// Extent of the longest pair. Its middle may be anywhere, but stripes of paint do not count.

@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uav_landing/results/consistency_test.h"
-
 namespace uav_landing {
 
-PositionSeparation::PositionSeparation(const KalmanHeightParameters& parameters)
-    : factor_(normalQuantile(parameters.integrity_risk)),
-      fault_factor_(normalQuantile(std::min(1.0, parameters.integrity_risk / parameters.fault_probability))) {
-}
+PositionSeparation::PositionSeparation(const KalmanHeightParameters& parameters) : factors_(parameters) {}
 
 void PositionSeparation::predict(double movement, double stddev) {
   for (PositionAxis& axis : without_) axis.predict(movement, stddev);
@@ -33,10 +28,10 @@ void PositionSeparation::forgetAbove(double stddev) {
 double PositionSeparation::protectionLevel(double y, double variance) const {
   const double stddev = std::sqrt(variance);
   if (!std::isfinite(height_share_)) return kUnknown;
-  double level = std::max(factor_ * stddev, std::abs(y) * height_share_ + fault_factor_ * stddev);
+  double level = std::max(factors_.healthy * stddev, std::abs(y) * height_share_ + factors_.faulty * stddev);
   for (const PositionAxis& axis : without_) {
     if (!axis.known()) return kUnknown;
-    level = std::max(level, std::abs(axis.value() - y) + fault_factor_ * std::sqrt(axis.variance()));
+    level = std::max(level, factors_.bound(y, axis.value(), axis.variance()));
   }
   return level;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "results/protection_factors.h"
 #include "runway/position/position_axis.h"
 #include "uav_landing/parameters/kalman_height_parameters.h"
 #include "uav_landing/results/stage_results.h"
@@ -31,7 +32,7 @@ class PositionSeparation {
   double protectionLevel(double y, double variance) const;
 
  private:
-  double factor_, fault_factor_;  // sigmas without and with a fault
+  ProtectionFactors factors_;
   std::array<PositionAxis, kCentreSources> without_;
   double height_share_ = kUnknown;  // protection level of the last height over that height
 };
