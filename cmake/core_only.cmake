@@ -18,8 +18,8 @@ target_precompile_headers(uav_landing_core PRIVATE ${large_headers})
 file(STRINGS package.xml version REGEX "<version>")
 string(REGEX REPLACE ".*<version>(.*)</version>.*" "\\1" version "${version}")
 add_executable(simulate_campaign
-  src/tools/simulation/campaign_csv.cpp src/tools/simulation/random_approach.cpp src/tools/simulation/random_rows.cpp
-  src/tools/simulation/random_scenery.cpp src/tools/simulation/simulate_campaign.cpp)
+  src/tools/simulation/campaign_csv.cpp src/tools/simulation/random_approach.cpp src/tools/simulation/random_far.cpp
+  src/tools/simulation/random_flight.cpp src/tools/simulation/random_rows.cpp src/tools/simulation/random_scenery.cpp src/tools/simulation/simulate_campaign.cpp)
 target_include_directories(simulate_campaign PRIVATE src/tools src/core)
 target_compile_definitions(simulate_campaign PRIVATE UAV_LANDING_VERSION="${version}")
 target_link_libraries(simulate_campaign PRIVATE uav_landing_core CLI11::CLI11)

@@ -5,7 +5,7 @@ add_library(uav_landing_tools STATIC
   src/tools/bags/stamp_epochs.cpp src/tools/bags/stereo_bag_reader.cpp src/tools/bags/stereo_bag_writer.cpp
   src/tools/bags/topic_advice.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
   src/tools/datasets/dataset_writer.cpp src/tools/datasets/decimal_time.cpp src/tools/simulation/random_approach.cpp
-  src/tools/simulation/random_rows.cpp src/tools/simulation/random_scenery.cpp)
+  src/tools/simulation/random_far.cpp src/tools/simulation/random_flight.cpp src/tools/simulation/random_rows.cpp src/tools/simulation/random_scenery.cpp)
 # Some programs look inside the core: what surfaces and pictures are made of.
 target_include_directories(uav_landing_tools PUBLIC ${PROJECT_SOURCE_DIR}/src/tools ${PROJECT_SOURCE_DIR}/src/core)
 target_compile_definitions(uav_landing_tools PUBLIC UAV_LANDING_VERSION="${${PROJECT_NAME}_VERSION}")

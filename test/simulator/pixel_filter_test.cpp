@@ -25,5 +25,23 @@ TEST(PixelFilter, ItsVarianceAndWhatItLeavesAreThePixelsAndTheLenses) {
   }
 }
 
+TEST(PixelFilter, ThePixelsShareAllLightOfAPointAndItsPlace) {
+  for (const double blur : {0.0, 0.8}) {
+    const PixelFilter filter(2, blur);
+    for (const double at : {0.1, 0.37, 0.5, 0.9}) {
+      double sum = 0, place = 0;
+      for (int u = -2; u <= 3; ++u)
+        for (int v = -2; v <= 3; ++v) {
+          const double share = filter.weightOf(at - u, 0.2 - v);
+          sum += share;
+          place += share * u;
+        }
+      EXPECT_NEAR(sum, 1, 1e-12) << blur << ' ' << at;
+      // Where the lens does not blur, the light is in one pixel.
+      EXPECT_NEAR(place, at, blur > 0 ? 1e-12 : 0.5) << blur << ' ' << at;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace uav_landing

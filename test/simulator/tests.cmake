@@ -9,6 +9,7 @@ uav_landing_add_gtest(ground_profile_test test/simulator/ground_profile_test.cpp
 uav_landing_add_gtest(scenery_test test/simulator/scenery_test.cpp)
 uav_landing_add_gtest(scenery_yaw_test test/simulator/scenery_yaw_test.cpp)
 uav_landing_add_gtest(own_frame_test test/simulator/own_frame_test.cpp)
+uav_landing_add_gtest(lights_test test/simulator/lights_test.cpp)
 uav_landing_add_gtest(renderer_test test/simulator/renderer_test.cpp)
 uav_landing_add_gtest(simulated_rolling_shutter_test test/simulator/rolling_shutter_test.cpp LIBS yaml-cpp)
 uav_landing_add_gtest(approach_simulator_test test/simulator/approach_simulator_test.cpp)

@@ -50,6 +50,10 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   landing.velocity = {3, 4, 12};
   landing.twist_covariance.setZero();
   landing.twist_covariance.topLeftCorner<3, 3>() = 1.21 * Eigen::Matrix3d::Identity();
+  landing.height_above_runway = 12.5;
+  landing.height_above_runway_variance = 0.25;
+  landing.height_above_runway_known = true;
+  landing.height_above_runway_protection_level = 1.5;
   SimulatorParameters drawn;
   drawn.rig.stretch = 0.001;
   drawn.rig.bend_rx_deg = 0.01;
@@ -60,6 +64,7 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   drawn.profile.slope_before_deg = 0.25;
   drawn.profile.slope_after_deg = 1;
   drawn.runway.width = 33;
+  drawn.runway.length = 1200;
   drawn.image.readout_time = -0.02;
   drawn.vibration.frequency = 45;
   drawn.vibration.roll_deg = 0.1;
@@ -69,6 +74,8 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
   sample.seed = 17;
   sample.cell_height = 11;
   sample.noise = 2;
+  sample.chart = true;
+  sample.height_above_runway = 12;
   sample.frame = 4;
   sample.time = 0.2;
 
@@ -138,6 +145,13 @@ TEST(CampaignCsv, EachColumnHasItsOwnNumberInTheUnitOfItsName) {
                                                {"speed_m_s", 13},
                                                {"speed_stddev_m_s", 1.1},
                                                {"runway_width_m", 33},
+                                               {"chart", 1},
+                                               {"runway_length_m", 1200},
+                                               {"height_above_runway_true_m", 12},
+                                               {"height_above_runway_m", 12.5},
+                                               {"height_above_runway_stddev_m", 0.5},
+                                               {"height_above_runway_known", 1},
+                                               {"height_above_runway_protection_level_m", 1.5},
                                                {"readout_time_s", -0.02},
                                                {"vibration_hz", 45},
                                                {"vibration_deg", 0.3}};

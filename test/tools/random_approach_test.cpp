@@ -119,6 +119,35 @@ TEST(RandomApproach, ApproachesGoFromSixtyMetresToTheFlareAndStayAboveTheGround)
   EXPECT_NEAR(gusts, 100, 30);
 }
 
+TEST(RandomApproach, FarApproachesComeFromKilometresToTwentyMetresOverRunwaysOfAllSizes) {
+  int hills = 0;
+  double narrowest = 100, broadest = 0, shortest = 1e4, longest = 0;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    const SimulatorParameters p = drawFarApproach(seed);
+    const Trajectory path(p.path, p.wobble, p.gust, p.random.seed);
+    const CameraPose first = path.pose(0), last = path.pose(p.path.duration);
+    ASSERT_LT(first.position.x(), -2999) << seed;
+    ASSERT_GT(first.position.x(), -5001) << seed;
+    ASSERT_NEAR(last.position.z(), 20, 1) << seed;
+    ASSERT_LT(std::abs(last.position.y()), 0.5 * p.runway.width) << "it lands on the runway";
+    const GroundProfile ground(p.profile);
+    for (double t = 0; t <= p.path.duration; t += 0.5) {
+      const Eigen::Vector3d at = path.pose(t).position;
+      ASSERT_GT(at.z() - ground.height(at.x()), 3) << seed;
+    }
+    hills += p.profile.hill_height > 0 ? 1 : 0;
+    narrowest = std::min(narrowest, p.runway.width);
+    broadest = std::max(broadest, p.runway.width);
+    shortest = std::min(shortest, p.runway.length);
+    longest = std::max(longest, p.runway.length);
+  }
+  EXPECT_NEAR(hills, 50, 25);
+  EXPECT_NEAR(narrowest, 18, 1);
+  EXPECT_NEAR(broadest, 60, 2);
+  EXPECT_EQ(shortest, 600);
+  EXPECT_EQ(longest, 4000);
+}
+
 TEST(RandomApproach, AnInertialSensorIsAsWrongAsTheEstimatorIsToldAndChangesNothingElse) {
   Parameters parameters;
   parameters.approach_angle.imu_attitude_stddev_deg = 0.6;

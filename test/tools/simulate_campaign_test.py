@@ -104,6 +104,23 @@ class SimulateCampaignTest(unittest.TestCase):
         error, stddev = self.yaw_error(25, 30)
         self.assertLess(error, max(0.05, 5 * stddev))
 
+    def test_a_far_approach_is_flown_with_the_chart_and_without(self):
+        rows = self.folder / "rows.csv"
+        refused = run([PROGRAM, "far", "--csv", rows, "--imu"])
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--imu: for snippets and approaches only", refused.stderr)
+        result = run([PROGRAM, "far", "--csv", rows, "--first", 4, "--count", 1, "--noise", 2, "--frames", 12, "--chart"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with rows.open() as file:
+            flown = list(csv.DictReader(file))
+        self.assertEqual([(row["frame"], row["chart"]) for row in flown], [(str(i), chart) for i in range(12) for chart in "01"])
+        for row in flown:
+            self.assertLess(float(row["x_true_m"]), -2900)
+        last = {row["chart"]: row for row in flown[-2:]}
+        self.assertEqual(last["0"]["height_above_runway_m"], "", "nothing tells the scale")
+        self.assertLess(abs(float(last["1"]["height_above_runway_m"]) - float(last["1"]["height_above_runway_true_m"])),
+                        3 * float(last["1"]["height_above_runway_stddev_m"]))
+
     def test_bad_config_is_refused_with_its_name(self):
         result = run([PROGRAM, "snippets", "--csv", self.folder / "rows.csv", "--config", self.folder / "none.yaml"])
         self.assertEqual(result.returncode, 1)

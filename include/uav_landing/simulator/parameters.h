@@ -235,6 +235,26 @@ struct SimulatedObjectsParameters {
   }
 };
 
+/// Lamps of the runway, which show as points (section lights). Lamps that are left out have a size of 0.
+struct SimulatedLightsParameters {
+  double edge_spacing = 0;
+  double approach_length = 0;
+  double papi_angle_deg = 0;
+  double brightness = 5000;
+
+  template <class Visitor>
+  void visit(Visitor&& v) {
+    v.number("edge_spacing", edge_spacing, 0.0, 1000.0, "m",
+             "between lamps along the edges, with rows of lamps across both ends; 0: no edge lights");
+    v.number("approach_length", approach_length, 0.0, 2000.0, "m",
+             "of the approach lights before the threshold, a bar every 30 m; 0: none");
+    v.number("papi_angle_deg", papi_angle_deg, 0.0, 10.0, "deg",
+             "of the glide path that four PAPI units beside the aiming point show; 0: no PAPI");
+    v.number("brightness", brightness, 0.0, 1e7, "grey levels m^2",
+             "of a lamp: it is as bright as a surface of 1 m^2 with this grey level");
+  }
+};
+
 /// The path of the left camera and its mean attitude (section path).
 struct SimulatedPathParameters {
   double duration = 34;
@@ -372,6 +392,7 @@ struct SimulatorParameters {
   SimulatedSurfaceParameters surface;
   SimulatedProfileParameters profile;
   SimulatedObjectsParameters objects;
+  SimulatedLightsParameters lights;
   SimulatedSceneryParameters scenery;  ///< each of its elements is a section
   SimulatedPathParameters path;
   SimulatedWobbleParameters wobble;
@@ -403,6 +424,7 @@ struct SimulatorParameters {
     v("surface", surface);
     v("profile", profile);
     v("objects", objects);
+    v("lights", lights);
     scenery.visitSections(v);
     v("path", path);
     v("wobble", wobble);

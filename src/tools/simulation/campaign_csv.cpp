@@ -19,7 +19,9 @@ const char* const kHeader =
     "yaw_true_deg,yaw_deg,yaw_stddev_deg,x_true_m,x_m,x_stddev_m,y_true_m,y_m,y_stddev_m,"
     "stretch,bend_rx_deg,bend_ry_deg,bend_rz_deg,lens_rows_px,lens_tilt_deg,slope_change_deg,"
     "speed_true_m_s,speed_m_s,speed_stddev_m_s,runway_width_m,"
-    "readout_time_s,vibration_hz,vibration_deg";
+    "readout_time_s,vibration_hz,vibration_deg,chart,runway_length_m,"
+    "height_above_runway_true_m,height_above_runway_m,height_above_runway_stddev_m,"
+    "height_above_runway_known,height_above_runway_protection_level_m";
 
 /// Truth, estimate and the estimate's standard deviation in one unit.
 void quantity(CsvRow& row, double truth, double estimate, double variance, double unit) {
@@ -60,6 +62,10 @@ void CampaignCsv::write(const Sample& sample, const SimulatorParameters& drawn, 
   const SimulatedVibrationParameters& vibration = drawn.vibration;
   const Eigen::Vector3d amplitude(vibration.roll_deg, vibration.pitch_deg, vibration.yaw_deg);
   row.number(drawn.image.readout_time).number(vibration.frequency).number(amplitude.norm());
+  row.flag(sample.chart).number(drawn.runway.length);
+  quantity(row, sample.height_above_runway, landing.height_above_runway, landing.height_above_runway_variance,
+           1);
+  row.flag(landing.height_above_runway_known).number(landing.height_above_runway_protection_level);
   file_ << '\n';
 }
 

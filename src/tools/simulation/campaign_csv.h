@@ -21,8 +21,10 @@ class CampaignCsv {
     uint64_t seed = 0;
     double cell_height = kUnknown;  ///< m; unknown for a frame of an approach
     double noise = 0;               ///< grey levels
+    bool chart = false;             ///< the chain is told the runway's width and length
     int frame = 0;
-    double time = 0;  ///< s
+    double time = 0;                        ///< s
+    double height_above_runway = kUnknown;  ///< the true one, m; unknown where the runway is not level
   };
   void write(const Sample& sample, const SimulatorParameters& drawn, const Truth& truth,
              const Pipeline::Output& output);

@@ -52,5 +52,8 @@ void drawRollingShutter(uint64_t seed, SimulatorParameters& flight);
 void drawVibration(uint64_t seed, SimulatorParameters& flight);
 /// An approach from 60 m down to the end of the flare, with an exact calibration. Half of them have a gust.
 SimulatorParameters drawApproach(uint64_t seed, const Parameters& parameters = {}, bool imu = false);
+/// An approach from 3 to 5 km before the threshold down to 20 m, at 10 Hz. Runways are from 600 x 18 m to
+/// 4000 x 60 m, and a quarter has a hill before the threshold. The calibration is exact.
+SimulatorParameters drawFarApproach(uint64_t seed);
 
 }  // namespace uav_landing

@@ -1,8 +1,10 @@
 // Flies many random simulated approaches through the chain, in this process, and writes truth beside
 // estimate.
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "progress_bar.h"
 #include "simulation/campaign_csv.h"
 #include "simulation/random_approach.h"
+#include "simulator/ground/ground_profile.h"
 #include "uav_landing/motion/imu_buffer.h"
 #include "uav_landing/simulator/approach_simulator.h"
 
@@ -17,11 +20,14 @@ namespace {
 
 using namespace uav_landing;
 
+constexpr int kSnippet = 13;  // frames
+
 struct Options {
   std::string config, csv, kind = "snippets";
   uint64_t first = 1;
-  int count = 20, frames = 13;
-  bool imu = false, bend = false, scenery = false, rolling_shutter = false, vibration = false;
+  int count = 20;
+  std::optional<int> frames;
+  bool imu = false, bend = false, scenery = false, rolling_shutter = false, vibration = false, chart = false;
   std::vector<double> noise = {1, 2, 5}, heights = {3, 10, 30};
 };
 
@@ -31,10 +37,42 @@ T orThrow(Expected<T>&& value, uint64_t seed) {
   throw std::runtime_error("seed " + std::to_string(seed) + ": " + value.error().message());
 }
 
-/// Runs one flight at several noise levels. The view of the cameras is rendered once. For every frame and
-/// noise level it calls visit(sample, frame's truth, output).
+/// One chain that sees a flight.
+struct Viewer {
+  Pipeline pipeline;
+  double noise;
+  bool chart;
+};
+
+/// A chain for each noise level, and again with the runway's size given when the options ask for it.
+std::vector<Viewer> viewersOf(const Options& options, const SimulatorParameters& drawn, const CameraRig& rig,
+                              Parameters parameters, uint64_t seed) {
+  std::vector<Viewer> viewers;
+  for (const bool chart : {false, true}) {
+    if (chart && !options.chart) continue;
+    if (chart) {
+      parameters.runway.width = drawn.runway.width;
+      parameters.runway.length = drawn.runway.length;
+    }
+    for (const double noise : options.noise)
+      viewers.push_back(
+          {orThrow(Pipeline::create(rig.left.calibration, rig.right.calibration, parameters), seed), noise,
+           chart});
+  }
+  return viewers;
+}
+
+/// True height above the runway, m; unknown where the runway is not level.
+double heightAboveRunway(const SimulatorParameters& drawn, const CameraPose& pose) {
+  const GroundProfile profile(drawn.profile);
+  const bool level = profile.height(0) == 0 && profile.height(drawn.runway.length) == 0;
+  return level ? pose.position.z() : kUnknown;
+}
+
+/// Runs one flight through several chains. The view of the cameras is rendered once. For every frame and
+/// chain it calls visit(sample, frame's truth, output).
 template <class Visitor>
-void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vector<double>& noise,
+void fly(const Options& options, const SimulatorParameters& drawn, Parameters parameters,
          CampaignCsv::Sample sample, Visitor&& visit) {
   // A flight of a few frames should show what comes after the search.
   parameters.stereo_depth.search_at_once = parameters.approach_angle.search_at_once = true;
@@ -43,25 +81,23 @@ void fly(const SimulatorParameters& drawn, Parameters parameters, const std::vec
   const auto simulator = orThrow(ApproachSimulator::create(drawn), sample.seed);
   ImuBuffer imu(parameters.approach_angle);
   for (int i = 0; i < simulator.imu().count(simulator.duration()); ++i) imu.add(simulator.imu().sample(i));
-  std::vector<Pipeline> pipelines;
-  for (size_t i = 0; i < noise.size(); ++i)
-    pipelines.push_back(orThrow(
-        Pipeline::create(simulator.rig().left.calibration, simulator.rig().right.calibration, parameters),
-        sample.seed));
-  for (const std::string& warning : pipelines.front().warnings())
+  std::vector<Viewer> viewers = viewersOf(options, drawn, simulator.rig(), parameters, sample.seed);
+  for (const std::string& warning : viewers.front().pipeline.warnings())
     std::cerr << "simulate_campaign: seed " << sample.seed << ": " << warning << '\n';
   for (sample.frame = 0; sample.frame < simulator.frames(); ++sample.frame) {
     const ApproachSimulator::Light light = simulator.light(sample.frame);
-    const double time = simulator.timeOf(sample.frame);
+    sample.time = simulator.timeOf(sample.frame);
+    sample.height_above_runway = heightAboveRunway(drawn, simulator.pose(sample.time));
     std::optional<double> before;
     if (sample.frame > 0) before = simulator.timeOf(sample.frame - 1);
-    const AttitudePrior prior = imu.at(time, before, opticalFromImu());
-    for (size_t i = 0; i < noise.size(); ++i) {
-      const ApproachSimulator::Frame frame = simulator.expose(light, noise[i]);
-      sample.noise = noise[i];
-      sample.time = frame.time;
+    const AttitudePrior prior = imu.at(sample.time, before, opticalFromImu());
+    for (Viewer& viewer : viewers) {
+      const ApproachSimulator::Frame frame = simulator.expose(light, viewer.noise);
+      sample.noise = viewer.noise;
+      sample.chart = viewer.chart;
       // A stamp of 0 would mean that there is none.
-      visit(sample, frame.truth, pipelines[i].process(100 + frame.time, frame.left, frame.right, 0, prior));
+      visit(sample, frame.truth,
+            viewer.pipeline.process(100 + sample.time, frame.left, frame.right, 0, prior));
     }
   }
 }
@@ -75,19 +111,20 @@ void drawMore(const Options& options, uint64_t seed, SimulatorParameters& drawn)
 
 /// Last frames of snippets that end at each of the heights.
 void flySnippets(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
+  const int frames = options.frames.value_or(kSnippet);
   ProgressBar progress(options.count * options.heights.size());
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
     for (const double height : options.heights) {
       // Another flight at every height, so that the cells are independent of each other.
       const uint64_t flight = seed * 1000003 + static_cast<uint64_t>(std::llround(100 * height));
-      SimulatorParameters drawn = drawSnippet(flight, height, options.frames, parameters, options.imu);
+      SimulatorParameters drawn = drawSnippet(flight, height, frames, parameters, options.imu);
       if (options.bend) bendGround(flight, parameters, drawn);
       drawMore(options, flight, drawn);
       CampaignCsv::Sample sample;
       sample.seed = seed;
       sample.cell_height = height;
-      fly(drawn, parameters, options.noise, sample, [&](const auto& at, const auto& truth, const auto& out) {
-        if (at.frame == options.frames - 1) csv.write(at, drawn, truth, out);
+      fly(options, drawn, parameters, sample, [&](const auto& at, const auto& truth, const auto& out) {
+        if (at.frame == frames - 1) csv.write(at, drawn, truth, out);
       });
       progress.step();
     }
@@ -98,11 +135,14 @@ void flySnippets(const Options& options, const Parameters& parameters, CampaignC
 void flyApproaches(const Options& options, const Parameters& parameters, CampaignCsv& csv) {
   ProgressBar progress(options.count);
   for (uint64_t seed = options.first; seed < options.first + options.count; ++seed) {
-    SimulatorParameters drawn = drawApproach(seed, parameters, options.imu);
+    SimulatorParameters drawn =
+        options.kind == "far" ? drawFarApproach(seed) : drawApproach(seed, parameters, options.imu);
+    if (options.frames)
+      drawn.path.duration = std::min(drawn.path.duration, (*options.frames - 1) / drawn.path.rate);
     drawMore(options, seed, drawn);
     CampaignCsv::Sample sample;
     sample.seed = seed;
-    fly(drawn, parameters, options.noise, sample,
+    fly(options, drawn, parameters, sample,
         [&](const auto& at, const auto& truth, const auto& out) { csv.write(at, drawn, truth, out); });
     progress.step();
   }
@@ -128,8 +168,9 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option(
          "kind", options.kind,
-         "snippets: the last frame of short pieces, one row each; approaches: every frame of whole ones")
-      ->check(CLI::IsMember({"snippets", "approaches"}))
+         "snippets: the last frame of short pieces, one row each; approaches: every frame of whole ones from "
+         "60 m to the flare; far: every frame of approaches from 3 to 5 km before the threshold")
+      ->check(CLI::IsMember({"snippets", "approaches", "far"}))
       ->required();
   app.add_option("--csv", options.csv, "rows to write")->required();
   app.add_option("--config", options.config, "parameter file of the chain; without it the defaults");
@@ -144,9 +185,9 @@ int main(int argc, char** argv) {
   app.add_option("--heights", options.heights, "at which snippets end, m; each seed is flown at all")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 1000.0));
-  app.add_option("--frames", options.frames, "of a snippet, at 20 Hz")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 1000));
+  app.add_option("--frames", options.frames,
+                 "of a snippet, at 20 Hz (default 13); of an approach only the first ones (default all)")
+      ->check(CLI::Range(2, 100000));
   app.add_flag("--imu", options.imu, "an inertial sensor flies along, with errors drawn, too");
   app.add_flag(
       "--bend", options.bend,
@@ -159,8 +200,12 @@ int main(int argc, char** argv) {
                "stamp belongs to is drawn, too");
   app.add_flag("--vibration", options.vibration,
                "the rig is shaken; frequency and amplitudes are drawn, too");
+  app.add_flag("--chart", options.chart,
+               "each seed is flown once more with the runway's width and length given (column chart)");
   app.callback([&options] {
     if (options.bend && options.kind != "snippets") throw CLI::ValidationError("--bend", "for snippets only");
+    if (options.imu && options.kind == "far")
+      throw CLI::ValidationError("--imu", "for snippets and approaches only");
   });
   if (const auto status = parseCommandLine(app, argc, argv)) return *status;
   cv::setNumThreads(1);  // one process per core: run several with different seeds at once

@@ -54,7 +54,8 @@ struct ApproachSimulator::World {
         profile(p.profile),
         renderer(
             Scene(p.runway, p.surface, p.random.seed, Scenery(p.scenery, p.runway, p.surface, p.random.seed)),
-            standOn(profile, placeObjects(p.objects, p.runway.width, p.random.seed)), p.image, profile),
+            standOn(profile, placeObjects(p.objects, p.runway.width, p.random.seed)), p.image, profile,
+            RunwayLights(p.lights, p.runway, p.surface.visibility, profile)),
         left_frame(p.scenery.own_frame, p.image, OwnFrame::Side::kLeft),
         right_frame(p.scenery.own_frame, p.image, OwnFrame::Side::kRight),
         frames(1 + static_cast<int>(std::floor(p.path.duration * p.path.rate + 1e-6))) {}

@@ -41,4 +41,10 @@ PixelFilter::PixelFilter(int samples, double blur, bool tent)
   blur_left_ = std::sqrt(std::max(0.0, blur * blur - (profile.variance - kPixelVariance)));
 }
 
+double PixelFilter::share(double offset) const {
+  // A point between two pixels belongs to the one after it.
+  if (!tent_) return offset >= -0.5 && offset < 0.5 ? 1 : 0;
+  return std::max(0.0, 1 - std::abs(offset));
+}
+
 }  // namespace uav_landing

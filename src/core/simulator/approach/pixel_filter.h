@@ -26,11 +26,15 @@ class PixelFilter {
   float support() const { return support_; }
   /// Side of the evenly weighted square that has the filter's variance, px.
   float equivalentSide() const { return equivalent_side_; }
+  /// Share of a point's light that a pixel takes in. du, dv: from the pixel's centre to the point, px. The
+  /// shares of all pixels add up to 1.
+  double weightOf(double du, double dv) const { return share(du) * share(dv); }
   /// 1 sigma of the lens's blur that remains to be applied after sampling, px.
   double blurLeft() const { return blur_left_; }
 
  private:
   PixelFilter(int samples, double blur, bool tent);
+  double share(double offset) const;
 
   int side_samples_;
   double blur_;

@@ -54,11 +54,12 @@ struct Renderer::OnGround {
 };
 
 Renderer::Renderer(Scene scene, std::vector<StandingObject> objects, const SimulatedImageParameters& image,
-                   GroundProfile profile)
+                   GroundProfile profile, RunwayLights lights)
     : scene_(std::move(scene)),
       objects_(std::move(objects)),
       filter_(image.supersampling, image.blur),
-      profile_(std::move(profile)) {}
+      profile_(std::move(profile)),
+      lights_(std::move(lights)) {}
 
 Renderer::OnGround Renderer::onGround(const View& view, const Sample& sample) const {
   OnGround ground{sample, view.centre.z()};
@@ -130,7 +131,9 @@ void Renderer::render(const SimulatedCamera& camera, const CameraPose& pose, con
                      [&](const PixelRay& ray) { return pixel(view, ray); });
     }
   });
-  drawObjects(objects_, {camera, rotation, centre}, filter_, part, image);
+  const PlacedCamera placed{camera, rotation, centre};
+  drawObjects(objects_, placed, filter_, part, image);
+  lights_.draw(placed, filter_, part, image);
 }
 
 }  // namespace uav_landing

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "simulator/approach/lights.h"
 #include "simulator/approach/objects.h"
 #include "simulator/approach/pixel_filter.h"
 #include "simulator/ground/ground_profile.h"
@@ -19,7 +20,7 @@ class Renderer {
  public:
   /// image: its supersampling and blur are used.
   Renderer(Scene scene, std::vector<StandingObject> objects, const SimulatedImageParameters& image,
-           GroundProfile profile = GroundProfile());
+           GroundProfile profile = GroundProfile(), RunwayLights lights = {});
 
   /// Writes grey levels as 32-bit floats, in the camera's size. pose: that of the rectified left camera, also
   /// for the right camera.
@@ -45,6 +46,7 @@ class Renderer {
   std::vector<StandingObject> objects_;
   PixelFilter filter_;
   GroundProfile profile_;
+  RunwayLights lights_;
 };
 
 }  // namespace uav_landing
