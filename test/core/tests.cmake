@@ -169,6 +169,7 @@ uav_landing_add_gtest(temporal_matching_test test/core/motion/temporal_matching_
 # far
 uav_landing_add_gtest(outline_pose_test test/core/far/outline_pose_test.cpp)
 uav_landing_add_gtest(outline_fit_test test/core/far/outline_fit_test.cpp)
+uav_landing_add_gtest(edge_readings_test test/core/far/edge_readings_test.cpp)
 uav_landing_add_gtest(outline_search_test test/core/far/outline_search_test.cpp)
 uav_landing_add_gtest(sight_search_test test/core/far/sight_search_test.cpp)
 uav_landing_add_gtest(sighting_test test/core/far/sighting_test.cpp)

@@ -13,13 +13,14 @@ namespace uav_landing {
 namespace {
 
 constexpr int kIterations = 5;
-constexpr double kOutside = 6, kInside = 4;  // px: band of pixels that tell of a side
-constexpr double kMostPixels = 700;
+constexpr double kOutside = 7, kInside = 8;  // px: band of pixels that tell of a side
+constexpr double kMostPixels = 900;
 constexpr double kLargestStep = 1.0;               // px in one iteration
 constexpr double kFarthest = 8;                    // px from the start
 constexpr double kSettled = 0.01;                  // px
 constexpr double kShortest = 2, kNarrowest = 1.2;  // px
 constexpr double kLeastNoise = 1.5;                // grey levels
+constexpr double kCauchy = 2.5;                    // standard deviations
 constexpr double kTexture = 2;  // times: neighbouring pixels of the ground have texture in common
 // 1 sigma by which texture beside a side moves all of it, px.
 constexpr double kAcross = 0.05, kAlong = 0.03, kEnd = 0.1;  // kEnd: of each end by itself
@@ -28,10 +29,15 @@ constexpr double kLeastContrast = 5;                         // of its standard 
 // Markings, m: stripe inside of the edge, bars behind the threshold. Amplitudes: grey levels times m for
 // lines.
 constexpr double kStripePlace = 1.0, kBarsBegin = 6, kBarsEnd = 36;
-constexpr double kStripe = 60, kStripeStddev = 50, kCentre = 25, kCentreStddev = 40;
+struct Amplitude {
+  double mean, stddev;
+};
+constexpr Amplitude kAnyStripe{60, 50}, kNoStripe{0, 4};
+constexpr Amplitude kStripeContrast{95, 42};  // grey levels between paint and surface
+constexpr double kCentre = 25, kCentreStddev = 40;
 constexpr double kBars = 30, kBarsStddev = 50;
 constexpr double kShortestRunway = 400, kLongestRunway = 5000;  // m
-constexpr double kThresholdLine = 4;  // m, 1 sigma by which a line across at the end moves the side
+constexpr double kMarksAcross = 15;  // m, 1 sigma by which bars and a line across at an end move the side
 
 // Parameters: places of the sides, blur, and amplitudes.
 constexpr int kBlur = 8, kGround = 9, kSurface = 13, kStripes = 15, kMiddle = 16, kNearBars = 17,
@@ -93,8 +99,8 @@ class Model {
     // At the far end all is shorter by the square of the taper.
     far_bars_[0] = kBarsBegin / length * taper * height;
     far_bars_[1] = kBarsEnd / length * taper * height;
-    line_[0] = kThresholdLine / length / taper * height;
-    line_[1] = kThresholdLine / length * taper * height;
+    line_[0] = kMarksAcross / length / taper * height;
+    line_[1] = kMarksAcross / length * taper * height;
   }
 
   /// 1 sigma by which what is painted across at an end moves the side, px.
@@ -238,12 +244,22 @@ struct Prior {
   }
 };
 
-Prior priorOf(const OutlineLook& look) {
+/// Side stripes are 0.9 m wide on runways of 30 m and more, and 0.45 m on narrower ones (ICAO Annex
+/// 14, 5.2.7).
+Amplitude stripesOf(EdgePaint paint, double runway_width) {
+  if (paint == EdgePaint::kUnknown) return kAnyStripe;
+  if (paint == EdgePaint::kNone) return kNoStripe;
+  const double width = runway_width >= 30 ? 0.9 : 0.45;
+  return {width * kStripeContrast.mean, width * kStripeContrast.stddev};
+}
+
+Prior priorOf(const OutlineLook& look, EdgePaint paint) {
   Prior prior;
   for (int i = 0; i < 8; ++i) prior.set(i, 0, kFarthest);
   prior.set(kBlur, look.blur, look.blur_stddev);
   for (int i = kGround; i < kStripes; ++i) prior.set(i, 0, 500);
-  prior.set(kStripes, kStripe, kStripeStddev);
+  const Amplitude stripes = stripesOf(paint, look.size.width);
+  prior.set(kStripes, stripes.mean, stripes.stddev);
   prior.set(kMiddle, kCentre, kCentreStddev);
   prior.set(kNearBars, kBars, kBarsStddev);
   prior.set(kFarBars, kBars, kBarsStddev);
@@ -255,13 +271,15 @@ Failure noOutline(const std::string& why) { return {Reason::kNoRunway, why}; }
 /// Gauss-Newton with Cauchy's weights, over the pixels.
 class Solver {
  public:
-  Solver(const Model& model, const std::vector<Pixel>& pixels, const OutlineLook& look)
+  Solver(const Model& model, const std::vector<Pixel>& pixels, const Prior& prior, const Vector8d& inward)
       : model_(model),
         pixels_(pixels),
-        prior_(priorOf(look)),
-        p_(prior_.value),
+        prior_(prior),
+        p_(prior.value),
         residuals_(pixels.size()),
-        slopes_(pixels.size(), kCount) {}
+        slopes_(pixels.size(), kCount) {
+    p_.head<8>() = inward;
+  }
 
   bool run() {
     // The amplitudes first: the places are as good as the start.
@@ -276,6 +294,19 @@ class Solver {
   const Vector& parameters() const { return p_; }
   double noise() const { return noise_; }
   Matrix covariance() const { return information_.inverse(); }
+  /// -2 log likelihood of the pixels and of all but the places.
+  double cost(double noise) const {
+    const double scale = kCauchy * noise;
+    Vector slope;
+    double cost = 0;
+    for (const Pixel& pixel : pixels_) {
+      const double r = (pixel.grey - model_.at(pixel.place, p_, slope)) / scale;
+      cost += scale * scale * std::log(1 + r * r);
+    }
+    cost /= kTexture * noise * noise;
+    for (int i = kBlur; i < kCount; ++i) cost += prior_.information[i] * std::pow(p_[i] - prior_.value[i], 2);
+    return cost;
+  }
 
  private:
   bool iterate(bool amplitudes_only) {
@@ -283,7 +314,7 @@ class Solver {
     for (size_t i = 0; i < pixels_.size(); ++i) {
       const double r = pixels_[i].grey - model_.at(pixels_[i].place, p_, slope);
       residuals_[i] = std::abs(r);
-      const double weight = 1 / (1 + std::pow(r / (2.5 * noise_), 2));
+      const double weight = 1 / (1 + std::pow(r / (kCauchy * noise_), 2));
       gradient += weight * r * slope;
       slopes_.row(static_cast<Eigen::Index>(i)) = std::sqrt(weight) * slope.transpose();
     }
@@ -326,34 +357,56 @@ bool isUsable(const Corners& corners) {
 
 }  // namespace
 
-Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
-                                   const OutlineLook& look) {
-  if (!isUsable(start)) return tl::make_unexpected(noOutline("the runway is too small in the image"));
-  const Model model(start, look);
-  const std::vector<Pixel> pixels = pixelsAround(image, mask, start, model);
-  if (pixels.size() < 3 * kCount) return tl::make_unexpected(noOutline("the runway is not in the image"));
-  Solver solver(model, pixels, look);
+struct OutlineFitter::Pixels {
+  Model model;
+  std::vector<Pixel> all;
+  Pixels(const cv::Mat& image, const cv::Mat& mask, const Corners& reference, const OutlineLook& look)
+      : model(reference, look), all(pixelsAround(image, mask, reference, model)) {}
+};
+
+OutlineFitter::OutlineFitter(const cv::Mat& image, const cv::Mat& mask, const Corners& reference,
+                             const OutlineLook& look)
+    : reference_(reference), look_(look) {
+  if (isUsable(reference)) pixels_ = std::make_unique<const Pixels>(image, mask, reference, look);
+}
+
+OutlineFitter::~OutlineFitter() = default;
+
+Expected<FittedOutline> OutlineFitter::fit(const Vector8d& inward, EdgePaint paint) {
+  if (!pixels_) return tl::make_unexpected(noOutline("the runway is too small in the image"));
+  const Model& model = pixels_->model;
+  if (pixels_->all.size() < 3 * kCount)
+    return tl::make_unexpected(noOutline("the runway is not in the image"));
+  Solver solver(model, pixels_->all, priorOf(look_, paint), inward);
   if (!solver.run()) return tl::make_unexpected(noOutline("no outline where the runway is expected"));
   const Vector& p = solver.parameters();
   const Matrix covariance = solver.covariance();
   FittedOutline fitted;
-  fitted.seen = {start, p.head<8>(), covariance.topLeftCorner<8, 8>()};
+  fitted.seen = {reference_, p.head<8>(), covariance.topLeftCorner<8, 8>()};
   for (int i = 0; i < kSides; ++i) {
     const double stddev = std::hypot(i == kNearSide || i == kFarSide ? kAcross : kAlong, model.lineAcross(i));
     fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).array() += stddev * stddev;
     fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).diagonal().array() += kEnd * kEnd;
   }
-  if (!isUsable(movedBy(start, fitted.seen.inward)))
+  if (!isUsable(movedBy(reference_, fitted.seen.inward)))
     return tl::make_unexpected(noOutline("no outline where the runway is expected"));
   fitted.blur = p[kBlur];
   fitted.contrast = 0.5 * (p[kSurface] + p[kSurface + 1]);
   const Eigen::Matrix2d ends = covariance.block<2, 2>(kSurface, kSurface);
   fitted.contrast_stddev = 0.5 * std::sqrt(ends.sum());
   fitted.residual = solver.noise();
+  fitted.stripes = p[kStripes];
+  if (noise_ == 0) noise_ = solver.noise();
+  fitted.cost = solver.cost(noise_);
   if (!(std::abs(fitted.contrast) > kLeastContrast * fitted.contrast_stddev))
     return tl::make_unexpected(noOutline(text("a contrast of ", rounded(fitted.contrast), " +- ",
                                               rounded(fitted.contrast_stddev), " grey levels only")));
   return fitted;
+}
+
+Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
+                                   const OutlineLook& look) {
+  return OutlineFitter(image, mask, start, look).fit(Vector8d::Zero(), EdgePaint::kUnknown);
 }
 
 }  // namespace uav_landing

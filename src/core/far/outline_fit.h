@@ -1,10 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
 
 #include "far/outline_pose.h"
 
 namespace uav_landing {
+
+/// What is painted along the edges of a surface.
+enum class EdgePaint { kUnknown, kStripes, kNone };
 
 /// What the outline's picture is expected to be like.
 struct OutlineLook {
@@ -22,6 +26,8 @@ struct FittedOutline {
   double contrast = 0;  ///< grey levels between surface and ground, and
   double contrast_stddev = 0;
   double residual = 0;  ///< 1 sigma of what the model leaves, grey levels
+  double stripes = 0;   ///< width of the stripes times their contrast against the surface, m x grey levels
+  double cost = 0;      ///< -2 log likelihood; comparable between fits of one OutlineFitter
 };
 
 /// The runway's outline by least squares over the grey levels around it.
@@ -32,7 +38,24 @@ struct FittedOutline {
 /// a dark runway. Bars at the threshold do the same. So stripes, bars and centre line are part of the model,
 /// with amplitudes that are not known, and the claimed covariance of the sides takes in what they leave open.
 ///
-/// start: corners within some pixels. Fails where it leads astray, or no contrast is there.
+/// Fits of the same pixels from several starts.
+class OutlineFitter {
+ public:
+  /// reference: corners within some pixels. All fits tell by how far the sides lie inside of it.
+  OutlineFitter(const cv::Mat& image, const cv::Mat& mask, const Corners& reference, const OutlineLook& look);
+  ~OutlineFitter();
+  /// inward: where to begin, px. Fails where that leads astray, or no contrast is there.
+  Expected<FittedOutline> fit(const Vector8d& inward, EdgePaint paint);
+
+ private:
+  struct Pixels;
+  Corners reference_;
+  OutlineLook look_;
+  std::unique_ptr<const Pixels> pixels_;
+  double noise_ = 0;  // grey levels: that of the first fit, in all costs
+};
+
+/// One fit from these corners.
 Expected<FittedOutline> fitOutline(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
                                    const OutlineLook& look);
 

@@ -26,6 +26,30 @@ tl::unexpected<Failure> noPose(const char* why) {
   return tl::make_unexpected(Failure{Reason::kNoRunway, why});
 }
 
+/// The threshold T against a plane: where it lies on it, g . T = 1.
+struct OnPlane {
+  double value;     // g . T
+  State slope;      // derivative of the value
+  double variance;  // of the value, by the plane and by hills
+
+  OnPlane(const State& state, const GroundPlane& plane) : value(at(state, plane)) {
+    for (int i = 0; i < 8; ++i) {
+      State moved = state;
+      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
+      moved[i] += step;
+      slope[i] = (at(moved, plane) - value) / step;
+    }
+    const Eigen::Vector3d threshold = poseOf(state).seen(Eigen::Vector3d::Zero());
+    const double hills = kHills * threshold.norm() * plane.g.norm();
+    variance = threshold.dot(plane.covariance * threshold) + hills * hills;
+  }
+
+ private:
+  static double at(const State& state, const GroundPlane& plane) {
+    return plane.g.dot(poseOf(state).seen(Eigen::Vector3d::Zero()));
+  }
+};
+
 /// Normal equations of the state.
 class Fit {
  public:
@@ -128,23 +152,9 @@ class Fit {
     misfit += missing.dot(weight * missing);
   }
 
-  /// The threshold lies on the plane: g . T = 1.
   void addPlane(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
-    const auto at = [&](const State& s) {
-      return known_.plane.g.dot(poseOf(s).seen(Eigen::Vector3d::Zero()));
-    };
-    const double here = at(state);
-    State slope;
-    for (int i = 0; i < 8; ++i) {
-      State moved = state;
-      const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
-      moved[i] += step;
-      slope[i] = (at(moved) - here) / step;
-    }
-    const Eigen::Vector3d threshold = poseOf(state).seen(Eigen::Vector3d::Zero());
-    const double hills = kHills * threshold.norm() * known_.plane.g.norm();
-    add(slope, 1 - here, threshold.dot(known_.plane.covariance * threshold) + hills * hills, information,
-        gradient, misfit);
+    const OnPlane threshold(state, known_.plane);
+    add(threshold.slope, 1 - threshold.value, threshold.variance, information, gradient, misfit);
   }
 
   const SeenOutline& seen_;
@@ -183,6 +193,16 @@ Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& know
                         result.pose.position.x() < 0;
   if (!possible) return noPose("the outline is not that of a surface ahead");
   return result;
+}
+
+double offPlane(const OutlinePose& found, const GroundPlane& plane) {
+  const RunwayPose& pose = found.pose;
+  State state;
+  state << pose.position, pose.roll, pose.pitch, pose.yaw, std::log(found.size.width),
+      std::log(found.size.length);
+  const OnPlane threshold(state, plane);
+  const double variance = threshold.variance + threshold.slope.dot(found.covariance * threshold.slope);
+  return (1 - threshold.value) / std::sqrt(variance);
 }
 
 }  // namespace uav_landing

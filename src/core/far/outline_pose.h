@@ -48,4 +48,8 @@ struct OutlinePose {
 Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig,
                               const PoseElements& elements = {});
 
+/// How far the threshold of a pose without stereo lies off the ground's plane, in standard deviations. The
+/// ground may rise or fall before the threshold.
+double offPlane(const OutlinePose& found, const GroundPlane& plane);
+
 }  // namespace uav_landing

@@ -22,8 +22,13 @@ constexpr double kNearest = 11;       // widths: nearer, its marks tell more tha
 constexpr double kRoughly = 0.5;      // corners of a candidate may be off by this
 constexpr double kNarrowest = 6, kWidest = 100, kShortest = 250, kLongest = 6500, kLeastAspect = 8;
 constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart have too many, one in 1000
-constexpr double kPoorFit = 6;      // misfit above which the fit begins once more at the pose that it gave
-constexpr double kBroad = 0.12;     // of the picture's width: nearer, markings tell more
+// Times the texture of the ground by which an outline has to stand out: where the ground's plane is known,
+// which then has to agree, and where nothing but the outline itself tells that it is a runway.
+constexpr double kClear = 3, kClearAlone = 4;
+constexpr double kStripeShare = 0.4;  // of a blurred stripe's grey level, in the middle of it
+constexpr double kMostOffPlane = 3;   // standard deviations, hills included
+constexpr double kPoorFit = 6;        // misfit above which the fit begins once more at the pose that it gave
+constexpr double kBroad = 0.12;       // of the picture's width: nearer, markings tell more
 
 Failure noRunway(const std::string& why) { return {Reason::kNoRunway, why}; }
 
@@ -76,7 +81,7 @@ cv::Rect SightFit::region(const KnownGround& ground) const {
           cv::Point(static_cast<int>(rig.cx + aside), static_cast<int>(bottom))};
 }
 
-Failure SightFit::problemOf(const OutlinePose& found) const {
+Failure SightFit::problemOf(const OutlinePose& found, const KnownGround& ground) const {
   const Eigen::Vector3d& p = found.pose.position;
   const double down = std::atan2(p.z(), -p.x());
   if (!within(-p.x(), kNearest * found.size.width, kFarthest) || p.z() < kLowestFlight ||
@@ -93,26 +98,60 @@ Failure SightFit::problemOf(const OutlinePose& found) const {
   if (found.misfit > kMostMisfit)
     return noRunway(text("the outline contradicts what is known of runway and ground, with a chi-square of ",
                          rounded(found.misfit)));
+  if (ground.plane.valid() && std::abs(offPlane(found, ground.plane)) > kMostOffPlane)
+    return {Reason::kInconsistent,
+            text("by the outline the runway lies ", rounded(p.z()),
+                 " m below the camera, and by stereo the ground ", rounded(ground.plane.height()),
+                 " m: check runway/width and runway/length")};
   return {};
 }
 
-Expected<SightedRunway> SightFit::fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
-                                      const RunwaySize& about) const {
+OutlineLook SightFit::lookOf(const RunwaySize& about) const {
   OutlineLook look;
   look.focal_length = model_.rig.fx;
   if (about.width > 0) look.size = about;
   if (runway_.width > 0) look.size.width = runway_.width;
   if (runway_.length > 0) look.size.length = runway_.length;
-  const Expected<FittedOutline> outline = fitOutline(left, model_.left_mask, start, look);
-  if (!outline) return tl::make_unexpected(outline.error());
-  const Corners corners = movedBy(start, outline->seen.inward);
+  return look;
+}
+
+/// Set when an outline hardly stands out from the texture of the ground.
+Failure SightFit::faintness(const FittedOutline& outline, const Corners& corners, double width,
+                            const KnownGround& ground) const {
+  const double scale = (corners[3] - corners[0]).norm() / width;  // px a metre
+  const double stripes = kStripeShare * std::abs(outline.stripes) * scale;
+  const double clarity = std::max(std::abs(outline.contrast), stripes) / outline.residual;
+  if (clarity >= (ground.plane.valid() ? kClear : kClearAlone)) return {};
+  return noRunway(
+      text("the outline stands out from the ground by ", rounded(clarity), " times its texture only"));
+}
+
+Expected<SightedRunway> SightFit::withPose(const FittedOutline& outline, const Corners& corners, double width,
+                                           const KnownGround& ground) const {
   if ((corners[3] - corners[0]).norm() > kBroad * model_.rig.size.width)
     return tl::make_unexpected(noRunway("the runway is near: its markings tell more than its outline"));
+  if (const Failure faint = faintness(outline, corners, width, ground)) return tl::make_unexpected(faint);
   PoseElements elements;
   elements.stereo = false;  // it is to tell whether the chart is right
-  const Expected<OutlinePose> pose = fitPose(outline->seen, knowledge(ground), model_.rig, elements);
+  const Expected<OutlinePose> pose = fitPose(outline.seen, knowledge(ground), model_.rig, elements);
   if (!pose) return tl::make_unexpected(pose.error());
-  return SightedRunway{*outline, *pose, corners};
+  return SightedRunway{outline, *pose, corners};
+}
+
+Expected<SightedRunway> SightFit::fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
+                                      const RunwaySize& about) const {
+  const OutlineLook look = lookOf(about);
+  const Expected<FittedOutline> outline = fitOutline(left, model_.left_mask, start, look);
+  if (!outline) return tl::make_unexpected(outline.error());
+  return withPose(*outline, movedBy(start, outline->seen.inward), look.size.width, ground);
+}
+
+Expected<SightedRunway> SightFit::follow(const cv::Mat& left, const Corners& start, const KnownGround& ground,
+                                         const RunwaySize& about, EdgeReadings& readings) const {
+  const OutlineLook look = lookOf(about);
+  const Expected<EdgeReadings::Outline> outline = readings.fit(left, model_.left_mask, start, look);
+  if (!outline) return tl::make_unexpected(outline.error());
+  return withPose(outline->fitted, outline->corners, look.size.width, ground);
 }
 
 std::optional<Corners> SightFit::betterStart(const SightedRunway& seen) const {

@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "far/edge_readings.h"
 #include "far/outline_fit.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
@@ -35,10 +36,13 @@ class SightFit {
   /// it; 0: not known. Fails where no outline is found there.
   Expected<SightedRunway> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
                               const RunwaySize& about) const;
+  /// The same for a runway that is followed. readings: of the pairs before.
+  Expected<SightedRunway> follow(const cv::Mat& left, const Corners& start, const KnownGround& ground,
+                                 const RunwaySize& about, EdgeReadings& readings) const;
   /// Corners to fit once more from: those of the pose, when outline and pose differ. Otherwise nothing.
   std::optional<Corners> betterStart(const SightedRunway& seen) const;
   /// Why this surface is no runway on an approach; no failure: it may be one.
-  Failure problemOf(const OutlinePose& pose) const;
+  Failure problemOf(const OutlinePose& pose, const KnownGround& ground) const;
 
   /// Before anything is fitted: false when the near side has too many pixels, or a width that no runway has.
   bool isPlausible(const Corners& corners, const KnownGround& ground) const;
@@ -54,6 +58,13 @@ class SightFit {
   bool mayStart(const KnownGround& ground) const;
 
  private:
+  OutlineLook lookOf(const RunwaySize& about) const;
+  Failure faintness(const FittedOutline& outline, const Corners& corners, double width,
+                    const KnownGround& ground) const;
+  /// corners: by the best reading. width: of the surface, about, m.
+  Expected<SightedRunway> withPose(const FittedOutline& outline, const Corners& corners, double width,
+                                   const KnownGround& ground) const;
+
   RigModel model_;
   double max_yaw_, slope_;  // rad
   RunwayParameters runway_;

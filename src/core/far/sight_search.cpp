@@ -83,7 +83,7 @@ std::optional<Expected<SightedRunway>> SightSearch::step(const SightFit& fit, co
       return std::nullopt;
     }
   }
-  if (!judge(attempt, std::move(seen), fit)) {
+  if (!judge(attempt, std::move(seen), fit, ground)) {
     attempts_.clear();
     return tl::make_unexpected(noRunway("more than one outline may be the runway's"));
   }
@@ -92,9 +92,10 @@ std::optional<Expected<SightedRunway>> SightSearch::step(const SightFit& fit, co
   return std::move(*found_);
 }
 
-bool SightSearch::judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit) {
+bool SightSearch::judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit,
+                        const KnownGround& ground) {
   if (seen) {
-    if (const Failure problem = fit.problemOf(seen->pose)) seen = tl::make_unexpected(problem);
+    if (const Failure problem = fit.problemOf(seen->pose, ground)) seen = tl::make_unexpected(problem);
   }
   if (!seen)
     failure_ = seen.error();

@@ -36,7 +36,8 @@ class SightSearch {
   void addAttempts(const Corners& candidate, double strength);
   void watch(const cv::Mat& left);
   /// Takes in what an attempt has found. False when the search has to stop: two outlines may be the runway's.
-  bool judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit);
+  bool judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit,
+             const KnownGround& ground);
 
   std::deque<Attempt> attempts_;
   std::optional<SightedRunway> best_;   // of the candidate that is being fitted

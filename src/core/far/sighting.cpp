@@ -15,8 +15,6 @@ constexpr int kReach = 16;                         // px by which the outline mo
 constexpr int kMargin = 5;                         // px around it that are kept
 constexpr double kSearchWait = 0.3;                // s from one search to the next
 constexpr double kNearWait = 10;  // s without a search after a runway has become too near to be followed
-// Doubt of the width by stripes, m: at most, and where a pixel is a metre.
-constexpr double kMostDoubt = 2.5, kDoubt = 0.18;
 constexpr Sigmas kGate(4);
 constexpr double kSlack = 0.05;  // of the distance
 
@@ -56,16 +54,16 @@ std::optional<Expected<SightedRunway>> Sighting::search(double stamp, const cv::
   return found;
 }
 
-Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround& ground) const {
+Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround& ground) {
   const cv::Point moved = patch_.movement(left, kReach);
   Corners start = last_->corners;
   for (Eigen::Vector2d& corner : start) corner += Eigen::Vector2d(moved.x, moved.y);
-  Expected<SightedRunway> seen = fit_.fit(left, start, ground, last_->pose.size);
+  Expected<SightedRunway> seen = fit_.follow(left, start, ground, last_->pose.size, readings_);
   if (!seen) return seen;
   if (const std::optional<Corners> better = fit_.betterStart(*seen)) {
     seen = betterOf(std::move(seen), fit_.fit(left, *better, ground, last_->pose.size));
   }
-  if (const Failure problem = fit_.problemOf(seen->pose)) return tl::make_unexpected(problem);
+  if (const Failure problem = fit_.problemOf(seen->pose, ground)) return tl::make_unexpected(problem);
   return seen;
 }
 
@@ -81,6 +79,7 @@ bool Sighting::agrees(const OutlinePose& pose) const {
 }
 
 void Sighting::keep(const cv::Mat& left, const SightedRunway& seen) {
+  if (!last_) readings_ = {};
   last_ = seen;
   missed_ = 0;
   Eigen::Vector2d low = seen.corners[0], high = low;
@@ -140,13 +139,6 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
   return report(**seen, ground);
 }
 
-/// 1 sigma of the width that shows against the chart's, as a share: whether stripes lie along the edges
-/// cannot be told while they are much narrower than a pixel. All lengths are wrong by it alike.
-double Sighting::widthDoubt(const OutlinePose& pose) const {
-  const double pixel = -pose.pose.position.x() / fit_.model().rig.fx;  // m
-  return std::min(kMostDoubt, kDoubt * pixel * pixel) / pose.size.width;
-}
-
 ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const KnownGround& ground) const {
   ApproachAngleResult::Sight sight;
   const OutlinePose& found = seen.pose;
@@ -159,8 +151,6 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   sight.width_variance = variance(found.size.width, found.covariance(6, 6));
   sight.length = found.size.length;
   sight.length_variance = variance(found.size.length, found.covariance(7, 7));
-  const double by_stripes = std::pow(widthDoubt(found), 2);
-  sight.covariance += by_stripes * sight.position * sight.position.transpose();
   const PoseKnowledge known = fit_.knowledge(ground);
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;
@@ -169,7 +159,7 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
     const Expected<OutlinePose> pose = fitPose(seen.outline.seen, known, fit_.model().rig, without[i]);
     if (!pose) continue;
     sight.height_without[i] = pose->pose.position.z();
-    sight.variance_without[i] = pose->covariance(2, 2) + by_stripes * std::pow(pose->pose.position.z(), 2);
+    sight.variance_without[i] = pose->covariance(2, 2);
   }
   const RunwaySize& chart = known.chart;
   const Expected<OutlinePose> by_stereo =

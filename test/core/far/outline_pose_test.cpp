@@ -128,6 +128,25 @@ TEST(OutlinePose, WithoutAChartThePlaneOfStereoGivesTheScale) {
   EXPECT_FALSE(fitPose(seenBy(camera, 30, 1500), PoseKnowledge(), rig())) << "nothing tells the scale";
 }
 
+TEST(OutlinePose, HowFarTheThresholdLiesOffThePlaneIsToldInOnePerCentOfTheDistance) {
+  const Camera camera{-800, 5, 50, 0, -3 * kDegree, 0};
+  PoseKnowledge known;
+  known.chart = {45, 2500};
+  known.width_stddev = 0.001;
+  known.length_stddev = 0.01;
+  known.normal = normalOf(camera, 0.001 * kDegree);
+  const auto found = fitPose(seenBy(camera, 45, 2500, 0.001), known, rig());
+  ASSERT_TRUE(found);
+  for (const double below : {0.0, 16.0, -12.0}) {
+    GroundPlane plane;
+    plane.g = normalOf(camera, 0).n / (camera.height + below);
+    plane.covariance = std::pow(1e-7, 2) * Eigen::Matrix3d::Identity();
+    EXPECT_NEAR(offPlane(*found, plane), below / 8, 0.05) << below;
+    plane.covariance = std::pow(6.0 / 800 / (camera.height + below), 2) * Eigen::Matrix3d::Identity();
+    EXPECT_NEAR(offPlane(*found, plane), below / std::hypot(8, 6), 0.05) << "stereo's own doubt of 6 m there";
+  }
+}
+
 TEST(OutlinePose, AnElementThatIsWrongShowsWhereItIsLeftOut) {
   const Camera camera{-1000, 0, 55, 0, -3 * kDegree, 0};
   PoseKnowledge known;
