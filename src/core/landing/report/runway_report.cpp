@@ -21,9 +21,16 @@ struct Value {
   bool known() const { return std::isfinite(value) && variance >= 0; }
 };
 
+/// The share of a in a mean. The better one has more of it than by the variances: what the outline is wrong
+/// by is the same in all pairs, and must not pull at what stereo knows well.
+double shareOf(const Value& a, const Value& b) {
+  const double ratio = a.variance / b.variance;
+  return 1 / (1 + ratio * ratio);
+}
+
 Value weightedMean(const Value& a, const Value& b) {
-  const double weight = b.variance / (a.variance + b.variance);
-  return {b.value + weight * (a.value - b.value), weight * a.variance};
+  const double share = shareOf(a, b), other = 1 - share;
+  return {share * a.value + other * b.value, share * share * a.variance + other * other * b.variance};
 }
 
 bool agree(const Value& a, const Value& b) {
@@ -96,7 +103,7 @@ void reportHeightAboveRunway(const TrackedPosition& outline, double bend, bool w
     stereo_leads = false;
   } else if (by_outline.known() && agree(by_stereo, by_outline)) {
     above = weightedMean(by_stereo, by_outline);
-    const double share = by_outline.variance / (by_stereo.variance + by_outline.variance);
+    const double share = shareOf(by_stereo, by_outline);
     level = share * stereo_level + (1 - share) * outline.protection_level;
     stereo_leads = share >= 0.5;
   } else if (by_outline.known()) {

@@ -39,6 +39,8 @@ constexpr double kBareStrip = 7.3;
 constexpr double kSteepest = 60 * kDegree;    // angle between path and runway above which nothing is known
 constexpr double kStepSigma = 0.7 * kDegree;  // 1 sigma of the camera's turn between pairs
 constexpr double kSizeSigma = 0.06;           // 1 sigma of the size that is seen, as a share of the size
+constexpr double kStripe = 0.9;               // m
+constexpr double kSameByChance = 0.25;        // of other objects are about as wide as the chart's runway
 constexpr double kFarSigma = 0.05 * kDegree;  // 1 sigma of the angle between the far end and the horizon
 
 double penalty(double off, double variance, double most) {
@@ -213,9 +215,11 @@ double againstSize(const RunwayHypothesis& h, const RunwayPrior& prior) {
     sum += penalty(longer, kSizeSigma * kSizeSigma + far_sigma * far_sigma, kMostOff);
   }
   if (runway.width > 0) {
-    const double width = h.width() * *prior.height, stripes = runway.width - 2 * runway.largestInset();
-    const double off = std::max({0.0, std::log(width / runway.width), std::log(stripes / width)});
-    sum += penalty(off, kSizeSigma * kSizeSigma, kMostOff);
+    // A dark surface shows between the inner sides of its stripes.
+    const double width = h.width() * *prior.height,
+                 between_stripes = runway.width - 2 * (runway.largestInset() + kStripe);
+    const double off = std::max({0.0, std::log(width / runway.width), std::log(between_stripes / width)});
+    sum += penalty(off, kSizeSigma * kSizeSigma, kMostOff) + std::log(kSameByChance);
   }
   return sum;
 }
