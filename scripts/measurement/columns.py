@@ -9,7 +9,7 @@ VERDICTS = {*FLAGS, "status", "reason", "protection_source", "failed_tests", "ya
             "height_above_runway_known", "height_origin", "runway_reason"}
 # What the simulator drew for a campaign's row, besides the columns with "_true_" in their names.
 DRAWN = {"time_s", "stretch", "bend_rx_deg", "bend_ry_deg", "bend_rz_deg", "lens_rows_px", "lens_tilt_deg",
-         "slope_change_deg", "readout_time_s", "vibration_hz", "vibration_deg"}
+         "slope_change_deg", "readout_time_s", "vibration_hz", "vibration_deg", "chart", "runway_length_m"}
 UNITS = ("_m_s", "_m", "_deg", "_px", "_s", "_probability")
 
 

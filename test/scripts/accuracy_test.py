@@ -14,7 +14,7 @@ import numpy as np
 from project import SOURCE_DIR
 
 sys.path.insert(0, str(SOURCE_DIR / "scripts"))
-from measurement import ablation, approaches, consistency, kept, markdown, noise, readme, sets, yaw  # noqa: E402
+from measurement import ablation, approaches, consistency, far, kept, markdown, noise, readme, sets, yaw  # noqa: E402
 
 
 def cells(line):
@@ -192,6 +192,33 @@ class YawTest(unittest.TestCase):
         cells = [["3 m", yaw.score([self.row(0.1), self.row(None)])], ["all", yaw.score([self.row(None)])]]
         text = yaw.render({"snippets": 2, "frames": 13, "cells": cells})
         self.assertIn("| 3 m | 2 | 1 (50%) | 100.0 (20.7–100.0); 1.00 | 0.100 | 0.100 | 0.100 | 0 |", text)
+
+
+class FarTest(unittest.TestCase):
+    def row(self, distance=2000, chart="1", height_error=None, x_error=None, known="0"):
+        def estimate(name, truth, error, stddev):
+            return {f"{name}_true_m": str(truth), f"{name}_m": "" if error is None else str(truth + error),
+                    f"{name}_stddev_m": "" if error is None else str(stddev)}
+        return {"chart": chart, "height_above_runway_known": known, **estimate("x", -distance, x_error, 50), **estimate("y", 3, None, 1),
+                **estimate("height_above_runway", 100, height_error, 4)}
+
+    def test_bands_end_at_their_nearer_distance(self):
+        self.assertEqual([far.band_of(self.row(distance)) for distance in (4000, 2501, 2499, 700, 10, -5)],
+                         [2500, 2500, 1500, 300, 0, None])
+
+    def test_errors_are_in_per_cent_of_height_and_distance(self):
+        rows = [self.row(height_error=error, x_error=10 * error, known="1") for error in (2, -3, 9)] + [self.row()]
+        scores = far.band_scores(rows)
+        self.assertEqual(scores["known"], 0.75)
+        self.assertEqual(scores["outputs"]["height_above_runway"], {"given": 0.75, "error": 9.0, "claimed": 2 / 3})
+        self.assertEqual(scores["outputs"]["x"], {"given": 0.75, "error": 4.5, "claimed": 1.0})
+        self.assertEqual(scores["outputs"]["y"], {"given": 0, "error": None, "claimed": None})
+
+    def test_line_fits_the_header(self):
+        line = far.line({"chart": False, "nearest": 1500, **far.band_scores([self.row(chart="0", height_error=5)])})
+        self.assertEqual(len(line), len(far.HEADER))
+        self.assertEqual(line[:6], ["none", "1.5 to 2.5", 1, "100%", "5.0", "100%"])
+        self.assertEqual(line[-1], "0%")
 
 
 class PageTest(unittest.TestCase):

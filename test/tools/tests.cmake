@@ -17,6 +17,7 @@ uav_landing_add_gtest(topic_advice_test test/tools/topic_advice_test.cpp LIBS ua
 uav_landing_add_gtest(old_bag_structure_test test/tools/old_bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(dataset_calibrations_test test/tools/dataset_calibrations_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(random_approach_test test/tools/random_approach_test.cpp LIBS uav_landing_tools)
+uav_landing_add_gtest(chart_test test/tools/chart_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(fast_low_pass_test test/tools/fast_low_pass_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(fault_score_test test/tools/fault_score_test.cpp
   SOURCES src/tools/faults/fault_score.cpp src/tools/faults/output_score.cpp
