@@ -15,8 +15,7 @@ constexpr double kTemper = 12;
 constexpr double kUsualStripes = 80;  // m x grey levels
 constexpr double kFaintest = 20;      // of a stripe that makes a difference
 constexpr double kLargestOffset = 4;  // px from one reading to the other
-
-constexpr double kSame = 0.5;  // px, between outlines that count as one
+constexpr double kSame = 0.5;         // px, between outlines that count as one
 
 /// What a pair tries besides: the other reading, or the best one with an end from another place, px inward.
 /// Bars, and strips of ground that are as dark as the runway, hold an end where it is not.
@@ -43,12 +42,13 @@ double probabilityCost(const FittedOutline& fitted, EdgePaint paint) {
   return fitted.cost / kTemper + priorCost(paint);
 }
 
-/// By how far the other reading's edges lie inside of this one's, by what stripes do.
+/// By how far the other reading's edges lie inside of this one's. Stripes move the edge of a dark surface
+/// inward, and that of a bright one outward.
 Vector8d expectedOffset(const FittedOutline& fitted, EdgePaint paint, const OutlineLook& look) {
   const Corners corners = movedBy(fitted.seen.reference, fitted.seen.inward);
   const bool painted = paint == EdgePaint::kStripes;
   const double stripes = painted ? std::max(fitted.stripes, kFaintest) : -kUsualStripes;
-  const double metres = stripes / std::abs(fitted.contrast);
+  const double metres = -stripes / fitted.contrast;
   const auto pixels = [&](int one, int other) {
     const double scale = (corners[one] - corners[other]).norm() / look.size.width;
     return std::clamp(metres * scale, -kLargestOffset, kLargestOffset);

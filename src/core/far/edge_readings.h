@@ -12,7 +12,7 @@ namespace uav_landing {
 ///
 /// A stripe that is narrower than a pixel moves the edge that shows by its width times its contrast over the
 /// surface's. So both readings explain the same image from afar, metres apart. Each pair fits the better one,
-/// and by turns the other one or the near end from another place. The outline that is returned is their
+/// and by turns the other one or an end from another place. The outline that is returned is their
 /// mean, with a covariance that holds both.
 class EdgeReadings {
  public:

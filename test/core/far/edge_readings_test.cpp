@@ -89,6 +89,17 @@ TEST(EdgeReadings, FromAfarTheClaimHoldsBothReadings) {
   }
 }
 
+TEST(EdgeReadings, OnABrightRunwayToo) {
+  for (const bool painted : {true, false}) {
+    RunwayPicture bright = faintRunway(painted);
+    bright.surface = 120;
+    Pairs pairs(bright, -2000);
+    const double error = pairs.widthError(pairs.after(9));
+    EXPECT_LT(std::abs(error), 2.5 * pairs.widthStddev()) << painted;
+    EXPECT_LT(std::abs(error) * 2000 / 554.0, 0.2 * 34) << painted;
+  }
+}
+
 TEST(EdgeReadings, FromNearTheTrueReadingWins) {
   for (const bool painted : {true, false}) {
     Pairs pairs(faintRunway(painted), -500);
