@@ -7,7 +7,7 @@ from .campaign import fly, number
 from .markdown import DASH, table
 
 NOISE = 2
-NEAREST = (2500, 1500, 750, 300, 0)  # m before the threshold: where bands of distance end
+NEAREST = (2500, 1500, 750, 300, 100)  # m before the threshold: where bands of distance end
 # name, unit, what is said of it, and the error that matters, by the distance
 OUTPUTS = (("height_above_runway", "m", "% of it", lambda row: 0.01 * number(row, "height_above_runway_true_m")),
            ("y", "m", "m", lambda row: 1), ("x", "m", "% of the distance", lambda row: 0.01 * abs(number(row, "x_true_m"))))
@@ -33,7 +33,7 @@ which holds for a wrong chart, too, is within its limit.
 
 
 def band_of(row):
-    """Returns the nearer end of the band of distance that a row belongs to, m, or None beyond the threshold."""
+    """Returns the nearer end of the band of distance that a row belongs to, m, or None where it is nearer than all."""
     distance = -number(row, "x_true_m")
     return next((nearest for nearest in NEAREST if distance > nearest), None)
 

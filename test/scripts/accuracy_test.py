@@ -203,8 +203,8 @@ class FarTest(unittest.TestCase):
                 **estimate("height_above_runway", 100, height_error, 4)}
 
     def test_bands_end_at_their_nearer_distance(self):
-        self.assertEqual([far.band_of(self.row(distance)) for distance in (4000, 2501, 2499, 700, 10, -5)],
-                         [2500, 2500, 1500, 300, 0, None])
+        self.assertEqual([far.band_of(self.row(distance)) for distance in (4000, 2501, 2499, 700, 110, 90, -5)],
+                         [2500, 2500, 1500, 300, 100, None, None])
 
     def test_errors_are_in_per_cent_of_height_and_distance(self):
         rows = [self.row(height_error=error, x_error=10 * error, known="1") for error in (2, -3, 9)] + [self.row()]

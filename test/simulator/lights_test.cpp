@@ -165,7 +165,7 @@ TEST(RunwayLights, ApproachLightsAreBarsEveryThirtyMetresWithACrossbar) {
   EXPECT_EQ(broadest, 20);
 }
 
-TEST(RunwayLights, LampsStandOnTheGroundAndNotInTheAirOverAValley) {
+TEST(RunwayLights, LampsStandOnGroundThatRises) {
   SimulatorParameters p = darkNight();
   p.profile.slope_before_deg = p.profile.slope_after_deg = 1;
   const CameraPose pose = onPath(p, 4);

@@ -61,7 +61,7 @@ struct Comparison {
 
 TEST(Chart, ACorrectOneMakesNoOutputWorse) {
   std::array<Comparison, kOutputs.size()> compared;
-  for (const uint64_t seed : {1, 2, 3, 4, 9, 10}) {
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const SimulatorParameters drawn = lastSeconds(seed, 2.5);
     const auto simulator = ApproachSimulator::create(drawn);
     ASSERT_TRUE(simulator) << simulator.error().message();
@@ -84,13 +84,15 @@ TEST(Chart, ACorrectOneMakesNoOutputWorse) {
   }
   for (size_t k = 0; k < kOutputs.size(); ++k) {
     const Comparison& c = compared[k];
+    // Without a chart x and the height above the runway are known from the threshold on, which is not
+    // reached.
+    const bool from_threshold = k == 3 || k == 5;
+    if (!from_threshold) EXPECT_GT(c.both, 20) << kOutputs[k] << ": too little is known to compare it";
     // A limit may be crossed a frame earlier or later.
     EXPECT_GE(c.with, 0.98 * c.without) << kOutputs[k];
     EXPECT_LE(std::sqrt(c.square_with), 1.1 * std::sqrt(c.square_without) + 1e-9)
         << kOutputs[k] << " over " << c.both << " frames";
   }
-  EXPECT_GT(compared[0].without, 60) << "too little is known to compare anything";
-  EXPECT_GT(compared[4].with, 20);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr double kFaintest = 20;      // of a stripe that makes a difference
 constexpr double kLargestOffset = 4;  // px from one reading to the other
 constexpr double kSame = 0.5;         // px, between outlines that count as one
 
-/// What a pair tries besides: the other reading, or the best one with an end from another place, px inward.
+/// What each pair tries besides the best reading: the other paint, or one end moved inward by shift, px.
 /// Bars, and strips of ground that are as dark as the runway, hold an end where it is not.
 struct Trial {
   int rival;  // where its result is kept
@@ -102,13 +102,14 @@ void EdgeReadings::takeOver(const Rival& rival) {
   for (std::optional<Rival>& other : rivals_) {
     if (!other) continue;
     other->offset -= best.offset;
-    other->excess = std::max(0.0, other->excess - best.excess);
+    other->excess -= best.excess;
   }
 }
 
 FittedOutline EdgeReadings::mean(const FittedOutline& best, const OutlineLook& look) const {
-  // Before the other paint was tried it is as likely as this one.
-  const Rival unknown{expectedOffset(best, paint_, look), best.seen.covariance, 0};
+  // A paint that could not be fitted counts by how usual it is.
+  const double usual = priorCost(opposite(paint_)) - priorCost(paint_);
+  const Rival unknown{expectedOffset(best, paint_, look), best.seen.covariance, std::max(0.0, usual)};
   std::vector<const Rival*> others;
   for (int i = 0; i < kRivals; ++i) {
     const Rival* rival = rivals_[i] ? &*rivals_[i] : i == kOtherPaint ? &unknown : nullptr;

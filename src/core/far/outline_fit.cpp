@@ -244,7 +244,7 @@ struct Prior {
   }
 };
 
-/// Side stripes are 0.9 m wide on runways of 30 m and more, and 0.45 m on narrower ones (ICAO Annex
+/// Side stripes are at least 0.9 m wide on runways of 30 m and more, and 0.45 m on narrower ones (ICAO Annex
 /// 14, 5.2.7).
 Amplitude stripesOf(EdgePaint paint, double runway_width) {
   if (paint == EdgePaint::kUnknown) return kAnyStripe;

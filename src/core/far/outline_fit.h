@@ -27,7 +27,8 @@ struct FittedOutline {
   double contrast_stddev = 0;
   double residual = 0;  ///< 1 sigma of what the model leaves, grey levels
   double stripes = 0;   ///< width of the stripes times their contrast against the surface, m x grey levels
-  double cost = 0;      ///< -2 log likelihood; comparable between fits of one OutlineFitter
+  double cost = 0;      ///< -2 log likelihood, with what is known of paint and blur; comparable between the
+                        ///< fits of one OutlineFitter
 };
 
 /// The runway's outline by least squares over the grey levels around it.

@@ -99,7 +99,7 @@ Failure SightFit::problemOf(const OutlinePose& found, const KnownGround& ground)
     return noRunway(text("the outline contradicts what is known of runway and ground, with a chi-square of ",
                          rounded(found.misfit)));
   if (ground.plane.valid() && std::abs(offPlane(found, ground.plane)) > kMostOffPlane)
-    return {Reason::kInconsistent,
+    return {Reason::kRejected,
             text("by the outline the runway lies ", rounded(p.z()),
                  " m below the camera, and by stereo the ground ", rounded(ground.plane.height()),
                  " m: check runway/width and runway/length")};

@@ -95,7 +95,8 @@ std::optional<Expected<SightedRunway>> SightSearch::step(const SightFit& fit, co
 bool SightSearch::judge(const Attempt& attempt, Expected<SightedRunway> seen, const SightFit& fit,
                         const KnownGround& ground) {
   if (seen) {
-    if (const Failure problem = fit.problemOf(seen->pose, ground)) seen = tl::make_unexpected(problem);
+    if (const Failure problem = fit.problemOf(seen->pose, ground))
+      seen = tl::make_unexpected(noRunway(problem.detail.c_str()));
   }
   if (!seen)
     failure_ = seen.error();

@@ -58,10 +58,16 @@ Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround&
   const cv::Point moved = patch_.movement(left, kReach);
   Corners start = last_->corners;
   for (Eigen::Vector2d& corner : start) corner += Eigen::Vector2d(moved.x, moved.y);
-  Expected<SightedRunway> seen = fit_.follow(left, start, ground, last_->pose.size, readings_);
+  tried_ = readings_;
+  Expected<SightedRunway> seen = fit_.follow(left, start, ground, last_->pose.size, tried_);
   if (!seen) return seen;
   if (const std::optional<Corners> better = fit_.betterStart(*seen)) {
-    seen = betterOf(std::move(seen), fit_.fit(left, *better, ground, last_->pose.size));
+    EdgeReadings readings = readings_;
+    Expected<SightedRunway> again = fit_.follow(left, *better, ground, last_->pose.size, readings);
+    if (again && again->pose.misfit < seen->pose.misfit) {
+      seen = std::move(again);
+      tried_ = readings;
+    }
   }
   if (const Failure problem = fit_.problemOf(seen->pose, ground)) return tl::make_unexpected(problem);
   return seen;
@@ -79,7 +85,7 @@ bool Sighting::agrees(const OutlinePose& pose) const {
 }
 
 void Sighting::keep(const cv::Mat& left, const SightedRunway& seen) {
-  if (!last_) readings_ = {};
+  readings_ = last_ ? tried_ : EdgeReadings();
   last_ = seen;
   missed_ = 0;
   Eigen::Vector2d low = seen.corners[0], high = low;
@@ -97,7 +103,10 @@ void Sighting::miss(double stamp, double seconds) {
   const bool unconfirmed = confirmations_ < kConfirmations;
   if (last_ && unconfirmed) wait_until_ = stamp + kSearchWait;
   if (near) wait_until_ = stamp + kNearWait;
-  if (!near && missed_ <= kPatience && !unconfirmed) return;
+  if (near || missed_ > kPatience || unconfirmed) drop();
+}
+
+void Sighting::drop() {
   last_.reset();
   confirmations_ = 0;
 }
@@ -126,7 +135,10 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
     *seen = tl::make_unexpected(noSight("not where the pair before had it"));
   if (!*seen) {
     sight.failure = seen->error();
-    miss(stamp, seconds);
+    if (sight.failure.reason == Reason::kRejected)
+      drop();
+    else
+      miss(stamp, seconds);
     return sight;
   }
   keep(left, **seen);

@@ -33,6 +33,7 @@ class Sighting {
   bool agrees(const OutlinePose& pose) const;
   void keep(const cv::Mat& left, const SightedRunway& seen);
   void miss(double stamp, double seconds);
+  void drop();
   ApproachAngleResult::Sight report(const SightedRunway& seen, const KnownGround& ground) const;
 
   SightFit fit_;
@@ -41,6 +42,7 @@ class Sighting {
   std::optional<double> last_stamp_;
   std::optional<SightedRunway> last_;
   EdgeReadings readings_;  // of last_
+  EdgeReadings tried_;     // of the pair that is being looked at
   PicturePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s

@@ -72,8 +72,10 @@ TEST(RunwayReport, TheLevelOfTheEdgesCoversTheMeanWithTheOutline) {
   landing.y_variance = 0.25;
   landing.y_protection_level = 2.5;
   handOver(outlineAt(-1000, 60, 1), {}, landing);
-  EXPECT_DOUBLE_EQ(landing.y, 1.2) << "the outline says 2 m with 1 sigma of 1 m";
-  EXPECT_DOUBLE_EQ(landing.y_protection_level, 2.7);
+  // The outline says 2 m with 1 sigma of 1 m: four times the variance, so a sixteenth of the weight.
+  EXPECT_DOUBLE_EQ(landing.y, 1 + 1 / 17.0);
+  EXPECT_NEAR(landing.y_variance, (16 * 16 * 0.25 + 1) / (17 * 17), 1e-12);
+  EXPECT_DOUBLE_EQ(landing.y_protection_level, 2.5 + 1 / 17.0);
   LandingResult alone;
   handOver(outlineAt(-1000, 60, 1), {}, alone);
   EXPECT_EQ(alone.y, 2);

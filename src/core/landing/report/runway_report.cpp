@@ -21,8 +21,8 @@ struct Value {
   bool known() const { return std::isfinite(value) && variance >= 0; }
 };
 
-/// The share of a in a mean. The better one has more of it than by the variances: what the outline is wrong
-/// by is the same in all pairs, and must not pull at what stereo knows well.
+/// The share of a in a mean of both. It favours the better one more than the variances would: the outline's
+/// error is the same in all pairs, so averaging does not remove it.
 double shareOf(const Value& a, const Value& b) {
   const double ratio = a.variance / b.variance;
   return 1 / (1 + ratio * ratio);

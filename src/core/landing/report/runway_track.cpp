@@ -88,7 +88,7 @@ TrackedPosition RunwayTrack::follow(double T, const ApproachAngleResult::Sight& 
   if (seen) {
     measure(sight);
     compareSize(T, sight);
-  } else if (unseen_ > kPatience || sight.failure.reason == Reason::kInconsistent) {
+  } else if (unseen_ > kPatience || sight.failure.reason == Reason::kRejected) {
     forget();
   }
   for (int i = 0; i < 3; ++i)

@@ -217,9 +217,11 @@ double againstSize(const RunwayHypothesis& h, const RunwayPrior& prior) {
   if (runway.width > 0) {
     // A dark surface shows between the inner sides of its stripes.
     const double width = h.width() * *prior.height,
-                 between_stripes = runway.width - 2 * (runway.largestInset() + kStripe);
+                 between_stripes =
+                     std::max(0.1 * runway.width, runway.width - 2 * (runway.largestInset() + kStripe));
     const double off = std::max({0.0, std::log(width / runway.width), std::log(between_stripes / width)});
-    sum += penalty(off, kSizeSigma * kSizeSigma, kMostOff) + std::log(kSameByChance);
+    const double by_chance = std::log(kSameByChance);
+    sum += penalty(off, kSizeSigma * kSizeSigma, kMostOff - by_chance) + by_chance;
   }
   return sum;
 }

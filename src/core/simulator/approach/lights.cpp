@@ -19,21 +19,27 @@ constexpr double kPapiBrighter = 4;                       // than other lamps
 constexpr double kRed = 0.3;                              // share of a white lamp's light that gets through
 constexpr double kNearest = 1;                            // m ahead of the camera
 constexpr int kIterations = 8;
+constexpr double kSettled = 0.01;    // px
+constexpr double kLeastSpacing = 1;  // m
 
 /// The raw pixel that sees a direction (x, y, 1), by Newton's method over the pixels' rays; nothing where no
 /// pixel does.
 std::optional<Eigen::Vector2d> pixelOf(const SimulatedCamera& camera, const Eigen::Vector2d& direction) {
   const int width = camera.calibration.width, height = camera.calibration.height;
   Eigen::Vector2d pixel(0.5 * (width - 1), 0.5 * (height - 1));
+  double step = 0;
   for (int i = 0; i < kIterations; ++i) {
+    const Eigen::Vector2d before = pixel;
     const int u = std::clamp(static_cast<int>(std::lround(pixel.x())), 0, width - 1);
     const int v = std::clamp(static_cast<int>(std::lround(pixel.y())), 0, height - 1);
     const PixelRay& ray = camera.rays[static_cast<size_t>(v) * width + u];
     Eigen::Matrix2d slopes;
     slopes << ray.xu, ray.xv, ray.yu, ray.yv;
     pixel = Eigen::Vector2d(u, v) + slopes.inverse() * (direction - Eigen::Vector2d(ray.x, ray.y));
+    step = (pixel - before).norm();
   }
-  const bool inside = pixel.x() > -1 && pixel.x() < width && pixel.y() > -1 && pixel.y() < height;
+  const bool inside =
+      step < kSettled && pixel.x() > -1 && pixel.x() < width && pixel.y() > -1 && pixel.y() < height;
   return inside ? std::optional<Eigen::Vector2d>(pixel) : std::nullopt;
 }
 
@@ -52,9 +58,10 @@ std::vector<Lamp> edgeLights(const SimulatedLightsParameters& lights,
   std::vector<Lamp> lamps;
   if (lights.edge_spacing == 0) return lamps;
   const double aside = 0.5 * runway.width + kBesideEdge;
-  const int count = static_cast<int>(runway.length / lights.edge_spacing);
+  const double spacing = std::max(lights.edge_spacing, kLeastSpacing);
+  const int count = static_cast<int>(runway.length / spacing);
   for (int i = 0; i <= count; ++i)
-    for (const double y : {-aside, aside}) lamps.push_back({{i * lights.edge_spacing, y, 0}});
+    for (const double y : {-aside, aside}) lamps.push_back({{i * spacing, y, 0}});
   const auto half = [&](double spacing) { return static_cast<int>(0.5 * runway.width / spacing); };
   addRow(-kBesideEdge, kThresholdSpacing, half(kThresholdSpacing), lamps);
   addRow(runway.length + kBesideEdge, kEndSpacing, half(kEndSpacing), lamps);

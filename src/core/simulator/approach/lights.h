@@ -27,6 +27,7 @@ std::vector<Lamp> approachLights(const SimulatedLightsParameters& lights);
 std::vector<Lamp> papi(const SimulatedLightsParameters& lights, const SimulatedRunwayParameters& runway);
 
 /// Lamps of a runway. They are so small that each shows as a point, as bright as the lens's blur lets it be.
+/// Nothing hides them: no hill, and no object.
 class RunwayLights {
  public:
   RunwayLights() = default;
