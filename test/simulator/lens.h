@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uav_landing/simulator/parameters.h"
+#include "uav_landing/simulator/trajectory.h"
 
 namespace uav_landing {
 
@@ -54,6 +55,16 @@ inline Eigen::Matrix3d axesOf(double roll, double pitch, double yaw) {
   axes.col(1) = std::cos(roll) * level_down - std::sin(roll) * level_right;
   axes.col(2) = forward;
   return axes;
+}
+
+/// Raw pixel of a point of the runway frame, worked out from lens, rig and attitude alone. R_left: rotation
+/// from raw to rectified axes of the left camera, by which the pose is defined.
+inline Eigen::Vector2d imageOf(const SimulatorParameters& p, const CameraPose& pose,
+                               const Eigen::Matrix3d& R_left, bool right, const Eigen::Vector3d& point) {
+  const Attitude& a = pose.attitude;
+  const Eigen::Vector3d rectified = axesOf(a.roll, a.pitch, a.yaw).transpose() * (point - pose.position);
+  const Eigen::Vector3d raw = R_left.transpose() * rectified;
+  return right ? throughLens(p.right_camera, leftToRight(p.rig, raw)) : throughLens(p.left_camera, raw);
 }
 
 /// A rig with everything a real one has: different lenses, axes that are not parallel, centres out of line.

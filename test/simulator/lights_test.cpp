@@ -67,15 +67,6 @@ Spot spotAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
   return spot;
 }
 
-/// Raw pixel of a point of the runway frame, by the lens alone.
-Eigen::Vector2d imageOf(const SimulatorParameters& p, const CameraPose& pose, const Eigen::Matrix3d& R_left,
-                        bool right, const Eigen::Vector3d& point) {
-  const Attitude& a = pose.attitude;
-  const Eigen::Vector3d rectified = axesOf(a.roll, a.pitch, a.yaw).transpose() * (point - pose.position);
-  const Eigen::Vector3d raw = R_left.transpose() * rectified;
-  return right ? throughLens(p.right_camera, leftToRight(p.rig, raw)) : throughLens(p.left_camera, raw);
-}
-
 /// Units of a PAPI from the one next to the runway outwards: 15 m beside the edge, 9 m apart.
 Eigen::Vector3d unit(const SimulatorParameters& p, int i) {
   return {p.runway.aiming_point_distance, 0.5 * p.runway.width + 15 + 9 * i, 0};

@@ -57,16 +57,6 @@ Pair renderPair(const SimulatorParameters& p, const CameraPose& pose) {
   return pair;
 }
 
-/// Raw pixel of a point of the runway frame, worked out from lens, rig and attitude alone. R_left: rotation
-/// from raw to rectified axes of the left camera, by which the pose is defined.
-Eigen::Vector2d imageOf(const SimulatorParameters& p, const CameraPose& pose, const Eigen::Matrix3d& R_left,
-                        bool right, const Eigen::Vector3d& point) {
-  const Attitude& a = pose.attitude;
-  const Eigen::Vector3d rectified = axesOf(a.roll, a.pitch, a.yaw).transpose() * (point - pose.position);
-  const Eigen::Vector3d raw = R_left.transpose() * rectified;
-  return right ? throughLens(p.right_camera, leftToRight(p.rig, raw)) : throughLens(p.left_camera, raw);
-}
-
 /// Where a straight mark's edge from one point to another crosses the middle of a row (along = 1) or of a
 /// column (along = 0) of the raw image; NaN when it does not.
 double crossing(const SimulatorParameters& p, const CameraPose& pose, const Eigen::Matrix3d& R_left,

@@ -9,8 +9,8 @@ namespace {
 
 // Most paved runways have stripes along their edges.
 constexpr double kStripesShare = 0.8;
-// A difference of costs counts for a part of it only: paint and ground are not quite as the model has them,
-// and what a reading gains by that is the same in all pairs.
+// Of a difference of costs only a part counts. Paint and ground are not quite as in the model, and a reading
+// gains by that in all pairs alike.
 constexpr double kTemper = 12;
 constexpr double kUsualStripes = 80;  // m x grey levels
 constexpr double kFaintest = 20;      // of a stripe that makes a difference
@@ -89,20 +89,19 @@ void EdgeReadings::compare(OutlineFitter& fitter, const OutlineLook& look, Fitte
   rival = Rival{found->seen.inward - best.seen.inward, found->seen.covariance,
                 probabilityCost(*found, paint) - probabilityCost(best, paint_)};
   if (rival->excess >= 0) return;
-  const Rival before{-rival->offset, best.seen.covariance, -rival->excess};
-  takeOver(*rival);
-  rival = before;
+  const Rival winner = *rival;
+  rival = Rival{Vector8d::Zero(), best.seen.covariance, 0};
+  tellFrom(winner);
   best = *found;
   paint_ = paint;
 }
 
-/// Another outline becomes the best one: all others are told from it.
-void EdgeReadings::takeOver(const Rival& rival) {
-  const Rival best = rival;
-  for (std::optional<Rival>& other : rivals_) {
-    if (!other) continue;
-    other->offset -= best.offset;
-    other->excess -= best.excess;
+/// Tells all rivals from this one, which becomes the best outline.
+void EdgeReadings::tellFrom(const Rival& winner) {
+  for (std::optional<Rival>& rival : rivals_) {
+    if (!rival) continue;
+    rival->offset -= winner.offset;
+    rival->excess -= winner.excess;
   }
 }
 

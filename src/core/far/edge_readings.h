@@ -33,7 +33,7 @@ class EdgeReadings {
   };
   static constexpr int kRivals = 7;  // the other paint, and ends from other places
   void compare(OutlineFitter& fitter, const OutlineLook& look, FittedOutline& best);
-  void takeOver(const Rival& rival);
+  void tellFrom(const Rival& winner);
   FittedOutline mean(const FittedOutline& best, const OutlineLook& look) const;
 
   EdgePaint paint_ = EdgePaint::kStripes;  // of the best outline

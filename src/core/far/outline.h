@@ -27,6 +27,15 @@ struct RunwaySize {
   double width = 0, length = 0;
 };
 
+/// What the outline's picture is expected to be like.
+struct OutlineLook {
+  double focal_length = 0;  ///< px
+  /// Of the surface, about, m: what markings are small against. Length 0: by the taper.
+  RunwaySize size{35, 0};
+  double blur = 0.65;  ///< 1 sigma of the picture's blur, pixels included, px
+  double blur_stddev = 0.12;
+};
+
 /// Corners of the surface in the picture: near left, far left, far right, near right; px. The sides lead from
 /// one to the next: left, far, right, near.
 using Corners = std::array<Eigen::Vector2d, 4>;

@@ -8,12 +8,13 @@
 
 #include "base/text.h"
 #include "estimation/robust.h"
+#include "far/outline_model.h"
 
 namespace uav_landing {
 namespace {
 
 constexpr int kIterations = 5;
-constexpr double kOutside = 7, kInside = 8;  // px: band of pixels that tell of a side
+constexpr double kAround = OutlineModel::kOutside, kBand = kAround + OutlineModel::kInside;
 constexpr double kMostPixels = 900;
 constexpr double kLargestStep = 1.0;               // px in one iteration
 constexpr double kFarthest = 8;                    // px from the start
@@ -26,9 +27,7 @@ constexpr double kTexture = 2;  // times: neighbouring pixels of the ground have
 constexpr double kAcross = 0.05, kAlong = 0.03, kEnd = 0.1;  // kEnd: of each end by itself
 constexpr double kLeastContrast = 5;                         // of its standard deviation
 
-// Markings, m: stripe inside of the edge, bars behind the threshold. Amplitudes: grey levels times m for
-// lines.
-constexpr double kStripePlace = 1.0, kBarsBegin = 6, kBarsEnd = 36;
+// Amplitudes of markings: grey levels, times m for lines.
 struct Amplitude {
   double mean, stddev;
 };
@@ -36,173 +35,6 @@ constexpr Amplitude kAnyStripe{60, 50}, kNoStripe{0, 4};
 constexpr Amplitude kStripeContrast{95, 42};  // grey levels between paint and surface
 constexpr double kCentre = 25, kCentreStddev = 40;
 constexpr double kBars = 30, kBarsStddev = 50;
-constexpr double kShortestRunway = 400, kLongestRunway = 5000;  // m
-constexpr double kMarksAcross = 15;  // m, 1 sigma by which bars and a line across at an end move the side
-
-// Parameters: places of the sides, blur, and amplitudes.
-constexpr int kBlur = 8, kGround = 9, kSurface = 13, kStripes = 15, kMiddle = 16, kNearBars = 17,
-              kFarBars = 18;
-constexpr int kCount = 19;
-using Vector = Eigen::Matrix<double, kCount, 1>;
-using Matrix = Eigen::Matrix<double, kCount, kCount>;
-
-/// A blurred edge and its slope, by linear interpolation: both of a distance in standard deviations.
-class BlurTable {
- public:
-  BlurTable() {
-    for (int i = 0; i <= kSteps; ++i) {
-      const double t = kReach * (2.0 * i / kSteps - 1);
-      bell_[i] = std::exp(-0.5 * t * t) / std::sqrt(2 * M_PI);
-      share_[i] = 0.5 * std::erfc(-t * M_SQRT1_2);
-    }
-  }
-  double bell(double t) const { return std::abs(t) < kReach ? at(bell_, t) : 0; }
-  double share(double t) const { return std::abs(t) < kReach ? at(share_, t) : t > 0 ? 1 : 0; }
-
- private:
-  static constexpr int kSteps = 800;
-  static constexpr double kReach = 5;
-  using Table = std::array<double, kSteps + 1>;
-  static double at(const Table& table, double t) {
-    const double place = (t + kReach) * (kSteps / (2 * kReach));
-    const int i = std::min(static_cast<int>(place), kSteps - 1);
-    return table[i] + (place - i) * (table[i + 1] - table[i]);
-  }
-  Table bell_, share_;
-};
-
-const BlurTable& blurTable() {
-  static const BlurTable table;
-  return table;
-}
-
-/// The model of the picture with its derivatives.
-class Model {
- public:
-  Model(const Corners& reference, const OutlineLook& look)
-      : sides_{OutlineSide(reference, 0), OutlineSide(reference, 1), OutlineSide(reference, 2),
-               OutlineSide(reference, 3)},
-        width_(look.size.width) {
-    middle_ = 0.25 * (reference[0] + reference[1] + reference[2] + reference[3]);
-    near_width_ = sides_[kNearSide].length;
-    far_width_ = sides_[kFarSide].length;
-    const double taper = far_width_ / near_width_;
-    const double by_taper = look.focal_length * width_ / near_width_ * (1 - taper) / taper;
-    const double length =
-        look.size.length > 0 ? look.size.length : std::clamp(by_taper, kShortestRunway, kLongestRunway);
-    const auto place = [&](double metres) {
-      return metres / length / (taper + (1 - taper) * metres / length);
-    };
-    const double height = 0.5 * (sides_[kLeftSide].length + sides_[kRightSide].length);
-    bars_[0] = place(kBarsBegin) * height;
-    bars_[1] = place(kBarsEnd) * height;
-    // At the far end all is shorter by the square of the taper.
-    far_bars_[0] = kBarsBegin / length * taper * height;
-    far_bars_[1] = kBarsEnd / length * taper * height;
-    line_[0] = kMarksAcross / length / taper * height;
-    line_[1] = kMarksAcross / length * taper * height;
-  }
-
-  /// 1 sigma by which what is painted across at an end moves the side, px.
-  double lineAcross(int side) const { return side == kNearSide ? line_[0] : side == kFarSide ? line_[1] : 0; }
-
-  /// Distances from the reference's sides, inside is positive. False for a pixel that tells nothing.
-  bool mayTell(const Eigen::Vector2d& pixel) const {
-    double least = kInside + 1;
-    for (const OutlineSide& side : sides_) least = std::min(least, side.inward.dot(pixel - side.from));
-    return least >= -kOutside && least <= kInside;
-  }
-
-  /// Value at a pixel, and its derivatives.
-  double at(const Eigen::Vector2d& pixel, const Vector& p, Vector& slope) const {
-    const double blur = p[kBlur];
-    const Place place = placeOf(pixel, p);
-    const double* d = place.inward;
-    const double along = place.along, across = place.across;
-    const double body = p[kSurface] * (1 - place.beyond) + p[kSurface + 1] * place.beyond;
-    const Part left = line(d[kLeftSide] - kStripePlace * place.scale, blur, place.scale);
-    const Part right = line(d[kRightSide] - kStripePlace * place.scale, blur, place.scale);
-    const Part centre = line(0.5 * (d[kLeftSide] - d[kRightSide]), blur, place.scale);
-    const Part near = bars(d[kNearSide], bars_, blur), far = bars(d[kFarSide], far_bars_, blur);
-    const Eigen::Vector2d from_middle = (pixel - middle_) / 10;
-    slope[kGround] = 1;
-    slope[kGround + 1] = from_middle.x();
-    slope[kGround + 2] = from_middle.y();
-    slope[kGround + 3] = from_middle.y() * from_middle.y();
-    slope[kSurface] = across * along * (1 - place.beyond);
-    slope[kSurface + 1] = across * along * place.beyond;
-    slope[kStripes] = (left.value + right.value) * along;
-    slope[kMiddle] = centre.value * along;
-    slope[kNearBars] = near.value * across;
-    slope[kFarBars] = far.value * across;
-    const double ends = p[kNearBars] * near.value + p[kFarBars] * far.value;
-    const double lines = p[kStripes] * (left.value + right.value) + p[kMiddle] * centre.value;
-    const double by_left = body * place.rise[kLeftSide] + p[kStripes] * left.slope;
-    const double by_right = body * place.rise[kRightSide] + p[kStripes] * right.slope;
-    const double by_middle = 0.5 * p[kMiddle] * centre.slope, lengthwise = across * body + lines;
-    const double by[kSides] = {along * (by_left + by_middle) + ends * place.rise[kLeftSide],
-                               lengthwise * place.rise[kFarSide] + p[kFarBars] * across * far.slope,
-                               along * (by_right - by_middle) + ends * place.rise[kRightSide],
-                               lengthwise * place.rise[kNearSide] + p[kNearBars] * across * near.slope};
-    slope[kBlur] = 0;
-    for (int i = 0; i < kSides; ++i) {
-      slope[2 * i] = -(1 - place.share[i]) * by[i];
-      slope[2 * i + 1] = -place.share[i] * by[i];
-      slope[kBlur] -= by[i] * d[i] / blur;  // of edges; lines only get lower, which their amplitude takes up
-    }
-    return slope.tail<kCount - kGround>().dot(p.tail<kCount - kGround>());
-  }
-
- private:
-  /// Where a pixel is. share: along each side. inward: distance inward of it, px. rise: derivative of the
-  /// share of the pixel that is inside. beyond: from the near side (0) to the far one (1). scale: px a metre.
-  struct Place {
-    double share[kSides], inward[kSides], rise[kSides];
-    double across, along, beyond, scale;
-  };
-  Place placeOf(const Eigen::Vector2d& pixel, const Vector& p) const {
-    Place place;
-    double inside[kSides];
-    const double blur = p[kBlur];
-    for (int i = 0; i < kSides; ++i) {
-      const OutlineSide& side = sides_[i];
-      const double share = std::clamp(side.along.dot(pixel - side.from) / side.length, -0.5, 1.5);
-      const double inward =
-          side.inward.dot(pixel - side.from) - (1 - share) * p[2 * i] - share * p[2 * i + 1];
-      place.share[i] = share;
-      place.inward[i] = inward;
-      place.rise[i] = table_.bell(inward / blur) / blur;
-      inside[i] = table_.share(inward / blur);
-    }
-    place.across = std::max(inside[kLeftSide] + inside[kRightSide] - 1, 0.0);
-    place.along = std::max(inside[kNearSide] + inside[kFarSide] - 1, 0.0);
-    const double near = place.inward[kNearSide];
-    place.beyond = std::clamp(near / std::max(near + place.inward[kFarSide], 1.0), 0.0, 1.0);
-    place.scale = (near_width_ + (far_width_ - near_width_) * place.beyond) / width_;
-    return place;
-  }
-
-  /// What a marking adds for an amplitude of 1, and the derivative by the distance from its side.
-  struct Part {
-    double value, slope;
-  };
-  /// A line along the runway, this far off: across it a blurred bell.
-  Part line(double off, double blur, double scale) const {
-    const double value = table_.bell(off / blur) / blur * scale;
-    return {value, -off / (blur * blur) * value};
-  }
-  Part bars(double inward, const double* from_to, double blur) const {
-    const double begin = (inward - from_to[0]) / blur, end = (inward - from_to[1]) / blur;
-    return {table_.share(begin) - table_.share(end), (table_.bell(begin) - table_.bell(end)) / blur};
-  }
-
-  const BlurTable& table_ = blurTable();
-  std::array<OutlineSide, kSides> sides_;
-  double width_, near_width_, far_width_;
-  double bars_[2], far_bars_[2];  // px from the sides
-  double line_[2];                // of the near and the far side
-  Eigen::Vector2d middle_;
-};
 
 struct Pixel {
   Eigen::Vector2d place;
@@ -210,7 +42,7 @@ struct Pixel {
 };
 
 std::vector<Pixel> pixelsAround(const cv::Mat& image, const cv::Mat& mask, const Corners& corners,
-                                const Model& model) {
+                                const OutlineModel& model) {
   Eigen::Vector2d low = corners[0], high = corners[0];
   double around = 0;
   for (int i = 0; i < kSides; ++i) {
@@ -218,11 +50,11 @@ std::vector<Pixel> pixelsAround(const cv::Mat& image, const cv::Mat& mask, const
     high = high.cwiseMax(corners[i]);
     around += (corners[(i + 1) % kSides] - corners[i]).norm();
   }
-  const int stride = static_cast<int>(std::ceil(around * (kInside + kOutside) / kMostPixels));
-  const int left = std::max(0, static_cast<int>(low.x() - kOutside)),
-            top = std::max(0, static_cast<int>(low.y() - kOutside));
-  const int right = std::min(image.cols - 1, static_cast<int>(high.x() + kOutside) + 1),
-            bottom = std::min(image.rows - 1, static_cast<int>(high.y() + kOutside) + 1);
+  const int stride = static_cast<int>(std::ceil(around * kBand / kMostPixels));
+  const int left = std::max(0, static_cast<int>(low.x() - kAround)),
+            top = std::max(0, static_cast<int>(low.y() - kAround));
+  const int right = std::min(image.cols - 1, static_cast<int>(high.x() + kAround) + 1),
+            bottom = std::min(image.rows - 1, static_cast<int>(high.y() + kAround) + 1);
   std::vector<Pixel> pixels;
   for (int v = top; v <= bottom; ++v) {
     const uchar *grey = image.ptr<uchar>(v), *valid = mask.ptr<uchar>(v);
@@ -237,7 +69,7 @@ std::vector<Pixel> pixelsAround(const cv::Mat& image, const cv::Mat& mask, const
 
 /// What is known of the parameters beforehand: value and information.
 struct Prior {
-  Vector value = Vector::Zero(), information = Vector::Zero();
+  OutlineVector value = OutlineVector::Zero(), information = OutlineVector::Zero();
   void set(int i, double expected, double stddev) {
     value[i] = expected;
     information[i] = 1 / (stddev * stddev);
@@ -271,13 +103,14 @@ Failure noOutline(const std::string& why) { return {Reason::kNoRunway, why}; }
 /// Gauss-Newton with Cauchy's weights, over the pixels.
 class Solver {
  public:
-  Solver(const Model& model, const std::vector<Pixel>& pixels, const Prior& prior, const Vector8d& inward)
+  Solver(const OutlineModel& model, const std::vector<Pixel>& pixels, const Prior& prior,
+         const Vector8d& inward)
       : model_(model),
         pixels_(pixels),
         prior_(prior),
         p_(prior.value),
         residuals_(pixels.size()),
-        slopes_(pixels.size(), kCount) {
+        slopes_(pixels.size(), kOutlineParameters) {
     p_.head<8>() = inward;
   }
 
@@ -291,26 +124,27 @@ class Solver {
     return iterate(false) && p_.head<8>().cwiseAbs().maxCoeff() < kFarthest;
   }
 
-  const Vector& parameters() const { return p_; }
+  const OutlineVector& parameters() const { return p_; }
   double noise() const { return noise_; }
-  Matrix covariance() const { return information_.inverse(); }
+  OutlineMatrix covariance() const { return information_.inverse(); }
   /// -2 log likelihood of the pixels and of all but the places.
   double cost(double noise) const {
     const double scale = kCauchy * noise;
-    Vector slope;
+    OutlineVector slope;
     double cost = 0;
     for (const Pixel& pixel : pixels_) {
       const double r = (pixel.grey - model_.at(pixel.place, p_, slope)) / scale;
       cost += scale * scale * std::log(1 + r * r);
     }
     cost /= kTexture * noise * noise;
-    for (int i = kBlur; i < kCount; ++i) cost += prior_.information[i] * std::pow(p_[i] - prior_.value[i], 2);
+    for (int i = kBlur; i < kOutlineParameters; ++i)
+      cost += prior_.information[i] * std::pow(p_[i] - prior_.value[i], 2);
     return cost;
   }
 
  private:
   bool iterate(bool amplitudes_only) {
-    Vector gradient = Vector::Zero(), slope;
+    OutlineVector gradient = OutlineVector::Zero(), slope;
     for (size_t i = 0; i < pixels_.size(); ++i) {
       const double r = pixels_[i].grey - model_.at(pixels_[i].place, p_, slope);
       residuals_[i] = std::abs(r);
@@ -318,14 +152,14 @@ class Solver {
       gradient += weight * r * slope;
       slopes_.row(static_cast<Eigen::Index>(i)) = std::sqrt(weight) * slope.transpose();
     }
-    const Matrix data = slopes_.transpose() * slopes_;
+    const OutlineMatrix data = slopes_.transpose() * slopes_;
     if (!amplitudes_only) noise_ = std::max(kLeastNoise, robustStddev(residuals_));
     const double variance = kTexture * noise_ * noise_;
     information_ = data / variance;
     information_.diagonal() += prior_.information;
     gradient = gradient / variance + prior_.information.cwiseProduct(prior_.value - p_);
     if (amplitudes_only) {
-      const int n = kCount - kGround;
+      const int n = kOutlineParameters - kGround;
       step_.setZero();
       step_.tail(n) = information_.bottomRightCorner(n, n).ldlt().solve(gradient.tail(n));
     } else {
@@ -337,13 +171,13 @@ class Solver {
     return p_.allFinite();
   }
 
-  const Model& model_;
+  const OutlineModel& model_;
   const std::vector<Pixel>& pixels_;
   Prior prior_;
-  Vector p_, step_ = Vector::Zero();
-  Matrix information_ = Matrix::Identity();
+  OutlineVector p_, step_ = OutlineVector::Zero();
+  OutlineMatrix information_ = OutlineMatrix::Identity();
   std::vector<double> residuals_;
-  Eigen::Matrix<double, Eigen::Dynamic, kCount> slopes_;
+  Eigen::Matrix<double, Eigen::Dynamic, kOutlineParameters> slopes_;
   double noise_ = 20;
 };
 
@@ -358,7 +192,7 @@ bool isUsable(const Corners& corners) {
 }  // namespace
 
 struct OutlineFitter::Pixels {
-  Model model;
+  OutlineModel model;
   std::vector<Pixel> all;
   Pixels(const cv::Mat& image, const cv::Mat& mask, const Corners& reference, const OutlineLook& look)
       : model(reference, look), all(pixelsAround(image, mask, reference, model)) {}
@@ -374,17 +208,18 @@ OutlineFitter::~OutlineFitter() = default;
 
 Expected<FittedOutline> OutlineFitter::fit(const Vector8d& inward, EdgePaint paint) {
   if (!pixels_) return tl::make_unexpected(noOutline("the runway is too small in the image"));
-  const Model& model = pixels_->model;
-  if (pixels_->all.size() < 3 * kCount)
+  const OutlineModel& model = pixels_->model;
+  if (pixels_->all.size() < 3 * kOutlineParameters)
     return tl::make_unexpected(noOutline("the runway is not in the image"));
   Solver solver(model, pixels_->all, priorOf(look_, paint), inward);
   if (!solver.run()) return tl::make_unexpected(noOutline("no outline where the runway is expected"));
-  const Vector& p = solver.parameters();
-  const Matrix covariance = solver.covariance();
+  const OutlineVector& p = solver.parameters();
+  const OutlineMatrix covariance = solver.covariance();
   FittedOutline fitted;
   fitted.seen = {reference_, p.head<8>(), covariance.topLeftCorner<8, 8>()};
   for (int i = 0; i < kSides; ++i) {
-    const double stddev = std::hypot(i == kNearSide || i == kFarSide ? kAcross : kAlong, model.lineAcross(i));
+    const double stddev =
+        std::hypot(i == kNearSide || i == kFarSide ? kAcross : kAlong, model.marksAcross(i));
     fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).array() += stddev * stddev;
     fitted.seen.covariance.block<2, 2>(2 * i, 2 * i).diagonal().array() += kEnd * kEnd;
   }

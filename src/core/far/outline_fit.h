@@ -10,15 +10,6 @@ namespace uav_landing {
 /// What is painted along the edges of a surface.
 enum class EdgePaint { kUnknown, kStripes, kNone };
 
-/// What the outline's picture is expected to be like.
-struct OutlineLook {
-  double focal_length = 0;  ///< px
-  RunwaySize size{35,
-                  0};  ///< of the surface, about, m: what markings are small against; length 0: by the taper
-  double blur = 0.65;  ///< 1 sigma of the picture's blur, pixels included, px
-  double blur_stddev = 0.12;
-};
-
 /// An outline with what tells how clearly it is there.
 struct FittedOutline {
   SeenOutline seen;
@@ -39,7 +30,7 @@ struct FittedOutline {
 /// a dark runway. Bars at the threshold do the same. So stripes, bars and centre line are part of the model,
 /// with amplitudes that are not known, and the claimed covariance of the sides takes in what they leave open.
 ///
-/// Fits of the same pixels from several starts.
+/// This makes such fits of the same pixels from several starts.
 class OutlineFitter {
  public:
   /// reference: corners within some pixels. All fits tell by how far the sides lie inside of it.

@@ -22,8 +22,8 @@ constexpr double kNearest = 11;       // widths: nearer, its marks tell more tha
 constexpr double kRoughly = 0.5;      // corners of a candidate may be off by this
 constexpr double kNarrowest = 6, kWidest = 100, kShortest = 250, kLongest = 6500, kLeastAspect = 8;
 constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart have too many, one in 1000
-// Times the texture of the ground by which an outline has to stand out: where the ground's plane is known,
-// which then has to agree, and where nothing but the outline itself tells that it is a runway.
+// An outline has to stand out from the ground by so many times its texture. kClear: the ground's plane is
+// known and has to agree. kClearAlone: only the outline itself says that it is a runway.
 constexpr double kClear = 3, kClearAlone = 4;
 constexpr double kStripeShare = 0.4;  // of a blurred stripe's grey level, in the middle of it
 constexpr double kMostOffPlane = 3;   // standard deviations, hills included
@@ -135,7 +135,7 @@ Expected<SightedRunway> SightFit::withPose(const FittedOutline& outline, const C
   elements.stereo = false;  // it is to tell whether the chart is right
   const Expected<OutlinePose> pose = fitPose(outline.seen, knowledge(ground), model_.rig, elements);
   if (!pose) return tl::make_unexpected(pose.error());
-  return SightedRunway{outline, *pose, corners};
+  return SightedRunway{outline, *pose, corners, {}};
 }
 
 Expected<SightedRunway> SightFit::fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
@@ -147,11 +147,14 @@ Expected<SightedRunway> SightFit::fit(const cv::Mat& left, const Corners& start,
 }
 
 Expected<SightedRunway> SightFit::follow(const cv::Mat& left, const Corners& start, const KnownGround& ground,
-                                         const RunwaySize& about, EdgeReadings& readings) const {
-  const OutlineLook look = lookOf(about);
+                                         const SightedRunway& last) const {
+  const OutlineLook look = lookOf(last.pose.size);
+  EdgeReadings readings = last.readings;
   const Expected<EdgeReadings::Outline> outline = readings.fit(left, model_.left_mask, start, look);
   if (!outline) return tl::make_unexpected(outline.error());
-  return withPose(outline->fitted, outline->corners, look.size.width, ground);
+  Expected<SightedRunway> seen = withPose(outline->fitted, outline->corners, look.size.width, ground);
+  if (seen) seen->readings = readings;
+  return seen;
 }
 
 std::optional<Corners> SightFit::betterStart(const SightedRunway& seen) const {

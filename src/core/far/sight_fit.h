@@ -20,7 +20,8 @@ struct KnownGround {
 struct SightedRunway {
   FittedOutline outline;
   OutlinePose pose;
-  Corners corners;  ///< px
+  Corners corners;        ///< px
+  EdgeReadings readings;  ///< of this picture and those before
 };
 
 /// The one of two fits that agrees better with its own pose; the other one when one has failed.
@@ -36,9 +37,9 @@ class SightFit {
   /// it; 0: not known. Fails where no outline is found there.
   Expected<SightedRunway> fit(const cv::Mat& left, const Corners& start, const KnownGround& ground,
                               const RunwaySize& about) const;
-  /// The same for a runway that is followed. readings: of the pairs before.
+  /// The same for a runway that is followed. last: in the picture before.
   Expected<SightedRunway> follow(const cv::Mat& left, const Corners& start, const KnownGround& ground,
-                                 const RunwaySize& about, EdgeReadings& readings) const;
+                                 const SightedRunway& last) const;
   /// Corners to fit once more from: those of the pose, when outline and pose differ. Otherwise nothing.
   std::optional<Corners> betterStart(const SightedRunway& seen) const;
   /// Why this surface is no runway on an approach; no failure: it may be one.

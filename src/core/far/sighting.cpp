@@ -29,9 +29,8 @@ Sighting::Sighting(const RigModel& rig, const ApproachAngleParameters& parameter
 void Sighting::reset() {
   search_ = {};
   last_stamp_.reset();
-  last_.reset();
+  drop();
   patch_ = {};
-  confirmations_ = 0;
   missed_ = wait_until_ = 0;
 }
 
@@ -54,21 +53,14 @@ std::optional<Expected<SightedRunway>> Sighting::search(double stamp, const cv::
   return found;
 }
 
-Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround& ground) {
+Expected<SightedRunway> Sighting::follow(const cv::Mat& left, const KnownGround& ground) const {
   const cv::Point moved = patch_.movement(left, kReach);
   Corners start = last_->corners;
   for (Eigen::Vector2d& corner : start) corner += Eigen::Vector2d(moved.x, moved.y);
-  tried_ = readings_;
-  Expected<SightedRunway> seen = fit_.follow(left, start, ground, last_->pose.size, tried_);
+  Expected<SightedRunway> seen = fit_.follow(left, start, ground, *last_);
   if (!seen) return seen;
-  if (const std::optional<Corners> better = fit_.betterStart(*seen)) {
-    EdgeReadings readings = readings_;
-    Expected<SightedRunway> again = fit_.follow(left, *better, ground, last_->pose.size, readings);
-    if (again && again->pose.misfit < seen->pose.misfit) {
-      seen = std::move(again);
-      tried_ = readings;
-    }
-  }
+  if (const std::optional<Corners> better = fit_.betterStart(*seen))
+    seen = betterOf(std::move(seen), fit_.follow(left, *better, ground, *last_));
   if (const Failure problem = fit_.problemOf(seen->pose, ground)) return tl::make_unexpected(problem);
   return seen;
 }
@@ -85,7 +77,6 @@ bool Sighting::agrees(const OutlinePose& pose) const {
 }
 
 void Sighting::keep(const cv::Mat& left, const SightedRunway& seen) {
-  readings_ = last_ ? tried_ : EdgeReadings();
   last_ = seen;
   missed_ = 0;
   Eigen::Vector2d low = seen.corners[0], high = low;
@@ -120,8 +111,7 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
   ApproachAngleResult::Sight sight;
   if (!fit_.mayStart(ground)) {
     search_ = {};
-    last_.reset();
-    confirmations_ = 0;
+    drop();
     sight.failure = noSight("low over the ground, or no chart gives the runway's size");
     return sight;
   }

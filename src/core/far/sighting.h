@@ -29,7 +29,7 @@ class Sighting {
  private:
   std::optional<Expected<SightedRunway>> search(double stamp, const cv::Mat& left, const KnownGround& ground,
                                                 bool busy);
-  Expected<SightedRunway> follow(const cv::Mat& left, const KnownGround& ground);
+  Expected<SightedRunway> follow(const cv::Mat& left, const KnownGround& ground) const;
   bool agrees(const OutlinePose& pose) const;
   void keep(const cv::Mat& left, const SightedRunway& seen);
   void miss(double stamp, double seconds);
@@ -41,8 +41,6 @@ class Sighting {
   SightSearch search_;
   std::optional<double> last_stamp_;
   std::optional<SightedRunway> last_;
-  EdgeReadings readings_;  // of last_
-  EdgeReadings tried_;     // of the pair that is being looked at
   PicturePatch patch_;
   int confirmations_ = 0;
   double missed_ = 0;      // s

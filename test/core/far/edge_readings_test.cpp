@@ -14,13 +14,6 @@ constexpr double kDegree = M_PI / 180;
 
 RunwayPose poseAt(double x) { return {{x, 15, -x * 0.055}, 2 * kDegree, -3 * kDegree, 1 * kDegree}; }
 
-OutlineLook lookOf(const RunwayPicture& picture) {
-  OutlineLook look;
-  look.focal_length = picture.focal;
-  look.size = {picture.width, picture.length};
-  return look;
-}
-
 /// Pairs that see a runway from the same place, each with noise of its own.
 class Pairs {
  public:

@@ -15,13 +15,6 @@ RunwayPose poseAt(double x, double height) {
   return {{x, 15, height}, 2 * kDegree, -3 * kDegree, 1 * kDegree};
 }
 
-OutlineLook lookOf(const RunwayPicture& picture) {
-  OutlineLook look;
-  look.focal_length = picture.focal;
-  look.size = {picture.width, picture.length};
-  return look;
-}
-
 /// The fit from corners that are some tenths of a pixel off, and the true ones.
 struct Fit {
   Corners corners;

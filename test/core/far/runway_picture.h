@@ -68,4 +68,12 @@ struct RunwayPicture {
   }
 };
 
+/// What a fit is told of it.
+inline OutlineLook lookOf(const RunwayPicture& picture) {
+  OutlineLook look;
+  look.focal_length = picture.focal;
+  look.size = {picture.width, picture.length};
+  return look;
+}
+
 }  // namespace uav_landing
