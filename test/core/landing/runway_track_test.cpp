@@ -43,6 +43,22 @@ TEST(RunwayTrack, SmoothsWhatPairsDoNotHaveInCommon) {
   }
 }
 
+TEST(RunwayTrack, GoesOnWithoutAPairAndForgetsAnOutlineThatWasRejected) {
+  for (const Reason reason : {Reason::kNoRunway, Reason::kInconsistent, Reason::kRejected}) {
+    RunwayTrack track({}, chart());
+    for (int i = 0; i < 10; ++i)
+      track.follow(i == 0 ? 0 : 0.2, sightAt({-1500 + 12.0 * i, 0, 80 - 0.63 * i}, {5, 1, 0.3}));
+    ApproachAngleResult::Sight missing;
+    missing.failure = {reason, "for the test"};
+    const TrackedPosition found = track.follow(0.2, missing);
+    EXPECT_EQ(found.known(), reason != Reason::kRejected) << toString(reason);
+    if (found.known()) {
+      EXPECT_NEAR(found.position.x(), -1380, 5);
+    }
+    EXPECT_EQ(track.follow(0.2, missing).known(), reason != Reason::kRejected) << toString(reason);
+  }
+}
+
 TEST(RunwayTrack, TheProtectionLevelHoldsForAChartThatIsATenthOff) {
   RunwayTrack track({}, chart());
   TrackedPosition found;

@@ -89,6 +89,7 @@ TrackedPosition RunwayTrack::follow(double T, const ApproachAngleResult::Sight& 
     measure(sight);
     compareSize(T, sight);
   } else if (unseen_ > kPatience || sight.failure.reason == Reason::kRejected) {
+    // Rejected: what was followed is not the runway.
     forget();
   }
   for (int i = 0; i < 3; ++i)
