@@ -140,7 +140,7 @@ TEST(RollingShutter, StereoTellsHowFastThePlaneMovesByThePairsBefore) {
                  .process(stamp, test::rollingImage(ground, rig, stamp, kReadout),
                           test::rollingImage(ground, rig, stamp, kReadout, true))
                  .stereo.plane_rate;
-      wanted = planeRate(now.down() / now.height(), test::motionAt(stamp));
+      wanted = planeRate(PlaneVector(now.down() / now.height()), test::motionAt(stamp));
     }
     EXPECT_LT((rate - wanted).norm(), 0.2 * wanted.norm()) << rate.transpose() << " / " << wanted.transpose();
   }

@@ -18,7 +18,7 @@ struct GroundPair {
   RigRotation rows = levelRows();
   GroundRenderer ground;
   Pose pose;
-  Eigen::Vector3d truth = pose.down() / pose.height();
+  PlaneVector truth{pose.down() / pose.height()};
   cv::Mat left, right;
 
   /// height: m; pitch, roll: deg.
@@ -31,8 +31,8 @@ struct GroundPair {
   }
   StereoLevel level() const { return reduceLevel(model, 1, 4); }
   /// The true plane with its disparities off by some pixels and a share.
-  Eigen::Vector3d off(double pixels, double share = 0) const {
-    return truth * (1 + share) + Eigen::Vector3d(0, 0, pixels / rig.fb());
+  PlaneVector off(double pixels, double share = 0) const {
+    return PlaneVector(truth.vector() * (1 + share) + Eigen::Vector3d(0, 0, pixels / rig.fb()));
   }
 
   struct Mean {
@@ -45,7 +45,7 @@ struct GroundPair {
       if (!found.alike) continue;
       const DisparitySample& sample = found.sample;
       const double weight = 1 / (sample.stddev * sample.stddev);
-      sum += weight * (sample.disparity - rig.fb() * truth.dot(rig.ray(sample.u, sample.v)));
+      sum += weight * (sample.disparity - truth.disparity(rig, sample.u, sample.v));
       weights += weight;
     }
     return {sum / weights, 1 / std::sqrt(weights)};

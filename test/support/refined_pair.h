@@ -21,7 +21,7 @@ inline PlaneLimits groundLimits() {
 struct RefinedPair : GroundPair {
   explicit RefinedPair(unsigned seed = 5, double roll = 3) : GroundPair({320, 240}, seed, 4, -8, roll) {}
 
-  Expected<PlaneFit> refine(const Eigen::Vector3d& start) const {
+  Expected<PlaneFit> refine(const PlaneVector& start) const {
     return DirectRefinement(model, 4).refine(left, right, {start, rows}, groundLimits(), 0);
   }
   /// Largest error of the disparity over the ground's part of the image, pixels.
@@ -29,13 +29,13 @@ struct RefinedPair : GroundPair {
     double largest = 0;
     for (const int v : {120, 239}) {
       for (const int u : {0, 319}) {
-        largest = std::max(largest, std::abs(rig.fb() * (g - truth).dot(rig.ray(u, v))));
+        largest = std::max(largest, std::abs(rig.fb() * (g - truth.vector()).dot(rig.ray(u, v))));
       }
     }
     return largest;
   }
   double rollError(const Expected<PlaneFit>& fit) const {
-    return rollOf(fit->plane.normal()) - rollOf(truth.normalized());
+    return rollOf(fit->plane.normal()) - rollOf(truth.normal());
   }
 };
 

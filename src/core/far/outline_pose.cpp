@@ -50,7 +50,22 @@ struct OnPlane {
   }
 };
 
-/// Normal equations of the state.
+/// Normal equations of the state, and the sum of the normalised squares.
+struct Equations {
+  Matrix8d information = Matrix8d::Zero();
+  State gradient = State::Zero();
+  double misfit = 0;
+
+  void add(const State& slope, double missing, double variance) {
+    misfit += missing * missing / variance;
+    information += slope * slope.transpose() / variance;
+    gradient += slope * missing / variance;
+  }
+  /// Of a component of the state itself.
+  void addDirectly(int i, double missing, double stddev) { add(State::Unit(i), missing, stddev * stddev); }
+};
+
+/// What outline and knowledge say about a state.
 class Fit {
  public:
   Fit(const SeenOutline& seen, const PoseKnowledge& known, const StereoRig& rig, const PoseElements& elements)
@@ -59,7 +74,7 @@ class Fit {
   bool hasWidth() const { return elements_.width && known_.chart.width > 0; }
   bool hasLength() const { return elements_.length && known_.chart.length > 0; }
   bool hasPlane() const { return elements_.stereo && known_.plane.valid(); }
-  bool hasNormal() const { return elements_.normal && known_.normal.known(); }
+  bool hasNormal() const { return elements_.normal && known_.normal; }
 
   std::optional<State> start() const {
     const Corners c = movedBy(seen_.reference, seen_.inward);
@@ -86,15 +101,15 @@ class Fit {
     State state;
     state << -distance, right - yaw * distance, height, 0, pitch, yaw, std::log(size.width),
         std::log(size.length);
-    if (known_.normal.known()) state[3] = rollOf(known_.normal.n);
-    if (hasNormal()) state[4] = pitchOf(known_.normal.n);
+    if (known_.normal) state[3] = rollOf(known_.normal->vector());
+    if (hasNormal()) state[4] = pitchOf(known_.normal->vector());
     return state;
   }
 
-  /// Fills the equations at a state; false where the surface is not ahead.
-  bool linearise(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+  /// The equations at a state; none where the surface is not ahead.
+  std::optional<Equations> linearise(const State& state) const {
     const auto corners = cornersOf(poseOf(state), sizeOf(state), rig_);
-    if (!corners) return false;
+    if (!corners) return std::nullopt;
     const Vector8d missing = seen_.inward - movedInward(seen_.reference, *corners);
     Matrix8d slopes;
     for (int i = 0; i < 8; ++i) {
@@ -102,42 +117,32 @@ class Fit {
       const double step = i < 3 ? 1e-5 * std::abs(state[0]) : 1e-6;
       moved[i] += step;
       const auto there = cornersOf(poseOf(moved), sizeOf(moved), rig_);
-      if (!there) return false;
+      if (!there) return std::nullopt;
       slopes.col(i) = (seen_.inward - movedInward(seen_.reference, *there) - missing) / -step;
     }
-    information = slopes.transpose() * weight_ * slopes;
-    gradient = slopes.transpose() * weight_ * missing;
-    misfit = missing.dot(weight_ * missing);
-    addKnowledge(state, information, gradient, misfit);
-    return information.allFinite();
+    Equations equations;
+    equations.information = slopes.transpose() * weight_ * slopes;
+    equations.gradient = slopes.transpose() * weight_ * missing;
+    equations.misfit = missing.dot(weight_ * missing);
+    addKnowledge(state, equations);
+    if (!equations.information.allFinite()) return std::nullopt;
+    return equations;
   }
 
  private:
-  static void add(const State& slope, double missing, double variance, Matrix8d& information, State& gradient,
-                  double& misfit) {
-    misfit += missing * missing / variance;
-    information += slope * slope.transpose() / variance;
-    gradient += slope * missing / variance;
-  }
-  static void addDirectly(int i, double missing, double stddev, Matrix8d& information, State& gradient,
-                          double& misfit) {
-    add(State::Unit(i), missing, stddev * stddev, information, gradient, misfit);
-  }
-
-  void addKnowledge(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+  void addKnowledge(const State& state, Equations& equations) const {
     const auto size = [&](int i, bool given, double chart, double stddev, double usual) {
-      addDirectly(i, std::log(given ? chart : usual) - state[i], given ? stddev / chart : kAnySize,
-                  information, gradient, misfit);
+      equations.addDirectly(i, std::log(given ? chart : usual) - state[i], given ? stddev / chart : kAnySize);
     };
     size(6, hasWidth(), known_.chart.width, known_.width_stddev, kUsualWidth);
     size(7, hasLength(), known_.chart.length, known_.length_stddev, kUsualLength);
-    addDirectly(3, -state[3], kLevel, information, gradient, misfit);
-    addDirectly(4, -state[4], kLevel, information, gradient, misfit);
-    if (hasNormal()) addNormal(state, information, gradient, misfit);
-    if (hasPlane()) addPlane(state, information, gradient, misfit);
+    equations.addDirectly(3, -state[3], kLevel);
+    equations.addDirectly(4, -state[4], kLevel);
+    if (hasNormal()) addNormal(state, equations);
+    if (hasPlane()) addPlane(state, equations);
   }
 
-  void addNormal(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+  void addNormal(const State& state, Equations& equations) const {
     const double roll = state[3], pitch = state[4];
     Eigen::Matrix<double, 3, 2> tips;  // derivatives of the normal by roll and pitch
     tips << std::cos(roll) * std::cos(pitch), -std::sin(roll) * std::sin(pitch),
@@ -145,16 +150,16 @@ class Fit {
     const Eigen::Matrix2d scale = (tips.transpose() * tips).inverse();
     const Eigen::Matrix<double, 2, 3> angles = scale * tips.transpose();
     const Eigen::Matrix2d weight =
-        Eigen::Matrix2d(angles * known_.normal.covariance * angles.transpose()).inverse();
-    const Eigen::Vector2d missing = angles * (known_.normal.n - normalFromPitchRoll(pitch, roll));
-    information.block<2, 2>(3, 3) += weight;
-    gradient.segment<2>(3) += weight * missing;
-    misfit += missing.dot(weight * missing);
+        Eigen::Matrix2d(angles * known_.normal->covariance() * angles.transpose()).inverse();
+    const Eigen::Vector2d missing = angles * (known_.normal->vector() - normalFromPitchRoll(pitch, roll));
+    equations.information.block<2, 2>(3, 3) += weight;
+    equations.gradient.segment<2>(3) += weight * missing;
+    equations.misfit += missing.dot(weight * missing);
   }
 
-  void addPlane(const State& state, Matrix8d& information, State& gradient, double& misfit) const {
+  void addPlane(const State& state, Equations& equations) const {
     const OnPlane threshold(state, known_.plane);
-    add(threshold.slope, 1 - threshold.value, threshold.variance, information, gradient, misfit);
+    equations.add(threshold.slope, 1 - threshold.value, threshold.variance);
   }
 
   const SeenOutline& seen_;
@@ -174,21 +179,21 @@ Expected<OutlinePose> fitPose(const SeenOutline& seen, const PoseKnowledge& know
   std::optional<State> state = fit.start();
   if (!state) return noPose("the outline is not that of a surface ahead");
   OutlinePose result;
-  Matrix8d information;
-  State gradient;
+  std::optional<Equations> equations;
   for (int i = 0; i < kIterations; ++i) {
-    if (!fit.linearise(*state, information, gradient, result.misfit))
-      return noPose("the outline is not that of a surface ahead");
-    State step = information.ldlt().solve(gradient);
+    equations = fit.linearise(*state);
+    if (!equations) return noPose("the outline is not that of a surface ahead");
+    const State step = equations->information.ldlt().solve(equations->gradient);
     const double most = kLargestStep * std::abs((*state)[0]);
     const double share = std::max({step.head<3>().cwiseAbs().maxCoeff() / most,
                                    step.tail<5>().cwiseAbs().maxCoeff() / kLargestStep, 1.0});
     *state += step / share;
-    if (step.dot(information * step) < kSettled * kSettled) break;
+    if (step.dot(equations->information * step) < kSettled * kSettled) break;
   }
   result.pose = poseOf(*state);
   result.size = sizeOf(*state);
-  result.covariance = information.inverse();
+  result.covariance = equations->information.inverse();
+  result.misfit = equations->misfit;
   const bool possible = state->allFinite() && result.covariance.allFinite() && result.pose.position.z() > 0 &&
                         result.pose.position.x() < 0;
   if (!possible) return noPose("the outline is not that of a surface ahead");

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "far/outline.h"
+#include "geometry/ground_normal.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/ground_plane.h"
 
@@ -20,12 +23,12 @@ struct PoseElements {
   bool stereo = true;                ///< the ground's plane by stereo, which has a scale
 };
 
-/// What is known besides the outline. What is not known is 0, or not known().
+/// What is known besides the outline. A size that is not known is 0.
 struct PoseKnowledge {
   RunwaySize chart;
   double width_stddev = 0.3, length_stddev = 5;  ///< m
-  GroundNormal normal;  ///< of the runway's plane, with what it may slope against the ground
-  GroundPlane plane;    ///< of the ground before the threshold
+  std::optional<GroundNormal> normal;  ///< of the runway's plane, with what it may slope against the ground
+  GroundPlane plane;                   ///< of the ground before the threshold
 };
 
 /// A pose with the size of the surface.

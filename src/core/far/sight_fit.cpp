@@ -57,8 +57,9 @@ PoseKnowledge SightFit::knowledge(const KnownGround& ground) const {
   known.chart = {runway_.width, runway_.length};
   known.length_stddev = std::max(5.0, 0.003 * runway_.length);
   known.plane = ground.plane;
-  known.normal = ground.normal;
-  if (known.normal.known()) known.normal.covariance += slope_ * slope_ * Eigen::Matrix3d::Identity();
+  if (ground.normal)
+    known.normal = {ground.normal->vector(),
+                    ground.normal->covariance() + slope_ * slope_ * Eigen::Matrix3d::Identity()};
   return known;
 }
 
@@ -71,8 +72,8 @@ cv::Rect SightFit::region(const KnownGround& ground) const {
   const StereoRig& rig = model_.rig;
   const double aside = rig.fx * std::tan(kAnyColumn);
   double top = rig.cy - rig.fy * std::tan(kAnyRow), bottom = rig.cy + rig.fy * std::tan(kAnyRow);
-  if (ground.normal.known() && ground.normal.covariance.trace() < kSureNormal * kSureNormal) {
-    const Eigen::Vector3d& n = ground.normal.n;
+  if (ground.normal && ground.normal->covariance().trace() < kSureNormal * kSureNormal) {
+    const Eigen::Vector3d& n = ground.normal->vector();
     const double horizon = rig.cy - rig.fy * n.z() / n.y(), tilt = std::abs(n.x() / n.y()) * aside;
     top = horizon - tilt;
     bottom = horizon + tilt + rig.fy * std::tan(kLowest);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
 #include "far/edge_readings.h"
 #include "far/outline_fit.h"
+#include "geometry/ground_normal.h"
 #include "uav_landing/image/rectification.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/parameters/runway_parameters.h"
@@ -12,8 +14,8 @@ namespace uav_landing {
 
 /// The ground as it is known without the runway; see SeenGround.
 struct KnownGround {
-  GroundNormal normal;  ///< without what the runway slopes against it
-  GroundPlane plane;    ///< by stereo, or not valid
+  std::optional<GroundNormal> normal;  ///< without what the runway slopes against it
+  GroundPlane plane;                   ///< by stereo, or not valid
 };
 
 /// A runway's outline in one picture, with the pose that belongs to it.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "geometry/plane_vector.h"
 
 namespace uav_landing {
 
@@ -12,7 +12,7 @@ struct PlaneLimits {
   double tolerance = 1.0;  ///< pixels of disparity in the consensus step
 };
 
-/// True when the plane g (1/m) lies below the camera, with pitch and roll within the limits.
-bool isPlausibleGround(const Eigen::Vector3d& g, const PlaneLimits& limits);
+/// True when the plane lies below the camera, with pitch and roll within the limits.
+bool isPlausibleGround(const PlaneVector& g, const PlaneLimits& limits);
 
 }  // namespace uav_landing

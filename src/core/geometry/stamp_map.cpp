@@ -17,7 +17,8 @@ Eigen::Vector3d turned(const Eigen::Vector3d& a, const Eigen::Vector3d& x) {
 
 }  // namespace
 
-Eigen::Vector3d planeRate(const Eigen::Vector3d& g, const RowMotion& motion) {
+Eigen::Vector3d planeRate(const PlaneVector& plane, const RowMotion& motion) {
+  const Eigen::Vector3d& g = plane;
   return motion.w.cross(g) + g * g.normalized().dot(motion.v);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/row_times.h"
 
@@ -14,8 +15,8 @@ struct RowMotion {
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< 1/s
 };
 
-/// Rate of the plane vector g (1/m), 1/m/s.
-Eigen::Vector3d planeRate(const Eigen::Vector3d& g, const RowMotion& motion);
+/// Rate of a plane vector, 1/m/s.
+Eigen::Vector3d planeRate(const PlaneVector& plane, const RowMotion& motion);
 
 /// Maps a pixel of an image with row times to its place if all rows had been exposed at the stamp, and back.
 /// Points are on the ground, or at an inverse depth (times the height) of their own. Pixels above the horizon

@@ -11,8 +11,8 @@ namespace {
 double angleDifference(double a, double b) { return std::remainder(a - b, 2 * M_PI); }
 
 /// First-order variance of yawOf(), by central differences in both directions.
-double yawVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
-                   const Eigen::Vector3d& direction, const Eigen::Matrix3d& direction_covariance) {
+double yawVariance(const GroundNormal& ground, const GroundDirection& landing) {
+  const Eigen::Vector3d &normal = ground.vector(), &direction = landing.vector();
   constexpr double kStep = 1e-5;
   Eigen::RowVector3d by_normal, by_direction;
   for (int i = 0; i < 3; ++i) {
@@ -24,23 +24,22 @@ double yawVariance(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_
   }
   by_normal /= 2 * kStep;
   by_direction /= 2 * kStep;
-  return (by_normal * normal_covariance * by_normal.transpose()).value() +
-         (by_direction * direction_covariance * by_direction.transpose()).value();
+  return (by_normal * ground.covariance() * by_normal.transpose()).value() +
+         (by_direction * landing.covariance() * by_direction.transpose()).value();
 }
 
 }  // namespace
 
-void reportAttitude(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
-                    const Eigen::Vector3d& landing_direction, const Eigen::Matrix3d& direction_covariance,
-                    LandingResult& result) {
-  if (!normal.allFinite()) return;
-  result.pitch = pitchOf(normal);
-  result.pitch_variance = pitchVariance(normal, normal_covariance);
-  result.roll = rollOf(normal);
-  result.roll_variance = rollVariance(normal, normal_covariance);
-  if (!landing_direction.allFinite()) return;
-  result.yaw = yawOf(normal, landing_direction);
-  result.yaw_variance = yawVariance(normal, normal_covariance, landing_direction, direction_covariance);
+void reportAttitude(const std::optional<GroundNormal>& normal,
+                    const std::optional<GroundDirection>& landing_direction, LandingResult& result) {
+  if (!normal) return;
+  result.pitch = pitchOf(normal->vector());
+  result.pitch_variance = pitchVariance(normal->vector(), normal->covariance());
+  result.roll = rollOf(normal->vector());
+  result.roll_variance = rollVariance(normal->vector(), normal->covariance());
+  if (!landing_direction) return;
+  result.yaw = yawOf(normal->vector(), landing_direction->vector());
+  result.yaw_variance = yawVariance(*normal, *landing_direction);
 }
 
 }  // namespace uav_landing

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <optional>
+
+#include "geometry/ground_normal.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {
 
-/// Fills pitch, roll, yaw and their variances. normal: of the ground, camera frame, covariance in rad^2.
-/// landing_direction: of the runway, camera frame, covariance in rad^2; NaN leaves the yaw unknown.
-void reportAttitude(const Eigen::Vector3d& normal, const Eigen::Matrix3d& normal_covariance,
-                    const Eigen::Vector3d& landing_direction, const Eigen::Matrix3d& direction_covariance,
-                    LandingResult& result);
+/// Fills pitch, roll, yaw and their variances, as far as normal and direction of the runway are known. Both
+/// are in the camera frame.
+void reportAttitude(const std::optional<GroundNormal>& normal,
+                    const std::optional<GroundDirection>& landing_direction, LandingResult& result);
 
 }  // namespace uav_landing

@@ -150,7 +150,8 @@ void AttitudeFilter::reset() {
 AttitudeFilter::Estimate AttitudeFilter::update(double stamp, const GroundNormal& seen,
                                                 const ApproachAngleResult::Motion& step,
                                                 const Eigen::Matrix3d& common, double fresh) {
-  const auto& [normal, covariance] = seen;
+  const Eigen::Vector3d& normal = seen.vector();
+  const Eigen::Matrix3d& covariance = seen.covariance();
   Prediction predicted = predict(stamp, step);
   const Eigen::Matrix3d common_root = rootOf(common), of_pair = fresh * covariance;
   if (predicted == Prediction::kNone) return start(normal, covariance, common_root, of_pair);

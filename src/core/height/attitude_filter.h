@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "estimation/limits.h"
+#include "geometry/ground_normal.h"
 #include "uav_landing/results/stage_results.h"
 
 namespace uav_landing {

@@ -153,7 +153,7 @@ void GroundMemory::wait() {
 }
 
 void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                        const GroundPlane& plane, const Eigen::Vector3d& measured) {
+                        const GroundPlane& plane, const PlaneVector& measured) {
   const Eigen::Vector3d n = plane.normal();
   const double h = plane.height();
   const Eigen::Vector3d along = path_ - n.dot(path_) * n;
@@ -167,7 +167,7 @@ void GroundMemory::look(const StereoRig& rig, const std::vector<StereoDepthResul
   double nearest = INFINITY;
   for (const StereoDepthResult::Point& point : points) {
     const Eigen::Vector3d ray = rig.ray(point.u, point.v);
-    const double expected = rig.fb() * measured.dot(ray), inverse = plane.g.dot(ray);
+    const double expected = measured.disparity(rig, point.u, point.v), inverse = plane.g.dot(ray);
     if (!(expected > 0 && inverse > 0 && point.disparity > 0)) continue;
     const double ratio = expected / point.disparity;  // depth of the point over that of the plane
     if (std::abs(ratio - 1) > kMostOff) continue;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"
@@ -36,7 +37,7 @@ class GroundMemory {
   /// together. plane: the ground's plane, freed of all known errors. measured: the plane of the points before
   /// that.
   void look(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-            const GroundPlane& plane, const Eigen::Vector3d& measured);
+            const GroundPlane& plane, const PlaneVector& measured);
 
   struct Below {
     double height = 0, variance = 0;  ///< m, m^2

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "estimation/aircraft.h"
 #include "geometry/bias_variance.h"
+#include "geometry/ground_normal.h"
 
 namespace uav_landing {
 namespace {
@@ -51,8 +52,7 @@ bool isShare(const Eigen::Matrix3d& share, const Eigen::Matrix3d& whole) {
 
 /// Whether it is a unit vector with its covariance.
 bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
-  constexpr double kLength = 1e-3;
-  return within(direction.norm() - 1, kLength) && isCovariance<3>(covariance) &&
+  return within(direction.norm() - 1, UnitVectorEstimate::kRounding) && isCovariance<3>(covariance) &&
          covariance.trace() >= kLeastRelative * kLeastRelative;
 }
 

@@ -20,12 +20,12 @@ double meanInverseDepth(const StereoRig& rig, const StereoDepthResult& stereo) {
 
 }  // namespace
 
-Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g, double mean_inverse_depth,
+Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const PlaneVector& plane, double mean_inverse_depth,
                                  const CameraRates& rates, double skew) {
   const Eigen::Vector3d& v = rates.velocity;
   const Eigen::Vector3d& w = rates.angular_velocity;
   const double q = mean_inverse_depth, b = rig.baseline;
-  return skew / b * ((v.x() + b * q * v.z()) * g + Eigen::Vector3d(-v.z() * q, -w.z(), w.y()));
+  return skew / b * ((v.x() + b * q * v.z()) * plane.vector() + Eigen::Vector3d(-v.z() * q, -w.z(), w.y()));
 }
 
 GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
@@ -35,7 +35,7 @@ GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
   const double q = meanInverseDepth(rig, stereo);
   const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity) {
     const Eigen::Vector3d error =
-        planeErrorOfSkew(rig, plane.g, q, {velocity, angular_velocity}, stereo.skew);
+        planeErrorOfSkew(rig, PlaneVector(plane.g), q, {velocity, angular_velocity}, stereo.skew);
     plane.covariance += error * error.transpose();
   };
   if (!step.failure && step.duration > 0) {

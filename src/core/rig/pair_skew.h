@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -15,7 +16,7 @@ struct CameraRates {
 /// movement in between looks like disparity. To first order,
 ///   b dg = skew ((v_x + b q v_z) g + (-v_z q, -w_z, w_y)),
 /// where q is the mean inverse depth of the points, 1/m.
-Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const Eigen::Vector3d& g, double mean_inverse_depth,
+Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const PlaneVector& plane, double mean_inverse_depth,
                                  const CameraRates& rates, double skew);
 
 /// The plane of a pair, with the effect of its skew added to the covariance. step: the camera's motion.

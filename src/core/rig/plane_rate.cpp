@@ -44,7 +44,7 @@ Eigen::Vector3d carryPlane(const RowMotion& motion, const ReadoutEstimate& reado
                            StereoDepthResult& stereo) {
   Eigen::Vector3d by_time = Eigen::Vector3d::Zero();
   if (!hasRowTimes(stereo)) return by_time;
-  const Eigen::Vector3d rate = planeRate(stereo.plane.g, motion);
+  const Eigen::Vector3d rate = planeRate(PlaneVector(stereo.plane.g), motion);
   if (readout.known()) by_time = takeReadout(rate, readout, stereo);
   carryTo(rate, stereo);
   return by_time;

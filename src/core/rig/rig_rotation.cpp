@@ -8,16 +8,16 @@
 namespace uav_landing {
 namespace {
 
-double residualOf(const StereoRig& rig, const StereoDepthResult::Point& point, const Eigen::Vector3d& g) {
-  return (point.disparity - rig.fb() * g.dot(rig.ray(point.u, point.v))) / point.disparity_stddev;
+double residualOf(const StereoRig& rig, const StereoDepthResult::Point& point, const PlaneVector& plane) {
+  return (point.disparity - plane.disparity(rig, point.u, point.v)) / point.disparity_stddev;
 }
 
 // Robust size of the residuals, as a multiple of the claimed standard deviations; at least 1.
 double residualScale(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                     const Eigen::Vector3d& g) {
+                     const PlaneVector& plane) {
   std::vector<double> sizes;
   for (const StereoDepthResult::Point& point : points)
-    if (point.on_plane) sizes.push_back(std::abs(residualOf(rig, point, g)));
+    if (point.on_plane) sizes.push_back(std::abs(residualOf(rig, point, plane)));
   if (sizes.empty()) return 1;
   return std::max(1.0, robustStddev(sizes));
 }
@@ -45,12 +45,12 @@ Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev) {
 }
 
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                                const Eigen::Vector3d& g) {
-  const double scale = residualScale(rig, points, g);
+                                const PlaneVector& plane) {
+  const double scale = residualScale(rig, points, plane);
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), right = Eigen::Matrix3d::Zero();
   for (const StereoDepthResult::Point& point : points) {
     if (!point.on_plane) continue;
-    const double root = tukeyRoot(residualOf(rig, point, g) / (TukeyEnd::kDisparity * scale));
+    const double root = tukeyRoot(residualOf(rig, point, plane) / (TukeyEnd::kDisparity * scale));
     if (root == 0) continue;
     const double weight = std::pow(root / point.disparity_stddev, 2);
     const Eigen::Vector3d by_plane = rig.fb() * rig.ray(point.u, point.v);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -38,6 +39,6 @@ Eigen::Vector3d lensVariances(const StereoRig& rig, double row_bias_stddev);
 /// points on the plane are weighted as in the fit (plane_fit.h). Returns zero when the points do not
 /// determine a plane.
 Eigen::Matrix3d planeByRotation(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                                const Eigen::Vector3d& g);
+                                const PlaneVector& plane);
 
 }  // namespace uav_landing

@@ -113,7 +113,7 @@ double RigRotationFilter::learnSlopeVariance(int slope, double variance) {
 // Innovation of the measurement 0 = p.g - s / h, with the errors of the state, the plane and p.
 RigRotationFilter::Innovation RigRotationFilter::innovationOf(const Sloping& sloping, double noise,
                                                               const Joint& joint) const {
-  const Eigen::Vector3d& p = sloping.ground.direction;
+  const Eigen::Vector3d& p = sloping.ground.vector();
   const double h = joint.plane.height();
   Innovation innovation;
   innovation.value = state_[sloping.slope] / h - p.dot(joint.plane.g);
@@ -130,7 +130,7 @@ void RigRotationFilter::fuse(const Sloping& sloping, double noise, const Innovat
                              Joint& joint) const {
   const Eigen::Vector3d& gain = innovation.gain;
   const double h = joint.plane.height();
-  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * sloping.ground.direction.transpose();
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * sloping.ground.vector().transpose();
   const Eigen::Matrix3d by_noise = noise / (h * h) * gain * gain.transpose();
   joint.plane.g += gain * innovation.value;
   joint.plane.covariance = kept * joint.plane.covariance * kept.transpose() + by_noise;
@@ -143,10 +143,10 @@ void RigRotationFilter::fuse(const Sloping& sloping, double noise, const Innovat
 
 std::vector<RigRotationFilter::Sloping> RigRotationFilter::directionsOf(const Others& others) {
   std::vector<Sloping> directions;
-  if (others.vanishing.known()) directions.push_back({others.vanishing, kVanishing});
-  const auto addNormal = [&](const GroundNormal& ground, int slope) {
-    if (!ground.known()) return;
-    for (const GroundDirection& direction : levelDirections(ground))
+  if (others.vanishing) directions.push_back({*others.vanishing, kVanishing});
+  const auto addNormal = [&](const std::optional<GroundNormal>& ground, int slope) {
+    if (!ground) return;
+    for (const GroundDirection& direction : levelDirections(*ground))
       directions.push_back({direction, slope++});
   };
   addNormal(others.level, kLevel);
@@ -204,7 +204,7 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
   of_last_pair_.plane_covariance = plane.covariance;
   for (const Sloping& sloping : directionsOf(others)) {
     const Eigen::Vector3d n = joint.plane.normal();
-    const double total = n.dot(sloping.ground.covariance * n);
+    const double total = n.dot(sloping.ground.covariance() * n);
     if (!(total > 0)) continue;
     const double noise = noiseOf(sloping, total, joint);
     const Innovation innovation = innovationOf(sloping, noise, joint);
@@ -212,7 +212,7 @@ RigRotationFilter::Corrected RigRotationFilter::correct(const GroundPlane& plane
     if (!(ratio >= 0)) continue;
     if (ratio <= gate) fuse(sloping, noise, innovation, joint);
     const double lasting = sloping.slope == kVanishing ? kLinesTime / kCorrelationTime : 1.0;
-    of_last_pair_.add(h * sloping.ground.direction.transpose(), plane, A, sloping.slope, noise,
+    of_last_pair_.add(h * sloping.ground.vector().transpose(), plane, A, sloping.slope, noise,
                       std::sqrt(std::max(1.0, ratio / gate) * lasting));
   }
   Corrected corrected;

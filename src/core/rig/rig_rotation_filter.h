@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "estimation/innovation_scatter.h"
+#include "geometry/ground_normal.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/results/stage_results.h"
@@ -44,12 +45,12 @@ class RigRotationFilter {
   void setPrior(double bias_stddev, double row_bias_stddev);
   void updateVertical(const RigRotation& measured);
 
-  /// Other sources for the ground's normal besides the stereo plane. Unknown numbers are NaN.
+  /// Other sources for the ground's normal besides the stereo plane, as far as they are known.
   struct Others {
-    GroundDirection vanishing;
+    std::optional<GroundDirection> vanishing;
     /// The normal of level ground by an attitude sensor. Its covariance contains the ground's slope.
-    GroundNormal level;
-    GroundNormal moving;  ///< the normal that fits the motion in the image
+    std::optional<GroundNormal> level;
+    std::optional<GroundNormal> moving;  ///< the normal that fits the motion in the image
   };
   /// The result of correct().
   struct Corrected {

@@ -151,9 +151,9 @@ struct ApproachAngleStage::Implementation {
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (has_plane) ground.plane = stereo.plane;
     if (has_plane)
-      ground.normal = {stereo.plane.normal(), stereo.plane.normalCovariance()};
-    else if (!result.imu.failure && result.imu.normal.allFinite())
-      ground.normal = {result.imu.normal, result.imu.normal_covariance};
+      ground.normal = GroundNormal::of(stereo.plane);
+    else if (!result.imu.failure)
+      ground.normal = GroundNormal::of(result.imu.normal, result.imu.normal_covariance);
     result.sight = sighting.process(stamp, left, ground, waits || (has_plane && tracker.needsSearch()));
   }
 
@@ -241,8 +241,8 @@ struct ApproachAngleStage::Implementation {
     result.vanishing_covariance = direction.combined->covariance;
     const GroundNormal level =
         normalFromVanishingPoint(*direction.combined, 0.0, parameters.level_roll_stddev_deg * kDegree);
-    result.n_vp = level.n;
-    result.n_vp_covariance = level.covariance;
+    result.n_vp = level.vector();
+    result.n_vp_covariance = level.covariance();
     return direction;
   }
 
@@ -250,10 +250,8 @@ struct ApproachAngleStage::Implementation {
   bool findNormal(const GroundPlane* plane, const DoubtByReadout& of_plane, DoubtByReadout& normal,
                   ApproachAngleResult& result) const {
     constexpr double kApart = 1e-6;  // s, difference of the readout times for a numerical derivative
-    NormalSources sources{plane,
-                          {result.vanishing_direction, result.vanishing_covariance},
-                          {result.n_vp, result.n_vp_covariance},
-                          result.imu};
+    NormalSources sources{plane, GroundDirection::of(result.vanishing_direction, result.vanishing_covariance),
+                          GroundNormal::of(result.n_vp, result.n_vp_covariance), result.imu};
     GroundPlane carried;
     const bool doubted = plane != nullptr && !of_plane.by_time.isZero(0);
     if (doubted) {
@@ -263,13 +261,13 @@ struct ApproachAngleStage::Implementation {
     }
     const std::optional<AngleNormal> found = findAngleNormal(sources, parameters);
     if (!found) return false;
-    result.n = found->normal.n;
-    result.n_covariance = normal.covariance = found->normal.covariance;
+    result.n = found->normal.vector();
+    result.n_covariance = normal.covariance = found->normal.covariance();
     if (found->imu_failure) result.imu.failure = found->imu_failure;
     if (!doubted) return true;
     carried.g += kApart * of_plane.by_time;
     if (const std::optional<AngleNormal> later = findAngleNormal(sources, parameters))
-      normal.by_time = (later->normal.n - result.n) / kApart;
+      normal.by_time = (later->normal.vector() - result.n) / kApart;
     result.n_covariance += result.readout.variance * normal.by_time * normal.by_time.transpose();
     return true;
   }

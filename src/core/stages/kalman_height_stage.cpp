@@ -177,12 +177,12 @@ struct KalmanHeightStage::Implementation {
 
   void reportDirections(const PairInput& in, const Ground& ground, const PairVerdict& pair,
                         LandingResult& result) {
-    const GroundNormal normal = ground.normalOr(in.normal());
     result.other_runway_probability = in.approach.other_runway_probability;
     result.yaw_failure = yawFailure(in, pair);
-    Eigen::Vector3d runway = in.approach.vanishing_direction;
-    if (result.yaw_failure) runway.setConstant(kUnknown);
-    reportAttitude(normal.n, normal.covariance, runway, in.approach.vanishing_covariance, result);
+    std::optional<GroundDirection> runway;
+    if (!result.yaw_failure)
+      runway = GroundDirection::of(in.approach.vanishing_direction, in.approach.vanishing_covariance);
+    reportAttitude(ground.normalOr(in.normal()), runway, result);
   }
 
   // A step that contradicts the velocity before may belong to another period of a pattern, or to the other

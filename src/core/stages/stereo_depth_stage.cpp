@@ -172,7 +172,7 @@ struct StereoDepthStage::Implementation {
   // Matches with the plane as it is expected to move on, unless the pair shows that it is elsewhere.
   std::optional<MatchedCorners> matchSteadily(const cv::Mat& left_image, const cv::Mat& right_image,
                                               StereoDepthResult& result) {
-    const std::optional<Eigen::Vector3d> steady = tracker.steadyPlane(timings);
+    const std::optional<PlaneVector> steady = tracker.steadyPlane(timings);
     if (!steady) return std::nullopt;
     extend(left_image, right_image, tracker.groundRows(*steady));
     StereoDepthResult attempt = result;
@@ -186,13 +186,13 @@ struct StereoDepthStage::Implementation {
   MatchedCorners searchAndMatch(const cv::Mat& left_image, const cv::Mat& right_image,
                                 StereoDepthResult& result) {
     const bool known = tracker.hasLast();
-    const std::optional<Eigen::Vector3d> followed = tracker.follow(fine, coarse, left.factor, timings);
+    const std::optional<PlaneVector> followed = tracker.follow(fine, coarse, left.factor, timings);
     if (followed) {
       search.stop();
     } else {
       extend(left_image, right_image, FirstRows());
     }
-    const Expected<Eigen::Vector3d> start = followed ? *followed : searchedPlane(known, result);
+    const Expected<PlaneVector> start = followed ? *followed : searchedPlane(known, result);
     if (!start) {
       result.failure = start.error();
       return {};
@@ -201,14 +201,14 @@ struct StereoDepthStage::Implementation {
     return matchedCorners(*start, result);
   }
 
-  Expected<Eigen::Vector3d> searchedPlane(bool followed, StereoDepthResult& result) {
+  Expected<PlaneVector> searchedPlane(bool followed, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_search");
     result.from_search = true;
     return search.find(coarse, tracker, followed);
   }
 
   // Matches the corners and fits their plane. If that fails, the result says why.
-  MatchedCorners matchedCorners(const Eigen::Vector3d& start, StereoDepthResult& result) {
+  MatchedCorners matchedCorners(const PlaneVector& start, StereoDepthResult& result) {
     MatchedCorners matched;
     matched.corners = tracker.cornersOn(fine, start, timings);
     result.corners = static_cast<int>(matched.corners.size());
@@ -223,7 +223,7 @@ struct StereoDepthStage::Implementation {
     return matched;
   }
 
-  void fit(const Eigen::Vector3d& expected, MatchedCorners& corners, StereoDepthResult& result) {
+  void fit(const PlaneVector& expected, MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "plane_fit");
     const std::vector<DisparitySample>& samples = corners.matches.samples;
     for (const DisparitySample& sample : samples)
@@ -248,12 +248,12 @@ struct StereoDepthStage::Implementation {
 
   void measureRows(const MatchedCorners& corners, StereoDepthResult& result) {
     ScopedTimer timer(timings, "vertical_disparities");
-    const RowAlignment::Measured measured =
-        rows.measure(fine, corners.corners, corners.matches, result.plane.g);
+    const PlaneVector g(result.plane.g);
+    const RowAlignment::Measured measured = rows.measure(fine, corners.corners, corners.matches, g);
     result.vertical_rotation = measured.rotation;
     result.baseline_direction = measured.baseline;
     result.row_agreement = measured.agreement;
-    result.row_covariance = rowLeak(fine.rig, rows.residual(fine.rig), result.plane.g);
+    result.row_covariance = rowLeak(fine.rig, rows.residual(fine.rig), g);
     result.plane.covariance += result.row_covariance;
   }
 
@@ -269,7 +269,8 @@ struct StereoDepthStage::Implementation {
   // stays, and the function returns false.
   bool refineDirectly(const cv::Mat& left_image, const cv::Mat& right_image, StereoDepthResult& result) {
     ScopedTimer timer(timings, "direct_refinement");
-    RefinementStart start{result.plane.g, rows.residual(fine.rig), rows.levelledBy(), fine.drift};
+    RefinementStart start{PlaneVector(result.plane.g), rows.residual(fine.rig), rows.levelledBy(),
+                          fine.drift};
     start.brief = result.from_search && !parameters.search_at_once;
     const Expected<PlaneFit> fit = direct->refine(left_image, withLevelRows(right_image), start, limits,
                                                   parameters.disparity_bias_stddev);

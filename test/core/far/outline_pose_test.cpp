@@ -116,7 +116,7 @@ TEST(OutlinePose, ErrorsAreAsLargeAsClaimed) {
 TEST(OutlinePose, WithoutAChartThePlaneOfStereoGivesTheScale) {
   const Camera camera{-800, 5, 50, 0, -3 * kDegree, 0};
   PoseKnowledge known;
-  known.plane.g = normalOf(camera, 0).n / camera.height;
+  known.plane.g = normalOf(camera, 0).vector() / camera.height;
   known.plane.covariance = std::pow(1e-3 / camera.height, 2) * Eigen::Matrix3d::Identity();
   known.normal = normalOf(camera, 0.2 * kDegree);
   const auto found = fitPose(seenBy(camera, 30, 1500, 0.05), known, rig());
@@ -139,7 +139,7 @@ TEST(OutlinePose, HowFarTheThresholdLiesOffThePlaneIsToldInOnePerCentOfTheDistan
   ASSERT_TRUE(found);
   for (const double below : {0.0, 16.0, -12.0}) {
     GroundPlane plane;
-    plane.g = normalOf(camera, 0).n / (camera.height + below);
+    plane.g = normalOf(camera, 0).vector() / (camera.height + below);
     plane.covariance = std::pow(1e-7, 2) * Eigen::Matrix3d::Identity();
     EXPECT_NEAR(offPlane(*found, plane), below / 8, 0.05) << below;
     plane.covariance = std::pow(6.0 / 800 / (camera.height + below), 2) * Eigen::Matrix3d::Identity();

@@ -96,7 +96,7 @@ TEST(PlaneRate, IsThatOfThePlanesThatTheCameraHas) {
     return pose.down() / pose.height();
   };
   const Eigen::Vector3d truth = (plane(kStep) - plane(-kStep)) / (2 * kStep);
-  EXPECT_LT((planeRate(plane(0), test::motionAt(0)) - truth).norm(), 1e-4 * truth.norm());
+  EXPECT_LT((planeRate(PlaneVector(plane(0)), test::motionAt(0)) - truth).norm(), 1e-4 * truth.norm());
 }
 
 }  // namespace

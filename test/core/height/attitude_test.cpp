@@ -39,8 +39,8 @@ Eigen::Matrix3d covarianceOf(const Eigen::Vector3d& unit, const Eigen::Vector2d&
 LandingResult report(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction,
                      const Stddevs& stddevs) {
   LandingResult result;
-  reportAttitude(normal, covarianceOf(normal, stddevs.normal), direction,
-                 covarianceOf(direction, stddevs.direction), result);
+  reportAttitude(GroundNormal(normal, covarianceOf(normal, stddevs.normal)),
+                 GroundDirection(direction, covarianceOf(direction, stddevs.direction)), result);
   return result;
 }
 
@@ -86,14 +86,14 @@ INSTANTIATE_TEST_SUITE_P(OfEachSourceAloneAndOfAll, AttitudeVariance,
                                          Stddevs{{0.002, 0.004}, {0.001, 0.003}}));
 
 TEST(ReportAttitude, WithoutARunwayThereIsNoYawAndWithoutANormalNothing) {
-  const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kUnknown);
-  const LandingResult without_runway = report(kNormal, unknown, {{1e-3, 1e-3}, {0, 0}});
+  LandingResult without_runway;
+  reportAttitude(GroundNormal(kNormal, covarianceOf(kNormal, {1e-3, 1e-3})), std::nullopt, without_runway);
   EXPECT_NEAR(without_runway.pitch, kPitch, 1e-12);
   EXPECT_TRUE(std::isfinite(without_runway.roll_variance));
   EXPECT_TRUE(std::isnan(without_runway.yaw));
   EXPECT_TRUE(std::isnan(without_runway.yaw_variance));
   LandingResult nothing;
-  reportAttitude(unknown, Eigen::Matrix3d::Zero(), runway(), Eigen::Matrix3d::Zero(), nothing);
+  reportAttitude(std::nullopt, GroundDirection(runway(), Eigen::Matrix3d::Zero()), nothing);
   EXPECT_TRUE(std::isnan(nothing.pitch));
   EXPECT_TRUE(std::isnan(nothing.yaw));
 }

@@ -53,7 +53,7 @@ void flyMemory(const Surface& surface, See&& see, const std::vector<double>& wit
     if (x > 0 && known) memory.move(Eigen::Matrix3d::Identity(), forward + down / 20, kPeriod);
     if (x > 0 && !known) memory.coast(Eigen::Matrix3d::Identity(), 0.1 * kDegree, kPeriod);
     GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
-    memory.look(rig, look(rig, x, z, surface), plane, plane.g);
+    memory.look(rig, look(rig, x, z, surface), plane, PlaneVector(plane.g));
     see(x, z, memory);
   }
 }
@@ -126,7 +126,7 @@ Errors flyLevel(double step) {
       point.disparity_stddev = kNoise;
     }
     memory.move(Eigen::Matrix3d::Identity(), step * forward, kPeriod);
-    memory.look(rig, points, plane, plane.g);
+    memory.look(rig, points, plane, PlaneVector(plane.g));
     const std::optional<GroundMemory::Below> below = memory.below(down);
     if (x < 30 || !below) continue;
     errors.mean += below->height - 12;
@@ -160,7 +160,7 @@ TEST(GroundMemory, KeepsThePathWhereASingleMotionIsWrong) {
   GroundMemory memory;
   for (int x = 0; x < 40; ++x) {
     memory.move(Eigen::Matrix3d::Identity(), forward, kPeriod);
-    memory.look(rig, points, plane, plane.g);
+    memory.look(rig, points, plane, PlaneVector(plane.g));
   }
   ASSERT_TRUE(memory.below(down));
   // Noise makes one picture seem to go backwards, by more than the distance between patches, 2 m.
@@ -206,7 +206,7 @@ TEST(GroundMemory, ForgetsWhereThereIsNoMotionToCarryItOnBy) {
   GroundMemory memory;
   const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
   const auto points = look(rig, 0, 12, [](double) { return 0; });
-  for (int i = 0; i < 50; ++i) memory.look(rig, points, plane, plane.g);
+  for (int i = 0; i < 50; ++i) memory.look(rig, points, plane, PlaneVector(plane.g));
   EXPECT_FALSE(memory.below(down)) << "nobody knows where the path goes";
 }
 
@@ -240,7 +240,7 @@ TEST(GroundMemory, CarriesOnOverMissingPairsByTheTimeThatPassed) {
   double z = 12;
   const auto see = [&](double x) {
     const GroundPlane plane{down / z, 1e-10 * Eigen::Matrix3d::Identity()};
-    memory.look(rig, look(rig, x, z, slope), plane, plane.g);
+    memory.look(rig, look(rig, x, z, slope), plane, PlaneVector(plane.g));
     return memory.below(down);
   };
   see(0);
@@ -284,7 +284,7 @@ class DoubtedTurn : public testing::Test {
   }
   void see() {
     const GroundPlane plane{down_ / kHeight, 1e-10 * Eigen::Matrix3d::Identity()};
-    memory_.look(rig_, look(rig_, x_, kHeight, [](double) { return 0; }), plane, plane.g);
+    memory_.look(rig_, look(rig_, x_, kHeight, [](double) { return 0; }), plane, PlaneVector(plane.g));
   }
 
   static constexpr double kHeight = 12;
@@ -371,7 +371,7 @@ TEST(GroundMemory, AStepThatTheNextOneHasInItIsNoStepOfItsOwn) {
     }
     if (x > 0) memory.move(Eigen::Matrix3d::Identity(), 2 * forward, 2 * kPeriod);
     const GroundPlane plane{down / 12, 1e-10 * Eigen::Matrix3d::Identity()};
-    memory.look(rig, look(rig, x, 12, step), plane, plane.g);
+    memory.look(rig, look(rig, x, 12, step), plane, PlaneVector(plane.g));
     if (const auto below = memory.below(down)) {
       EXPECT_NEAR(below->height, 11, 0.1) << x;
       ++known;

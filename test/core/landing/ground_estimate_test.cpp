@@ -104,10 +104,11 @@ TEST(GroundEstimate, ThePlaneIsTurnedByTheMotionsOwnNormalAsWeightsSay) {
     for (const bool fuse : {false, true}) {
       KalmanHeightParameters parameters = withRigWatch(watch);
       parameters.fuse_motion_normal = fuse;
-      const GroundNormal normal = firstGround(stereoAt(0, 10, kPitch, 0, 0.02), approach, parameters).normal;
-      EXPECT_NEAR(pitchOf(normal.n), kPitch + (fuse ? share * kOff : 0), 0.02 * kOff) << watch << fuse;
-      EXPECT_NEAR(rollOf(normal.n), fuse ? -share * kOff : 0, 0.02 * kOff) << watch << fuse;
-      EXPECT_NEAR(std::sqrt(pitchVariance(normal.n, normal.covariance)),
+      const GroundNormal normal =
+          firstGround(stereoAt(0, 10, kPitch, 0, 0.02), approach, parameters).normal.value();
+      EXPECT_NEAR(pitchOf(normal.vector()), kPitch + (fuse ? share * kOff : 0), 0.02 * kOff) << watch << fuse;
+      EXPECT_NEAR(rollOf(normal.vector()), fuse ? -share * kOff : 0, 0.02 * kOff) << watch << fuse;
+      EXPECT_NEAR(std::sqrt(pitchVariance(normal.vector(), normal.covariance())),
                   by_stereo * (fuse ? std::sqrt(1 - share) : 1), 0.05 * by_stereo)
           << watch << fuse;
     }
@@ -197,7 +198,7 @@ TEST(GroundEstimate, WithoutAveragingEveryPlaneStandsForItself) {
   const Ground ground = flight.fly(-0.1, 0.05 + 4 * kDegree);
   EXPECT_FALSE(ground.tilted);
   EXPECT_TRUE(std::isnan(ground.tilt_ratio));
-  EXPECT_NEAR(rollOf(ground.normal.n), 0.05 + 4 * kDegree, 1e-9);
+  EXPECT_NEAR(rollOf(ground.normal->vector()), 0.05 + 4 * kDegree, 1e-9);
 }
 
 // The pairs of a second see the same texture.
@@ -206,8 +207,8 @@ TEST(GroundEstimate, TheErrorsOfThePitchAverageOutInPart) {
   flight.approach.step.covariance *= 1e-4;
   std::vector<double> variances;
   for (int i = 0; i < 40; ++i) {
-    const GroundNormal normal = flight.fly().normal;
-    variances.push_back(pitchVariance(normal.n, normal.covariance));
+    const GroundNormal normal = flight.fly().normal.value();
+    variances.push_back(pitchVariance(normal.vector(), normal.covariance()));
   }
   EXPECT_LT(variances.back(), 0.6 * variances.front());
   EXPECT_GT(variances.back(), variances.front() / 3);
@@ -222,10 +223,11 @@ TEST(GroundEstimate, APictureOnceMoreCountsOnceForTheAttitude) {
     StereoDepthResult stereo = stereoAt(stamp, 10, -0.1 + kNod * i + error);
     ApproachAngleResult approach = withoutTurning(stamp);
     approach.step.rotation = {-kNod, 0, 0};
-    const GroundNormal expected = once.propose(pairOf(stereo, approach), false, true).normal;
-    const GroundNormal shown = twice.propose(pairOf(stereo, approach), false, true).normal;
-    EXPECT_NEAR((shown.n - expected.n).norm(), 0, 1e-9) << i;
-    EXPECT_NEAR(shown.covariance.trace(), expected.covariance.trace(), 1e-6 * expected.covariance.trace());
+    const GroundNormal expected = once.propose(pairOf(stereo, approach), false, true).normal.value();
+    const GroundNormal shown = twice.propose(pairOf(stereo, approach), false, true).normal.value();
+    EXPECT_NEAR((shown.vector() - expected.vector()).norm(), 0, 1e-9) << i;
+    EXPECT_NEAR(shown.covariance().trace(), expected.covariance().trace(),
+                1e-6 * expected.covariance().trace());
 
     stereo.stamp = stamp + 0.5 * kStep;
     stereo.left_repeated = true;
@@ -250,7 +252,8 @@ StereoDepthResult rolledRig(double roll) {
   stereo.plane.covariance(2, 2) += std::pow(0.1 / usualRig().fb(), 2);
   stereo.vertical_rotation.w = {0, 0, roll};
   stereo.vertical_rotation.covariance = std::pow(0.003 * kDegree, 2) * Eigen::Matrix3d::Identity();
-  stereo.plane.g += planeByRotation(usualRig(), stereo.points, stereo.plane.g) * stereo.vertical_rotation.w;
+  stereo.plane.g +=
+      planeByRotation(usualRig(), stereo.points, PlaneVector(stereo.plane.g)) * stereo.vertical_rotation.w;
   return stereo;
 }
 

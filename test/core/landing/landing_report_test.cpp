@@ -196,7 +196,7 @@ TEST(LandingReport, TheAngleIsTheWindowsAndTheRawOneTheSteps) {
 TEST(LandingReport, TheAngleIsAsUncertainAsItsNormalIsDoubted) {
   Pair pair;
   pair.ground.tilted = true;
-  pair.ground.normal.n = normalFromPitchRoll(1 * kDegree, 0);
+  pair.ground.normal = {normalFromPitchRoll(1 * kDegree, 0), pair.ground.normal->covariance()};
   LandingResult result;
   reportAngle(pair.input(), pair.ground, PathDoubt({}), {}, result);
   EXPECT_NEAR(std::sqrt(result.raw_approach_angle_variance),

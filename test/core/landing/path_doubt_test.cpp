@@ -52,6 +52,7 @@ struct Flight {
     approach.step.normal = normalFromPitchRoll(kPitch + by_pitch, by_roll);
     approach.step.normal_covariance = across(approach.step.normal, kOwn);
   }
+  void setGroundNormal(const Eigen::Vector3d& n) { ground.normal = {n, ground.normal->covariance()}; }
   PairInput pair() const { return test::pairOf(stereo, approach); }
   double variance() const {
     const PairInput in = pair();
@@ -144,18 +145,18 @@ TEST(PathDoubt, ANormalThatRollsAboutTheFlightHardlyChangesTheAngle) {
 TEST(PathDoubt, IsTheTiltOfAPlaneThatThePairsBeforeContradict) {
   Flight flight;
   flight.ground.tilted = true;
-  flight.ground.normal.n = normalFromPitchRoll(kPitch + 3 * kDegree, 0);
+  flight.setGroundNormal(normalFromPitchRoll(kPitch + 3 * kDegree, 0));
   EXPECT_NEAR(flight.stddev(), 3 * kDegree, 0.01 * kDegree);
-  flight.ground.normal.n = normalFromPitchRoll(kPitch, 3 * kDegree);
+  flight.setGroundNormal(normalFromPitchRoll(kPitch, 3 * kDegree));
   EXPECT_NEAR(flight.stddev(), 0, 0.01 * kDegree) << "about the direction of flight";
 }
 
 // 1 sigma of the plane's normal is 0.0002 rad, and as much of the average.
 TEST(PathDoubt, APlaneThatTurnsWithinNoiseIsNotDoubtedAndOneThatTurnsFurtherIs) {
   Flight flight;
-  flight.ground.normal.n = normalFromPitchRoll(kPitch + 0.0004, 0);
+  flight.setGroundNormal(normalFromPitchRoll(kPitch + 0.0004, 0));
   EXPECT_EQ(flight.stddev(), 0);
-  flight.ground.normal.n = normalFromPitchRoll(kPitch + 0.003, 0);
+  flight.setGroundNormal(normalFromPitchRoll(kPitch + 0.003, 0));
   EXPECT_NEAR(flight.stddev(), std::sqrt(0.003 * 0.003 - 3.84 * 2 * 0.0002 * 0.0002), 1e-5);
 }
 
@@ -170,7 +171,7 @@ TEST(PathDoubt, IsTheRigsRotationThatTheAnglesNormalDoesNotKnowOf) {
 TEST(PathDoubt, CountsForMoreOnASteepPath) {
   Flight flight;
   flight.ground.tilted = true;
-  flight.ground.normal.n = normalFromPitchRoll(kPitch + 1 * kDegree, 0);
+  flight.setGroundNormal(normalFromPitchRoll(kPitch + 1 * kDegree, 0));
   const double level = flight.stddev();
   flight.approach.step.angle = 60 * kDegree;
   EXPECT_NEAR(flight.stddev(), 2 * level, 1e-6);
@@ -199,12 +200,12 @@ TEST(NormalOfAngle, IsTheMeanOfTheOneGivenAndTheMotionsOwnAsWeightsSay) {
   approach.n = normalFromPitchRoll(kPitch, 0);
   approach.n_covariance = across(approach.n, 0.002);
   ApproachAngleResult::Motion motion;
-  EXPECT_EQ(normalOfAngle(approach, motion).n, approach.n) << "the motion has none";
+  EXPECT_EQ(normalOfAngle(approach, motion)->vector(), approach.n) << "the motion has none";
   motion.normal = normalFromPitchRoll(kPitch + 0.01, 0);
   motion.normal_covariance = across(motion.normal, 0.001);
-  const GroundNormal mean = normalOfAngle(approach, motion);
-  EXPECT_NEAR(pitchOf(mean.n), kPitch + 0.8 * 0.01, 1e-5);
-  EXPECT_NEAR(std::sqrt(pitchVariance(mean.n, mean.covariance)), 0.002 / std::sqrt(5), 1e-6);
+  const GroundNormal mean = normalOfAngle(approach, motion).value();
+  EXPECT_NEAR(pitchOf(mean.vector()), kPitch + 0.8 * 0.01, 1e-5);
+  EXPECT_NEAR(std::sqrt(pitchVariance(mean.vector(), mean.covariance())), 0.002 / std::sqrt(5), 1e-6);
 }
 
 }  // namespace

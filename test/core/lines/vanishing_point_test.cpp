@@ -380,9 +380,9 @@ TEST(NormalFromVanishingPoint, HasTheRollGivenAndHoldsTheDirection) {
         point.direction = scene.direction;
         point.covariance.setZero();
         const GroundNormal normal = normalFromVanishingPoint(point, roll * kDegree, 0.1);
-        EXPECT_TRUE(normal.n.isApprox(scene.n, 1e-12));
-        EXPECT_NEAR(rollOf(normal.n), roll * kDegree, 1e-14);
-        EXPECT_NEAR(pitchOf(normal.n), pitch * kDegree, 1e-14);
+        EXPECT_TRUE(normal.vector().isApprox(scene.n, 1e-12));
+        EXPECT_NEAR(rollOf(normal.vector()), roll * kDegree, 1e-14);
+        EXPECT_NEAR(pitchOf(normal.vector()), pitch * kDegree, 1e-14);
       }
 }
 
@@ -398,10 +398,10 @@ TEST(NormalFromVanishingPoint, CovarianceIsThatOfSamples) {
     const VanishingPoint sample =
         pointAt(0.2 + 3e-3 / std::cos(0.12) * gauss(random), 0.12 + 2e-3 * gauss(random), 1, 1);
     const Eigen::Vector3d d =
-        normalFromVanishingPoint(sample, roll + roll_stddev * gauss(random), 0).n - normal.n;
+        normalFromVanishingPoint(sample, roll + roll_stddev * gauss(random), 0).vector() - normal.vector();
     spread += d * d.transpose() / kSamples;
   }
-  EXPECT_LT((normal.covariance - spread).norm() / spread.norm(), 0.05);
+  EXPECT_LT((normal.covariance() - spread).norm() / spread.norm(), 0.05);
 }
 
 TEST(VanishingConsensus, TriesAllPairsOfFewLinesAndDrawsAmongMany) {

@@ -80,7 +80,7 @@ TEST(PairSkew, PredictsHowThePlaneOfAMovedRigIsWrong) {
     const auto points = seePoints(rig, rates, skew);
     const Eigen::Vector3d error = fitPlane(rig, points) - kTruePlane;
     const Eigen::Vector3d predicted =
-        planeErrorOfSkew(rig, kTruePlane, meanInverseDepth(rig, points), rates, skew);
+        planeErrorOfSkew(rig, PlaneVector(kTruePlane), meanInverseDepth(rig, points), rates, skew);
     EXPECT_LT((predicted - error).norm(), 0.3 * error.norm())
         << "error " << error.transpose() << " predicted " << predicted.transpose();
   }

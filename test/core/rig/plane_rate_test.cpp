@@ -32,7 +32,7 @@ ApproachAngleResult::Motion stepOf(double duration) {
 }
 
 TEST(PlaneRate, OfABetterKnownMotionCorrectsThePlane) {
-  const Eigen::Vector3d rate = planeRate(kPlane, kMotion);
+  const Eigen::Vector3d rate = planeRate(PlaneVector(kPlane), kMotion);
   StereoDepthResult pair = pairOf(kPlane, rate);
   EXPECT_GT((pair.plane.g - kPlane).norm(), 2e-3 * kPlane.norm());
   carryPlane(kMotion, {}, pair);
@@ -44,7 +44,7 @@ TEST(PlaneRate, OfABetterKnownMotionCorrectsThePlane) {
 }
 
 TEST(PlaneRate, IsAsUncertainAsTheStep) {
-  StereoDepthResult pair = pairOf(kPlane, planeRate(kPlane, kMotion)), exact = pair;
+  StereoDepthResult pair = pairOf(kPlane, planeRate(PlaneVector(kPlane), kMotion)), exact = pair;
   ApproachAngleResult::Motion step = stepOf(0.05);
   carryPlane(step, {}, exact);
   EXPECT_LT((exact.plane.g - kPlane).norm(), kSecondOrder * kPlane.norm());
@@ -78,7 +78,7 @@ TEST(PlaneRate, ChangesNothingWithoutRowTimes) {
 TEST(PlaneRate, ByAnEstimatedReadoutTimeCorrectsThePlaneAndClaimsItsError) {
   // Rows that are late by a quarter of a readout of 32 ms, which is given as one of 1 s.
   constexpr double kReadout = 0.032, kStddev = 0.004;
-  const Eigen::Vector3d rate = planeRate(kPlane, kMotion);
+  const Eigen::Vector3d rate = planeRate(PlaneVector(kPlane), kMotion);
   StereoDepthResult pair = pairOf(kPlane, rate), by_stereo = pair, wide;
   pair.plane_by_rate = by_stereo.plane_by_rate = -0.25 * Eigen::Matrix3d::Identity();
   by_stereo.plane_rate = rate;  // was not carried by it

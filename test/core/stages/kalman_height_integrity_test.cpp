@@ -188,7 +188,8 @@ TEST(KalmanHeightIntegrity, AHeightIsRightAlsoAfterABendLateInALongFlight) {
       stereo.vertical_rotation.covariance = std::pow(0.005 * kDegree, 2) * Eigen::Matrix3d::Identity();
       if (stamp > kBent) {
         stereo.vertical_rotation.w.z() = roll * kDegree;
-        stereo.plane.g += planeByRotation(rig, stereo.points, stereo.plane.g) * stereo.vertical_rotation.w;
+        stereo.plane.g +=
+            planeByRotation(rig, stereo.points, PlaneVector(stereo.plane.g)) * stereo.vertical_rotation.w;
         stereo.points = test::matchesOn(rig, stereo.plane.g);
       }
       const LandingResult result = stage.process(stereo, levelFlight(stamp, kHeight));

@@ -41,7 +41,7 @@ double lastingShare(const StereoDepthResult& stereo) {
 
 Eigen::Vector3d Ground::positionNormalOr(const Eigen::Vector3d& otherwise) const {
   if (!plane.valid()) return otherwise;
-  return tilted ? normal.n : plane.normal();
+  return tilted && normal ? normal->vector() : plane.normal();
 }
 
 GroundEstimate::GroundEstimate(const StereoRig& rig, const KalmanHeightParameters& parameters)
@@ -60,7 +60,7 @@ Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known
     ground.plane = measured;
     findPlane(in, rig_doubted, ground);
     ground.surface = surface_.follow(in.stereo, ground.plane, known);
-    ground.normal = {ground.plane.normal(), ground.plane.normalCovariance()};
+    ground.normal = GroundNormal::of(ground.plane);
   }
   ground.rig_variance = rig_variance_;
   if (!in.repeated()) averageNormal(in, ground);  // else the next motion starts before it
@@ -86,25 +86,24 @@ void GroundEstimate::findPlane(const PairInput& in, bool rig_doubted, Ground& gr
     // Only these sources are independent of the stereo plane. The fused normal of the approach angle contains
     // it.
     const RigRotationFilter::Others others = otherSources(in);
-    if (others.vanishing.known()) fuseDirection(others.vanishing, ground);
-    for (const GroundNormal& normal : {others.level, others.moving})
-      if (normal.known())
-        for (const GroundDirection& level : levelDirections(normal)) fuseDirection(level, ground);
+    if (others.vanishing) turnInto(*others.vanishing, ground);
+    for (const std::optional<GroundNormal>& normal : {others.level, others.moving})
+      if (normal)
+        for (const GroundDirection& level : levelDirections(*normal)) turnInto(level, ground);
   }
   rig_variance_ = GroundPlane{ground.plane.g, ground.common}.heightVariance();
 }
 
 // Turns the plane so that it contains a direction which lies in the ground.
-void GroundEstimate::fuseDirection(const GroundDirection& direction, Ground& ground) const {
+void GroundEstimate::turnInto(const GroundDirection& direction, Ground& ground) const {
   const GroundPlane alone = ground.plane;
-  const Eigen::Vector3d& p = direction.direction;
+  const Eigen::Vector3d& p = direction.vector();
   double nis = 0;
-  ground.plane =
-      fuseVanishingPoint(alone, p, direction.covariance, std::pow(parameters_.vanishing_point_gate, 2), &nis);
+  ground.plane = fuseDirection(alone, direction, std::pow(parameters_.vanishing_point_gate, 2), &nis);
   if (ground.plane.g == alone.g) return;
   // The error of the direction is mostly the ground's own slope, or comes from the same images. So the next
   // pairs have it as well.
-  const double variance = alone.g.dot(direction.covariance * alone.g);
+  const double variance = alone.g.dot(direction.covariance() * alone.g);
   const Eigen::Vector3d gain = alone.covariance * p / (p.dot(alone.covariance * p) + variance);
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - gain * p.transpose();
   ground.common = (kept * ground.common * kept.transpose()).eval() + variance * gain * gain.transpose();
@@ -114,8 +113,9 @@ RigRotationFilter::Others GroundEstimate::otherSources(const PairInput& in) cons
   const ApproachAngleResult& approach = in.approach;
   RigRotationFilter::Others others;
   if (parameters_.fuse_vanishing_point)
-    others.vanishing = {approach.vanishing_direction, approach.vanishing_covariance};
-  if (parameters_.fuse_imu) others.level = {approach.imu.normal, approach.imu.normal_covariance};
+    others.vanishing = GroundDirection::of(approach.vanishing_direction, approach.vanishing_covariance);
+  if (parameters_.fuse_imu)
+    others.level = GroundNormal::of(approach.imu.normal, approach.imu.normal_covariance);
   if (parameters_.fuse_motion_normal && !in.repeated()) others.moving = in.normalByMotion();
   return others;
 }
@@ -129,7 +129,7 @@ void GroundEstimate::watchRig(const PairInput& in, bool rig_doubted, Ground& gro
   // its own, so that part is taken out.
   GroundPlane without = ground.plane;
   without.covariance(2, 2) -= biasVariance(rig_, stereo.disparity_bias_stddev);
-  const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, without.g);
+  const Eigen::Matrix3d A = planeByRotation(rig_, stereo.points, PlaneVector(without.g));
   const RigRotation rotation = rig_rotation_.rotation();
   if (rotation.known()) {
     const Eigen::Matrix3d by_rotation = A * rotation.covariance * A.transpose();
@@ -144,14 +144,14 @@ void GroundEstimate::watchRig(const PairInput& in, bool rig_doubted, Ground& gro
 
 void GroundEstimate::averageNormal(const PairInput& in, Ground& ground) {
   if (!ground.plane.valid()) return attitude_.carry(in.stamp(), in.turn);
-  if (!parameters_.average_attitude) return;
-  GroundNormal& average = ground.normal;
+  if (!parameters_.average_attitude || !ground.normal) return;
   const Eigen::Matrix3d common = GroundPlane{ground.plane.g, ground.common}.normalCovariance();
-  const Eigen::Matrix3d own = average.covariance - common;
+  const Eigen::Matrix3d own = ground.normal->covariance() - common;
   const double lasting = lastingShare(in.stereo);
   const AttitudeFilter::Estimate estimate = attitude_.update(in.stamp(), {ground.plane.normal(), own},
                                                              in.turn, common + lasting * own, 1 - lasting);
-  average = {estimate.normal, estimate.average_covariance + estimate.commonCovariance()};
+  ground.normal =
+      GroundNormal::of(estimate.normal, estimate.average_covariance + estimate.commonCovariance());
   ground.tilt = std::acos(std::min(1.0, ground.plane.normal().dot(estimate.normal)));
   ground.tilt_ratio = estimate.ratio;
   ground.tilted = !estimate.agrees;

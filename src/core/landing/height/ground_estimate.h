@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "geometry/ground_normal.h"
 #include "height/attitude_filter.h"
 #include "landing/height/pair_input.h"
 #include "landing/height/surface_ahead.h"
@@ -19,8 +22,8 @@ struct Ground {
   Eigen::Matrix3d alone_common = Eigen::Matrix3d::Zero();
   /// Variance of the height from the rig's rotation, m^2. Without a plane it keeps its last value.
   double rig_variance = 0;
-  SurfaceAhead::Shape surface;  ///< from the plane ahead to the ground below
-  GroundNormal normal;          ///< averaged over pairs; set when the plane is valid
+  SurfaceAhead::Shape surface;         ///< from the plane ahead to the ground below
+  std::optional<GroundNormal> normal;  ///< averaged over pairs; there is one when the plane is valid
 
   /// Angle to the normal of the previous pairs, rad, and the squared normalised difference.
   double tilt = kUnknown, tilt_ratio = kUnknown;
@@ -29,7 +32,9 @@ struct Ground {
   bool turn_doubted = false, attitude_settled = true;  ///< see AttitudeFilter
 
   /// The averaged normal, or `otherwise` when there is no plane.
-  GroundNormal normalOr(const GroundNormal& otherwise) const { return plane.valid() ? normal : otherwise; }
+  std::optional<GroundNormal> normalOr(const std::optional<GroundNormal>& otherwise) const {
+    return normal ? normal : otherwise;
+  }
   /// Normal of the ground for positions: that of this pair, the averaged one if the plane is tilted, or
   /// `otherwise` when there is no plane.
   Eigen::Vector3d positionNormalOr(const Eigen::Vector3d& otherwise) const;
@@ -53,7 +58,7 @@ class GroundEstimate {
  private:
   void findPlane(const PairInput& in, bool rig_doubted, Ground& ground);
   void watchRig(const PairInput& in, bool rig_doubted, Ground& ground);
-  void fuseDirection(const GroundDirection& direction, Ground& ground) const;
+  void turnInto(const GroundDirection& direction, Ground& ground) const;
   RigRotationFilter::Others otherSources(const PairInput& in) const;
   void averageNormal(const PairInput& in, Ground& ground);
 

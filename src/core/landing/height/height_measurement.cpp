@@ -131,15 +131,16 @@ void HeightMeasurement::leaveOutSources(const PairInput& in, const Ground& groun
 
 void HeightMeasurement::leaveOutRegions(const PairInput& in, const Ground& ground,
                                         MeasuredHeight& measured) const {
-  if (in.stereo.points.empty()) return;
+  const std::optional<PlaneVector> plane = PlaneVector::of(in.stereo.plane.g);
+  if (!plane || in.stereo.points.empty()) return;
   const ApproachAngleResult& approach = in.approach;
-  const RegionPlanes regions = planesWithoutRegions(rig_, in.stereo.points, in.stereo.plane.g);
-  const bool fuse = parameters_.fuse_vanishing_point && approach.vanishing_direction.allFinite() &&
-                    approach.vanishing_covariance.allFinite();
+  const RegionPlanes regions = planesWithoutRegions(rig_, in.stereo.points, *plane);
+  std::optional<GroundDirection> vanishing;
+  if (parameters_.fuse_vanishing_point)
+    vanishing = GroundDirection::of(approach.vanishing_direction, approach.vanishing_covariance);
   const auto withVanishingPoint = [&](const GroundPlane& plane) {
-    if (!fuse) return plane;
-    return fuseVanishingPoint(plane, approach.vanishing_direction, approach.vanishing_covariance,
-                              std::pow(parameters_.vanishing_point_gate, 2), nullptr);
+    if (!vanishing) return plane;
+    return fuseDirection(plane, *vanishing, std::pow(parameters_.vanishing_point_gate, 2), nullptr);
   };
   const double base = withVanishingPoint(ground.alone).height();
   for (int i = 0; i < kImageRegions; ++i) {

@@ -39,9 +39,10 @@ const ApproachAngleResult::Motion& PairInput::path() const {
   return window_known ? approach.window : approach.step;
 }
 
-GroundNormal PairInput::normalByMotion() const {
+std::optional<GroundNormal> PairInput::normalByMotion() const {
   const ApproachAngleResult::Motion& motion = path();
-  return motion.failure ? GroundNormal{} : GroundNormal{motion.normal, motion.normal_covariance};
+  if (motion.failure) return std::nullopt;
+  return GroundNormal::of(motion.normal, motion.normal_covariance);
 }
 
 std::optional<CameraStep> cameraStep(const ApproachAngleResult::Motion& step, double height) {

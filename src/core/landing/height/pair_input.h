@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "geometry/ground_normal.h"
 #include "results/camera_step.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -27,9 +28,9 @@ struct PairInput {
   /// none.
   const ApproachAngleResult::Motion& path() const;
   /// Ground normal that the angles are measured against.
-  GroundNormal normal() const { return {approach.n, approach.n_covariance}; }
+  std::optional<GroundNormal> normal() const { return GroundNormal::of(approach.n, approach.n_covariance); }
   /// Ground normal from the motion in the image over the same time as path().
-  GroundNormal normalByMotion() const;
+  std::optional<GroundNormal> normalByMotion() const;
 };
 
 /// Distance that the camera moved in a step. height: above the plane that the step's lengths refer to, m.

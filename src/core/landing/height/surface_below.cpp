@@ -41,18 +41,18 @@ void SurfaceBelow::follow(const PairInput& in, const Ground& ground, const Measu
   height_ = post.filter.initialised() ? post.filter.state()[0] : measured.height;
   const double T = stamp_ ? in.stamp() - *stamp_ : 0;
   stamp_ = in.stamp();
-  const bool believed = !left_out && !post.rejection && ground.plane.valid() && ground.attitude_settled;
+  const bool believed = !left_out && !post.rejection && ground.normal && ground.attitude_settled;
   const bool turn_known = knowsTurn(in.step(), T);
   const Eigen::Matrix3d R = turn_known ? rotationMatrix(in.step().rotation) : Eigen::Matrix3d::Identity();
   const Step step{T, height_ - ground.surface.bend, turn_known, R, believed, last_normal_, post.filter};
   if (believed)
-    last_normal_ = ground.normal.n;
+    last_normal_ = ground.normal->vector();
   else if (last_normal_)
     last_normal_ = R * *last_normal_;
   carry(in, ground, step);
   if (!believed || measured.failure || measured.by_width) return;
-  const GroundPlane plane{ground.normal.n / ground.plane.height(), ground.plane.covariance};
-  memory_.look(rig_, in.stereo.points, plane, in.stereo.plane.g);
+  const GroundPlane plane{ground.normal->vector() / ground.plane.height(), ground.plane.covariance};
+  memory_.look(rig_, in.stereo.points, plane, PlaneVector(in.stereo.plane.g));
 }
 
 void SurfaceBelow::carry(const PairInput& in, const Ground& ground, const Step& step) {
@@ -89,8 +89,8 @@ bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, c
 }
 
 Eigen::Vector3d SurfaceBelow::normal(const PairInput& in, const Ground& ground) const {
-  const Eigen::Vector3d n = ground.normalOr(in.normal()).n;
-  return n.allFinite() ? n : last_normal_.value_or(n);
+  const std::optional<GroundNormal> seen = ground.normalOr(in.normal());
+  return seen ? seen->vector() : last_normal_.value_or(Eigen::Vector3d::Constant(kUnknown));
 }
 
 std::optional<GroundMemory::Below> SurfaceBelow::below(double height, const Eigen::Vector3d& normal) const {

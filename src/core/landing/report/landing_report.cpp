@@ -34,8 +34,10 @@ Eigen::Matrix3d doubtOfVelocity(const PairInput& in, const PairVerdict& pair, co
     doubt += pair.velocity.change * pair.velocity.change.transpose();
   doubt += depth_change * depth_change * velocity * velocity.transpose();
   // With another normal, the vertical part is as uncertain as the angle.
-  const Eigen::Vector3d n = normalOfAngle(in.approach, in.step()).n;
-  if (n.allFinite()) doubt += velocity.squaredNorm() * angle_variance * n * n.transpose();
+  if (const std::optional<GroundNormal> normal = normalOfAngle(in.approach, in.step())) {
+    const Eigen::Vector3d& n = normal->vector();
+    doubt += velocity.squaredNorm() * angle_variance * n * n.transpose();
+  }
   return doubt;
 }
 

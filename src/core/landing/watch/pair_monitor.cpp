@@ -15,11 +15,12 @@ constexpr double kDegree = M_PI / 180;
 constexpr double kBaselineCalibration = 0.2 * kDegree;
 
 /// Tests the normal from stereo alone against one from another source.
-void testNormal(IntegrityTest test, const GroundPlane& plane, const GroundNormal& normal, PairTests& tests) {
-  if (!plane.valid() || !normal.known()) return;
+void testNormal(IntegrityTest test, const GroundPlane& plane, const std::optional<GroundNormal>& normal,
+                PairTests& tests) {
+  if (!plane.valid() || !normal) return;
   const Eigen::Matrix<double, 3, 2> basis = tangents(plane.normal());
-  tests.add(test, basis.transpose() * (normal.n - plane.normal()),
-            basis.transpose() * (plane.normalCovariance() + normal.covariance) * basis);
+  tests.add(test, basis.transpose() * (normal->vector() - plane.normal()),
+            basis.transpose() * (plane.normalCovariance() + normal->covariance()) * basis);
 }
 
 void testImages(const PairInput& in, PairTests& tests) {
@@ -79,7 +80,8 @@ void testDirections(const PairInput& in, const Ground& ground, PairTests& tests)
               h * h * p.dot(plane.covariance * p) +
                   plane.normal().dot(approach.vanishing_covariance * plane.normal()));
   }
-  testNormal(IntegrityTest::kImu, plane, {approach.imu.normal, approach.imu.normal_covariance}, tests);
+  testNormal(IntegrityTest::kImu, plane,
+             GroundNormal::of(approach.imu.normal, approach.imu.normal_covariance), tests);
   if (!in.repeated()) testNormal(IntegrityTest::kMotionNormal, plane, in.normalByMotion(), tests);
 }
 

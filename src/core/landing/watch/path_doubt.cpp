@@ -24,9 +24,11 @@ bool hasTurned(const PairTests& tests) {
 
 }  // namespace
 
-GroundNormal normalOfAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion) {
-  const GroundNormal given{approach.n, approach.n_covariance}, own{motion.normal, motion.normal_covariance};
-  return given.known() && own.known() ? weightedMean(given, own) : given;
+std::optional<GroundNormal> normalOfAngle(const ApproachAngleResult& approach,
+                                          const ApproachAngleResult::Motion& motion) {
+  const std::optional<GroundNormal> given = GroundNormal::of(approach.n, approach.n_covariance);
+  const std::optional<GroundNormal> own = GroundNormal::of(motion.normal, motion.normal_covariance);
+  return given && own ? weightedMean(*given, *own) : given;
 }
 
 PathDoubt::PathDoubt(const KalmanHeightParameters& parameters)
@@ -37,10 +39,11 @@ PathDoubt::PathDoubt(const KalmanHeightParameters& parameters)
 double PathDoubt::variance(const PairInput& in, const Ground& ground,
                            const ApproachAngleResult::Motion& motion) const {
   if (rowsMove(motion)) return kAnyAngle * kAnyAngle;
-  const GroundNormal used = normalOfAngle(in.approach, motion);
+  const std::optional<GroundNormal> used = normalOfAngle(in.approach, motion);
+  if (!used) return 0;
   double variance = 0;
-  for (const OtherNormal& other : otherNormals(in, ground, used))
-    variance = std::max(variance, other.angleVariance(used.n, motion));
+  for (const OtherNormal& other : otherNormals(in, ground, *used))
+    variance = std::max(variance, other.angleVariance(used->vector(), motion));
   return variance;
 }
 
@@ -63,12 +66,13 @@ std::vector<PathDoubt::OtherNormal> PathDoubt::otherNormals(const PairInput& in,
   const Eigen::Matrix3d none = Eigen::Matrix3d::Zero();
   // The stage approach_angle does not know the rig's rotation, nor how uncertain that is.
   if (!ground.tilted && rig_watch_ && plane.valid())
-    normals.push_back({plane.normal(), plane.normalCovariance() - used.covariance, none, 1});
+    normals.push_back({plane.normal(), plane.normalCovariance() - used.covariance(), none, 1});
   // It does not know the previous pairs either. If the plane turned against them within the limit of a test,
   // either may be right.
-  if (plane.valid())
-    normals.push_back({ground.normal.n, none,
-                       ground.tilted ? none : kCertain * (ground.normal.covariance + used.covariance), 1});
+  if (ground.normal)
+    normals.push_back({ground.normal->vector(), none,
+                       ground.tilted ? none : kCertain * (ground.normal->covariance() + used.covariance()),
+                       1});
   // If a plane and a vanishing point contradict each other, either may be right.
   const double doubt = by_vanishing_point_.probability(in.approach.stamp);
   if (doubt > 0) {
@@ -79,8 +83,8 @@ std::vector<PathDoubt::OtherNormal> PathDoubt::otherNormals(const PairInput& in,
   const double by_motion = by_motion_.probability(in.approach.stamp);
   // It is not known which of both normals the angle's matches followed, so the whole difference counts.
   if (by_motion > 0)
-    normals.push_back(
-        {used.n + by_motion_.turn(), by_motion_.variance() * Eigen::Matrix3d::Identity(), none, by_motion});
+    normals.push_back({used.vector() + by_motion_.turn(), by_motion_.variance() * Eigen::Matrix3d::Identity(),
+                       none, by_motion});
   return normals;
 }
 

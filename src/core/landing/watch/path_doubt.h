@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "geometry/ground_normal.h"
 #include "integrity/normal_doubt.h"
 #include "integrity/pair_tests.h"
 #include "integrity/vanishing_memory.h"
@@ -44,6 +46,7 @@ class PathDoubt {
 
 /// Normal that an angle of this motion is measured against: the given one, averaged with the motion's own
 /// normal when that is known.
-GroundNormal normalOfAngle(const ApproachAngleResult& approach, const ApproachAngleResult::Motion& motion);
+std::optional<GroundNormal> normalOfAngle(const ApproachAngleResult& approach,
+                                          const ApproachAngleResult::Motion& motion);
 
 }  // namespace uav_landing

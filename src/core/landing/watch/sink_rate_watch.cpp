@@ -32,9 +32,9 @@ void SinkRateWatch::carry(const PairInput& in, const Ground& ground, double scal
                           bool level_known) {
   VerticalSpeed speed;
   double velocity = kUnknown;
-  const Eigen::Vector3d normal = ground.normalOr(in.normal()).n;
-  if (!in.step().failure && level_known && normal.allFinite() && std::isfinite(scale) && scale > 0) {
-    const GroundPlane plane{normal / scale, Eigen::Matrix3d::Zero()};
+  const std::optional<GroundNormal> normal = ground.normalOr(in.normal());
+  if (!in.step().failure && level_known && normal && std::isfinite(scale) && scale > 0) {
+    const GroundPlane plane{normal->vector() / scale, Eigen::Matrix3d::Zero()};
     speed = withDurations(verticalSpeed(in.step(), plane, scale, {0, 0, parameters_.acceleration_stddev}),
                           doubt.duration_variance);
     velocity = in.step().translation_over_height.norm() * scale / in.step().duration;

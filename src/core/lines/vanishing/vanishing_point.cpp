@@ -64,16 +64,15 @@ GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, 
   const Eigen::Vector3d& p = point.direction;
   const Eigen::Vector3d w(std::cos(roll), -std::sin(roll), 0), dw(-std::sin(roll), -std::cos(roll), 0);
   const Eigen::Vector3d m = p.cross(w);
-  GroundNormal normal;
-  normal.n = m.normalized();
-  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - normal.n * normal.n.transpose()) / m.norm();
+  const Eigen::Vector3d normal = m.normalized();
+  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - normal * normal.transpose()) / m.norm();
   Eigen::Matrix3d minus_w_cross;
   minus_w_cross << 0, w.z(), -w.y(), -w.z(), 0, w.x(), w.y(), -w.x(), 0;
   const Eigen::Matrix3d from_point = across * minus_w_cross;
   const Eigen::Vector3d from_roll = across * p.cross(dw);
-  normal.covariance = from_point * point.covariance * from_point.transpose() +
-                      roll_stddev * roll_stddev * from_roll * from_roll.transpose();
-  return normal;
+  const Eigen::Matrix3d covariance = from_point * point.covariance * from_point.transpose() +
+                                     roll_stddev * roll_stddev * from_roll * from_roll.transpose();
+  return {normal, covariance};
 }
 
 }  // namespace uav_landing

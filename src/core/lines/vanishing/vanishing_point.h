@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "geometry/ground_normal.h"
 #include "uav_landing/base/failure.h"
-#include "uav_landing/geometry/ground_plane.h"
 
 namespace uav_landing {
 

@@ -14,11 +14,11 @@ void takeAngle(const StereoRig& rig, const GroundNormal& normal, AngleFormula fo
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const Eigen::DiagonalMatrix<double, 2> per_pixel(1 / rig.fx, 1 / rig.fy);
   covariance.topLeftCorner<2, 2>() = per_pixel * found.covariance * per_pixel;
-  const Eigen::Vector3d& n = normal.n;
+  const Eigen::Vector3d& n = normal.vector();
   found.step.angle = formula == AngleFormula::kEq1
                          ? approachAngleEq1(rig.fy * n.z() / n.y(), rig.cy - found.foe.y(), rig.fy)
                          : approachAngle(n, direction);
-  found.step.angle_variance = approachAngleVariance(n, normal.covariance, direction, covariance);
+  found.step.angle_variance = approachAngleVariance(n, normal.covariance(), direction, covariance);
 }
 
 /// Adds an error that the scatter of the velocities does not show. A rotation left in the velocities moves

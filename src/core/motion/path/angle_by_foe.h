@@ -1,7 +1,7 @@
 #pragma once
 
+#include "geometry/ground_normal.h"
 #include "motion/path/motion_tracker.h"
-#include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 
 namespace uav_landing {

@@ -13,24 +13,26 @@ constexpr double kDegree = M_PI / 180.0;
 // Chi-square limit (1 degree of freedom, 1e-4) beyond which a vanishing point contradicts the stereo plane.
 constexpr double kMaxVanishingNis = 15.1;
 
-GroundPlane withDirection(const GroundPlane& plane, const GroundDirection& vanishing) {
-  if (!vanishing.direction.allFinite()) return plane;
-  return fuseVanishingPoint(plane, vanishing.direction, vanishing.covariance, kMaxVanishingNis, nullptr);
+GroundPlane withDirection(const GroundPlane& plane, const std::optional<GroundDirection>& vanishing) {
+  return vanishing ? fuseDirection(plane, *vanishing, kMaxVanishingNis, nullptr) : plane;
 }
 
-GroundNormal normalOf(const GroundPlane& plane) { return {plane.normal(), plane.normalCovariance()}; }
+std::optional<AngleNormal> angleNormal(const std::optional<GroundNormal>& normal, const Failure& imu = {}) {
+  if (!normal) return std::nullopt;
+  return AngleNormal{*normal, imu};
+}
 
 /// Normal from the vanishing point: with the roll of the stereo plane when there is one, else that of the
 /// paper's level rig.
 std::optional<AngleNormal> byVanishingPoint(const NormalSources& sources) {
-  const GroundDirection& vanishing = sources.vanishing;
-  if (!vanishing.direction.allFinite()) return std::nullopt;
-  if (!sources.plane) return AngleNormal{sources.level_rig, {}};
-  const GroundNormal seen = normalOf(*sources.plane);
-  return AngleNormal{
-      normalFromVanishingPoint({vanishing.direction, vanishing.covariance, {}, 0}, rollOf(seen.n),
-                               std::sqrt(rollVariance(seen.n, seen.covariance))),
-      {}};
+  const std::optional<GroundDirection>& vanishing = sources.vanishing;
+  if (!vanishing) return std::nullopt;
+  if (!sources.plane) return angleNormal(sources.level_rig);
+  const std::optional<GroundNormal> seen = GroundNormal::of(*sources.plane);
+  if (!seen) return std::nullopt;
+  return angleNormal(normalFromVanishingPoint({vanishing->vector(), vanishing->covariance(), {}, 0},
+                                              rollOf(seen->vector()),
+                                              std::sqrt(rollVariance(seen->vector(), seen->covariance()))));
 }
 
 }  // namespace
@@ -42,20 +44,20 @@ std::optional<AngleNormal> findAngleNormal(const NormalSources& sources,
   if (!sources.plane && !imu.hasNormal()) return byVanishingPoint(sources);
   // The normal of an imu acts as a plane at the height 1.
   if (!sources.plane)
-    return AngleNormal{normalOf(withDirection({imu.normal, imu.normal_covariance}, sources.vanishing)), {}};
-  AngleNormal found;
+    return angleNormal(
+        GroundNormal::of(withDirection({imu.normal, imu.normal_covariance}, sources.vanishing)));
+  Failure imu_failure;
   GroundPlane fused = withDirection(*sources.plane, sources.vanishing);
   if (imu.hasNormal()) {
     double nis = 0;
     fused = fuseNormal(fused, {imu.normal, imu.normal_covariance}, kMaxVanishingNis, &nis);
     if (!(nis <= kMaxVanishingNis)) {
       const double off = std::acos(std::clamp(fused.normal().dot(imu.normal), -1.0, 1.0));
-      found.imu_failure = {Reason::kRejected, text("the imu's attitude is ", rounded(off / kDegree),
-                                                   " deg off the ground ahead")};
+      imu_failure = {Reason::kRejected,
+                     text("the imu's attitude is ", rounded(off / kDegree), " deg off the ground ahead")};
     }
   }
-  found.normal = normalOf(fused);
-  return found;
+  return angleNormal(GroundNormal::of(fused), imu_failure);
 }
 
 }  // namespace uav_landing

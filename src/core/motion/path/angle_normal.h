@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "uav_landing/geometry/ground_plane.h"
+#include "geometry/ground_normal.h"
 #include "uav_landing/parameters/approach_angle_parameters.h"
 #include "uav_landing/results/attitude_prior.h"
 
@@ -10,9 +10,10 @@ namespace uav_landing {
 
 /// Sources of the ground normal. Each may be missing.
 struct NormalSources {
-  const GroundPlane* plane = nullptr;  ///< from stereo
-  GroundDirection vanishing;           ///< vanishing direction of the runway
-  GroundNormal level_rig;  ///< from the vanishing point alone, for a rig whose roll is hardly known
+  const GroundPlane* plane = nullptr;        ///< from stereo
+  std::optional<GroundDirection> vanishing;  ///< vanishing direction of the runway
+  std::optional<GroundNormal>
+      level_rig;  ///< from the vanishing point alone, for a rig whose roll is hardly known
   const AttitudePrior& imu;
 };
 struct AngleNormal {

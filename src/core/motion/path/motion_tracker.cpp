@@ -262,16 +262,16 @@ void MotionTracker::estimateWindow(const Frame& now, const GroundInView& seen,
     if (!then.since) continue;
     const CameraMotion& step = result.step_estimate->motion;
     // Lengths are converted from units of the previous height to units of the height now.
-    const double unit = 1 + seen.normal.n.dot(step.t);
+    const double unit = 1 + seen.normal.vector().dot(step.t);
     const CameraMotion predicted{step.R * then.since->R, step.R * then.since->t * unit + step.t};
     const RowMotion motion = evenMotion(step, result.step.duration);
     const RowMotion motion_then = then.motion.value_or(motion);
     memory_.matching.spare = std::move(window_matches_);
     window_matches_ = matchOverTime({rig_, now.image, then.image, mask_}, seen.corners,
-                                    {predicted, seen.normal.n, {&times_, motion, motion_then}},
+                                    {predicted, seen.normal.vector(), {&times_, motion, motion_then}},
                                     {parameters_.window_radius, parameters_.min_zncc, 0}, memory_.matching);
     const ReadoutDoubt doubt = doubtOf(seen, conditions);
-    shiftByReadout(rig_, {predicted, seen.normal.n, {doubt.times, motion, motion_then}}, doubt.time,
+    shiftByReadout(rig_, {predicted, seen.normal.vector(), {doubt.times, motion, motion_then}}, doubt.time,
                    window_matches_);
     const MotionPrior prior{
         predicted, seen.normal, nullptr, {rollingRows(&times_, doubt), &window_shake_, doubt.normal_by_time}};

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/ground_normal.h"
 #include "image/windows/match_image.h"
 #include "motion/matching/temporal_matching.h"
 #include "motion/path/path_angle_filter.h"

@@ -221,8 +221,8 @@ Expected<MotionEstimate> estimateMotion(const StereoRig& rig, const std::vector<
   }
   MotionRows& rows = memory.all;
   rows.assign(rig, matches);
-  const Eigen::Vector3d& normal = prior.normal.n;
-  const GivenPrior given{normal, priorInformation(normal, prior.normal.covariance), prior.rotation};
+  const Eigen::Vector3d& normal = prior.normal.vector();
+  const GivenPrior given{normal, priorInformation(normal, prior.normal.covariance()), prior.rotation};
   Expected<Fitted> found =
       fitMotion(matches, bestByConsensus({prior.start.R.transpose(), prior.start.t, normal}, memory), given,
                 min_matches, rows);

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "geometry/ground_normal.h"
 #include "motion/matching/camera_motion.h"
 #include "motion/matching/temporal_match.h"
 #include "motion/step/row_unknowns.h"
 #include "uav_landing/base/failure.h"
 #include "uav_landing/geometry/calibration.h"
-#include "uav_landing/geometry/ground_plane.h"
 #include "uav_landing/geometry/row_times.h"
 #include "uav_landing/results/stage_results.h"
 

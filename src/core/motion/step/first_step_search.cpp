@@ -69,7 +69,7 @@ std::optional<CameraMotion> FirstStepSearch::advance(const StepMatching& matchin
     if (guessed_ < kSpeeds.size()) return std::nullopt;
     if (!isUnsure()) return end(step);
     for (const double speed : kSpeeds)
-      compared_.push_back({ahead(step.normal.n, rotation(step), speed), step.duration});
+      compared_.push_back({ahead(step.normal.vector(), rotation(step), speed), step.duration});
     if (best_) compared_.push_back(*best_);
     if (!at_once) return std::nullopt;
   }
@@ -86,11 +86,11 @@ Eigen::Matrix3d FirstStepSearch::rotation(const StepImages& step) const {
 void FirstStepSearch::guess(const StepMatching& matching, const StepImages& step, double speed) {
   const Eigen::Matrix3d loose = Eigen::Matrix3d::Identity() * 1e-6;
   const std::vector<TrackedCorner> some = thinned(step.corners, kGuessCorners);
-  const CameraMotion start = ahead(step.normal.n, rotation(step), speed);
+  const CameraMotion start = ahead(step.normal.vector(), rotation(step), speed);
   const std::vector<TemporalMatch> matches = matching.match(step, some, start, matching.wideSteps());
   const Expected<MotionEstimate> found =
-      estimateMotion(matching.rig(), matches, {start, {step.normal.n, loose}}, StepMatching::kFewestScouts,
-                     step.memory.motion);
+      estimateMotion(matching.rig(), matches, {start, {step.normal.vector(), loose}},
+                     StepMatching::kFewestScouts, step.memory.motion);
   if (!found) return;
   const double share = found->inlier_count / static_cast<double>(some.size());
   if (share <= share_) return;
@@ -149,7 +149,7 @@ CameraMotion FirstStepSearch::follow(const StepMatching& matching, const StepIma
 
 std::optional<CameraMotion> FirstStepSearch::end(const StepImages& step) {
   const Candidate found =
-      best_ ? *best_ : Candidate{ahead(step.normal.n, rotation(step), kSpeeds.front()), step.duration};
+      best_ ? *best_ : Candidate{ahead(step.normal.vector(), rotation(step), kSpeeds.front()), step.duration};
   clear();
   return carriedOn(found.motion, step.duration / found.duration);
 }

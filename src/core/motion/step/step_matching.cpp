@@ -48,10 +48,10 @@ void StepMatching::shiftByReadout(const StepImages& step, const CameraMotion& mo
 
 MotionOverGround StepMatching::overGround(const StepImages& step, const CameraMotion& motion,
                                           const RowTimes* times) const {
-  MotionOverGround over_ground{motion, step.normal.n};
+  MotionOverGround over_ground{motion, step.normal.vector()};
   if (times == nullptr || times->atOnce() || !(step.duration > 0)) return over_ground;
   const RowMotion now = evenMotion(motion, step.duration);
-  const double height_then = 1 + step.normal.n.dot(motion.t);
+  const double height_then = 1 + step.normal.vector().dot(motion.t);
   over_ground.rows = {times, now,
                       step.rows_then.value_or(RowMotion{now.w, motion.R.transpose() * now.v / height_then})};
   return over_ground;

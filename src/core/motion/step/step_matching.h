@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/ground_normal.h"
 #include "image/windows/match_image.h"
 #include "motion/matching/temporal_matching.h"
 #include "motion/step/ego_motion.h"

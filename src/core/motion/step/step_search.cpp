@@ -108,7 +108,7 @@ double StepSearch::farthestOff(const StepImages& step, const CameraMotion& predi
     if (!found.inliers[i]) continue;
     const TemporalMatch& match = matches[i];
     const Eigen::Vector3d ray = matching_.rig().Kinv() * match.now.homogeneous();
-    const double inverse_depth = match.on_plane ? step.normal.n.dot(ray) : match.inverse_depth;
+    const double inverse_depth = match.on_plane ? step.normal.vector().dot(ray) : match.inverse_depth;
     const Eigen::Vector3d there = matching_.rig().K() * found.motion.seenThen(ray, inverse_depth);
     const Eigen::Vector3d expected = matching_.rig().K() * predicted.seenThen(ray, inverse_depth);
     farthest = std::max(farthest, (there.hnormalized() - expected.hnormalized()).norm());

@@ -7,11 +7,11 @@ class RowMatcher : public CornerMatcher {
  public:
   explicit RowMatcher(const StereoDepthParameters& parameters) : parameters_(parameters) {}
 
-  std::vector<cv::Point> detect(const StereoLevel& level, const Eigen::Vector3d& g, int count) override {
+  std::vector<cv::Point> detect(const StereoLevel& level, const PlaneVector& g, int count) override {
     return findGroundCorners(level, g, count, parameters_, memory_);
   }
   RowMatches match(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                   const Eigen::Vector3d& g) override {
+                   const PlaneVector& g) override {
     return matchCorners(level, corners, g, parameters_);
   }
 

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/corner_matching.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
@@ -16,11 +17,11 @@ class CornerMatcher {
   virtual ~CornerMatcher() = default;
 
   /// At most count corners on the ground plane g (1/m), well spread over the image.
-  virtual std::vector<cv::Point> detect(const StereoLevel& level, const Eigen::Vector3d& g, int count) = 0;
+  virtual std::vector<cv::Point> detect(const StereoLevel& level, const PlaneVector& g, int count) = 0;
   /// Disparities, in pixels, of the corners that are found near the disparity predicted by g. Each comes with
   /// its own standard deviation, from which the plane's covariance is made.
   virtual RowMatches match(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                           const Eigen::Vector3d& g) = 0;
+                           const PlaneVector& g) = 0;
 };
 
 /// Harris corners, matched along their rows by findGroundCorners() and matchCorners().

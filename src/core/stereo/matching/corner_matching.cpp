@@ -26,7 +26,7 @@ constexpr double kParabolaStddev = 0.15;
 // Matches one corner within some steps of its predicted place.
 class CornerMatcher {
  public:
-  CornerMatcher(const StereoLevel& level, const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
+  CornerMatcher(const StereoLevel& level, const PlaneVector& g, const StereoDepthParameters& parameters,
                 int steps)
       : level_(level),
         parameters_(parameters),
@@ -90,7 +90,7 @@ class CornerMatcher {
 struct GroundLimits {
   std::array<Eigen::Vector3d, 3> sides;
 
-  GroundLimits(const StereoLevel& level, const Eigen::Vector3d& g) {
+  GroundLimits(const StereoLevel& level, const PlaneVector& g) {
     // Ground with a smaller disparity (pixels) is too near the horizon to tell the height.
     constexpr double kLeastDisparity = 0.3;
     const ShiftModel shift(level.rig, g);
@@ -108,7 +108,7 @@ struct GroundLimits {
 
 }  // namespace
 
-std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const PlaneVector& g, int count,
                                          const StereoDepthParameters& parameters,
                                          GroundCornerMemory& memory) {
   cv::Mat mask = level.left_mask, kept = memory.ground.image(mask.size());
@@ -121,14 +121,14 @@ std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::
                      memory.corners);
 }
 
-std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const PlaneVector& g, int count,
                                          const StereoDepthParameters& parameters) {
   GroundCornerMemory memory;
   return findGroundCorners(level, g, count, parameters, memory);
 }
 
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                       const Eigen::Vector3d& g) {
+                                       const PlaneVector& g) {
   const GroundLimits limits(level, g);
   std::vector<cv::Point> inside;
   std::copy_if(corners.begin(), corners.end(), std::back_inserter(inside),
@@ -136,9 +136,8 @@ std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vect
   return inside;
 }
 
-RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
-                        const CornerReach& reach) {
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& g,
+                        const StereoDepthParameters& parameters, const CornerReach& reach) {
   CornerMatcher matcher(level, g, parameters, reach.steps);
   RowMatches matches;
   matches.samples.reserve(corners.size());
@@ -160,8 +159,8 @@ RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& 
   return matches;
 }
 
-RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters) {
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& g,
+                        const StereoDepthParameters& parameters) {
   return matchCorners(level, corners, g, parameters,
                       {kFineSteps, parameters.vertical_disparities ? kCornersAcross : 0});
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/image_memory.h"
+#include "geometry/plane_vector.h"
 #include "image/windows/corners.h"
 #include "results/disparity_sample.h"
 #include "stereo/matching/row_refinement.h"
@@ -20,15 +21,15 @@ struct GroundCornerMemory {
 };
 
 /// Harris corners of the left image below the horizon of the plane g (1/m), where g predicts a disparity.
-std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const PlaneVector& g, int count,
                                          const StereoDepthParameters& parameters, GroundCornerMemory& memory);
 /// The same with memory of its own.
-std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const Eigen::Vector3d& g, int count,
+std::vector<cv::Point> findGroundCorners(const StereoLevel& level, const PlaneVector& g, int count,
                                          const StereoDepthParameters& parameters);
 
 /// Those of the corners that lie on the ground of another plane g (1/m).
 std::vector<cv::Point> cornersOnGround(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                       const Eigen::Vector3d& g);
+                                       const PlaneVector& g);
 
 /// Corners that were found along their rows, in the order in which they were looked for.
 struct RowMatches {
@@ -45,8 +46,8 @@ constexpr size_t kCornersAcross = 240;
 /// Matches corners along their rows around the disparity that g (1/m) predicts. It uses correlation that is
 /// blind to gain and offset (or SSD), a uniqueness test, a left-right check and a sub-pixel fit. One
 /// disparity per sample.
-RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters);
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& g,
+                        const StereoDepthParameters& parameters);
 
 /// How far from the predicted place a corner is looked for.
 struct CornerReach {
@@ -54,8 +55,7 @@ struct CornerReach {
   size_t most_across = 0;  ///< corners that may also leave their rows, at most; spread as all corners are
 };
 /// The same within this reach.
-RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                        const Eigen::Vector3d& g, const StereoDepthParameters& parameters,
-                        const CornerReach& reach);
+RowMatches matchCorners(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& g,
+                        const StereoDepthParameters& parameters, const CornerReach& reach);
 
 }  // namespace uav_landing

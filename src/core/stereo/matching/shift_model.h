@@ -1,18 +1,20 @@
 #pragma once
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/plane_drift.h"
 #include "stereo/matching/row_warp.h"
 #include "uav_landing/geometry/calibration.h"
 
 namespace uav_landing {
 
-/// Column shift u_l - u_r = a u + b v + c between the images of a rig, for the plane vector g (1/m). Rows
+/// Column shift u_l - u_r = a u + b v + c between the images of a rig, for a plane. Rows
 /// stay. With a rolling shutter the plane's drift is added, with the row times approximated by a plane over
 /// the image.
 class ShiftModel {
  public:
   double a, b, c;
-  ShiftModel(const StereoRig& rig, const Eigen::Vector3d& g, const PlaneDrift& drift = {}) {
+  ShiftModel(const StereoRig& rig, const PlaneVector& plane, const PlaneDrift& drift = {}) {
+    const Eigen::Vector3d& g = plane;
     a = rig.fb() * g.x() / rig.fx;
     b = rig.fb() * g.y() / rig.fy;
     c = rig.fb() * g.dot(rig.ray(0, 0)) + rig.principalOffset();

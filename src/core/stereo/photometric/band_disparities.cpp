@@ -36,7 +36,7 @@ bool BandDisparities::isSeen(int column, int line) const {
   return true;
 }
 
-void BandDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift) {
+void BandDisparities::choose(const cv::Mat& left, const PlaneVector& g, const PlaneDrift& drift) {
   rows_.begin(left, ShiftModel(rig_, g, drift), kLeastDisparity + rig_.principalOffset());
   grid_.columns = std::max(0, (left.cols - 2 * kGridColumn) / kBlockWidth);
   const int height = std::max(0, rows_.left().rows - 2 * kGridRow);
@@ -60,7 +60,7 @@ void BandDisparities::takeRight(const cv::Mat& right, const RigRotation& rows) {
   level_ = straightened_;
 }
 
-void BandDisparities::measure(const Eigen::Vector3d& g, const PlaneDrift& drift) {
+void BandDisparities::measure(const PlaneVector& g, const PlaneDrift& drift) {
   disparities_.clear();
   differ_by_noise_ = false;
   if (std::find(grid_.seen.begin(), grid_.seen.end(), 1) == grid_.seen.end()) return;

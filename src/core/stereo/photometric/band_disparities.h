@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "rig/rig_rotation.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/aligned_rows.h"
@@ -22,11 +23,11 @@ class BandDisparities {
 
   /// Takes the left image (mono8) below the horizon of the plane g, 1/m. drift: of the plane while rows are
   /// exposed.
-  void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
+  void choose(const cv::Mat& left, const PlaneVector& g, const PlaneDrift& drift = {});
   /// Takes the right image (mono8) of the same pair. rows: rotation that its vertical disparities have.
   void takeRight(const cv::Mat& right, const RigRotation& rows);
   /// Compares the left image with the right one warped by the plane g, 1/m.
-  void measure(const Eigen::Vector3d& g, const PlaneDrift& drift = {});
+  void measure(const PlaneVector& g, const PlaneDrift& drift = {});
 
   /// Whether the images differed by noise only in the last measurement. Otherwise they show different things,
   /// and there are no disparities.

@@ -11,11 +11,11 @@ constexpr int kBlocks = 800;
 BlockDisparities::BlockDisparities(const StereoLevel& level)
     : rig_(level.rig), blocks_(level.left_mask, level.right_mask) {}
 
-void BlockDisparities::choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift) {
+void BlockDisparities::choose(const cv::Mat& left, const PlaneVector& g, const PlaneDrift& drift) {
   blocks_.choose(left, rig_, ShiftModel(rig_, g, drift), kBlocks);
 }
 
-void BlockDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+void BlockDisparities::measure(const cv::Mat& right, const PlaneVector& g, const RigRotation& rows,
                                const PlaneDrift& drift) {
   const ShiftModel shift(rig_, g, drift);
   blocks_.compare(right, shift, matches_);

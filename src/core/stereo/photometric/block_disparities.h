@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/photometric/block_disparity.h"
 #include "stereo/photometric/photometric_blocks.h"
@@ -17,10 +18,10 @@ class BlockDisparities {
 
   /// Takes blocks of the left image (mono8) below the horizon of the plane g, 1/m. drift: of the plane while
   /// rows are exposed.
-  void choose(const cv::Mat& left, const Eigen::Vector3d& g, const PlaneDrift& drift = {});
+  void choose(const cv::Mat& left, const PlaneVector& g, const PlaneDrift& drift = {});
   /// Compares them with the right image (mono8) warped by the plane g, 1/m. rows: rotation that the vertical
   /// disparities of the images have.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+  void measure(const cv::Mat& right, const PlaneVector& g, const RigRotation& rows,
                const PlaneDrift& drift = {});
 
   /// Disparities of the last measurement.

@@ -86,7 +86,7 @@ struct DirectRefinement::Implementation {
 
   Implementation(const RigModel& model, int margin) : rig(model.rig), disparities(model, margin) {}
 
-  void takeSamples(const Eigen::Vector3d& g, const PlaneDrift& drift) {
+  void takeSamples(const PlaneVector& g, const PlaneDrift& drift) {
     samples.clear();
     for (const BlockDisparity& disparity : disparities.found()) samples.push_back(disparity.sample);
     carryToStamp(rig, drift, samples);
@@ -94,7 +94,7 @@ struct DirectRefinement::Implementation {
   }
 
   // Fits the plane to the last comparison. rough: the first plane, g, may be off by kStartStddev.
-  Expected<PlaneFit> fitFound(const Eigen::Vector3d& g, const PlaneDrift& drift, const PlaneLimits& limits,
+  Expected<PlaneFit> fitFound(const PlaneVector& g, const PlaneDrift& drift, const PlaneLimits& limits,
                               double bias_stddev, bool rough) {
     agreeing = 0;
     if (static_cast<int>(disparities.found().size()) < limits.min_points)
@@ -196,14 +196,14 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
   own.edges.begin();
   own.disparities.begin(left, right, start.plane, start.rows, start.drift);
   const int last = start.brief ? kBriefSteps : kSteps;
-  Eigen::Vector3d g = start.plane;
+  PlaneVector g = start.plane;
   bool rough = true;
   for (int step = 0;; ++step) {
     if (step > 0) own.disparities.measure(right, g, start.rows, start.drift);
     Expected<PlaneFit> fit = own.fitFound(g, start.drift, limits, bias_stddev, rough);
     if (!fit && step == 0 && own.disparities.areFaint()) continue;
     if (!fit) return fit;
-    const double change = own.largestDisparity(fit->plane.g - g);
+    const double change = own.largestDisparity(fit->plane.g - g.vector());
     const double share = noisy() ? 0 : kConvergedShare * own.largestDisparity(g);
     const double least = std::max(kConverged, share);
     if (step + 1 == last || (!rough && change < least)) {
@@ -213,7 +213,7 @@ Expected<PlaneFit> DirectRefinement::refine(const cv::Mat& left, const cv::Mat& 
       if (change > least) fit->plane.covariance(2, 2) += std::pow(change / own.rig.fb(), 2);
       return fit;
     }
-    g = fit->plane.g;
+    g = PlaneVector(fit->plane.g);
     rough = false;
   }
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/plane_drift.h"
 #include "stereo/plane/plane_fit.h"
 #include "uav_landing/image/rectification.h"
@@ -12,7 +13,7 @@ namespace uav_landing {
 
 /// What is known of a pair before its images are aligned.
 struct RefinementStart {
-  Eigen::Vector3d plane;  ///< at the stamp, 1/m; good to a fraction of a pixel of disparity
+  PlaneVector plane;  ///< at the stamp; good to a fraction of a pixel of disparity
   /// Rotation that the vertical disparities of the images have. They make slanted edges seem to move along a
   /// row.
   RigRotation rows;

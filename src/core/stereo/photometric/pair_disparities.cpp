@@ -11,7 +11,7 @@ constexpr double kMostlyCertain = 0.5;
 PairDisparities::PairDisparities(const RigModel& model, int margin)
     : blocks_(reduceLevel(model, 1, margin)), bands_(reduceLevel(model, 1, margin)) {}
 
-void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g,
+void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const PlaneVector& g,
                             const RigRotation& rows, const PlaneDrift& drift) {
   blocks_.choose(left, g, drift);
   blocks_.measure(right, g, rows, drift);
@@ -24,7 +24,7 @@ void PairDisparities::begin(const cv::Mat& left, const cv::Mat& right, const Eig
   collect();
 }
 
-void PairDisparities::measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+void PairDisparities::measure(const cv::Mat& right, const PlaneVector& g, const RigRotation& rows,
                               const PlaneDrift& drift) {
   if (faint_) bands_.measure(g, drift);
   faint_ = by_bands_ = faint_ && bands_.differByNoise();

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/photometric/band_disparities.h"
 #include "stereo/photometric/block_disparities.h"
 
@@ -16,11 +17,11 @@ class PairDisparities {
 
   /// Takes a pair (mono8) and compares its blocks with the right image warped by the plane g, 1/m. rows:
   /// rotation that the vertical disparities of the images have. drift: of the plane while rows are exposed.
-  void begin(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+  void begin(const cv::Mat& left, const cv::Mat& right, const PlaneVector& g, const RigRotation& rows,
              const PlaneDrift& drift = {});
   /// Compares the same pair again, on another plane. right, rows: as for begin(). Only this call uses faint
   /// texture, because a first comparison does not need it.
-  void measure(const cv::Mat& right, const Eigen::Vector3d& g, const RigRotation& rows,
+  void measure(const cv::Mat& right, const PlaneVector& g, const RigRotation& rows,
                const PlaneDrift& drift = {});
 
   /// Disparities of the last comparison, of blocks that the right image shows.

@@ -20,13 +20,13 @@ constexpr double kMedianScatter = 2.33;
 
 }  // namespace
 
-double makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
+double makeStddevsTrue(const StereoRig& rig, const PlaneVector& g, double least_factor,
                        std::vector<DisparitySample>& samples) {
   std::vector<double> residuals, stddevs, ratios, missing;
   for (std::vector<double>* values : {&residuals, &stddevs, &ratios, &missing})
     values->reserve(samples.size());
   for (const DisparitySample& sample : samples) {
-    residuals.push_back(sample.disparity - rig.fb() * g.dot(rig.ray(sample.u, sample.v)));
+    residuals.push_back(sample.disparity - g.disparity(rig, sample.u, sample.v));
     stddevs.push_back(sample.stddev);
   }
   const double offset = medianOf(residuals), middle = medianOf(stddevs);

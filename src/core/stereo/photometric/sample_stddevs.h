@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "results/disparity_sample.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -14,7 +15,7 @@ namespace uav_landing {
 /// samples have. It shows in the quietest samples, which it concerns most, as more noise would hide it.
 /// Returns the variance of that error, pixels^2. least_factor: 1 when neighbours have errors in common, so
 /// that they scatter less than they are wrong; else 0. samples: at least one.
-double makeStddevsTrue(const StereoRig& rig, const Eigen::Vector3d& g, double least_factor,
+double makeStddevsTrue(const StereoRig& rig, const PlaneVector& g, double least_factor,
                        std::vector<DisparitySample>& samples);
 
 }  // namespace uav_landing

@@ -39,7 +39,7 @@ double overlapFactor(const std::vector<DisparitySample>& samples, const PlaneFit
 }  // namespace
 
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const Disparities& disparities, int corners,
-                              const Eigen::Vector3d& expected, const PlaneLimits& limits) {
+                              const PlaneVector& expected, const PlaneLimits& limits) {
   constexpr int kTrials = 200;
   const std::vector<DisparitySample>& samples = disparities.samples;
   if (static_cast<int>(samples.size()) < limits.min_points) {
@@ -48,12 +48,13 @@ Expected<PlaneFit> fitCorners(const StereoRig& rig, const Disparities& dispariti
                 std::to_string(samples.size()) + " matches of " + std::to_string(corners) +
                     " corners, at least " + std::to_string(limits.min_points) + " needed"});
   }
-  const Consensus consensus = findPlane(rig, samples, limits, {kTrials, true, std::nullopt, expected});
-  if (!consensus.found) {
+  const std::optional<Consensus> consensus =
+      findPlane(rig, samples, limits, {kTrials, true, std::nullopt, expected});
+  if (!consensus) {
     return tl::make_unexpected(Failure{
         Reason::kNoPlane, "no plausible ground plane in " + std::to_string(samples.size()) + " matches"});
   }
-  return refinePlane(rig, disparities, consensus.g, limits);
+  return refinePlane(rig, disparities, consensus->g, limits);
 }
 
 Eigen::Matrix3d sharedCovariance(const StereoRig& rig, const MatchedCorners& corners, int window,

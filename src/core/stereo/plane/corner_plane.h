@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/corner_matching.h"
 #include "stereo/plane/plane_fit.h"
 
@@ -19,7 +20,7 @@ struct MatchedCorners {
 /// expected: the plane that predicted their places, 1/m. Fails when there are too few matches, or when they
 /// have no common plane.
 Expected<PlaneFit> fitCorners(const StereoRig& rig, const Disparities& disparities, int corners,
-                              const Eigen::Vector3d& expected, const PlaneLimits& limits);
+                              const PlaneVector& expected, const PlaneLimits& limits);
 
 /// The part that the covariance of that plane leaves out, 1/m^2. It contains the noise of pixels that several
 /// windows share. It also contains errors that are alike in a part of the image (image_cells.h). window:

@@ -58,11 +58,12 @@ struct Voters {
   }
 
   // When the plane puts a sample outside the right image, its match says nothing against the plane.
-  Votes votesFor(const Eigen::Vector3d& g, double tolerance) const {
+  Votes votesFor(const PlaneVector& plane, double tolerance) const {
+    const Eigen::Vector3d& g = plane;
     const double tens = rollOf(g) * 18.0 / M_PI;
-    const LinearValue plane{g.x(), g.y(), g.z() * rig.fb()};
+    const LinearValue disparity{g.x(), g.y(), g.z() * rig.fb()};
     const VoteRules rules{tolerance, kMinDisparity, rig.principalOffset(), kBelowPenalty, kAbovePenalty};
-    Votes votes = voteForPlane(columns, plane, rules);
+    Votes votes = voteForPlane(columns, disparity, rules);
     votes.penalty += kRollPenalty * tens * tens;
     return votes;
   }
@@ -97,7 +98,7 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
       const DisparitySample& sample = voters.samples[voters.order[i]];
       const Eigen::Vector3d row(voters.columns.x[i], voters.columns.y[i], voters.rig.fb());
       const auto add = [&](double disparity) {
-        const double ratio = (disparity - row.dot(best.g)) / limits.tolerance;
+        const double ratio = (disparity - row.dot(best.g.vector())) / limits.tolerance;
         if (std::abs(ratio) >= 1) return;
         const double weight = 1 - ratio * ratio;
         information += weight * row * row.transpose();
@@ -106,11 +107,11 @@ void improve(const Voters& voters, const PlaneLimits& limits, Consensus& best) {
       add(sample.disparity);
       for (const double disparity : sample.others) add(disparity);
     }
-    const Eigen::Vector3d g = information.ldlt().solve(right);
-    if (!isPlausibleGround(g, limits)) return;
-    const Votes votes = voters.votesFor(g, limits.tolerance);
+    const std::optional<PlaneVector> g = PlaneVector::of(information.ldlt().solve(right));
+    if (!g || !isPlausibleGround(*g, limits)) return;
+    const Votes votes = voters.votesFor(*g, limits.tolerance);
     if (votes.net() <= best.score) return;
-    best = {g, votes.agreeing, votes.net(), true};
+    best = {*g, votes.agreeing, votes.net()};
   }
 }
 
@@ -126,28 +127,29 @@ struct Draw {
   }
 };
 
-// Plane through three samples. It is zero, which is not plausible, when they are nearly in line.
-Eigen::Vector3d throughThree(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                             std::mt19937& random) {
+// Plane through three samples, if they are not nearly in line.
+std::optional<PlaneVector> throughThree(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                                        std::mt19937& random) {
   const Draw a(rig, samples, random), b(rig, samples, random), c(rig, samples, random);
   const Eigen::Vector3d bc = b.ray.cross(c.ray);
   const double volume = a.ray.dot(bc);
-  if (std::abs(volume) < 1e-4) return Eigen::Vector3d::Zero();
-  return (a.disparity * bc + b.disparity * c.ray.cross(a.ray) + c.disparity * a.ray.cross(b.ray)) /
-         (volume * rig.fb());
+  if (std::abs(volume) < 1e-4) return std::nullopt;
+  return PlaneVector::of(
+      (a.disparity * bc + b.disparity * c.ray.cross(a.ray) + c.disparity * a.ray.cross(b.ray)) /
+      (volume * rig.fb()));
 }
 
 // Plane through two samples and a random roll, mostly a small one. When little of the image is ground, two
 // samples on it are found much sooner than three.
-Eigen::Vector3d throughTwo(const StereoRig& rig, const std::vector<DisparitySample>& samples, double max_roll,
-                           std::mt19937& random) {
+std::optional<PlaneVector> throughTwo(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                                      double max_roll, std::mt19937& random) {
   const Draw a(rig, samples, random), b(rig, samples, random);
   const double triangular = (below(random, 1001) + below(random, 1001)) / 1000.0 - 1.0;
   const double slope = std::tan(max_roll * triangular);
   const double ya = a.ray.y() + slope * a.ray.x(), yb = b.ray.y() + slope * b.ray.x();
-  if (std::abs(ya - yb) < 0.02) return Eigen::Vector3d::Zero();
+  if (std::abs(ya - yb) < 0.02) return std::nullopt;
   const double gy = (a.disparity - b.disparity) / (ya - yb) / rig.fb();
-  return {slope * gy, gy, a.disparity / rig.fb() - gy * ya};
+  return PlaneVector::of({slope * gy, gy, a.disparity / rig.fb() - gy * ya});
 }
 
 bool isWithin(const Eigen::Vector2d& range, double value) { return value >= range.x() && value <= range.y(); }
@@ -168,15 +170,15 @@ class PairDraws {
   }
 
   // Plane through two samples and a random roll.
-  Eigen::Vector3d next() {
+  std::optional<PlaneVector> next() {
     const size_t a = below(rays_.size()), b = below(rays_.size());
     const double triangular = static_cast<double>(below(1001) + below(1001)) / 1000.0 - 1.0;
     const double slope = steepest_ * triangular;
     const double ya = rays_[a].y() + slope * rays_[a].x(), yb = rays_[b].y() + slope * rays_[b].x();
-    if (std::abs(ya - yb) < 0.02) return Eigen::Vector3d::Zero();
+    if (std::abs(ya - yb) < 0.02) return std::nullopt;
     const double da = disparityOf(a), db = disparityOf(b);
     const double gy = (da - db) / ((ya - yb) * fb_);
-    return {slope * gy, gy, da / fb_ - gy * ya};
+    return PlaneVector::of({slope * gy, gy, da / fb_ - gy * ya});
   }
 
  private:
@@ -194,13 +196,12 @@ class PairDraws {
 
 }  // namespace
 
-Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                    const PlaneLimits& limits, const ConsensusOptions& options) {
+std::optional<Consensus> findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                                   const PlaneLimits& limits, const ConsensusOptions& options) {
   constexpr double kBeyondDoubt = 0.8;  // share of the votes that all samples would give
   constexpr double kRightRoll = 0.2;    // share of the random rolls with which two samples on the plane give
                                         // the plane
-  Consensus best;
-  if (samples.size() < 3) return best;
+  if (samples.size() < 3) return std::nullopt;
   const Voters voters{rig, samples};
   const auto all = static_cast<double>(samples.size());
   RansacOptions draws;
@@ -214,37 +215,38 @@ Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& sa
   }
   RansacBudget budget(draws);
   const double right_choice = 1 / voters.choices();
-  const auto consider = [&](const Eigen::Vector3d& g) {
+  std::optional<Consensus> best;
+  const auto consider = [&](const PlaneVector& g) {
     const Votes votes = voters.votesFor(g, limits.tolerance);
-    if (best.found && votes.net() <= best.score) return;
-    best = {g, votes.agreeing, votes.net(), true};
-    improve(voters, limits, best);
+    if (best && votes.net() <= best->score) return;
+    best = {g, votes.agreeing, votes.net()};
+    improve(voters, limits, *best);
     // Penalties only reduce the score, so a better plane has at least as many votes as this score.
-    if (options.until_sure) budget.found(right_choice * best.score / all);
+    if (options.until_sure) budget.found(right_choice * best->score / all);
   };
   if (options.expected && isPlausibleGround(*options.expected, limits)) {
     consider(*options.expected);
-    if (best.score >= kBeyondDoubt * all) return best;
+    if (best->score >= kBeyondDoubt * all) return best;
   }
   if (options.slope_range) {
     PairDraws pairs(rig, samples, limits.max_roll);
     while (budget.goesOn()) {
-      const Eigen::Vector3d g = pairs.next();
+      const std::optional<PlaneVector> g = pairs.next();
       // The slope is tested first, because it rules out most planes.
-      if (!isWithin(*options.slope_range, rig.fb() * g.y() / rig.fy)) continue;
-      if (!isPlausibleGround(g, limits)) continue;
+      if (!g || !isWithin(*options.slope_range, rig.fb() * g->vector().y() / rig.fy)) continue;
+      if (!isPlausibleGround(*g, limits)) continue;
       budget.count();
-      consider(g);
+      consider(*g);
     }
     return best;
   }
   std::mt19937 random(20100601u);
   for (int draw = 0; budget.goesOn(); ++draw) {
-    const Eigen::Vector3d g = draw % 2 == 0 ? throughThree(rig, samples, random)
-                                            : throughTwo(rig, samples, limits.max_roll, random);
-    if (!isPlausibleGround(g, limits)) continue;
+    const std::optional<PlaneVector> g = draw % 2 == 0 ? throughThree(rig, samples, random)
+                                                       : throughTwo(rig, samples, limits.max_roll, random);
+    if (!g || !isPlausibleGround(*g, limits)) continue;
     budget.count();
-    consider(g);
+    consider(*g);
   }
   return best;
 }

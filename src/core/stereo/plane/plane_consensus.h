@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/plane_limits.h"
+#include "geometry/plane_vector.h"
 #include "results/disparity_sample.h"
 #include "uav_landing/geometry/calibration.h"
 
@@ -12,10 +13,9 @@ namespace uav_landing {
 
 /// A plane and the number of samples that agree with it.
 struct Consensus {
-  Eigen::Vector3d g = Eigen::Vector3d::Zero();
-  double support = 0;  ///< about the number of agreeing samples
-  double score = 0;    ///< support less penalties; ranks the planes
-  bool found = false;
+  PlaneVector g;
+  double support;  ///< about the number of agreeing samples
+  double score;    ///< support less penalties; ranks the planes
 };
 
 /// How a consensus is looked for.
@@ -28,15 +28,16 @@ struct ConsensusOptions {
   std::optional<Eigen::Vector2d> slope_range{};
   /// A plane that is tried first and improved. If it gets four fifths of the votes, nothing is drawn: a
   /// different plane would have fewer.
-  std::optional<Eigen::Vector3d> expected{};
+  std::optional<PlaneVector> expected{};
   /// Draws per plausible plane, at most. Implausible planes cost next to nothing.
   int draws_each = 20;
 };
 
 /// Plane by consensus (MSAC over triples and pairs; fixed seed): the plausible plane with the most support. A
 /// sample that matches nearer than the plane stands above the ground and costs little. A sample that matches
-/// farther would lie below the ground, which is impossible, so it counts against the plane.
-Consensus findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
-                    const PlaneLimits& limits, const ConsensusOptions& options);
+/// farther would lie below the ground, which is impossible, so it counts against the plane. Nothing when no
+/// plane drawn is plausible.
+std::optional<Consensus> findPlane(const StereoRig& rig, const std::vector<DisparitySample>& samples,
+                                   const PlaneLimits& limits, const ConsensusOptions& options);
 
 }  // namespace uav_landing

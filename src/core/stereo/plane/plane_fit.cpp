@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "estimation/convergence.h"
@@ -115,9 +116,8 @@ double clusterInflation(const StereoRig& rig, const std::vector<DisparitySample>
 
 }  // namespace
 
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits,
-                               PlaneColumns& memory) {
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities, const PlaneVector& start,
+                               const PlaneLimits& limits, PlaneColumns& memory) {
   constexpr int kIterations = 6;
   const std::vector<DisparitySample>& samples = disparities.samples;
   Eigen::Vector3d g = start;
@@ -138,22 +138,23 @@ Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparit
     g = sums.information.ldlt().solve(sums.right);
     if (convergence.reached<3>((g - before) / scale, sums.information)) break;
   }
-  if (!isPlausibleGround(g, limits)) {
+  const std::optional<PlaneVector> plane = PlaneVector::of(g);
+  if (!plane || !isPlausibleGround(*plane, limits)) {
     return tl::make_unexpected(Failure{Reason::kNoPlane, "the plane is outside the limits of pitch or roll"});
   }
   PlaneFit fit;
   fit.agrees = problem.agreeing();
   fit.count = sums.count;
   fit.residual_stddev = std::sqrt(std::max(0.0, sums.weighted_squares / sums.information(2, 2))) * rig.fb();
-  fit.plane.g = g;
+  fit.plane.g = *plane;
   const double inflation = clusterInflation(rig, samples, problem, sums, fit);
   fit.plane.covariance = inflation * sums.scaledInformation().inverse();
   fit.plane.covariance(2, 2) += biasVariance(rig, disparities.bias_stddev);
   return fit;
 }
 
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits) {
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities, const PlaneVector& start,
+                               const PlaneLimits& limits) {
   PlaneColumns memory;
   return refinePlane(rig, disparities, start, limits, memory);
 }

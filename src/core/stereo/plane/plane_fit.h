@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/plane_limits.h"
+#include "geometry/plane_vector.h"
 #include "kernels/samples/plane_sums.h"
 #include "results/disparity_sample.h"
 #include "uav_landing/base/failure.h"
@@ -33,10 +34,10 @@ struct PlaneFit {
 /// have no weight. The covariance comes from the normal matrix. It is scaled by the residuals when these
 /// exceed the claimed stddevs, and by how alike they are in neighbouring points. The variance of the common
 /// error is added to it. memory: to work in, from any earlier fit.
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits, PlaneColumns& memory);
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities, const PlaneVector& start,
+                               const PlaneLimits& limits, PlaneColumns& memory);
 /// The same with memory of its own.
-Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities,
-                               const Eigen::Vector3d& start, const PlaneLimits& limits);
+Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities, const PlaneVector& start,
+                               const PlaneLimits& limits);
 
 }  // namespace uav_landing

@@ -26,24 +26,29 @@ std::vector<cv::Point> spread(const StereoLevel& level, const FullSizeCorners& c
   return places;
 }
 
+// The plane, if at least so many samples agree with it.
+std::optional<Consensus> supported(const std::optional<Consensus>& plane, double least) {
+  return plane && plane->support >= least ? plane : std::nullopt;
+}
+
 }  // namespace
 
-Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
-                     GroundCornerMemory& memory) {
+std::optional<Consensus> trackPlane(const StereoLevel& level, const PlaneVector& predicted,
+                                    const StereoDepthParameters& parameters, const PlaneLimits& limits,
+                                    GroundCornerMemory& memory) {
   constexpr int kCorners = 250, kIterations = 150;
   constexpr double kLeastShare = 0.2;
   const std::vector<cv::Point> corners = findGroundCorners(level, predicted, kCorners, parameters, memory);
   const std::vector<DisparitySample> samples =
       matchCorners(level, corners, predicted, parameters, trackingReach(parameters)).samples;
-  Consensus consensus = findPlane(level.rig, samples, limits, {kIterations});
-  consensus.found &= consensus.support >= std::max<double>(limits.min_points, kLeastShare * samples.size());
-  return consensus;
+  const double least = std::max<double>(limits.min_points, kLeastShare * samples.size());
+  return supported(findPlane(level.rig, samples, limits, {kIterations}), least);
 }
 
-Consensus trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
-                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
-                             const PlaneLimits& limits) {
+std::optional<Consensus> trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
+                                            const PlaneVector& predicted,
+                                            const StereoDepthParameters& parameters,
+                                            const PlaneLimits& limits) {
   // Enough for a plane that is good to half a pixel at full size; the search there reaches farther.
   constexpr size_t kScouts = 64;
   constexpr int kIterations = 150;
@@ -53,10 +58,8 @@ Consensus trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& co
   const std::vector<cv::Point> scouts = spread(level, corners, kScouts);
   const std::vector<DisparitySample> samples =
       matchCorners(level, scouts, predicted, parameters, trackingReach(parameters)).samples;
-  Consensus consensus = findPlane(level.rig, samples, limits, {kIterations, true});
-  consensus.found &= consensus.support >=
-                     std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));
-  return consensus;
+  const double least = std::max<double>(limits.min_points, kLeastShare * static_cast<double>(scouts.size()));
+  return supported(findPlane(level.rig, samples, limits, {kIterations, true}), least);
 }
 
 }  // namespace uav_landing

@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/corner_matching.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/plane/plane_consensus.h"
@@ -13,9 +15,9 @@ namespace uav_landing {
 
 /// Plane near a predicted one (1/m): matches within search_radius, then consensus. Not found when too few
 /// agree.
-Consensus trackPlane(const StereoLevel& level, const Eigen::Vector3d& predicted,
-                     const StereoDepthParameters& parameters, const PlaneLimits& limits,
-                     GroundCornerMemory& memory);
+std::optional<Consensus> trackPlane(const StereoLevel& level, const PlaneVector& predicted,
+                                    const StereoDepthParameters& parameters, const PlaneLimits& limits,
+                                    GroundCornerMemory& memory);
 
 /// Corners that were found at full size, for use at a smaller one.
 struct FullSizeCorners {
@@ -24,8 +26,9 @@ struct FullSizeCorners {
 };
 
 /// The same by a few scouts among the corners. Not found unless most of the scouts agree.
-Consensus trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
-                             const Eigen::Vector3d& predicted, const StereoDepthParameters& parameters,
-                             const PlaneLimits& limits);
+std::optional<Consensus> trackPlaneByScouts(const StereoLevel& level, const FullSizeCorners& corners,
+                                            const PlaneVector& predicted,
+                                            const StereoDepthParameters& parameters,
+                                            const PlaneLimits& limits);
 
 }  // namespace uav_landing

@@ -9,7 +9,7 @@
 namespace uav_landing {
 
 RivalPlane::RivalPlane(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                       const Eigen::Vector3d& plane, const StereoDepthParameters& parameters)
+                       const PlaneVector& plane, const StereoDepthParameters& parameters)
     : g(plane), correlation(corners.size(), -1) {
   constexpr int kSteps = 1;
   const ShiftModel shift(level.rig, g);

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/stereo_level.h"
 #include "uav_landing/parameters/stereo_depth_parameters.h"
 
@@ -11,10 +12,10 @@ namespace uav_landing {
 
 /// A plane, and how well each corner correlates at the place that it predicts.
 struct RivalPlane {
-  Eigen::Vector3d g;                ///< 1/m
+  PlaneVector g;
   std::vector<double> correlation;  ///< below 0 when the place is outside the right image
 
-  RivalPlane(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& plane,
+  RivalPlane(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& plane,
              const StereoDepthParameters& parameters);
 
   /// Whether the corners that match on both planes match better on this one. Only repeated texture matches on

@@ -143,10 +143,10 @@ double PlaneSearch::endBand(const SlopeBand& band, const Tier& tier) {
   options.draws_each = kDraws;
   options.until_sure = true;
   options.slope_range = band.range;
-  const Consensus plane = findPlane(tier.level.rig, candidates_, limits_, options);
+  const std::optional<Consensus> plane = findPlane(tier.level.rig, candidates_, limits_, options);
   const int least = phase_ == Phase::kSample ? limits_.min_points / 2 : limits_.min_points;
-  if (plane.found && plane.support >= least)
-    leaders_.push_back({plane.g, plane.score / static_cast<double>(tier.corners.size()), isWide()});
+  if (plane && plane->support >= least)
+    leaders_.push_back({plane->g, plane->score / static_cast<double>(tier.corners.size()), isWide()});
   const double samples = static_cast<double>(candidates_.size());
   beginBand(band_ + 1);
   return kConsensusCost + kSampleCost * samples;
@@ -186,11 +186,11 @@ std::optional<PlaneSearch::Best> PlaneSearch::chooseFrom(std::vector<Leader>& le
   double most = 0;  // share of the first one
   for (const Leader& leader : leaders) {
     if (best && leader.share < kRivalShare * most) break;
-    Eigen::Vector3d g = leader.g;
+    PlaneVector g = leader.g;
     if (leader.wide && tiers.wide.level.rig.size != level.rig.size) {
-      const Consensus closer = trackPlane(level, g, parameters_, limits_, memory);
-      if (!closer.found) continue;
-      g = closer.g;
+      const std::optional<Consensus> closer = trackPlane(level, g, parameters_, limits_, memory);
+      if (!closer) continue;
+      g = closer->g;
     }
     RivalPlane rival(level, tiers.coarse.corners, g, parameters_);
     if (!best) most = leader.share;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/plane_limits.h"
+#include "geometry/plane_vector.h"
 #include "image/windows/corners.h"
 #include "stereo/matching/stereo_level.h"
 #include "stereo/plane/slope_band.h"
@@ -39,8 +40,8 @@ class PlaneSearch {
   /// Budget of a pair of this size. alone: lines and motion wait for the plane, so more time is left.
   static double budgetOf(const cv::Size& size, bool alone = false);
 
-  /// The plane found last, 1/m; valid until the next pair.
-  const Eigen::Vector3d& plane() const { return found_->g; }
+  /// The plane found last; valid until the next pair.
+  const PlaneVector& plane() const { return found_->g; }
   /// Whether the search began with the latest pair.
   bool beganHere() const { return began_here_; }
   /// The next search that finds nothing looks for the cause, even if an earlier one did so recently. It may
@@ -67,13 +68,13 @@ class PlaneSearch {
   };
   // The best plane of a band, the share of corners that agree with it, and where it was found.
   struct Leader {
-    Eigen::Vector3d g;
+    PlaneVector g;
     double share;
     bool wide;
   };
   // share: of the plane with the most votes, which may be a rival of this one.
   struct Best {
-    Eigen::Vector3d g;
+    PlaneVector g;
     double share;
   };
 

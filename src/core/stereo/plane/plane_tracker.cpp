@@ -47,47 +47,47 @@ void PlaneTracker::begin(double stamp) {
   if (duration > Steadiness::kLongestRegular * duration_) steadiness_.lose();
   duration_ = duration;
   stamp_ = stamp;
-  expected_ = last_ + (stamp - last_stamp_) * rate_;
-  corners_.clear();
+  expected_.reset();
+  if (last_) expected_ = PlaneVector::of(last_->g.vector() + (stamp - last_->stamp) * last_->rate);
+  corners_.reset();
 }
 
 void PlaneTracker::forget() {
   stamp_ = -INFINITY;
-  has_last_ = false;
-  failures_ = 0;
+  last_.reset();
   steady_rate_.setZero();
   steadiness_.lose();
 }
 
 void PlaneTracker::miss() {
-  has_last_ = has_last_ && ++failures_ < kKeepPlaneFor;
+  if (last_ && ++last_->misses >= kKeepPlaneFor) last_.reset();
   steadiness_.lose();
 }
 
 void PlaneTracker::remember(const StereoDepthResult& result, bool certain) {
-  const Eigen::Vector3d& g = result.plane.g;
-  const bool follows = has_last_ && !result.from_search;
+  const std::optional<PlaneVector> g = PlaneVector::of(result.plane.g);
+  if (!g) return miss();
+  const bool follows = last_ && !result.from_search;
   if (follows && certain) {
     steadiness_.note(agreeingShare(result), farthestOff(result));
   } else {
     steadiness_.lose();
   }
-  rate_ = follows ? Eigen::Vector3d((g - last_) / (stamp_ - last_stamp_)) : Eigen::Vector3d::Zero();
-  if (!follows) {
-    steady_rate_.setZero();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  if (follows) {
+    rate = (g->vector() - last_->g.vector()) / (stamp_ - last_->stamp);
+    steady_rate_ += (steady_rate_.isZero(0) ? 1 : kLatest) * (rate - steady_rate_);
   } else {
-    steady_rate_ += (steady_rate_.isZero(0) ? 1 : kLatest) * (rate_ - steady_rate_);
+    steady_rate_.setZero();
   }
-  last_ = g;
-  last_stamp_ = stamp_;
-  has_last_ = true;
-  failures_ = 0;
+  last_ = {*g, rate, stamp_};
 }
 
 // Largest difference in pixels, over the corners on the plane, between the disparity by the plane and the
 // expected one.
 double PlaneTracker::farthestOff(const StereoDepthResult& result) const {
-  const ShiftModel now(rig_, result.plane.g), expected(rig_, expected_);
+  if (!expected_) return INFINITY;
+  const ShiftModel now(rig_, PlaneVector(result.plane.g)), expected(rig_, *expected_);
   double farthest = 0;
   for (const StereoDepthResult::Point& point : result.points)
     if (point.on_plane)
@@ -99,55 +99,56 @@ bool PlaneTracker::bearsOut(const StereoDepthResult& result) const {
   return steadiness_.bearsOut(agreeingShare(result), farthestOff(result));
 }
 
-std::optional<Eigen::Vector3d> PlaneTracker::steadyPlane(Timings& timings) {
+std::optional<PlaneVector> PlaneTracker::steadyPlane(Timings& timings) {
   // Replaces the search by a few corners.
   ScopedTimer timer(timings, "feature_matching_coarse");
   if (!steadiness_.goesWithout()) return std::nullopt;
   return expected_;
 }
 
-std::optional<Eigen::Vector3d> PlaneTracker::follow(const StereoLevel& fine, const StereoLevel& coarse,
-                                                    int factor, Timings& timings) {
+std::optional<PlaneVector> PlaneTracker::follow(const StereoLevel& fine, const StereoLevel& coarse,
+                                                int factor, Timings& timings) {
   steadiness_.searched();
-  if (!has_last_) return std::nullopt;
-  if (corners_.empty()) cornersOn(fine, last_, timings);
+  if (!last_) return std::nullopt;
+  if (!corners_) cornersOn(fine, last_->g, timings);
   ScopedTimer timer(timings, "feature_matching_coarse");
-  const Consensus scouted = trackPlaneByScouts(coarse, {corners_, factor}, last_, parameters_, limits_);
-  if (scouted.found) return scouted.g;
-  corners_.clear();
-  return followFrom(last_, coarse);
+  const std::optional<Consensus> scouted =
+      trackPlaneByScouts(coarse, {corners_->places, factor}, last_->g, parameters_, limits_);
+  if (scouted) return scouted->g;
+  corners_.reset();
+  return followFrom(last_->g, coarse);
 }
 
-std::optional<Eigen::Vector3d> PlaneTracker::followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse,
-                                                        double reach) {
+std::optional<PlaneVector> PlaneTracker::followFrom(const PlaneVector& g, const StereoLevel& coarse,
+                                                    double reach) {
   StereoDepthParameters reaching = parameters_;
   reaching.search_radius *= reach;
-  const Consensus tracked = trackPlane(coarse, g, reaching, limits_, memory_);
-  if (!tracked.found) return std::nullopt;
-  return tracked.g;
+  const std::optional<Consensus> tracked = trackPlane(coarse, g, reaching, limits_, memory_);
+  if (!tracked) return std::nullopt;
+  return tracked->g;
 }
 
-std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g,
+std::vector<cv::Point> PlaneTracker::cornersOn(const StereoLevel& fine, const PlaneVector& g,
                                                Timings& timings) {
   ScopedTimer timer(timings, "harris_corners");
-  const int moved = groundRows(g).fine - groundRows(corners_of_).fine;
-  if (!corners_.empty() && std::abs(moved) < kSlack * rig_.size.height) {
-    std::vector<cv::Point> corners = cornersOnGround(fine, corners_, g);
-    if (corners.size() >= kKept * corners_.size()) return corners;
+  if (corners_) {
+    const int moved = groundRows(g).fine - groundRows(corners_->g).fine;
+    std::vector<cv::Point> kept = cornersOnGround(fine, corners_->places, g);
+    const bool most = kept.size() >= kKept * static_cast<double>(corners_->places.size());
+    if (!kept.empty() && most && std::abs(moved) < kSlack * rig_.size.height) return kept;
   }
-  corners_ = matcher_.detect(fine, g, corner_count_);
-  corners_of_ = g;
-  return corners_;
+  corners_ = {g, matcher_.detect(fine, g, corner_count_)};
+  return corners_->places;
 }
 
-FirstRows PlaneTracker::rowsOf(const Eigen::Vector3d& g, double slack) const {
+FirstRows PlaneTracker::rowsOf(const PlaneVector& g, double slack) const {
   constexpr int kInterpolation = 8;  // pixels that windows are moved by, and that interpolation reads
   const int above = parameters_.window_radius + kInterpolation;
   return firstGroundRows(rig_, g, {above, above}, slack);
 }
 
-FirstRows PlaneTracker::groundRows(const Eigen::Vector3d& g) const { return rowsOf(g, 0); }
+FirstRows PlaneTracker::groundRows(const PlaneVector& g) const { return rowsOf(g, 0); }
 
-FirstRows PlaneTracker::lastGroundRows() const { return rowsOf(last_, kSlack); }
+FirstRows PlaneTracker::lastGroundRows() const { return rowsOf(last_->g, kSlack); }
 
 }  // namespace uav_landing

@@ -8,6 +8,7 @@
 
 #include "base/steadiness.h"
 #include "geometry/plane_limits.h"
+#include "geometry/plane_vector.h"
 #include "image/windows/match_image.h"
 #include "stereo/matching/corner_matcher.h"
 #include "stereo/matching/stereo_level.h"
@@ -17,7 +18,7 @@
 
 namespace uav_landing {
 
-/// Predicts the ground plane of a pair from the pairs before it. Planes are plane vectors g, 1/m.
+/// Predicts the ground plane of a pair from the pairs before it.
 class PlaneTracker {
  public:
   /// corner_count: corners looked for in an image. matcher: finds them; must outlive this object.
@@ -33,7 +34,7 @@ class PlaneTracker {
   /// The plane of this pair, for the next one to follow. certain: no test speaks against it.
   void remember(const StereoDepthResult& result, bool certain);
 
-  bool hasLast() const { return has_last_; }
+  bool hasLast() const { return last_.has_value(); }
   /// Mean change of the plane over the last pairs, 1/m/s; 0 when not known.
   const Eigen::Vector3d& steadyRate() const { return steady_rate_; }
   /// Time since the previous pair, s; infinite for the first one.
@@ -41,28 +42,40 @@ class PlaneTracker {
   /// The plane carried on from the pairs before, when earlier predictions were right. It is good enough to
   /// match all corners directly, without a search by a few of them. Every so often there is none, so that a
   /// search checks it.
-  std::optional<Eigen::Vector3d> steadyPlane(Timings& timings);
+  std::optional<PlaneVector> steadyPlane(Timings& timings);
   /// Whether the corners matched by the steady plane agree with it.
   bool bearsOut(const StereoDepthResult& result) const;
   /// A plane good to about a pixel of disparity: by a few corners if they agree, else by more at the coarse
   /// level. factor: full size over the coarse level's size.
-  std::optional<Eigen::Vector3d> follow(const StereoLevel& fine, const StereoLevel& coarse, int factor,
-                                        Timings& timings);
+  std::optional<PlaneVector> follow(const StereoLevel& fine, const StereoLevel& coarse, int factor,
+                                    Timings& timings);
   /// The same from a plane that a pair shortly before had. reach: in search radii.
-  std::optional<Eigen::Vector3d> followFrom(const Eigen::Vector3d& g, const StereoLevel& coarse,
-                                            double reach = 1);
+  std::optional<PlaneVector> followFrom(const PlaneVector& g, const StereoLevel& coarse, double reach = 1);
   /// Corners on the ground of this plane. Those found before are used again while the horizon has hardly
   /// moved.
-  std::vector<cv::Point> cornersOn(const StereoLevel& fine, const Eigen::Vector3d& g, Timings& timings);
+  std::vector<cv::Point> cornersOn(const StereoLevel& fine, const PlaneVector& g, Timings& timings);
 
-  /// First rows that windows on the ground of this plane, or of the last one, may reach, with room for its
-  /// movement.
-  FirstRows groundRows(const Eigen::Vector3d& g) const;
+  /// First rows that windows on the ground of this plane may reach. The same of the last plane, if it
+  /// hasLast(), with room for its movement.
+  FirstRows groundRows(const PlaneVector& g) const;
   FirstRows lastGroundRows() const;
 
  private:
+  // The plane of the last pair that had one, and its change.
+  struct Last {
+    PlaneVector g;
+    Eigen::Vector3d rate;  // of g, 1/m/s
+    double stamp;          // s
+    int misses = 0;        // pairs since then
+  };
+  // Corners of this pair that lie on the ground of a plane.
+  struct GroundCorners {
+    PlaneVector g;
+    std::vector<cv::Point> places;
+  };
+
   double farthestOff(const StereoDepthResult& result) const;
-  FirstRows rowsOf(const Eigen::Vector3d& g, double slack) const;
+  FirstRows rowsOf(const PlaneVector& g, double slack) const;
 
   StereoRig rig_;
   StereoDepthParameters parameters_;
@@ -70,16 +83,10 @@ class PlaneTracker {
   int corner_count_;
   CornerMatcher& matcher_;
   double stamp_ = -INFINITY, duration_ = 0;  // of this pair, and since the previous one, s
-  bool has_last_ = false;
-  Eigen::Vector3d last_ = Eigen::Vector3d::Zero(), rate_ = Eigen::Vector3d::Zero();  // of the last pair; its
-                                                                                     // change by second
+  std::optional<Last> last_;
+  std::optional<PlaneVector> expected_;                    // in this pair
   Eigen::Vector3d steady_rate_ = Eigen::Vector3d::Zero();  // mean over the last pairs
-  double last_stamp_ = 0;
-  int failures_ = 0;                                    // pairs in a row
-  Eigen::Vector3d expected_ = Eigen::Vector3d::Zero();  // in this pair
-  // Corners of this pair, and the plane on whose ground they lie.
-  std::vector<cv::Point> corners_;
-  Eigen::Vector3d corners_of_ = Eigen::Vector3d::Zero();
+  std::optional<GroundCorners> corners_;
   Steadiness steadiness_;
   GroundCornerMemory memory_;
 };

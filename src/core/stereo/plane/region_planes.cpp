@@ -58,7 +58,7 @@ bool isIn(ImageRegion region, const Borders& borders, double u, double disparity
 }  // namespace
 
 RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                                  const Eigen::Vector3d& plane) {
+                                  const PlaneVector& plane) {
   const PlaneLimits limits{kMaxAngle, kMaxAngle, kFewest, kTolerance};
   const Borders borders = findBorders(points);
   RegionPlanes planes;
@@ -74,8 +74,7 @@ RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<Stereo
   // ground behind it.
   std::vector<double> expected;
   expected.reserve(samples.size());
-  for (const DisparitySample& sample : samples)
-    expected.push_back(rig.fb() * plane.dot(rig.ray(sample.u, sample.v)));
+  for (const DisparitySample& sample : samples) expected.push_back(plane.disparity(rig, sample.u, sample.v));
   std::vector<DisparitySample> rest;
   rest.reserve(samples.size());
   for (int i = 0; i < kImageRegions; ++i) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "image/input/image_region.h"
 #include "uav_landing/geometry/calibration.h"
 #include "uav_landing/geometry/ground_plane.h"
@@ -16,10 +17,10 @@ struct RegionPlanes {
   std::array<GroundPlane, kImageRegions> without;  ///< not valid() when too few points are left
 };
 
-/// points: of the pair, on the plane or not. plane: of the pair, 1/m; the robust fits start there. The
+/// points: of the pair, on the plane or not. plane: of the pair; the robust fits start there. The
 /// covariances contain random errors only. None is smaller than its share of the points allows, as few points
 /// estimate their own scatter badly. Without points no plane is valid.
 RegionPlanes planesWithoutRegions(const StereoRig& rig, const std::vector<StereoDepthResult::Point>& points,
-                                  const Eigen::Vector3d& plane);
+                                  const PlaneVector& plane);
 
 }  // namespace uav_landing

@@ -67,8 +67,7 @@ void SpreadSearch::reset() {
   overhead_age_.reset();
 }
 
-Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker,
-                                             bool followed) {
+Expected<PlaneVector> SpreadSearch::find(const StereoLevel& coarse, PlaneTracker& tracker, bool followed) {
   if (overhead_age_ && *overhead_age_ >= kOverheadLasts && !overhead_lasts_) search_.lookAgain();
   const PlaneSearch::State state = search_.advance(coarse, budget(followed));
   if (state != PlaneSearch::State::kGoesOn) first_ = false;
@@ -80,7 +79,7 @@ Expected<Eigen::Vector3d> SpreadSearch::find(const StereoLevel& coarse, PlaneTra
     case PlaneSearch::State::kFound: {
       not_found_ = {};
       if (search_.beganHere()) return search_.plane();
-      const std::optional<Eigen::Vector3d> followed =
+      const std::optional<PlaneVector> followed =
           tracker.followFrom(search_.plane(), coarse, std::max(1.0, age_ / kUsualAge));
       if (followed) return *followed;
       return tl::make_unexpected(stillSearching());

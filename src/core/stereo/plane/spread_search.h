@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "geometry/plane_vector.h"
 #include "stereo/plane/plane_search.h"
 #include "stereo/plane/plane_tracker.h"
 
@@ -18,7 +19,7 @@ class SpreadSearch {
   void begin(double duration);
   /// The plane in this pair. While the search goes on, the failure is that of the last search that failed,
   /// else `not_yet`. followed: this pair has already spent time on following a plane, in vain.
-  Expected<Eigen::Vector3d> find(const StereoLevel& coarse, PlaneTracker& tracker, bool followed);
+  Expected<PlaneVector> find(const StereoLevel& coarse, PlaneTracker& tracker, bool followed);
   /// The plane is known in this pair, so there is nothing to search for.
   void stop();
   void reset();

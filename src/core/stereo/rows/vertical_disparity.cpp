@@ -34,7 +34,7 @@ struct PlacedCorner {
 };
 
 std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Point>& corners,
-                                 const RowMatches& matches, const Eigen::Vector3d& g) {
+                                 const RowMatches& matches, const PlaneVector& g) {
   std::vector<PlacedCorner> all;
   all.reserve(corners.size());
   size_t next = 0;
@@ -45,7 +45,7 @@ std::vector<PlacedCorner> placed(const StereoRig& rig, const std::vector<cv::Poi
       all.push_back({corner, matches.samples[next].disparity, true, matches.across[next]});
       ++next;
     } else {
-      all.push_back({corner, rig.fb() * g.dot(rig.ray(corner.x, corner.y)), false, std::nullopt});
+      all.push_back({corner, g.disparity(rig, corner.x, corner.y), false, std::nullopt});
     }
   }
   return all;
@@ -109,7 +109,7 @@ cv::Mat levelled(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Mat& 
 
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
-                                               const RowMatches& matches, const Eigen::Vector3d& g,
+                                               const RowMatches& matches, const PlaneVector& g,
                                                int window_radius) {
   const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
   const std::vector<PlacedCorner> some = thinned(placed(level.rig, corners, matches, g), kCornersAcross);
@@ -134,8 +134,8 @@ VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
 }
 
 Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
-                                                const std::vector<cv::Point>& corners,
-                                                const Eigen::Vector3d& g, int window_radius) {
+                                                const std::vector<cv::Point>& corners, const PlaneVector& g,
+                                                int window_radius) {
   constexpr int kSteps = 4;  // a peak at the end of the range does not count
   const Eigen::Matrix2d warp = ShiftModel(level.rig, g).forward().matrix();
   const std::vector<cv::Point> some = thinned(corners, kSearched);
@@ -143,7 +143,7 @@ Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
   std::vector<RowShift> rows;
   rows.reserve(some.size());
   for (const cv::Point& corner : some) {
-    const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+    const double disparity = g.disparity(level.rig, corner.x, corner.y);
     const Eigen::Vector2d predicted(corner.x - disparity - level.rig.principalOffset(), corner.y);
     const PatchSearch::Best best = search.run(corner.x, corner.y, predicted, warp, kSteps);
     if (best.found)
@@ -173,12 +173,13 @@ void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Ma
   }
 }
 
-Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g) {
+Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const PlaneVector& g) {
   constexpr double kLean = 2.5;  // rms of the lean of lines, over simulated runways
+  const double slope = g.vector().y();
   const Eigen::Vector3d squares = residual.w.array().square() + residual.covariance.diagonal().array();
   Eigen::Matrix3d leak = Eigen::Matrix3d::Zero();
-  leak(0, 0) = squares.x() * std::pow(kLean / rig.baseline, 2) + squares.z() * g.y() * g.y();
-  leak(2, 2) = squares.x() * g.y() * g.y();
+  leak(0, 0) = squares.x() * std::pow(kLean / rig.baseline, 2) + squares.z() * slope * slope;
+  leak(2, 2) = squares.x() * slope * slope;
   return leak;
 }
 
@@ -191,14 +192,14 @@ cv::Mat RowAlignment::levelAgain(const StereoRig& rig, const cv::Mat& right, cv:
 }
 
 bool RowAlignment::search(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                          const Eigen::Vector3d& g) {
+                          const PlaneVector& g) {
   if (!enabled_) return false;
   const Expected<RigRotation> found = searchVerticalDisparities(level, corners, g, window_radius_);
   return found && adapt(level.rig, *found);
 }
 
 RowAlignment::Measured RowAlignment::measure(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                                             const RowMatches& matches, const Eigen::Vector3d& g) {
+                                             const RowMatches& matches, const PlaneVector& g) {
   if (!enabled_) return {};
   levelled_by_ = taken_out_;
   const VerticalDisparities found = measureVerticalDisparities(level, corners, matches, g, window_radius_);

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "geometry/plane_vector.h"
 #include "stereo/matching/corner_matching.h"
 #include "uav_landing/results/stage_results.h"
 
@@ -29,14 +30,14 @@ struct VerticalDisparities {
 /// noise happens to keep in their rows, so by them alone the rows would seem to move too little.
 VerticalDisparities measureVerticalDisparities(const StereoLevel& level,
                                                const std::vector<cv::Point>& corners,
-                                               const RowMatches& matches, const Eigen::Vector3d& g,
+                                               const RowMatches& matches, const PlaneVector& g,
                                                int window_radius);
 
 /// The rotation when nothing is matched yet. It looks for corners around the places predicted by a rough
 /// plane g (1/m), first within 3 columns and 3 rows of whole pixels.
 Expected<RigRotation> searchVerticalDisparities(const StereoLevel& level,
-                                                const std::vector<cv::Point>& corners,
-                                                const Eigen::Vector3d& g, int window_radius);
+                                                const std::vector<cv::Point>& corners, const PlaneVector& g,
+                                                int window_radius);
 
 /// Largest vertical disparity in the image that a rotation w (rad) makes, pixels.
 double largestVerticalDisparity(const StereoRig& rig, const Eigen::Vector3d& w);
@@ -51,7 +52,7 @@ void straightenRows(const StereoRig& rig, const Eigen::Vector3d& w, const cv::Ma
 /// It is a rule of thumb with two effects. When a row is off by dv, a slanted line seems to move along the
 /// row by dv times its slope; the two sides of a runway lean to opposite sides, which looks like roll. The
 /// row also shows ground that is nearer or farther.
-Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const Eigen::Vector3d& g);
+Eigen::Matrix3d rowLeak(const StereoRig& rig, const RigRotation& residual, const PlaneVector& g);
 
 /// Keeps the rows of the right image level with those of the left image from pair to pair. So a bent rig
 /// still matches along rows, and its bend is measured.
@@ -73,7 +74,7 @@ class RowAlignment {
   cv::Mat levelAgain(const StereoRig& rig, const cv::Mat& right, cv::Mat& buffer) const;
   bool isLevel() const { return taken_out_.isZero(); }
   /// Looks for the rows of corners with a rough plane g (1/m). True when level() now gives another image.
-  bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const Eigen::Vector3d& g);
+  bool search(const StereoLevel& level, const std::vector<cv::Point>& corners, const PlaneVector& g);
   struct Measured {
     RigRotation rotation;
     BaselineDirection baseline;
@@ -84,7 +85,7 @@ class RowAlignment {
   /// Measures the rows of the corners (see measureVerticalDisparities()) and adapts level() for the next
   /// pair. The right image of the given level must come from level().
   Measured measure(const StereoLevel& level, const std::vector<cv::Point>& corners, const RowMatches& matches,
-                   const Eigen::Vector3d& g);
+                   const PlaneVector& g);
   /// The vertical disparities that remain after level() in the pair measured last, averaged over about twenty
   /// pairs. The claimed calibration is the prior, unless it contradicts this average.
   RigRotation residual(const StereoRig& rig) const;

@@ -179,8 +179,9 @@ class ProfileFit {
   bool flatten(const Kinks& bend, const PlaneLimits& limits, double bias_stddev) {
     for (size_t i = 0; i < samples_.size(); ++i)
       samples_.takeOff(i, byKinks(samples_.expected(i), samples_.reach(i)).dot(bend));
-    const Eigen::Vector3d start = plane_.plane.g + plane_by_kinks_ * bend;
-    Expected<PlaneFit> fit = refinePlane(rig_, {samples_.flattened(), bias_stddev}, start, limits, memory_);
+    const std::optional<PlaneVector> start = PlaneVector::of(plane_.plane.g + plane_by_kinks_ * bend);
+    if (!start) return false;
+    Expected<PlaneFit> fit = refinePlane(rig_, {samples_.flattened(), bias_stddev}, *start, limits, memory_);
     if (fit) plane_ = std::move(*fit);
     return fit.has_value();
   }

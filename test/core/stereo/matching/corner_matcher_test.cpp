@@ -18,14 +18,14 @@ namespace {
 /// where to begin.
 class LucasKanade : public CornerMatcher {
  public:
-  std::vector<cv::Point> detect(const StereoLevel& level, const Eigen::Vector3d& g, int count) override {
+  std::vector<cv::Point> detect(const StereoLevel& level, const PlaneVector& g, int count) override {
     std::vector<cv::Point> corners;
     cv::goodFeaturesToTrack(level.left, corners, count, 1e-4, 4, level.left_mask);
     return cornersOnGround(level, corners, g);
   }
 
   RowMatches match(const StereoLevel& level, const std::vector<cv::Point>& corners,
-                   const Eigen::Vector3d& g) override {
+                   const PlaneVector& g) override {
     RowMatches found;
     if (corners.empty()) return found;
     cv::Mat left, right;
@@ -53,9 +53,8 @@ class LucasKanade : public CornerMatcher {
  private:
   static constexpr double kOffRow = 0.5, kStddev = 0.15;  // px
 
-  static float shiftAt(const StereoRig& rig, const Eigen::Vector3d& g, const cv::Point& corner) {
-    const double disparity = rig.fb() * g.dot(rig.ray(corner.x, corner.y));
-    return static_cast<float>(disparity + rig.principalOffset());
+  static float shiftAt(const StereoRig& rig, const PlaneVector& g, const cv::Point& corner) {
+    return static_cast<float>(g.disparity(rig, corner.x, corner.y) + rig.principalOffset());
   }
 };
 
@@ -94,8 +93,8 @@ TEST(CornerMatcher, AnotherOneTakesThePlaceOfTheOwn) {
 /// One that finds nothing.
 class Blind : public CornerMatcher {
  public:
-  std::vector<cv::Point> detect(const StereoLevel&, const Eigen::Vector3d&, int) override { return {}; }
-  RowMatches match(const StereoLevel&, const std::vector<cv::Point>&, const Eigen::Vector3d&) override {
+  std::vector<cv::Point> detect(const StereoLevel&, const PlaneVector&, int) override { return {}; }
+  RowMatches match(const StereoLevel&, const std::vector<cv::Point>&, const PlaneVector&) override {
     return {};
   }
 };

@@ -15,7 +15,7 @@ constexpr double kReadout = 0.03;  // s
 struct Scene {
   StereoRig rig = test::makeRig(640, 480, 1);
   RowTimes times{test::calibrationOf(rig), {kReadout, 0}};
-  Eigen::Vector3d g = planeAt(0);
+  PlaneVector g{planeAt(0)};
   PlaneDrift drift{planeRate(g, test::motionAt(0)), &times};
 
   static Eigen::Vector3d planeAt(double t) {
@@ -44,9 +44,10 @@ struct Scene {
 TEST(PlaneDrift, LeadsTheDisparitiesOfRowsToThePlaneAtTheStamp) {
   const Scene scene;
   std::vector<DisparitySample> samples = scene.samples();
-  EXPECT_GT((scene.fitted(samples) - scene.g).norm(), 5e-3 * scene.g.norm()) << "the shutter must matter";
+  const Eigen::Vector3d& g = scene.g;
+  EXPECT_GT((scene.fitted(samples) - g).norm(), 5e-3 * g.norm()) << "the shutter must matter";
   carryToStamp(scene.rig, scene.drift, samples);
-  EXPECT_LT((scene.fitted(samples) - scene.g).norm(), 2e-4 * scene.g.norm());
+  EXPECT_LT((scene.fitted(samples) - g).norm(), 2e-4 * g.norm());
   for (const DisparitySample& sample : samples)
     EXPECT_NEAR(sample.others.front(), sample.disparity + 7, 1e-9);
 }

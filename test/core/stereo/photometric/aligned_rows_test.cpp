@@ -24,7 +24,9 @@ struct Ground {
   cv::Mat right;
 
   Ground() { GroundRenderer(2).right(rig, pose, {1, 0, 0}).convertTo(right, CV_32F); }
-  ShiftModel off(double pixels) const { return {rig, truth + Eigen::Vector3d(0, 0, pixels / rig.fb())}; }
+  ShiftModel off(double pixels) const {
+    return {rig, PlaneVector(truth + Eigen::Vector3d(0, 0, pixels / rig.fb()))};
+  }
   AlignedRows aligned(double pixels_off) const {
     AlignedRows rows(left_mask, right_mask);
     rows.begin(left, off(0), 1 + rig.principalOffset());
@@ -116,7 +118,7 @@ TEST(AlignedRows, AreNoneWithoutGround) {
   const Ground ground;
   AlignedRows rows(ground.left_mask, ground.right_mask);
   // Level ground that is looked up from.
-  rows.begin(ground.left, ShiftModel(ground.rig, Eigen::Vector3d(0, 0.3, -0.4)), 1);
+  rows.begin(ground.left, ShiftModel(ground.rig, PlaneVector({0, 0.3, -0.4})), 1);
   EXPECT_EQ(rows.left().rows, 0);
   rows.align(ground.right, ground.off(0));
   EXPECT_EQ(rows.right().rows, 0);

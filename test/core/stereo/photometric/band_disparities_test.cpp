@@ -57,8 +57,7 @@ TEST(BandDisparities, AreTheSameWithRowsThatAreOffAsTold) {
         const DisparitySample& sample = found.sample;
         const double x = (sample.u - scene.rig.cx) / scene.rig.fx,
                      weight = 1 / (sample.stddev * sample.stddev);
-        sum += weight * x *
-               (sample.disparity - scene.rig.fb() * scene.truth.dot(scene.rig.ray(sample.u, sample.v)));
+        sum += weight * x * (sample.disparity - scene.truth.disparity(scene.rig, sample.u, sample.v));
         squares += weight * x * x;
       }
       return sum / squares;
@@ -119,7 +118,7 @@ TEST(BandDisparities, KnowMoreOfFaintTextureThanBlocksAlone) {
 TEST(BandDisparities, AreNoneWhereThereIsNoGround) {
   const GroundPair scene = closeBelow(10, kFaint);
   BandDisparities bands(scene.level());
-  bands.choose(scene.left, Eigen::Vector3d(0, 0.3, -0.4));
+  bands.choose(scene.left, PlaneVector({0, 0.3, -0.4}));
   bands.takeRight(scene.right, scene.rows);
   bands.measure(scene.truth);
   EXPECT_TRUE(bands.disparities().empty());

@@ -8,7 +8,7 @@ namespace uav_landing {
 namespace {
 
 const StereoRig kRig = test::makeRig(640, 480, 1.0);
-const Eigen::Vector3d kPlane(0, 0.1, 0.01);
+const PlaneVector kPlane({0, 0.1, 0.01});
 
 ShiftMatch matchWith(double shift) { return {200, 300, shift, 0.1, 0, 3, true, true}; }
 
@@ -17,7 +17,7 @@ BlockDisparity disparityWith(double shift, const Eigen::Vector3d& w = Eigen::Vec
 }
 
 TEST(BlockDisparity, IsThePlanesAndTheShift) {
-  const double plane = kRig.fb() * kPlane.dot(kRig.ray(200, 300));
+  const double plane = kPlane.disparity(kRig, 200, 300);
   EXPECT_NEAR(disparityWith(0).sample.disparity, plane, 1e-9);
   EXPECT_NEAR(disparityWith(0.5).sample.disparity, plane + 0.5, 1e-9) << "no slope along the rows";
   EXPECT_EQ(disparityWith(0.5).blocks, 3);

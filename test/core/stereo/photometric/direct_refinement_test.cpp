@@ -35,7 +35,7 @@ TEST(DirectRefinement, ClaimsWhatABriefOneLeavesUnsettled) {
     start.brief = true;
     const Expected<PlaneFit> brief = refined();
     ASSERT_TRUE(settled && brief);
-    const Eigen::Vector3d error = brief->plane.g - scene.truth;
+    const Eigen::Vector3d error = brief->plane.g - scene.truth.vector();
     normalised += error.dot(brief->plane.covariance.ldlt().solve(error)) / (3 * kPairs);
     const double moved = std::pow((brief->plane.g - settled->plane.g).z(), 2);
     EXPECT_GE(brief->plane.covariance(2, 2), settled->plane.covariance(2, 2) + moved) << i;
@@ -65,14 +65,14 @@ TEST(DirectRefinement, OfARollingShutterFindsThePlaneAtTheStamp) {
   const double rate = 3 / (scene.rig.fb() * times.readoutTime());  // 1/m/s: 3 px in a readout
   const Eigen::Vector3d& t = times.plane();
   const Eigen::Vector3d by_rows = rate * Eigen::Vector3d(0, t[2] * scene.rig.fy, t[0] + t[2] * scene.rig.cy);
-  const Eigen::Vector3d at_stamp = scene.truth - by_rows;
+  const Eigen::Vector3d at_stamp = scene.truth.vector() - by_rows;
   for (const double pixels : {-0.3, 0.0}) {
-    RefinementStart start{scene.off(pixels, 0) - by_rows, scene.rows};
+    RefinementStart start{PlaneVector(scene.off(pixels, 0).vector() - by_rows), scene.rows};
     start.drift = {{0, 0, rate}, &times};
     const Expected<PlaneFit> fit =
         DirectRefinement(scene.model, 4).refine(scene.left, scene.right, start, test::groundLimits(), 0);
     ASSERT_TRUE(fit) << fit.error().message();
-    EXPECT_LT(scene.error(scene.truth + fit->plane.g - at_stamp), 0.05) << pixels;
+    EXPECT_LT(scene.error(scene.truth.vector() + fit->plane.g - at_stamp), 0.05) << pixels;
   }
 }
 
@@ -163,11 +163,11 @@ TEST(DirectRefinement, ClaimsACovarianceThatIsTrue) {
     RefinedPair scene;
     scene.ground = GroundRenderer(100 + i);
     scene.pose = makePose(3 + 0.05 * i, -8, 0.2 * i - 4);
-    scene.truth = scene.pose.down() / scene.pose.height();
+    scene.truth = PlaneVector(scene.pose.down() / scene.pose.height());
     scene.render({1, 0, 4}, {1, 0, 4});
     const Expected<PlaneFit> fit = scene.refine(scene.off(0.1, 0));
     ASSERT_TRUE(fit) << fit.error().message();
-    const Eigen::Vector3d error = fit->plane.g - scene.truth;
+    const Eigen::Vector3d error = fit->plane.g - scene.truth.vector();
     sum += error.dot(fit->plane.covariance.ldlt().solve(error));
   }
   // The inflation for correlated errors is never below 1, so that the claim is on the careful side.
@@ -199,7 +199,7 @@ TEST(DirectRefinement, SeesCoarseTextureThroughMuchNoise) {
     scene.ground = GroundRenderer(400 + i);
     scene.ground.grain = 0.04;
     scene.pose = makePose(1.2, -8, 3);
-    scene.truth = scene.pose.down() / scene.pose.height();
+    scene.truth = PlaneVector(scene.pose.down() / scene.pose.height());
     scene.render({0.3, 80, 8}, {0.3, 80, 8});
     const Expected<PlaneFit> fit = scene.refine(scene.off(0.2, 0));
     ASSERT_TRUE(fit) << fit.error().message();
@@ -217,7 +217,7 @@ TEST(DirectRefinement, FindsTheSameInAPairWhateverCameBefore) {
   faint.render({0.25, 80, 5}, {0.25, 80, 5});
   DirectRefinement refinement(clear.model, 4);
   for (const RefinedPair* scene : {&faint, &clear, &faint, &clear}) {
-    const Eigen::Vector3d start = scene->off(0.2, 0);
+    const PlaneVector start = scene->off(0.2, 0);
     const Expected<PlaneFit> fit =
         refinement.refine(scene->left, scene->right, {start, scene->rows}, test::groundLimits(), 0);
     const Expected<PlaneFit> alone = scene->refine(start);

@@ -38,7 +38,7 @@ Outcome outcomeOf(double noise, double common, double least_factor = 0) {
       const double error = noise * stddev * normal(random) + common * normal(random);
       samples.push_back({u, v, stddev, rig.fb() * g.dot(rig.ray(u, v)) + error});
     }
-    outcome.told += makeStddevsTrue(rig, g, least_factor, samples) / kDraws;
+    outcome.told += makeStddevsTrue(rig, PlaneVector(g), least_factor, samples) / kDraws;
     // Next to no error besides shows in the noisy ones.
     const double factor = samples[1].stddev / kNoisy;
     outcome.factor += factor / kDraws;

@@ -38,7 +38,8 @@ std::vector<DisparitySample> corners(std::mt19937& random, double step, double c
 
 MatchedCorners fitted(std::vector<DisparitySample> samples) {
   PlaneFit fit =
-      fitCorners(rig(), {samples, kBias}, static_cast<int>(samples.size()), kPlane, limits()).value();
+      fitCorners(rig(), {samples, kBias}, static_cast<int>(samples.size()), PlaneVector(kPlane), limits())
+          .value();
   return {{}, {std::move(samples), {}}, std::move(fit)};
 }
 
@@ -103,18 +104,21 @@ TEST(CornerPlane, IsThatOfMostCornersWhereverItWasExpected) {
   std::vector<DisparitySample> samples = corners(random, 20, 0);
   for (DisparitySample& sample : samples) sample.stddev *= 0.6;  // claimed less than they scatter
   const auto count = static_cast<int>(samples.size());
-  const Eigen::Vector3d there = fitCorners(rig(), {samples, kBias}, count, kPlane, limits())->plane.g;
+  const Eigen::Vector3d there =
+      fitCorners(rig(), {samples, kBias}, count, PlaneVector(kPlane), limits())->plane.g;
   // Pixels, by which nearer and farther planes were expected; small ones may be where nothing is drawn.
   for (const double off : {-20.0, -1.0, -0.3, -0.25, -0.1, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 1.0, 20.0}) {
     const Eigen::Vector3d expected = kPlane - off / rig().fb() * Eigen::Vector3d::UnitZ();
-    const Expected<PlaneFit> found = fitCorners(rig(), {samples, kBias}, count, expected, limits());
+    const Expected<PlaneFit> found =
+        fitCorners(rig(), {samples, kBias}, count, PlaneVector(expected), limits());
     ASSERT_TRUE(found) << off << ": " << found.error().message();
     EXPECT_LT((found->plane.g - there).norm(), 0.1 * std::sqrt(found->plane.covariance.trace())) << off;
   }
   // A third of the corners on the plane expected does not keep it there.
   std::vector<DisparitySample> mixed = samples;
   for (size_t i = 0; i < mixed.size(); i += 3) mixed[i].disparity *= 0.8;
-  const Expected<PlaneFit> found = fitCorners(rig(), {mixed, kBias}, count, 0.8 * kPlane, limits());
+  const Expected<PlaneFit> found =
+      fitCorners(rig(), {mixed, kBias}, count, PlaneVector(0.8 * kPlane), limits());
   ASSERT_TRUE(found);
   EXPECT_LT((found->plane.g - kPlane).norm(), 0.01 * kPlane.norm());
 }
@@ -125,7 +129,7 @@ TEST(CornerPlane, SaysThatThereIsNone) {
   std::vector<DisparitySample> samples = corners(random, 20, 0);
   for (DisparitySample& sample : samples) sample.disparity = anything(random);
   const auto reason = [&](int corners) {
-    return fitCorners(rig(), {samples, kBias}, corners, kPlane, limits()).error().reason;
+    return fitCorners(rig(), {samples, kBias}, corners, PlaneVector(kPlane), limits()).error().reason;
   };
   EXPECT_EQ(reason(500), Reason::kNoPlane);
   samples.resize(19);

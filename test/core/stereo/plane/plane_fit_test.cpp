@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <random>
 
 #include "stereo/plane/plane_consensus.h"
@@ -32,11 +33,11 @@ const StereoRig& rig() {
   return rig;
 }
 
-Eigen::Vector3d plane(double height, double pitch_deg, double roll_deg) {
+PlaneVector plane(double height, double pitch_deg, double roll_deg) {
   test::Pose pose;
   pose.pitch = pitch_deg * kDegree;
   pose.roll = roll_deg * kDegree;
-  return pose.down() / height;
+  return PlaneVector(pose.down() / height);
 }
 
 /// Disparities of random ground pixels, each by cutting its ray with the plane g.X = 1.
@@ -44,12 +45,12 @@ class Sampler {
  public:
   explicit Sampler(unsigned seed) : random_(seed) {}
 
-  std::vector<DisparitySample> ground(const Eigen::Vector3d& g, int count, double stddev) {
+  std::vector<DisparitySample> ground(const PlaneVector& g, int count, double stddev) {
     std::vector<DisparitySample> samples;
     while (static_cast<int>(samples.size()) < count) {
       const double u = uniform_(random_) * (rig().size.width - 1);
       const double v = uniform_(random_) * (rig().size.height - 1);
-      const double depth = 1 / g.dot(rig().ray(u, v));
+      const double depth = rig().fb() / g.disparity(rig(), u, v);
       if (!(depth > 0 && depth < rig().fb())) continue;  // from one pixel of disparity on
       samples.push_back({u, v, std::max(stddev, 1e-3), {rig().fb() / depth + stddev * normal_(random_)}});
     }
@@ -78,9 +79,7 @@ TEST(IsPlausibleGround, KnowsItsLimits) {
       EXPECT_TRUE(isPlausibleGround(plane(5, pitch, roll), limits));
   for (const double pitch : {-31.0, 31.0}) EXPECT_FALSE(isPlausibleGround(plane(5, pitch, 0), limits));
   for (const double roll : {-31.0, 31.0}) EXPECT_FALSE(isPlausibleGround(plane(5, 0, roll), limits));
-  EXPECT_FALSE(isPlausibleGround(-plane(5, 0, 0), limits)) << "a ceiling";
-  EXPECT_FALSE(isPlausibleGround(Eigen::Vector3d::Zero(), limits));
-  EXPECT_FALSE(isPlausibleGround(Eigen::Vector3d(0, std::nan(""), 0), limits));
+  EXPECT_FALSE(isPlausibleGround(PlaneVector(-plane(5, 0, 0).vector()), limits)) << "a ceiling";
 }
 
 TEST(PlaneFit, IsExactOnExactData) {
@@ -88,34 +87,34 @@ TEST(PlaneFit, IsExactOnExactData) {
   for (const double height : {0.5, 3.0, 30.0})
     for (const double pitch : {-15.0, -4.0, 3.0})
       for (const double roll : {-10.0, 0.0, 10.0}) {
-        const Eigen::Vector3d g = plane(height, pitch, roll);
+        const PlaneVector g = plane(height, pitch, roll);
         const std::vector<DisparitySample> samples = sampler.ground(g, 200, 0);
-        const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
-        ASSERT_TRUE(consensus.found) << height << " " << pitch << " " << roll;
-        EXPECT_GT(consensus.support, 190);
-        const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus.g, makeLimits());
+        const std::optional<Consensus> consensus = findPlane(rig(), samples, makeLimits(), {200});
+        ASSERT_TRUE(consensus) << height << " " << pitch << " " << roll;
+        EXPECT_GT(consensus->support, 190);
+        const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus->g, makeLimits());
         ASSERT_TRUE(fit) << fit.error().message();
-        EXPECT_TRUE(fit->plane.g.isApprox(g, 1e-9)) << height << " " << pitch << " " << roll;
+        EXPECT_TRUE(fit->plane.g.isApprox(g.vector(), 1e-9)) << height << " " << pitch << " " << roll;
         EXPECT_EQ(fit->count, 200);
       }
 }
 
 TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
-  const Eigen::Vector3d g = plane(6, -6, 4);
+  const PlaneVector g = plane(6, -6, 4);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Sampler sampler(seed);
     std::vector<DisparitySample> samples = sampler.ground(g, 300, 0.1);
     sampler.lift(samples, 0.4);
-    const Consensus consensus = findPlane(rig(), samples, makeLimits(), {200});
-    ASSERT_TRUE(consensus.found);
-    const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus.g, makeLimits());
+    const std::optional<Consensus> consensus = findPlane(rig(), samples, makeLimits(), {200});
+    ASSERT_TRUE(consensus);
+    const Expected<PlaneFit> fit = refinePlane(rig(), {samples}, consensus->g, makeLimits());
     ASSERT_TRUE(fit);
     EXPECT_NEAR(fit->plane.height(), 6, 4 * std::sqrt(fit->plane.heightVariance())) << seed;
     EXPECT_NEAR(fit->plane.height(), 6, 0.005 * 6) << seed;
     EXPECT_NEAR(pitchOf(fit->plane.normal()), -6 * kDegree, 0.1 * kDegree) << seed;
     EXPECT_NEAR(rollOf(fit->plane.normal()), 4 * kDegree, 0.2 * kDegree) << seed;
     for (size_t i = 0; i < samples.size(); ++i) {
-      const double above = samples[i].disparity - rig().fb() * g.dot(rig().ray(samples[i].u, samples[i].v));
+      const double above = samples[i].disparity - g.disparity(rig(), samples[i].u, samples[i].v);
       EXPECT_FALSE(above > 2 && fit->agrees[i]) << above;
       EXPECT_FALSE(std::abs(above) < 0.2 && !fit->agrees[i]) << above;
     }
@@ -124,33 +123,33 @@ TEST(PlaneFit, IsNotPulledByFortyPercentAboveTheGround) {
 
 TEST(FindPlane, PrefersTheGroundToALargerPlaneAboveIt) {
   // 45 % on the ground, 55 % on the roof of something 1.5 m tall: nothing lies below the ground.
-  const Eigen::Vector3d g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
+  const PlaneVector g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
   Sampler sampler(3);
   std::vector<DisparitySample> samples = sampler.ground(g, 135, 0.1);
   const std::vector<DisparitySample> above = sampler.ground(roof, 165, 0.1);
   samples.insert(samples.end(), above.begin(), above.end());
-  const Consensus consensus = findPlane(rig(), samples, makeLimits(), {300});
-  ASSERT_TRUE(consensus.found);
-  EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1);
+  const std::optional<Consensus> consensus = findPlane(rig(), samples, makeLimits(), {300});
+  ASSERT_TRUE(consensus);
+  EXPECT_NEAR(consensus->g.height(), 6, 0.1);
 }
 
 TEST(FindPlane, MayEndEarlyOnlyWhereNoBetterPlaneIsLeft) {
   // As many on the ground as on the roof, or fewer: the first plane drawn does not decide.
-  const Eigen::Vector3d g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
+  const PlaneVector g = plane(6, -6, 0), roof = plane(4.5, -6, 0);
   for (unsigned seed = 1; seed <= 20; ++seed)
     for (const int on_ground : {300, 135, 150}) {
       Sampler sampler(seed);
       std::vector<DisparitySample> samples = sampler.ground(roof, 300 - on_ground, 0.1);
       const std::vector<DisparitySample> below = sampler.ground(g, on_ground, 0.1);
       samples.insert(samples.end(), below.begin(), below.end());
-      const Consensus consensus = findPlane(rig(), samples, makeLimits(), {300, true});
-      ASSERT_TRUE(consensus.found);
-      EXPECT_NEAR(1 / consensus.g.norm(), 6, 0.1) << seed << " " << on_ground;
+      const std::optional<Consensus> consensus = findPlane(rig(), samples, makeLimits(), {300, true});
+      ASSERT_TRUE(consensus);
+      EXPECT_NEAR(consensus->g.height(), 6, 0.1) << seed << " " << on_ground;
     }
 }
 
 TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
-  const Eigen::Vector3d g = plane(4, -5, -3);
+  const PlaneVector g = plane(4, -5, -3);
   Sampler sampler(5);
   std::vector<DisparitySample> samples = sampler.ground(g, 200, 0.1);
   for (size_t i = 0; i < samples.size(); ++i) {
@@ -163,47 +162,47 @@ TEST(FindPlane, ResolvesSeveralCandidatesPerPixel) {
   }
   // Three planes fit equally well. All of them are found below the camera; rows tell them apart only by where
   // disparity is zero, so the range of slopes must not decide either.
-  const Consensus consensus = findPlane(rig(), samples, makeLimits(), {500});
-  ASSERT_TRUE(consensus.found);
-  EXPECT_GT(consensus.support, 150);
+  const std::optional<Consensus> consensus = findPlane(rig(), samples, makeLimits(), {500});
+  ASSERT_TRUE(consensus);
+  EXPECT_GT(consensus->support, 150);
   // With 60 pixels of plain texture beside the zebra there is only one.
   const std::vector<DisparitySample> plain = sampler.ground(g, 60, 0.1);
   samples.insert(samples.end(), plain.begin(), plain.end());
-  const Consensus decided = findPlane(rig(), samples, makeLimits(), {500});
-  ASSERT_TRUE(decided.found);
-  EXPECT_NEAR(1 / decided.g.norm(), 4, 0.1);
+  const std::optional<Consensus> decided = findPlane(rig(), samples, makeLimits(), {500});
+  ASSERT_TRUE(decided);
+  EXPECT_NEAR(decided->g.height(), 4, 0.1);
 }
 
 TEST(FindPlane, KeepsToTheRangeOfSlopes) {
   // Two planes; the upper one, which would lose, is the only one in the range.
-  const Eigen::Vector3d low = plane(4, -5, 0), high = plane(2, -5, 0);
+  const PlaneVector low = plane(4, -5, 0), high = plane(2, -5, 0);
   Sampler sampler(6);
   std::vector<DisparitySample> samples = sampler.ground(low, 100, 0.05);
   const std::vector<DisparitySample> above = sampler.ground(high, 100, 0.05);
   samples.insert(samples.end(), above.begin(), above.end());
-  const double slope = rig().fb() * high.y() / rig().fy;
+  const double slope = rig().fb() * high.vector().y() / rig().fy;
   const Eigen::Vector2d around(0.8 * slope, 1.2 * slope);
-  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), {200}).g.norm(), 4, 0.1);
-  EXPECT_NEAR(1 / findPlane(rig(), samples, makeLimits(), {200, false, around}).g.norm(), 2, 0.1);
+  EXPECT_NEAR(findPlane(rig(), samples, makeLimits(), {200})->g.height(), 4, 0.1);
+  EXPECT_NEAR(findPlane(rig(), samples, makeLimits(), {200, false, around})->g.height(), 2, 0.1);
 }
 
 TEST(FindPlane, FindsNothingAmongFewOrImplausibleSamples) {
   Sampler sampler(7);
-  EXPECT_FALSE(findPlane(rig(), sampler.ground(plane(4, 0, 0), 2, 0), makeLimits(), {100}).found);
-  EXPECT_FALSE(findPlane(rig(), {}, makeLimits(), {100}).found);
+  EXPECT_FALSE(findPlane(rig(), sampler.ground(plane(4, 0, 0), 2, 0), makeLimits(), {100}));
+  EXPECT_FALSE(findPlane(rig(), {}, makeLimits(), {100}));
   PlaneLimits tight = makeLimits();
   tight.max_pitch = 5 * kDegree;
   const std::vector<DisparitySample> steep = sampler.ground(plane(4, -20, 0), 200, 0.02);
-  const Consensus consensus = findPlane(rig(), steep, tight, {200});
-  EXPECT_LT(consensus.support, 60);
+  const std::optional<Consensus> consensus = findPlane(rig(), steep, tight, {200});
+  EXPECT_LT(consensus->support, 60);
 }
 
 TEST(FindPlane, IsDeterministic) {
   Sampler sampler(8);
   std::vector<DisparitySample> samples = sampler.ground(plane(4, -5, 2), 200, 0.2);
   sampler.lift(samples, 0.4);
-  EXPECT_EQ(findPlane(rig(), samples, makeLimits(), {100}).g,
-            findPlane(rig(), samples, makeLimits(), {100}).g);
+  EXPECT_EQ(findPlane(rig(), samples, makeLimits(), {100})->g.vector(),
+            findPlane(rig(), samples, makeLimits(), {100})->g.vector());
 }
 
 /// Mean of the normalised squared errors over many draws, and of each component's alone.
@@ -212,7 +211,7 @@ struct Nees {
   Eigen::Vector3d each = Eigen::Vector3d::Zero();
 };
 
-Nees simulate(const Eigen::Vector3d& g, int runs, double actual, double claimed, double common) {
+Nees simulate(const PlaneVector& g, int runs, double actual, double claimed, double common) {
   Sampler sampler(11);
   Nees nees;
   for (int run = 0; run < runs; ++run) {
@@ -225,7 +224,7 @@ Nees simulate(const Eigen::Vector3d& g, int runs, double actual, double claimed,
     const Expected<PlaneFit> fit = refinePlane(rig(), {samples, common}, g, makeLimits());
     EXPECT_TRUE(fit);
     if (!fit) continue;
-    const Eigen::Vector3d error = fit->plane.g - g;
+    const Eigen::Vector3d error = fit->plane.g - g.vector();
     nees.all += error.dot(fit->plane.covariance.ldlt().solve(error)) / runs;
     nees.each += error.cwiseAbs2().cwiseQuotient(fit->plane.covariance.diagonal()) / runs;
   }
@@ -237,7 +236,7 @@ constexpr double kLeastShare = 0.65;
 
 TEST(RefinePlane, ClaimsTheScatterOfIndependentErrors) {
   constexpr int kRuns = 400;
-  for (const Eigen::Vector3d& g : {plane(6, -6, 4), plane(0.7, -12, 0), plane(25, -3, -8)}) {
+  for (const PlaneVector& g : {plane(6, -6, 4), plane(0.7, -12, 0), plane(25, -3, -8)}) {
     const Nees nees = simulate(g, kRuns, 0.1, 0.1, 0);
     const double tolerance = test::chiSquareMeanTolerance(kRuns, 3);
     EXPECT_LT(nees.all, 3 + tolerance);
@@ -253,7 +252,7 @@ TEST(RefinePlane, FindsOutThatMatchesClaimTooLittle) {
 
 TEST(RefinePlane, WidensByAnErrorCommonToAllDisparities) {
   constexpr int kRuns = 400;
-  const Eigen::Vector3d g = plane(6, -6, 0);
+  const PlaneVector g = plane(6, -6, 0);
   const Nees nees = simulate(g, kRuns, 0.1, 0.1, 0.1);
   const double tolerance = test::chiSquareMeanTolerance(kRuns, 1);
   // The bias is along the optical axis of g: d = f b g.r with r_z = 1.
@@ -265,7 +264,7 @@ TEST(RefinePlane, WidensPitchByWhatACommonErrorTurnsTheHorizonAndNothingElse) {
   // A common error e of disparity moves the horizon by e / (slope of disparity) rows, here at roll 0:
   // d pitch = e h / (f b), about; height changes by less, roll not at all.
   const double height = 6, e = 0.05;
-  const Eigen::Vector3d g = plane(height, 0, 0);
+  const PlaneVector g = plane(height, 0, 0);
   const std::vector<DisparitySample> samples = Sampler(12).ground(g, 200, 0.1);
   const Expected<PlaneFit> without = refinePlane(rig(), {samples}, g, makeLimits());
   const Expected<PlaneFit> with = refinePlane(rig(), {samples, e}, g, makeLimits());
@@ -285,14 +284,14 @@ TEST(RefinePlane, WidensPitchByWhatACommonErrorTurnsTheHorizonAndNothingElse) {
 
 TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
   const double height = 2, bumps = 0.02, match_stddev = 0.1;
-  const Eigen::Vector3d g = plane(height, -10, 0);
+  const PlaneVector g = plane(height, -10, 0);
   Sampler sampler(14);
   std::vector<DisparitySample> flat = sampler.ground(g, 400, match_stddev), uneven = flat, noisy = flat;
   for (size_t i = 0; i < flat.size(); ++i) {
     // A point higher by e is seen at the disparity of a plane nearer by e: d h / (h - e). Waves of this root
     // mean square, some hundred pixels long.
     const double wave = 2 * bumps * std::sin(flat[i].u / 30) * std::sin(flat[i].v / 25);
-    const double expected = rig().fb() * g.dot(rig().ray(flat[i].u, flat[i].v));
+    const double expected = g.disparity(rig(), flat[i].u, flat[i].v);
     uneven[i].disparity += expected * (height / (height - wave) - 1);
     // Matches that scatter three times as much as they claim are no bumps.
     noisy[i].disparity += 2 * (flat[i].disparity - expected);
@@ -312,7 +311,7 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
   // Matches in clusters of six, as on strong texture, their errors the mean of the noise of the pixels in
   // their windows: neighbours have most of it in common. 0.25 pixels at some 90 are 6 mm of 2 m.
   const double height = 2, match_stddev = 0.25;
-  const Eigen::Vector3d g = plane(height, -10, 0);
+  const PlaneVector g = plane(height, -10, 0);
   double shared = 0, independent = 0;
   constexpr int kScenes = 20;
   for (int scene = 0; scene < kScenes; ++scene) {
@@ -325,7 +324,7 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
       const int u = random.uniform(20, 620), v = random.uniform(250, 460);
       for (int i = 0; i < 6; ++i) {
         const int x = u + random.uniform(-6, 7), y = v + random.uniform(-6, 7);
-        const double disparity = rig().fb() * g.dot(rig().ray(x, y)) + noise.at<double>(y, x);
+        const double disparity = g.disparity(rig(), x, y) + noise.at<double>(y, x);
         samples.push_back({static_cast<double>(x), static_cast<double>(y), match_stddev, {disparity}});
       }
     }
@@ -334,7 +333,7 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
     shared += surfaceVariance(rig(), samples, *fit, kWindow) / kScenes;
     independent += surfaceVariance(rig(), samples, *fit, 1) / kScenes;
   }
-  const double error = height * match_stddev / (rig().fb() * g.dot(rig().ray(320, 400)));
+  const double error = height * match_stddev / (g.disparity(rig(), 320, 400));
   EXPECT_GT(independent, 0.06 * error * error);
   EXPECT_NEAR(shared, 0, 0.03 * error * error);
 }
@@ -342,7 +341,7 @@ TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
 TEST(RefinePlane, TakesTheScatterOfFarMatchesForNoBumps) {
   // From 12 m up the heights of matches near the camera scatter by centimetres, those of far ones, of faint
   // texture besides, by half a metre: their patches must not count like the near ones.
-  const Eigen::Vector3d g = plane(12, -4, 0);
+  const PlaneVector g = plane(12, -4, 0);
   double square = 0;
   constexpr int kScenes = 20;
   for (int scene = 0; scene < kScenes; ++scene) {
@@ -360,7 +359,7 @@ TEST(RefinePlane, TakesTheScatterOfFarMatchesForNoBumps) {
 }
 
 TEST(RefinePlane, SaysWhyThereIsNone) {
-  const Eigen::Vector3d g = plane(6, -6, 0);
+  const PlaneVector g = plane(6, -6, 0);
   Sampler sampler(13);
   const Expected<PlaneFit> few = refinePlane(rig(), {sampler.ground(g, 19, 0.1)}, g, makeLimits());
   ASSERT_FALSE(few);

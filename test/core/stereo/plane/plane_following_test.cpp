@@ -29,7 +29,7 @@ struct Tracking {
   MatchImage left_images, right_images;
   StereoLevel fine, coarse;
   std::vector<cv::Point> corners;
-  Eigen::Vector3d before;
+  PlaneVector before;
 
   Tracking(const Pose& last, const Pose& now, double noise_share = 0) : before(last.down() / last.height()) {
     ground.grain = 0.05;
@@ -47,16 +47,16 @@ struct Tracking {
     coarse.right = right_images.coarse;
     corners = findGroundCorners(fine, before, parameters.corner_count, parameters);
   }
-  Consensus byScouts() const {
+  std::optional<Consensus> byScouts() const {
     return trackPlaneByScouts(coarse, {corners, left_images.factor}, before, parameters, limits);
   }
-  Consensus byAll() const {
+  std::optional<Consensus> byAll() const {
     GroundCornerMemory memory;
     return trackPlane(coarse, before, parameters, limits, memory);
   }
   /// Largest error of the disparity over the lowest row of the image, pixels at full size.
   double error(const Consensus& found, const Pose& now) const {
-    const Eigen::Vector3d difference = found.g - now.down() / now.height();
+    const Eigen::Vector3d difference = found.g.vector() - now.down() / now.height();
     const double bottom = rig.size.height - 1, right = rig.size.width - 1;
     return rig.fb() * std::max(std::abs(difference.dot(rig.ray(0, bottom))),
                                std::abs(difference.dot(rig.ray(right, bottom))));
@@ -70,25 +70,25 @@ TEST(TrackPlaneByScouts, FollowsHeightPitchAndRoll) {
   for (const Pose& now : {makePose(11.6, -4, 1), makePose(12, -4.6, 1), makePose(12, -3.4, 1),
                           makePose(12.3, -4, 3), makePose(11.8, -4.3, -1)}) {
     const Tracking tracking(last, now);
-    const Consensus found = tracking.byScouts();
-    ASSERT_TRUE(found.found);
-    EXPECT_LT(tracking.error(found, now), kUseful);
+    const std::optional<Consensus> found = tracking.byScouts();
+    ASSERT_TRUE(found);
+    EXPECT_LT(tracking.error(*found, now), kUseful);
   }
 }
 
 TEST(TrackPlaneByScouts, LeavesItToAllCornersWhereLessThanHalfOfThePictureAgrees) {
   const Pose last = makePose(12, -4, 1), now = makePose(11.8, -4, 1);
   const Tracking tracking(last, now, 0.48);
-  EXPECT_FALSE(tracking.byScouts().found);
-  const Consensus found = tracking.byAll();
-  ASSERT_TRUE(found.found);
-  EXPECT_LT(tracking.error(found, now), kUseful);
+  EXPECT_FALSE(tracking.byScouts());
+  const std::optional<Consensus> found = tracking.byAll();
+  ASSERT_TRUE(found);
+  EXPECT_LT(tracking.error(*found, now), kUseful);
 }
 
 TEST(TrackPlaneByScouts, FindsNothingWhereThePlaneJumpsOutOfReach) {
   const Pose last = makePose(12, -4, 0);
   for (const Pose& now : {makePose(5, -4, 0), makePose(4, -8, 0), makePose(50, -4, 0)})
-    EXPECT_FALSE(Tracking(last, now).byScouts().found);
+    EXPECT_FALSE(Tracking(last, now).byScouts());
 }
 
 TEST(CornersOnGround, AreThoseThatAPlaneGivesADisparityInTheRightImage) {
@@ -96,12 +96,12 @@ TEST(CornersOnGround, AreThoseThatAPlaneGivesADisparityInTheRightImage) {
   const Tracking tracking(last, last);
   // With the nose up the horizon is lower in the picture.
   const Pose up = makePose(12, -1, 0);
-  const Eigen::Vector3d g = up.down() / up.height();
+  const PlaneVector g(up.down() / up.height());
   const std::vector<cv::Point> kept = cornersOnGround(tracking.fine, tracking.corners, g);
   EXPECT_LT(kept.size(), tracking.corners.size());
   EXPECT_GT(kept.size(), tracking.corners.size() / 2);
   for (const cv::Point& corner : kept) {
-    const double disparity = tracking.rig.fb() * g.dot(tracking.rig.ray(corner.x, corner.y));
+    const double disparity = g.disparity(tracking.rig, corner.x, corner.y);
     EXPECT_GE(disparity, 0.3);
     EXPECT_GE(corner.x - disparity - tracking.rig.principalOffset(), 0);
   }

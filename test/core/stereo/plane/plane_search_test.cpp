@@ -87,7 +87,7 @@ TEST(PlaneSearch, FindsInStepsWhatItFindsAtOnceInThePairThatItBeganWith) {
     EXPECT_FALSE(in_steps.beganHere());
   }
   ASSERT_EQ(state, State::kFound);
-  EXPECT_EQ(in_steps.plane(), at_once.plane());
+  EXPECT_EQ(in_steps.plane().vector(), at_once.plane().vector());
   EXPECT_GT(steps, 10);
 }
 

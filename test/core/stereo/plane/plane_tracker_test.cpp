@@ -42,7 +42,7 @@ class Flight {
     tracker.begin(stamp);
     tracker.miss();
   }
-  std::optional<Eigen::Vector3d> steady(double stamp) {
+  std::optional<PlaneVector> steady(double stamp) {
     tracker.begin(stamp);
     return tracker.steadyPlane(timings_);
   }
@@ -79,10 +79,10 @@ TEST(PlaneTracker, IsSteadyOncePlanesFollowEachOther) {
 TEST(PlaneTracker, ExpectsThePlaneToMoveOnWithTheTime) {
   Flight flight;
   for (const double t : {1.0, 1.1, 1.2}) flight.see(t, 1 / (0.5 + 0.02 * t));
-  const std::optional<Eigen::Vector3d> expected = flight.steady(1.33);
+  const std::optional<PlaneVector> expected = flight.steady(1.33);
   ASSERT_TRUE(expected);
   const Eigen::Vector3d truth = test::makePose(1, -10, 0).down() * (0.5 + 0.02 * 1.33);
-  EXPECT_LT((*expected - truth).norm(), 1e-9);
+  EXPECT_LT((expected->vector() - truth).norm(), 1e-9);
 }
 
 TEST(PlaneTracker, IsNotSteadyWhileThePlaneMovesUnexpectedly) {

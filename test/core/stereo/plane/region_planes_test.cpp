@@ -19,7 +19,7 @@ TEST(RegionPlanes, APlaneWithoutTheWrongHalfIsRight) {
   // Left of the middle all disparities are too large by a share: a height too low by a twentieth.
   for (StereoDepthResult::Point& point : points)
     if (point.u < 310) point.disparity *= 1.02;
-  const RegionPlanes planes = planesWithoutRegions(rig, points, g);
+  const RegionPlanes planes = planesWithoutRegions(rig, points, PlaneVector(g));
   const auto heightWithout = [&](ImageRegion region) {
     return planes.without[static_cast<int>(region)].height();
   };
@@ -30,7 +30,7 @@ TEST(RegionPlanes, APlaneWithoutTheWrongHalfIsRight) {
 }
 
 TEST(RegionPlanes, NothingIsClaimedWithoutPoints) {
-  const RegionPlanes planes = planesWithoutRegions(test::usualRig(), {}, {0, 0.1, 0});
+  const RegionPlanes planes = planesWithoutRegions(test::usualRig(), {}, PlaneVector({0, 0.1, 0}));
   EXPECT_FALSE(planes.all.valid());
   for (const GroundPlane& plane : planes.without) EXPECT_FALSE(plane.valid());
 }

@@ -135,7 +135,8 @@ TEST(RivalPlane, TheRightOneMatchesBetterThanOneThatIsOff) {
   for (const cv::Point& corner : grid())
     if (corner.y > 100) corners.push_back(corner);
   const Eigen::Vector3d g = pose.down() / pose.height();
-  const RivalPlane true_plane(level, corners, g, parameters), off(level, corners, 1.02 * g, parameters);
+  const RivalPlane true_plane(level, corners, PlaneVector(g), parameters);
+  const RivalPlane off(level, corners, PlaneVector(1.02 * g), parameters);
   constexpr int kLeast = 10;
   EXPECT_TRUE(true_plane.matchesBetterThan(off, kLeast));
   EXPECT_FALSE(off.matchesBetterThan(true_plane, kLeast));

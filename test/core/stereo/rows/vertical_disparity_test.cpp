@@ -110,11 +110,11 @@ TEST(RigRotation, TurnsThePlaneAsAFitToTheDisturbedDisparitiesDoes) {
   }
   points.push_back({300, 400, 1, 1e-3, false});  // not on the plane: does not count
   const Eigen::Vector3d fitted = (rows.transpose() * rows).inverse() * (rows.transpose() * disturbed);
-  const Eigen::Vector3d predicted = planeByRotation(rig, points, plane.g) * w;
+  const Eigen::Vector3d predicted = planeByRotation(rig, points, PlaneVector(plane.g)) * w;
   EXPECT_LT((fitted - plane.g - predicted).norm(), 0.005 * predicted.norm());
   // Mostly a yaw turns the pitch and a roll changes the height, by h / b.
-  EXPECT_NEAR(planeByRotation(rig, points, plane.g)(2, 1), 1 / kBaseline, 0.15);
-  EXPECT_NEAR(planeByRotation(rig, points, plane.g)(1, 2), -1 / kBaseline, 0.15);
+  EXPECT_NEAR(planeByRotation(rig, points, PlaneVector(plane.g))(2, 1), 1 / kBaseline, 0.15);
+  EXPECT_NEAR(planeByRotation(rig, points, PlaneVector(plane.g))(1, 2), -1 / kBaseline, 0.15);
 }
 
 TEST(VerticalDisparity, MeasuresPitchAndRollBetweenTheCameras) {
@@ -226,7 +226,7 @@ struct NoisyRows {
     StereoLevel level = reduceLevel(scene.model, 1, parameters.window_radius + 2);
     level.left = left.fine;
     level.right = right.fine;
-    const Eigen::Vector3d g = test::exactPlane(scene.pose, 0, 0).g;
+    const PlaneVector g(test::exactPlane(scene.pose, 0, 0).g);
     const std::vector<cv::Point> corners = findGroundCorners(level, g, parameters.corner_count, parameters);
     const RowMatches matches = matchCorners(level, corners, g, parameters);
     std::vector<cv::Point> found;
@@ -353,7 +353,7 @@ TEST(VerticalDisparity, RowsThatAreLevelStayAsTheyAre) {
 struct MovedRows {
   StereoLevel level;
   std::vector<cv::Point> corners;
-  Eigen::Vector3d g = normalFromPitchRoll(-5 * kDegree, 0) / 10;
+  PlaneVector g{normalFromPitchRoll(-5 * kDegree, 0) / 10};
   static constexpr double kStddev = 0.1;  // pixels
 
   MovedRows() {
@@ -365,7 +365,7 @@ struct MovedRows {
     std::normal_distribution<double> normal;
     RowMatches matches;
     for (const cv::Point& corner : corners) {
-      const double disparity = level.rig.fb() * g.dot(level.rig.ray(corner.x, corner.y));
+      const double disparity = g.disparity(level.rig, corner.x, corner.y);
       const double column = corner.x - disparity - level.rig.principalOffset();
       RowRefinement::Across across;
       across.found = true;
@@ -404,7 +404,7 @@ TEST(RowAlignment, SearchTellsWhetherTheRowsHaveToBeMadeLevel) {
     right.assign(scene.ground.right(scene.rig, scene.pose));
     level.left = left.fine;
     level.right = right.fine;
-    const Eigen::Vector3d g = test::exactPlane(scene.pose, 0, 0).g;
+    const PlaneVector g(test::exactPlane(scene.pose, 0, 0).g);
     const std::vector<cv::Point> corners = findGroundCorners(level, g, 300, scene.parameters);
     RowAlignment alignment(true, scene.parameters.window_radius, 0.3, 0.3);
     EXPECT_EQ(alignment.search(level, corners, g), bend != 0) << bend;
@@ -421,11 +421,11 @@ TEST(VerticalDisparity, GroundCornersAreBelowTheHorizonAndInTheRightImage) {
   left.assign(scene.ground.left(scene.rig, scene.pose));
   level.left = left.fine;
   // A plane of which much lies outside the right image, and whose horizon is well below the picture's.
-  const Eigen::Vector3d g = normalFromPitchRoll(2 * kDegree, 10 * kDegree) / 4;
+  const PlaneVector g(normalFromPitchRoll(2 * kDegree, 10 * kDegree) / 4);
   const std::vector<cv::Point> corners = findGroundCorners(level, g, 400, scene.parameters);
   EXPECT_GT(corners.size(), 100u);
   for (const cv::Point& corner : corners) {
-    const double disparity = scene.rig.fb() * g.dot(scene.rig.ray(corner.x, corner.y));
+    const double disparity = g.disparity(scene.rig, corner.x, corner.y);
     const double column = corner.x - disparity - scene.rig.principalOffset();
     EXPECT_TRUE(disparity >= 0.3 && column >= 0 && column <= scene.rig.size.width - 1) << corner;
   }

@@ -66,7 +66,8 @@ struct Fits {
 };
 
 Fits fit(const std::vector<DisparitySample>& samples, const test::Pose& pose) {
-  Expected<PlaneFit> flat = refinePlane(rig(), {samples}, pose.down() / pose.height(), makeLimits());
+  Expected<PlaneFit> flat =
+      refinePlane(rig(), {samples}, PlaneVector(pose.down() / pose.height()), makeLimits());
   if (!flat) throw std::runtime_error(flat.error().message());
   const std::optional<SurfaceProfile> profile =
       fitSurfaceProfile(rig(), {samples}, *flat, makeLimits(), kSlopeChange);
@@ -180,7 +181,7 @@ TEST(SurfaceProfile, NeedsGroundAtDifferentDistances) {
   std::mt19937 random(6);
   const test::Pose pose = poseAt(6);
   std::vector<DisparitySample> samples = look(parabola(1e9), pose, 0.05, random, 20);
-  Expected<PlaneFit> flat = refinePlane(rig(), {samples}, pose.down() / 6, makeLimits());
+  Expected<PlaneFit> flat = refinePlane(rig(), {samples}, PlaneVector(pose.down() / 6), makeLimits());
   ASSERT_TRUE(flat);
   EXPECT_FALSE(fitSurfaceProfile(rig(), {samples}, *flat, makeLimits(), kSlopeChange));
 }

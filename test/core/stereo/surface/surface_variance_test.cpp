@@ -19,7 +19,7 @@ void unlevel(RefinedPair& scene, double bumps) {
   for (int v = 0; v < rows.rows; ++v) {
     for (int u = 0; u < rows.cols; ++u) {
       const double height = 2 * bumps * std::sin(u / 20.0) * std::sin(v / 20.0);
-      const double disparity = scene.rig.fb() * scene.truth.dot(scene.rig.ray(u, v));
+      const double disparity = scene.truth.disparity(scene.rig, u, v);
       // What is higher by e is seen at the disparity of a plane nearer by e.
       const double more = disparity > 0 ? disparity * height / (scene.pose.height() - height) : 0;
       columns.at<float>(v, u) = static_cast<float>(u + more);
