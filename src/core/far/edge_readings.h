@@ -7,18 +7,21 @@
 
 namespace uav_landing {
 
-/// Two readings of a runway's edges from pair to pair: as the outsides of painted stripes, and as the edges
-/// of a surface without any.
+/// What else a runway's outline may be than the best fit says, from pair to pair.
 ///
-/// A stripe that is narrower than a pixel moves the edge that shows by its width times its contrast over the
-/// surface's. So both readings explain the same image from afar, metres apart. Each pair fits the better one,
-/// and by turns the other one or an end from another place. The outline that is returned is their
-/// mean, with a covariance that holds both.
+/// A stripe along an edge that is narrower than a pixel moves the edge that shows by its width times its
+/// contrast over the surface's. So an outline with stripes and one without explain the same image, metres
+/// apart. Stripes have to be more than a pixel wide before the image tells, and then the runway is near.
+/// Bars, and strips of ground that are as dark as the runway, hold an end where it is not.
+///
+/// Each pair fits the outline without stripes, or with those that stand out more than the surface, and by
+/// turns one with an end from another place. The outline that is returned is the mean of all that is
+/// possible, with a covariance that holds it.
 class EdgeReadings {
  public:
   struct Outline {
     FittedOutline fitted;
-    Corners corners;  ///< by the better reading, px: where the next pair begins
+    Corners corners;  ///< by the best fit, px: where the next pair begins
   };
   /// start: corners of the pair before.
   Expected<Outline> fit(const cv::Mat& image, const cv::Mat& mask, const Corners& start,
@@ -31,13 +34,22 @@ class EdgeReadings {
     Matrix8d covariance;
     double excess;  // of -2 log probability over the best one's
   };
-  static constexpr int kRivals = 7;  // the other paint, and ends from other places
-  void compare(OutlineFitter& fitter, const OutlineLook& look, FittedOutline& best);
+  struct Reading {
+    FittedOutline outline;
+    EdgePaint paint;  // kUnknown: fitted without stripes, but there may be some
+  };
+  static constexpr int kRivals = 6;  // ends from other places
+  static Expected<Reading> read(OutlineFitter& fitter, const Corners& start, const OutlineLook& look);
+  Rival withStripes(OutlineFitter& fitter, const FittedOutline& plain, const OutlineLook& look);
+  static FittedOutline withStripesInPlace(const FittedOutline& fitted, const OutlineLook& look);
+  static FittedOutline withPossibleStripes(const FittedOutline& plain, const Rival& striped,
+                                           const OutlineLook& look);
+  void tryEnd(OutlineFitter& fitter, Reading& reading);
   void tellFrom(const Rival& winner);
-  FittedOutline mean(const FittedOutline& best, const OutlineLook& look) const;
+  FittedOutline mean(const FittedOutline& best) const;
 
-  EdgePaint paint_ = EdgePaint::kStripes;  // of the best outline
   std::array<std::optional<Rival>, kRivals> rivals_;
+  double stripes_excess_ = 0;  // of outlines with stripes over those without, mean of the last pairs
   int turn_ = 0;
 };
 

@@ -22,7 +22,7 @@ constexpr double kSettled = 0.01;                  // px
 constexpr double kShortest = 2, kNarrowest = 1.2;  // px
 constexpr double kLeastNoise = 1.5;                // grey levels
 constexpr double kCauchy = 2.5;                    // standard deviations
-constexpr double kTexture = 2;  // times: neighbouring pixels of the ground have texture in common
+constexpr double kTexture = 3.5;  // times: neighbouring pixels of the ground have texture in common
 // 1 sigma by which texture beside a side moves all of it, px.
 constexpr double kAcross = 0.05, kAlong = 0.03, kEnd = 0.1;  // kEnd: of each end by itself
 constexpr double kLeastContrast = 5;                         // of its standard deviation

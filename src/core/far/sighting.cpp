@@ -143,7 +143,10 @@ ApproachAngleResult::Sight Sighting::process(double stamp, const cv::Mat& left, 
 
 ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const KnownGround& ground) const {
   ApproachAngleResult::Sight sight;
-  const OutlinePose& found = seen.pose;
+  const PoseKnowledge known = fit_.knowledge(ground);
+  // Stereo was left out so far, as the outline had to agree with it first.
+  const Expected<OutlinePose> with_stereo = fitPose(seen.outline.seen, known, fit_.model().rig);
+  const OutlinePose& found = with_stereo ? *with_stereo : seen.pose;
   const auto variance = [](double size, double of_logarithm) { return size * size * of_logarithm; };
   sight.position = found.pose.position;
   sight.covariance = found.covariance.topLeftCorner<3, 3>();
@@ -153,7 +156,6 @@ ApproachAngleResult::Sight Sighting::report(const SightedRunway& seen, const Kno
   sight.width_variance = variance(found.size.width, found.covariance(6, 6));
   sight.length = found.size.length;
   sight.length_variance = variance(found.size.length, found.covariance(7, 7));
-  const PoseKnowledge known = fit_.knowledge(ground);
   PoseElements without[3];
   without[0].width = without[1].length = without[2].normal = false;
   for (int i = 0; i < 3; ++i) {
