@@ -1,7 +1,7 @@
 # What the programs share, and the programs (src/tools).
 add_library(uav_landing_tools STATIC
   src/tools/bags/bag_bytes.cpp src/tools/bags/bag_chunk.cpp src/tools/bags/bag_records.cpp
-  src/tools/bags/bag_structure.cpp src/tools/bags/old_bag_structure.cpp src/tools/bags/pair_plan.cpp
+  src/tools/bags/bag_structure.cpp src/tools/bags/pair_plan.cpp
   src/tools/bags/stamp_epochs.cpp src/tools/bags/stereo_bag_reader.cpp src/tools/bags/stereo_bag_writer.cpp
   src/tools/bags/topic_advice.cpp src/tools/datasets/csv_table.cpp src/tools/datasets/dataset.cpp
   src/tools/datasets/dataset_writer.cpp src/tools/datasets/decimal_time.cpp src/tools/simulation/random_approach.cpp

@@ -1,8 +1,6 @@
 """Inputs for the fuzzers to start from: make_corpus.py FOLDER writes FOLDER/<harness>/*."""
-import io
 import os
 import random
-import struct
 import sys
 
 import cv2
@@ -92,32 +90,6 @@ def write_bag(path, compression):
             bag.write(topic, message, stamp, connection_header=connection)
 
 
-def old_bag():
-    """The same in format 1.2, http://wiki.ros.org/Bags/Format/1.2."""
-    def record(data, **fields):
-        values = [name.encode() + b"=" + value for name, value in fields.items()]
-        header = b"".join(struct.pack("<I", len(value)) + value for value in values)
-        return struct.pack("<I", len(header)) + header + struct.pack("<I", len(data)) + data
-
-    def file_header(index):
-        return b"#ROSBAG V1.2\n" + record(b"", op=b"\x03", index_pos=struct.pack("<Q", index))
-
-    content, entries = b"", {}
-    for topic, message, stamp in messages():
-        name = topic.encode()
-        position = len(file_header(0)) + len(content)
-        if topic not in entries:
-            content += record(b"", op=b"\x01", topic=name, md5=message._md5sum.encode(), type=message._type.encode(),
-                              **{"def": b""})
-        data = io.BytesIO()
-        message.serialize(data)
-        content += record(data.getvalue(), op=b"\x02", topic=name, time=struct.pack("<II", stamp.secs, 0))
-        entries.setdefault(topic, []).append(struct.pack("<IIQ", stamp.secs, 0, position))
-    indexes = [record(b"".join(found), op=b"\x04", topic=topic.encode(), ver=struct.pack("<I", 0),
-                      count=struct.pack("<I", len(found))) for topic, found in entries.items()]
-    return file_header(len(file_header(0)) + len(content)) + content + b"".join(indexes)
-
-
 def main():
     folder = sys.argv[1]
     chance = random.Random(1)
@@ -140,7 +112,7 @@ def main():
         path = os.path.join(folder, "bag", compression)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         write_bag(path, compression)
-    save(folder, "bag", "format_1.2", old_bag())
+    save(folder, "bag", "format_1.2", b"#ROSBAG V1.2\n")
     png = cv2.imencode(".png", numpy.arange(WIDTH * HEIGHT, dtype=numpy.uint8).reshape(HEIGHT, WIDTH))[1].tobytes()
     frames = b"stamp_s,left,right,height_m,pitch_deg\n100.000000000,0.png,0.png,2.5,-3\n"
     save(folder, "dataset", "good", b"\n---\n".join([calibration("left"), calibration("right"), frames, png]))

@@ -107,6 +107,11 @@ TEST_F(BagStructure, IsRightInWhatRosbagWrites) {
   }
 }
 
+TEST_F(BagStructure, SaysHowABagOfOldRosIsWrittenAnew) {
+  bytes_ = "#ROSBAG V1.2\n";
+  EXPECT_NE(complaint().find("rosbag record"), std::string::npos) << complaint();
+}
+
 TEST_F(BagStructure, RefusesHeadersThatDoNotFit) {
   const std::string intact = bytes_;
   for (const size_t record : {fileHeader(), chunk(), message(), index(), connection(), chunkInfo()}) {

@@ -14,7 +14,6 @@ uav_landing_add_python_test(test/tools/measure_runways_test.py DEPENDENCIES meas
 uav_landing_add_gtest(bag_structure_test test/tools/bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(pair_plan_test test/tools/pair_plan_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(topic_advice_test test/tools/topic_advice_test.cpp LIBS uav_landing_tools)
-uav_landing_add_gtest(old_bag_structure_test test/tools/old_bag_structure_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(dataset_calibrations_test test/tools/dataset_calibrations_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(random_approach_test test/tools/random_approach_test.cpp LIBS uav_landing_tools)
 uav_landing_add_gtest(chart_test test/tools/chart_test.cpp LIBS uav_landing_tools)

@@ -11,7 +11,6 @@ namespace uav_landing {
 
 /// Kinds of records, by the field "op".
 enum class BagOperation : uint8_t {
-  kDefinition = 0x01,  // of a topic; format 1.2
   kMessage = 0x02,
   kFileHeader = 0x03,
   kIndex = 0x04,

@@ -11,7 +11,6 @@
 #include "bags/bag_bytes.h"
 #include "bags/bag_chunk.h"
 #include "bags/bag_records.h"
-#include "bags/old_bag_structure.h"
 
 namespace uav_landing {
 namespace {
@@ -27,7 +26,9 @@ class Walk {
   void run() {
     int version = 0;
     const size_t first_line = lengthOfFirstLine(version);
-    if (version == 102) checkOldBagStructure(file_, first_line);
+    if (version == 102)
+      throw std::runtime_error(
+          "in format 1.2, of ROS before 2010; play it with `rosbag play` and record it with `rosbag record`");
     if (version != 200) return;
     BagRecords records = from(first_line);
     const BagFields header = records.header(BagOperation::kFileHeader, "the file header");

@@ -1,6 +1,8 @@
 #include "kernels/lanes/order_statistic.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -50,13 +52,10 @@ constexpr int kTries = 10;  // limits after the samples
 }
 
 /// The values that are not below a limit, and infinity in place of the others.
-template <class Vector>
-[[gnu::always_inline]] inline void keepFrom(const Vector& v, const Vector& limits, Vector& kept) {
+[[gnu::always_inline]] inline void keepFrom(const Lanes& v, const Lanes& limits, Lanes& kept) {
   compareByParts(
       v, limits, kept, [](const auto& x, const auto& limit, auto& to) __attribute__((always_inline)) {
-        to = x >= limit ? x
-                        : std::decay_t<decltype(x)>{} +
-                              std::numeric_limits<std::decay_t<decltype(x[0])>>::infinity();
+        to = x >= limit ? x : std::decay_t<decltype(x)>{} + kInfinity;
       });
 }
 /// The values below a limit, and minus infinity in place of the others.
@@ -101,100 +100,15 @@ template <class Vector>
   return result;
 }
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
-
-[[gnu::always_inline]] inline size_t countBelow(const double* values, size_t count, double limit) {
-  using LongLanes = long long __attribute__((vector_size(32)));
-  const DoubleLanes limits = DoubleLanes{} + limit;
-  LongLanes first{}, second{};  // separate counters, so that one addition need not wait for the other
-  size_t i = 0;
-  UAV_LANDING_UNROLL
-  for (; i + 2 * kDoubleLanes <= count; i += 2 * kDoubleLanes) {
-    DoubleLanes a, b;
-    load(values + i, a);
-    load(values + i + kDoubleLanes, b);
-    LongLanes a_less, b_less;
-    less(a, limits, a_less);
-    less(b, limits, b_less);
-    first -= a_less;
-    second -= b_less;
-  }
-  first += second;
-  size_t below = static_cast<size_t>((first[0] + first[1]) + (first[2] + first[3]));
-  for (; i < count; ++i) below += values[i] < limit;
-  return below;
-}
-
-/// The smallest value that is not below a limit.
-[[gnu::always_inline]] inline double smallestFrom(const double* values, size_t count, double limit) {
-  const DoubleLanes limits = DoubleLanes{} + limit;
-  DoubleLanes smallest = DoubleLanes{} + kFar;
-  size_t i = 0;
-  for (; i + kDoubleLanes <= count; i += kDoubleLanes) {
-    DoubleLanes v;
-    load(values + i, v);
-    DoubleLanes candidate;
-    keepFrom(v, limits, candidate);
-    smaller(candidate, smallest, smallest);
-  }
-  double result = kFar;
-  for (int k = 0; k < kDoubleLanes; ++k) result = smallest[k] < result ? smallest[k] : result;
-  for (; i < count; ++i) result = values[i] >= limit && values[i] < result ? values[i] : result;
-  return result;
-}
-
-/// The range [low, high) that contains the value looked for, and the numbers of values below each end.
-struct Range {
-  double low = -kFar, high = kFar;
-  size_t below_low = 0, below_high;
-};
-
-/// The value itself if it is found, else NaN and a range of few values or of equal values.
-UAV_LANDING_MULTIVERSION double narrow(const double* values, size_t count, size_t rank, Range& range) {
-  constexpr int kSamples = 16;
-  std::array<double, kSamples> samples;
-  for (int i = 0; i < kSamples; ++i) samples[i] = values[i * count / kSamples];
-  std::sort(samples.begin(), samples.end());
-  int next = static_cast<int>(rank * kSamples / count);
-  for (int i = 0; i < kSamples + kTries; ++i) {
-    double limit;
-    if (range.low > -kFar && range.high < kFar) {
-      const double share = (static_cast<double>(rank - range.below_low) + 0.5) /
-                           static_cast<double>(range.below_high - range.below_low);
-      limit = range.low + share * (range.high - range.low);
-    } else if (next >= 0 && next < kSamples) {
-      limit = samples[next];
-    } else {
-      break;
-    }
-    if (!(limit > range.low && limit < range.high)) break;
-    const size_t below = countBelow(values, count, limit);
-    if (below == rank) return smallestFrom(values, count, limit);
-    (below < rank ? range.low : range.high) = limit;
-    (below < rank ? range.below_low : range.below_high) = below;
-    next += below < rank ? 1 : -1;
-    if (range.below_high - range.below_low <= 1) break;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 }  // namespace
 
 double orderStatistic(const double* values, size_t count, size_t rank) {
-  constexpr size_t kWorthIt = 64;
-  Range range;
-  range.below_high = count;
-  if (count >= kWorthIt) {
-    const double found = narrow(values, count, rank, range);
-    if (found < kFar) return found;
-  }
-  std::vector<double> left;
-  left.reserve(range.below_high - range.below_low);
-  for (size_t i = 0; i < count; ++i)
-    if (!(values[i] < range.low || values[i] >= range.high)) left.push_back(values[i]);
-  if (rank - range.below_low >= left.size()) return std::numeric_limits<double>::quiet_NaN();
-  const auto wanted = left.begin() + static_cast<std::ptrdiff_t>(rank - range.below_low);
-  std::nth_element(left.begin(), wanted, left.end());
+  std::vector<double> finite;
+  finite.reserve(count);
+  std::copy_if(values, values + count, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
+  if (rank >= finite.size()) return std::numeric_limits<double>::quiet_NaN();
+  const auto wanted = finite.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(finite.begin(), wanted, finite.end());
   return *wanted;
 }
 

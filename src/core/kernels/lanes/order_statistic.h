@@ -30,7 +30,7 @@ float orderStatistic(const PaddedValues<kMost>& padded, int rank, float guess) {
   return orderStatistic(padded.values.data(), wholeLanes(padded.count), rank, guess);
 }
 
-/// The same for any numbers, not filled up. NaN when some are not finite and the value cannot be found.
+/// The same of any numbers, not filled up. NaN when fewer of them are finite.
 double orderStatistic(const double* values, size_t count, size_t rank);
 
 }  // namespace uav_landing
