@@ -31,11 +31,11 @@ Eigen::Vector3d planeErrorOfSkew(const StereoRig& rig, const PlaneVector& plane,
 GroundPlane withSkew(const StereoRig& rig, const StereoDepthResult& stereo,
                      const ApproachAngleResult::Motion& step) {
   GroundPlane plane = stereo.plane;
-  if (stereo.skew == 0) return plane;
+  const std::optional<PlaneVector> seen = PlaneVector::of(plane.g);
+  if (stereo.skew == 0 || !seen) return plane;
   const double q = meanInverseDepth(rig, stereo);
   const auto add = [&](const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity) {
-    const Eigen::Vector3d error =
-        planeErrorOfSkew(rig, PlaneVector(plane.g), q, {velocity, angular_velocity}, stereo.skew);
+    const Eigen::Vector3d error = planeErrorOfSkew(rig, *seen, q, {velocity, angular_velocity}, stereo.skew);
     plane.covariance += error * error.transpose();
   };
   if (!step.failure && step.duration > 0) {

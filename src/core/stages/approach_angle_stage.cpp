@@ -239,10 +239,11 @@ struct ApproachAngleStage::Implementation {
     if (!direction.combined) return direction;
     result.vanishing_direction = direction.combined->direction;
     result.vanishing_covariance = direction.combined->covariance;
-    const GroundNormal level =
+    const std::optional<GroundNormal> level =
         normalFromVanishingPoint(*direction.combined, 0.0, parameters.level_roll_stddev_deg * kDegree);
-    result.n_vp = level.vector();
-    result.n_vp_covariance = level.covariance();
+    if (!level) return direction;
+    result.n_vp = level->vector();
+    result.n_vp_covariance = level->covariance();
     return direction;
   }
 

@@ -379,7 +379,7 @@ TEST(NormalFromVanishingPoint, HasTheRollGivenAndHoldsTheDirection) {
         VanishingPoint point;
         point.direction = scene.direction;
         point.covariance.setZero();
-        const GroundNormal normal = normalFromVanishingPoint(point, roll * kDegree, 0.1);
+        const GroundNormal normal = normalFromVanishingPoint(point, roll * kDegree, 0.1).value();
         EXPECT_TRUE(normal.vector().isApprox(scene.n, 1e-12));
         EXPECT_NEAR(rollOf(normal.vector()), roll * kDegree, 1e-14);
         EXPECT_NEAR(pitchOf(normal.vector()), pitch * kDegree, 1e-14);
@@ -389,7 +389,7 @@ TEST(NormalFromVanishingPoint, HasTheRollGivenAndHoldsTheDirection) {
 TEST(NormalFromVanishingPoint, CovarianceIsThatOfSamples) {
   const VanishingPoint point = pointAt(0.2, 0.12, 3e-3, 2e-3);
   const double roll = 0.1, roll_stddev = 0.01;
-  const GroundNormal normal = normalFromVanishingPoint(point, roll, roll_stddev);
+  const GroundNormal normal = normalFromVanishingPoint(point, roll, roll_stddev).value();
   std::mt19937 random(9);
   std::normal_distribution<double> gauss;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -398,7 +398,7 @@ TEST(NormalFromVanishingPoint, CovarianceIsThatOfSamples) {
     const VanishingPoint sample =
         pointAt(0.2 + 3e-3 / std::cos(0.12) * gauss(random), 0.12 + 2e-3 * gauss(random), 1, 1);
     const Eigen::Vector3d d =
-        normalFromVanishingPoint(sample, roll + roll_stddev * gauss(random), 0).vector() - normal.vector();
+        normalFromVanishingPoint(sample, roll + roll_stddev * gauss(random), 0)->vector() - normal.vector();
     spread += d * d.transpose() / kSamples;
   }
   EXPECT_LT((normal.covariance() - spread).norm() / spread.norm(), 0.05);

@@ -100,6 +100,9 @@ TEST(PairSkew, EnlargesTheCovarianceByTheErrorOfTheKnownMotion) {
 
   stereo.skew = 0;
   EXPECT_EQ(withSkew(rig, stereo, step).covariance, stereo.plane.covariance);
+  StereoDepthResult without_plane;
+  without_plane.skew = 0.01;
+  EXPECT_FALSE(withSkew(rig, without_plane, step).valid());
 
   stereo.skew = 0.003;
   const double error = stereo.plane.height() - 12;

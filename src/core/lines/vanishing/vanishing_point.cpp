@@ -58,7 +58,8 @@ Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& 
   return mean;
 }
 
-GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev) {
+std::optional<GroundNormal> normalFromVanishingPoint(const VanishingPoint& point, double roll,
+                                                     double roll_stddev) {
   // The horizon's direction w = (cos, -sin, 0) lies in the ground, as p does. So n = p x w, and rollOf(n) is
   // exactly the roll.
   const Eigen::Vector3d& p = point.direction;
@@ -72,7 +73,7 @@ GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, 
   const Eigen::Vector3d from_roll = across * p.cross(dw);
   const Eigen::Matrix3d covariance = from_point * point.covariance * from_point.transpose() +
                                      roll_stddev * roll_stddev * from_roll * from_roll.transpose();
-  return {normal, covariance};
+  return GroundNormal::of(normal, covariance);
 }
 
 }  // namespace uav_landing

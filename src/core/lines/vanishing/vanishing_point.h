@@ -33,7 +33,9 @@ Expected<VanishingPoint> combineVanishingPoints(const Expected<VanishingPoint>& 
 
 /// The paper's vanishing line: ground normal of a rig that is level except for roll. The vanishing line runs
 /// through the vanishing point with the slope of the given roll, rad (0: the paper's assumption). The
-/// covariance has rank 2: pitch from the vanishing point, roll from roll_stddev (rad).
-GroundNormal normalFromVanishingPoint(const VanishingPoint& point, double roll, double roll_stddev);
+/// covariance has rank 2: pitch from the vanishing point, roll from roll_stddev (rad). None when it is not
+/// finite.
+std::optional<GroundNormal> normalFromVanishingPoint(const VanishingPoint& point, double roll,
+                                                     double roll_stddev);
 
 }  // namespace uav_landing

@@ -236,9 +236,10 @@ class Search {
   // Margin of a point's runway when nothing but the point itself says where the ground is.
   double marginOnLevelGround(const View& view, const Found& found) const {
     const Eigen::Vector3d& p = found.point->direction;
-    const RunwayPrior prior{normalFromVanishingPoint(*found.point, 0, 0).vector(),
-                            kAnyGround * kAnyGround * Eigen::Matrix3d::Identity(), std::nullopt, std::nullopt,
-                            std::nullopt};
+    const std::optional<GroundNormal> level = normalFromVanishingPoint(*found.point, 0, 0);
+    if (!level) return 0;
+    const RunwayPrior prior{level->vector(), kAnyGround * kAnyGround * Eigen::Matrix3d::Identity(),
+                            std::nullopt, std::nullopt, std::nullopt};
     const Expected<RunwayChoice> choice = findRunwayHypothesis(found.straight, view.K, parameters_, prior);
     return choice && angleBetween(p, choice->best.direction) < kSameRunway ? choice->margin : 0;
   }
