@@ -4,28 +4,22 @@
 #include <cmath>
 #include <vector>
 
+#include "far/runway_paint.h"
+
 namespace uav_landing {
 namespace {
 
-// Share of runways with stripes along their edges. The standard asks for them on precision approach runways,
-// which are broad ones, and demands them where edges lack contrast (ICAO Annex 14, 5.2.7). Of narrow runways
-// nobody knows.
-constexpr double kStripesShare = 0.8, kStripesShareOfFaint = 0.95, kStripesShareOfNarrow = 0.5;
-constexpr double kBroad = 30;          // m
-constexpr double kFaintContrast = 25;  // grey levels
-// Stripes are at least so wide, m (the same place). Contrast of paint against the surface, grey levels.
-constexpr double kStripe = 0.9, kStripeOfNarrow = 0.45, kPaintContrast = 95;
-constexpr double kPaintSpread = 0.44;  // 1 sigma of that contrast, as a share
-constexpr double kFaintest = 0.6;      // of usual stripes: a fit with fainter ones has found none
-constexpr double kLargestRatio = 3;    // of the paint's contrast to that of the surface
-constexpr double kLargestOffset = 4;   // px by which stripes move an edge
+constexpr double kFaintest = 0.6;  // of usual stripes: a fit with fainter ones has found none
+// Limits of what stripes do: of the paint's contrast over that of the surface, and px of an edge.
+constexpr double kLargestRatio = 3, kLargestOffset = 4;
+constexpr double kStripePlace = 0.5;  // m, 1 sigma of the place of a stripe that shows
+// Stripes that would stand out so many times as much as the surface, and do not show, are not there.
+constexpr double kClearlyShown = 1.5;
 // Of a difference of costs only a part counts. Paint and ground are not quite as in the model, and a reading
 // gains by that in all pairs alike.
 constexpr double kTemper = 7;
-constexpr double kPairs = 10;         // over which the cost of stripes is averaged
-constexpr double kShown = 0.4;        // of a blurred stripe's grey level, in its middle
-constexpr double kStripePlace = 0.5;  // m, 1 sigma of the place of a stripe that shows
-constexpr double kSame = 0.5;         // px, between outlines that count as one
+constexpr int kPairs = 10;     // over which the cost of stripes is averaged
+constexpr double kSame = 0.5;  // px, between outlines that count as one
 
 /// An end from another place: moved inward by shift, px.
 struct Trial {
@@ -37,31 +31,18 @@ constexpr Trial kTrials[] = {{kNearSide, 2.5},  {kFarSide, 2.5}, {kNearSide, 5},
 
 bool isSame(const Vector8d& offset) { return offset.cwiseAbs().maxCoeff() < kSame; }
 
-double stripeWidth(const OutlineLook& look) { return look.size.width >= kBroad ? kStripe : kStripeOfNarrow; }
-
-/// Of runways that look like this.
-double usualShare(const FittedOutline& fitted, const OutlineLook& look) {
-  if (look.size.width < kBroad) return kStripesShareOfNarrow;
-  return std::abs(fitted.contrast) < kFaintContrast ? kStripesShareOfFaint : kStripesShare;
-}
-
-/// m x grey levels.
-double usualStripes(const OutlineLook& look) { return stripeWidth(look) * kPaintContrast; }
-
 /// Scale at the near end, px a metre.
 double nearScale(const Corners& corners, const OutlineLook& look) {
   return (corners[3] - corners[0]).norm() / look.size.width;
 }
 
-/// Grey level in the middle of a blurred stripe. stripe: its width times its contrast, m x grey levels.
-double shownBy(double stripe, double scale) { return kShown * std::abs(stripe) * scale; }
-
 /// By how far stripes would move the sides inward, px. They move the edge of a dark surface outward, and that
 /// of a bright one inward.
 Vector8d offsetByStripes(const FittedOutline& fitted, const OutlineLook& look) {
   const Corners corners = movedBy(fitted.seen.reference, fitted.seen.inward);
+  const EdgeStripes stripes = usualStripes(look.size.width);
   const double metres =
-      stripeWidth(look) * std::clamp(kPaintContrast / fitted.contrast, -kLargestRatio, kLargestRatio);
+      stripes.width * std::clamp(stripes.contrast / fitted.contrast, -kLargestRatio, kLargestRatio);
   const auto pixels = [&](int one, int other) {
     const double scale = (corners[one] - corners[other]).norm() / look.size.width;
     return std::clamp(metres * scale, -kLargestOffset, kLargestOffset);
@@ -72,39 +53,12 @@ Vector8d offsetByStripes(const FittedOutline& fitted, const OutlineLook& look) {
   return offset;
 }
 
-}  // namespace
-
-/// The outline without stripes, or the one with stripes where they stand out more than the surface does.
-Expected<EdgeReadings::Reading> EdgeReadings::read(OutlineFitter& fitter, const Corners& start,
-                                                   const OutlineLook& look) {
-  const Expected<FittedOutline> plain = fitter.fit(Vector8d::Zero(), EdgePaint::kNone);
-  const double scale = nearScale(start, look);
-  if (plain && std::abs(plain->contrast) > shownBy(usualStripes(look), scale))
-    return Reading{*plain, EdgePaint::kUnknown};
-  const Expected<FittedOutline> striped = fitter.fit(Vector8d::Zero(), EdgePaint::kStripes);
-  if (striped && std::abs(striped->contrast) < shownBy(striped->stripes, scale))
-    return Reading{*striped, EdgePaint::kStripes};
-  if (!plain) return tl::make_unexpected(plain.error());
-  return Reading{*plain, EdgePaint::kUnknown};
+bool findsStripes(const Expected<FittedOutline>& fitted, const OutlineLook& look) {
+  return fitted && fitted->stripes > kFaintest * usualStripes(look.size.width).amplitude();
 }
 
-/// The other outline that explains the image: with stripes that do not show. Where no such fit is found, it
-/// is as usual stripes would make it.
-EdgeReadings::Rival EdgeReadings::withStripes(OutlineFitter& fitter, const FittedOutline& plain,
-                                              const OutlineLook& look) {
-  const Vector8d usual = offsetByStripes(plain, look);
-  const Expected<FittedOutline> found = fitter.fit(plain.seen.inward + usual, EdgePaint::kStripes);
-  if (found) {
-    const double excess = (found->cost - plain.cost) / kTemper;
-    stripes_excess_ += (excess - stripes_excess_) / kPairs;
-  }
-  if (found && found->stripes > kFaintest * usualStripes(look))
-    return {found->seen.inward - plain.seen.inward, found->seen.covariance, stripes_excess_};
-  return {usual, plain.seen.covariance + kPaintSpread * kPaintSpread * usual * usual.transpose(),
-          stripes_excess_};
-}
-
-FittedOutline EdgeReadings::withStripesInPlace(const FittedOutline& fitted, const OutlineLook& look) {
+/// An outline by stripes that show: they may lie nearer to the edge, or farther from it.
+FittedOutline withStripesInPlace(const FittedOutline& fitted, const OutlineLook& look) {
   const Corners corners = movedBy(fitted.seen.reference, fitted.seen.inward);
   Vector8d off = Vector8d::Zero();
   for (const int i : {0, 1, 4, 5}) off[i] = kStripePlace * nearScale(corners, look);
@@ -113,15 +67,23 @@ FittedOutline EdgeReadings::withStripesInPlace(const FittedOutline& fitted, cons
   return all;
 }
 
-FittedOutline EdgeReadings::withPossibleStripes(const FittedOutline& plain, const Rival& striped,
-                                                const OutlineLook& look) {
-  const double usual = usualShare(plain, look);
-  const double weight = usual * std::exp(-0.5 * striped.excess), share = weight / (weight + 1 - usual);
-  FittedOutline all = plain;
-  all.seen.inward += share * striped.offset;
-  all.seen.covariance = share * striped.covariance + (1 - share) * plain.seen.covariance +
-                        share * (1 - share) * striped.offset * striped.offset.transpose();
-  return all;
+}  // namespace
+
+/// The outline without stripes, or the one with stripes where they stand out more than the surface does.
+Expected<EdgeReadings::Reading> EdgeReadings::read(OutlineFitter& fitter, const Corners& start,
+                                                   const OutlineLook& look) {
+  const Expected<FittedOutline> plain = fitter.fit(Vector8d::Zero(), EdgePaint::kNone);
+  const double scale = nearScale(start, look);
+  const double usual = shownStripe(usualStripes(look.size.width).amplitude(), scale);
+  if (plain && std::abs(plain->contrast) > usual) return Reading{*plain, EdgePaint::kUnknown};
+  Expected<FittedOutline> striped = fitter.fit(Vector8d::Zero(), EdgePaint::kStripes);
+  if (plain && !findsStripes(striped, look))
+    striped = fitter.fit(plain->seen.inward + offsetByStripes(*plain, look), EdgePaint::kStripes);
+  if (striped && std::abs(striped->contrast) < shownStripe(striped->stripes, scale))
+    return Reading{*striped, EdgePaint::kStripes};
+  if (!plain) return tl::make_unexpected(plain.error());
+  const bool denied = kClearlyShown * std::abs(plain->contrast) < usual && !findsStripes(striped, look);
+  return Reading{*plain, denied ? EdgePaint::kNone : EdgePaint::kUnknown};
 }
 
 Expected<EdgeReadings::Outline> EdgeReadings::fit(const cv::Mat& image, const cv::Mat& mask,
@@ -130,10 +92,36 @@ Expected<EdgeReadings::Outline> EdgeReadings::fit(const cv::Mat& image, const cv
   Expected<Reading> best = read(fitter, start, look);
   if (!best) return tl::make_unexpected(best.error());
   tryEnd(fitter, *best);
-  const FittedOutline all = mean(best->outline);
-  const Corners corners = movedBy(start, best->outline.seen.inward);
-  if (best->paint == EdgePaint::kStripes) return Outline{withStripesInPlace(all, look), corners};
-  return Outline{withPossibleStripes(all, withStripes(fitter, best->outline, look), look), corners};
+  Outline outline{mean(best->outline), movedBy(start, best->outline.seen.inward)};
+  if (best->paint == EdgePaint::kStripes) outline.fitted = withStripesInPlace(outline.fitted, look);
+  if (best->paint != EdgePaint::kUnknown) return outline;
+  const Rival striped = withStripes(fitter, best->outline, look);
+  const double odds = std::exp(-0.5 * striped.excess), share = odds / (1 + odds);
+  SeenOutline& seen = outline.fitted.seen;
+  seen.inward += share * striped.offset;
+  seen.covariance = share * striped.covariance + (1 - share) * seen.covariance +
+                    share * (1 - share) * striped.offset * striped.offset.transpose();
+  return outline;
+}
+
+/// The other outline that explains the image, with stripes that do not show. Where no such fit is found, it
+/// is as usual stripes would make it.
+EdgeReadings::Rival EdgeReadings::withStripes(OutlineFitter& fitter, const FittedOutline& plain,
+                                              const OutlineLook& look) {
+  const EdgeStripes usual = usualStripes(look.size.width);
+  Vector8d offset = offsetByStripes(plain, look);
+  const Matrix8d spread = usual.spread * usual.spread * offset * offset.transpose();
+  const Expected<FittedOutline> found = fitter.fit(plain.seen.inward + offset, EdgePaint::kStripes);
+  Matrix8d covariance = plain.seen.covariance;
+  if (found) {
+    compared_ = std::min(compared_ + 1, kPairs);
+    stripes_excess_ += ((found->cost - plain.cost) / kTemper - stripes_excess_) / compared_;
+  }
+  if (findsStripes(found, look)) {
+    offset = found->seen.inward - plain.seen.inward;
+    covariance = found->seen.covariance;
+  }
+  return {offset, covariance + spread, stripes_excess_ - 2 * std::log(usual.share / (1 - usual.share))};
 }
 
 void EdgeReadings::tryEnd(OutlineFitter& fitter, Reading& reading) {

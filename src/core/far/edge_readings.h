@@ -11,12 +11,12 @@ namespace uav_landing {
 ///
 /// A stripe along an edge that is narrower than a pixel moves the edge that shows by its width times its
 /// contrast over the surface's. So an outline with stripes and one without explain the same image, metres
-/// apart. Stripes have to be more than a pixel wide before the image tells, and then the runway is near.
-/// Bars, and strips of ground that are as dark as the runway, hold an end where it is not.
+/// apart. The image decides where stripes would outshine the surface. Elsewhere it hardly tells, until the
+/// runway is near, and what is usual counts.
+/// Bars, and strips of ground that are as dark as the runway, hold an end where it is not. So each pair also
+/// fits an outline with an end from another place.
 ///
-/// Each pair fits the outline without stripes, or with those that stand out more than the surface, and by
-/// turns one with an end from another place. The outline that is returned is the mean of all that is
-/// possible, with a covariance that holds it.
+/// The outline that is returned is the mean of all that is possible, with a covariance that holds it.
 class EdgeReadings {
  public:
   struct Outline {
@@ -28,29 +28,27 @@ class EdgeReadings {
                         const OutlineLook& look);
 
  private:
-  /// A less likely outline, as it was last fitted.
+  struct Reading {
+    FittedOutline outline;
+    EdgePaint paint;  // kUnknown: fitted without stripes, but there may be some
+  };
+  /// A less likely outline.
   struct Rival {
     Vector8d offset;  // from the best one, px
     Matrix8d covariance;
     double excess;  // of -2 log probability over the best one's
   };
-  struct Reading {
-    FittedOutline outline;
-    EdgePaint paint;  // kUnknown: fitted without stripes, but there may be some
-  };
   static constexpr int kRivals = 6;  // ends from other places
   static Expected<Reading> read(OutlineFitter& fitter, const Corners& start, const OutlineLook& look);
-  Rival withStripes(OutlineFitter& fitter, const FittedOutline& plain, const OutlineLook& look);
-  static FittedOutline withStripesInPlace(const FittedOutline& fitted, const OutlineLook& look);
-  static FittedOutline withPossibleStripes(const FittedOutline& plain, const Rival& striped,
-                                           const OutlineLook& look);
   void tryEnd(OutlineFitter& fitter, Reading& reading);
   void tellFrom(const Rival& winner);
   FittedOutline mean(const FittedOutline& best) const;
+  Rival withStripes(OutlineFitter& fitter, const FittedOutline& plain, const OutlineLook& look);
 
-  std::array<std::optional<Rival>, kRivals> rivals_;
-  double stripes_excess_ = 0;  // of outlines with stripes over those without, mean of the last pairs
+  std::array<std::optional<Rival>, kRivals> rivals_;  // as they were last fitted
   int turn_ = 0;
+  double stripes_excess_ = 0;  // of outlines with stripes over those without, mean of the last pairs
+  int compared_ = 0;           // pairs in that mean
 };
 
 }  // namespace uav_landing

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "estimation/robust.h"
 #include "far/outline_model.h"
+#include "far/runway_paint.h"
 
 namespace uav_landing {
 namespace {
@@ -32,7 +33,6 @@ struct Amplitude {
   double mean, stddev;
 };
 constexpr Amplitude kAnyStripe{60, 50}, kNoStripe{0, 4};
-constexpr Amplitude kStripeContrast{95, 42};  // grey levels between paint and surface
 constexpr double kCentre = 25, kCentreStddev = 40;
 constexpr double kBars = 30, kBarsStddev = 50;
 
@@ -76,13 +76,11 @@ struct Prior {
   }
 };
 
-/// Side stripes are at least 0.9 m wide on runways of 30 m and more, and 0.45 m on narrower ones (ICAO Annex
-/// 14, 5.2.7).
 Amplitude stripesOf(EdgePaint paint, double runway_width) {
   if (paint == EdgePaint::kUnknown) return kAnyStripe;
   if (paint == EdgePaint::kNone) return kNoStripe;
-  const double width = runway_width >= 30 ? 0.9 : 0.45;
-  return {width * kStripeContrast.mean, width * kStripeContrast.stddev};
+  const EdgeStripes usual = usualStripes(runway_width);
+  return {usual.amplitude(), usual.spread * usual.amplitude()};
 }
 
 Prior priorOf(const OutlineLook& look, EdgePaint paint) {

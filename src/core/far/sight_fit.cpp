@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "far/runway_paint.h"
 
 namespace uav_landing {
 namespace {
@@ -25,10 +26,9 @@ constexpr double kMostMisfit = 14;  // chi-square of what four sides and a chart
 // An outline has to stand out from the ground by so many times its texture. kClear: the ground's plane is
 // known and has to agree. kClearAlone: only the outline itself says that it is a runway.
 constexpr double kClear = 3, kClearAlone = 4;
-constexpr double kStripeShare = 0.4;  // of a blurred stripe's grey level, in the middle of it
-constexpr double kMostOffPlane = 3;   // standard deviations, hills included
-constexpr double kPoorFit = 6;        // misfit above which the fit begins once more at the pose that it gave
-constexpr double kBroad = 0.12;       // of the picture's width: nearer, markings tell more
+constexpr double kMostOffPlane = 3;  // standard deviations, hills included
+constexpr double kPoorFit = 6;       // misfit above which the fit begins once more at the pose that it gave
+constexpr double kBroad = 0.12;      // of the picture's width: nearer, markings tell more
 
 Failure noRunway(const std::string& why) { return {Reason::kNoRunway, why}; }
 
@@ -120,7 +120,7 @@ OutlineLook SightFit::lookOf(const RunwaySize& about) const {
 Failure SightFit::faintness(const FittedOutline& outline, const Corners& corners, double width,
                             const KnownGround& ground) const {
   const double scale = (corners[3] - corners[0]).norm() / width;  // px a metre
-  const double stripes = kStripeShare * std::abs(outline.stripes) * scale;
+  const double stripes = shownStripe(outline.stripes, scale);
   const double clarity = std::max(std::abs(outline.contrast), stripes) / outline.residual;
   if (clarity >= (ground.plane.valid() ? kClear : kClearAlone)) return {};
   return noRunway(

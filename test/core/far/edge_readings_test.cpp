@@ -25,6 +25,14 @@ class Pairs {
 
   void startFrom(const Vector8d& inward) { start_ = movedBy(corners_, inward); }
 
+  /// Errors of the sides by a fit from the start alone, px inward.
+  Vector8d byOneFit() const {
+    const cv::Mat mask(picture_.size, CV_8U, cv::Scalar(255));
+    const auto fitted = OutlineFitter(picture_.render(pose_, 1), mask, start_, lookOf(picture_))
+                            .fit(Vector8d::Zero(), EdgePaint::kNone);
+    return fitted->seen.inward - movedInward(fitted->seen.reference, corners_);
+  }
+
   /// Errors of the sides after this many more pairs, px inward, and the last covariance.
   Vector8d after(int pairs) {
     const cv::Mat mask(picture_.size, CV_8U, cv::Scalar(255));
@@ -82,8 +90,6 @@ TEST(EdgeReadings, FromAfarTheClaimHoldsBothReadings) {
   }
 }
 
-/// The standard demands stripes where the edge has so little contrast. So an outline without any is believed
-/// less, and the width of such a runway is off by up to a seventh.
 TEST(EdgeReadings, OnABrightRunwayToo) {
   for (const bool painted : {true, false}) {
     RunwayPicture bright = faintRunway(painted);
@@ -91,22 +97,19 @@ TEST(EdgeReadings, OnABrightRunwayToo) {
     Pairs pairs(bright, -2000);
     const double error = pairs.widthError(pairs.after(9));
     EXPECT_LT(std::abs(error), 2.5 * pairs.widthStddev()) << painted;
-    EXPECT_LT(std::abs(error) * 2000 / 554.0, 34 * (painted ? 0.12 : 0.15)) << painted;
+    EXPECT_LT(std::abs(error) * 2000 / 554.0, 0.12 * 34) << painted;
   }
 }
 
-TEST(EdgeReadings, FromNearStripesAreFound) {
-  Pairs pairs(faintRunway(true), -500);
-  const double error = pairs.widthError(pairs.after(9)), pixel = 500 / 554.0;
-  EXPECT_LT(std::abs(error) * pixel, 0.05 * 34);
-  EXPECT_LT(pairs.widthStddev() * pixel, 0.05 * 34);
-  EXPECT_LT(std::abs(error), 3 * pairs.widthStddev());
-}
-
-TEST(EdgeReadings, StripesThatAreUsualButMissingAreInTheClaimFromNearToo) {
-  Pairs pairs(faintRunway(false), -500);
-  const double error = pairs.widthError(pairs.after(9));
-  EXPECT_LT(std::abs(error), 2.5 * pairs.widthStddev());
+TEST(EdgeReadings, FromNearTheTrueReadingWins) {
+  for (const bool painted : {true, false}) {
+    Pairs pairs(faintRunway(painted), -500);
+    const double error = pairs.widthError(pairs.after(9));
+    const double pixel = 500 / 554.0;
+    EXPECT_LT(std::abs(error) * pixel, 0.05 * 34) << painted;
+    EXPECT_LT(pairs.widthStddev() * pixel, 0.05 * 34) << painted;
+    EXPECT_LT(std::abs(error), 3 * pairs.widthStddev()) << painted;
+  }
 }
 
 /// Beside a clear edge the image hides stripes that are narrower than a pixel: a dark margin and a bright
@@ -127,14 +130,18 @@ TEST(EdgeReadings, StripesThatLookLikeTheGroundAreInTheClaim) {
 
 TEST(EdgeReadings, AnEndThatBeganElsewhereIsFound) {
   // Beyond the first fit's reach: the near end 7.5 px too near, the far one 5.5 px too far.
+  // Noise moves it between the threshold and the bars, so it is the mean that has to be right.
+  constexpr int kPairs = 10;
   RunwayPicture picture;
   for (const auto& [side, shift] : {std::pair{kNearSide, -7.5}, {kFarSide, -5.5}}) {
     Pairs pairs(picture, -1200);
     Vector8d inward = Vector8d::Zero();
     inward.segment<2>(2 * side).setConstant(shift);
     pairs.startFrom(inward);
-    const Vector8d errors = pairs.after(13);
-    EXPECT_LT(errors.segment<2>(2 * side).cwiseAbs().maxCoeff(), 2) << side << ": the bars are 0.8 px";
+    EXPECT_GT(pairs.byOneFit().segment<2>(2 * side).cwiseAbs().maxCoeff(), 1.5) << side;
+    Vector8d mean = pairs.after(13) / kPairs;
+    for (int i = 1; i < kPairs; ++i) mean += pairs.after(1) / kPairs;
+    EXPECT_LT(mean.segment<2>(2 * side).cwiseAbs().maxCoeff(), 1.5) << side;
   }
 }
 
