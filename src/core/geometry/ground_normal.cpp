@@ -10,41 +10,21 @@
 
 namespace uav_landing {
 
-bool UnitVectorEstimate::holds(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance) {
-  return std::abs(vector.norm() - 1) < kRounding && covariance.allFinite();
+bool isUnitEstimate(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance) {
+  return std::abs(vector.norm() - 1) < kUnitRounding && covariance.allFinite();
 }
 
-void UnitVectorEstimate::refuse(const char* meant, const Eigen::Vector3d& vector) {
+void requireUnitEstimate(const char* meant, const Eigen::Vector3d& vector,
+                         const Eigen::Matrix3d& covariance) {
+  if (isUnitEstimate(vector, covariance)) return;
   std::ostringstream text;
   text << meant << " (" << vector.transpose() << ") has to have the length 1 and a finite covariance";
   throw std::invalid_argument(text.str());
 }
 
-GroundDirection::GroundDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance)
-    : UnitVectorEstimate(direction, covariance) {
-  if (!holds(direction, covariance)) refuse("a direction in the ground", direction);
-}
-
-std::optional<GroundDirection> GroundDirection::of(const Eigen::Vector3d& direction,
-                                                   const Eigen::Matrix3d& covariance) {
-  if (!holds(direction, covariance)) return std::nullopt;
-  return GroundDirection(direction, covariance);
-}
-
-GroundNormal::GroundNormal(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance)
-    : UnitVectorEstimate(normal, covariance) {
-  if (!holds(normal, covariance)) refuse("a normal of the ground", normal);
-}
-
-std::optional<GroundNormal> GroundNormal::of(const Eigen::Vector3d& normal,
-                                             const Eigen::Matrix3d& covariance) {
-  if (!holds(normal, covariance)) return std::nullopt;
-  return GroundNormal(normal, covariance);
-}
-
-std::optional<GroundNormal> GroundNormal::of(const GroundPlane& plane) {
+std::optional<GroundNormal> normalOf(const GroundPlane& plane) {
   if (!plane.valid()) return std::nullopt;
-  return of(plane.normal(), plane.normalCovariance());
+  return GroundNormal::of(plane.normal(), plane.normalCovariance());
 }
 
 std::array<GroundDirection, 2> levelDirections(const GroundNormal& ground) {

@@ -8,48 +8,50 @@
 
 namespace uav_landing {
 
-/// A unit vector with the covariance of its errors (rad^2). All numbers are finite: where nothing is known,
-/// there is none (std::optional).
-class UnitVectorEstimate {
+/// Whether a vector has the length 1 and its covariance is finite.
+bool isUnitEstimate(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance);
+/// Throws std::invalid_argument unless it is. meant: what the vector is.
+void requireUnitEstimate(const char* meant, const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance);
+/// Largest error of a length that counts as 1. Messages of other programs may be rounded.
+constexpr double kUnitRounding = 1e-3;
+
+/// A unit vector with the covariance of its errors, rad^2. All numbers are finite: where nothing is known,
+/// there is none (std::optional). Meaning: keeps one kind from being taken for the other.
+template <class Meaning>
+class UnitEstimate {
  public:
-  /// Largest error of a length that counts as 1. Messages of other programs may be rounded.
-  static constexpr double kRounding = 1e-3;
+  /// Throws std::invalid_argument when these numbers are none.
+  UnitEstimate(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance)
+      : vector_(vector), covariance_(covariance) {
+    requireUnitEstimate(Meaning::kName, vector, covariance);
+  }
+  /// Of numbers that may be none.
+  static std::optional<UnitEstimate> of(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance) {
+    if (!isUnitEstimate(vector, covariance)) return std::nullopt;
+    return UnitEstimate(vector, covariance);
+  }
 
   const Eigen::Vector3d& vector() const { return vector_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }
-
- protected:
-  UnitVectorEstimate(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance)
-      : vector_(vector), covariance_(covariance) {}
-  static bool holds(const Eigen::Vector3d& vector, const Eigen::Matrix3d& covariance);
-  /// Throws std::invalid_argument that names what was meant.
-  static void refuse(const char* meant, const Eigen::Vector3d& vector);
 
  private:
   Eigen::Vector3d vector_;
   Eigen::Matrix3d covariance_;
 };
 
+struct InGround {
+  static constexpr const char* kName = "a direction in the ground";
+};
+struct DownToGround {
+  static constexpr const char* kName = "a normal of the ground";
+};
 /// A direction that lies in the ground plane, such as the runway's vanishing direction.
-class GroundDirection : public UnitVectorEstimate {
- public:
-  /// Throws std::invalid_argument when the vector has not the length 1, or a number is not finite.
-  GroundDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance);
-  /// Nothing when these numbers are none.
-  static std::optional<GroundDirection> of(const Eigen::Vector3d& direction,
-                                           const Eigen::Matrix3d& covariance);
-};
-
+using GroundDirection = UnitEstimate<InGround>;
 /// The unit normal of the ground, pointing down.
-class GroundNormal : public UnitVectorEstimate {
- public:
-  /// Throws std::invalid_argument when the vector has not the length 1, or a number is not finite.
-  GroundNormal(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
-  /// Nothing when these numbers are none.
-  static std::optional<GroundNormal> of(const Eigen::Vector3d& normal, const Eigen::Matrix3d& covariance);
-  static std::optional<GroundNormal> of(const GroundPlane& plane);
-};
+using GroundNormal = UnitEstimate<DownToGround>;
 
+/// Nothing without a plane.
+std::optional<GroundNormal> normalOf(const GroundPlane& plane);
 /// Mean of two independent normals, weighted by their covariances.
 GroundNormal weightedMean(const GroundNormal& a, const GroundNormal& b);
 /// The normal as two directions in the ground plane: forward (the optical axis above the ground) and left.

@@ -39,9 +39,12 @@ class AttitudeFilter {
     bool agrees = true;       ///< the pairs before and the rotation allow the pair's normal
   };
 
-  /// stamp: s. seen: normal of this pair alone, with the covariance of errors that differ from pair to pair.
-  /// step: from the previous pair. common: covariance of errors that are the same in all pairs except for
-  /// their size. fresh: share of the covariance that is new in every pair; the rest is among the common part.
+  /// stamp: s.
+  /// seen: the normal of this pair alone. Its covariance is that of errors that differ from pair to pair.
+  /// step: from the previous pair.
+  /// common: covariance of the errors that all pairs have alike, but for their size.
+  /// fresh: share of the first covariance that is new in every pair. The rest is among the common part.
+  ///
   /// Without a step the filter starts anew, but only after it has compared the normal with those before,
   /// using the turn that an aircraft may make. A normal that contradicts those before (another surface was
   /// taken for the ground) is not used, and agrees is false. After three seconds of contradictions the filter

@@ -52,7 +52,7 @@ bool isShare(const Eigen::Matrix3d& share, const Eigen::Matrix3d& whole) {
 
 /// Whether it is a unit vector with its covariance.
 bool isDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
-  return within(direction.norm() - 1, UnitVectorEstimate::kRounding) && isCovariance<3>(covariance) &&
+  return within(direction.norm() - 1, kUnitRounding) && isCovariance<3>(covariance) &&
          covariance.trace() >= kLeastRelative * kLeastRelative;
 }
 

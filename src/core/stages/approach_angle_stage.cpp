@@ -151,7 +151,7 @@ struct ApproachAngleStage::Implementation {
     const bool has_plane = parameters.use_stereo && !stereo.failure && stereo.plane.valid();
     if (has_plane) ground.plane = stereo.plane;
     if (has_plane)
-      ground.normal = GroundNormal::of(stereo.plane);
+      ground.normal = normalOf(stereo.plane);
     else if (!result.imu.failure)
       ground.normal = GroundNormal::of(result.imu.normal, result.imu.normal_covariance);
     result.sight = sighting.process(stamp, left, ground, waits || (has_plane && tracker.needsSearch()));

@@ -170,9 +170,14 @@ struct KalmanHeightStage::Implementation {
     refuseHeight(result, waiting);
     parts->below.follow(in, look.ground, measured, pair.leftOut(), post);
     if (std::isfinite(result.height))
-      reportProtection(parts->track, parts->below.below(result.height, parts->below.normal(in, look.ground)),
-                       parameters, result);
+      reportProtection(parts->track, groundBelow(in, look.ground, result.height), parameters, result);
     return waiting;
+  }
+
+  std::optional<GroundMemory::Below> groundBelow(const PairInput& in, const Ground& ground,
+                                                 double height) const {
+    const std::optional<Eigen::Vector3d> normal = parts->below.normal(in, ground);
+    return normal ? parts->below.below(height, *normal) : std::nullopt;
   }
 
   void reportDirections(const PairInput& in, const Ground& ground, const PairVerdict& pair,

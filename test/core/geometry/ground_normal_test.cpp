@@ -10,21 +10,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "some_plane.h"
+
 namespace uav_landing {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 const double kNan = std::nan("");
 const Eigen::Matrix3d kCovariance = 1e-4 * Eigen::Matrix3d::Identity();
-
-GroundPlane makePlane() {
-  GroundPlane plane;
-  plane.g = normalFromPitchRoll(-8 * kDegree, 5 * kDegree) / 12.0;
-  Eigen::Matrix3d L;
-  L << 3e-4, 0, 0, 1e-4, 2e-4, 0, -1e-4, 2e-4, 4e-4;
-  plane.covariance = L * L.transpose();
-  return plane;
-}
 
 template <class Type>
 class UnitVector : public testing::Test {};
@@ -53,13 +45,13 @@ TYPED_TEST(UnitVector, IsNothingElse) {
   }
 }
 
-TEST(GroundNormal, IsThatOfAPlaneIfThereIsOne) {
-  const GroundPlane plane = makePlane();
-  const std::optional<GroundNormal> normal = GroundNormal::of(plane);
+TEST(NormalOf, IsThatOfAPlaneIfThereIsOne) {
+  const GroundPlane plane = somePlane();
+  const std::optional<GroundNormal> normal = normalOf(plane);
   ASSERT_TRUE(normal);
   EXPECT_EQ(normal->vector(), plane.normal());
   EXPECT_EQ(normal->covariance(), plane.normalCovariance());
-  EXPECT_FALSE(GroundNormal::of(GroundPlane()));
+  EXPECT_FALSE(normalOf(GroundPlane()));
 }
 
 TEST(LevelDirections, LieInTheGroundAlsoForACameraThatLooksStraightDown) {
@@ -77,7 +69,7 @@ GroundDirection directionOff(const GroundPlane& plane, double slope, double stdd
 }
 
 TEST(FuseDirection, GivesTheWeightedLeastSquaresPlane) {
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   const GroundDirection direction = directionOff(plane, 0.004, 0.002);
   double nis = -1;
   const GroundPlane fused = fuseDirection(plane, direction, 100, &nis);
@@ -96,7 +88,7 @@ TEST(FuseDirection, GivesTheWeightedLeastSquaresPlane) {
 }
 
 TEST(FuseDirection, LeavesThePlaneWhenTheDirectionContradictsIt) {
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   const GroundDirection direction = directionOff(plane, 0.2, 0.002);
   double nis = 0;
   const GroundPlane fused = fuseDirection(plane, direction, 10, &nis);
@@ -106,7 +98,7 @@ TEST(FuseDirection, LeavesThePlaneWhenTheDirectionContradictsIt) {
 }
 
 TEST(FuseNormal, GivesTheWeightedLeastSquaresPlane) {
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   // Level ground tipped by 0.01 in pitch and -0.02 in roll against the plane.
   const double stddev = 0.03;
   const Eigen::Vector3d normal = (plane.normal() + Eigen::Vector3d(-0.02, 0, 0.01)).normalized();
@@ -125,7 +117,7 @@ TEST(FuseNormal, GivesTheWeightedLeastSquaresPlane) {
 }
 
 TEST(FuseNormal, LeavesThePlaneWhenOneOfItsDirectionsContradictsIt) {
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   for (const Eigen::Vector3d& off : {Eigen::Vector3d(0.2, 0, 0), Eigen::Vector3d(0, 0, 0.2)}) {
     const Eigen::Vector3d normal = (plane.normal() + off).normalized();
     double nis = 0;

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "some_plane.h"
 #include "support/rigs.h"
 
 namespace uav_landing {
@@ -31,15 +32,6 @@ Eigen::Vector3d seen(const Eigen::Matrix3d& runway_from_body, const Eigen::Vecto
 
 StereoRig makeRig() { return test::rigOf({640, 480}, 500, {322, 243}, 330, 0.65); }
 
-GroundPlane makePlane() {
-  GroundPlane plane;
-  plane.g = normalFromPitchRoll(-8 * kDegree, 5 * kDegree) / 12.0;
-  Eigen::Matrix3d L;
-  L << 3e-4, 0, 0, 1e-4, 2e-4, 0, -1e-4, 2e-4, 4e-4;
-  plane.covariance = L * L.transpose();
-  return plane;
-}
-
 TEST(Attitude, FollowsTheSignConventions) {
   for (const double yaw : {-20.0, 0.0, 15.0})
     for (const double pitch : {-12.0, 0.0, 7.0})
@@ -61,7 +53,7 @@ TEST(Attitude, YawDoesNotDependOnTheSlopeOfTheDirectionGiven) {
 
 TEST(GroundPlane, PredictsTheDisparityOfAPointOnIt) {
   const StereoRig rig = makeRig();
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   const Eigen::Vector3d n = plane.normal();
   EXPECT_NEAR(plane.height(), 12, 1e-12);
   // A point of the plane, n.X = 12, projected into both cameras.
@@ -76,7 +68,7 @@ TEST(GroundPlane, PredictsTheDisparityOfAPointOnIt) {
 
 TEST(GroundPlane, HasDisparityZeroOnTheHorizon) {
   const StereoRig rig = makeRig();
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   const Eigen::Vector3d l = horizonLine(rig, plane.normal());
   for (const double u : {0.0, 300.0, 639.0}) {
     const double v = -(l.x() * u + l.z()) / l.y();
@@ -85,7 +77,7 @@ TEST(GroundPlane, HasDisparityZeroOnTheHorizon) {
 }
 
 TEST(GroundPlane, VariancesAreThoseOfSamples) {
-  const GroundPlane plane = makePlane();
+  const GroundPlane plane = somePlane();
   const Eigen::Matrix3d L = plane.covariance.llt().matrixL();
   std::mt19937 random(7);
   std::normal_distribution<double> normal;

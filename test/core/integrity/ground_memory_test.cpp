@@ -228,8 +228,8 @@ TEST(GroundMemory, APairWithoutAMotionCostsCertaintyAndNotTheMemory) {
   flyMemory(slope, see, {30, 31});
 }
 
-// Twelve pairs are missing, and meanwhile the aircraft begins to sink three times as fast: what is below is
-// carried on by all of the time, and by both speeds once the second one is known.
+// Twelve pairs are missing, and meanwhile the aircraft begins to sink three times as fast. The ground below
+// is carried on over all of that time. Once the second speed is known, both speeds count.
 TEST(GroundMemory, CarriesOnOverMissingPairsByTheTimeThatPassed) {
   const Surface slope = [](double x) { return std::tan(1.5 * kDegree) * std::min(0.0, x - 60); };
   const StereoRig rig = makeRig();

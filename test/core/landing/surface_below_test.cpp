@@ -128,7 +128,7 @@ TEST(SurfaceBelow, APairThatSeesNothingForgetsNothing) {
   Flight flight;
   flight.fly(30);
   const PairInput in = flight.blind();
-  const Eigen::Vector3d normal = flight.surface.normal(in, Ground());
+  const Eigen::Vector3d normal = flight.surface.normal(in, Ground()).value();
   EXPECT_NEAR((normal - Flight::normal()).norm(), 0, 1e-6) << "that of the pair before";
   ASSERT_TRUE(flight.surface.below(kHeight, normal));
   EXPECT_NEAR(flight.surface.below(kHeight, normal)->height, kHeight + flight.lower, 0.02);
@@ -165,7 +165,7 @@ TEST(SurfaceBelow, TheNormalIsByThePairWhereItHasOne) {
   SurfaceBelow surface(usualRig(), 5);
   const StereoDepthResult stereo = test::stereoAt(0, kHeight);
   ApproachAngleResult approach = test::withoutTurning(0);
-  EXPECT_FALSE(surface.normal(test::pairOf(approach), Ground()).allFinite());
+  EXPECT_FALSE(surface.normal(test::pairOf(approach), Ground()));
   approach.n = normalFromPitchRoll(-0.2, 0);
   approach.n_covariance = 1e-8 * Eigen::Matrix3d::Identity();
   const PairInput in = test::pairOf(stereo, approach);
@@ -182,7 +182,7 @@ TEST(SurfaceBelow, TheNormalOfThePairBeforeTurnsWithTheCamera) {
   approach.step.rotation = {-kTurn, 0, 0};
   const PairInput in = test::pairOf(approach);
   flight.surface.follow(in, Ground(), test::noHeight(), false, test::trackingAt(test::filterAt(kHeight)));
-  const Eigen::Vector3d before = Flight::normal(), now = flight.surface.normal(in, Ground());
+  const Eigen::Vector3d before = Flight::normal(), now = flight.surface.normal(in, Ground()).value();
   EXPECT_NEAR(std::acos(now.dot(before)), kTurn * std::hypot(before.y(), before.z()), 1e-6);
   EXPECT_NEAR(pitchOf(now) - pitchOf(before), kTurn, 0.01 * kTurn);
 }

@@ -60,7 +60,7 @@ Ground GroundEstimate::propose(const PairInput& in, bool rig_doubted, bool known
     ground.plane = measured;
     findPlane(in, rig_doubted, ground);
     ground.surface = surface_.follow(in.stereo, ground.plane, known);
-    ground.normal = GroundNormal::of(ground.plane);
+    ground.normal = normalOf(ground.plane);
   }
   ground.rig_variance = rig_variance_;
   if (!in.repeated()) averageNormal(in, ground);  // else the next motion starts before it

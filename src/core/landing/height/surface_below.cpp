@@ -88,9 +88,9 @@ bool SurfaceBelow::agreesWithFlight(const ApproachAngleResult::Motion& motion, c
   return off * off <= std::pow(gate_, 2) * variance;
 }
 
-Eigen::Vector3d SurfaceBelow::normal(const PairInput& in, const Ground& ground) const {
+std::optional<Eigen::Vector3d> SurfaceBelow::normal(const PairInput& in, const Ground& ground) const {
   const std::optional<GroundNormal> seen = ground.normalOr(in.normal());
-  return seen ? seen->vector() : last_normal_.value_or(Eigen::Vector3d::Constant(kUnknown));
+  return seen ? seen->vector() : last_normal_;
 }
 
 std::optional<GroundMemory::Below> SurfaceBelow::below(double height, const Eigen::Vector3d& normal) const {

@@ -28,7 +28,7 @@ std::optional<AngleNormal> byVanishingPoint(const NormalSources& sources) {
   const std::optional<GroundDirection>& vanishing = sources.vanishing;
   if (!vanishing) return std::nullopt;
   if (!sources.plane) return angleNormal(sources.level_rig);
-  const std::optional<GroundNormal> seen = GroundNormal::of(*sources.plane);
+  const std::optional<GroundNormal> seen = normalOf(*sources.plane);
   if (!seen) return std::nullopt;
   return angleNormal(normalFromVanishingPoint({vanishing->vector(), vanishing->covariance(), {}, 0},
                                               rollOf(seen->vector()),
@@ -44,8 +44,7 @@ std::optional<AngleNormal> findAngleNormal(const NormalSources& sources,
   if (!sources.plane && !imu.hasNormal()) return byVanishingPoint(sources);
   // The normal of an imu acts as a plane at the height 1.
   if (!sources.plane)
-    return angleNormal(
-        GroundNormal::of(withDirection({imu.normal, imu.normal_covariance}, sources.vanishing)));
+    return angleNormal(normalOf(withDirection({imu.normal, imu.normal_covariance}, sources.vanishing)));
   Failure imu_failure;
   GroundPlane fused = withDirection(*sources.plane, sources.vanishing);
   if (imu.hasNormal()) {
@@ -57,7 +56,7 @@ std::optional<AngleNormal> findAngleNormal(const NormalSources& sources,
                      text("the imu's attitude is ", rounded(off / kDegree), " deg off the ground ahead")};
     }
   }
-  return angleNormal(GroundNormal::of(fused), imu_failure);
+  return angleNormal(normalOf(fused), imu_failure);
 }
 
 }  // namespace uav_landing

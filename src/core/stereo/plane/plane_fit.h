@@ -29,11 +29,12 @@ struct PlaneFit {
   double residual_stddev = 0;  ///< pixels, robust
 };
 
-/// Weighted least squares with redescending (Tukey) weights around a first plane, so points above the ground
-/// do not pull. start: a plane near most points, as samples that are off by more than four times their stddev
-/// have no weight. The covariance comes from the normal matrix. It is scaled by the residuals when these
-/// exceed the claimed stddevs, and by how alike they are in neighbouring points. The variance of the common
-/// error is added to it. memory: to work in, from any earlier fit.
+/// Weighted least squares with redescending (Tukey) weights around a first plane. So points above the ground
+/// do not pull. The covariance comes from the normal matrix. It is scaled by the residuals when these exceed
+/// the claimed stddevs, and by how alike they are in neighbouring points. The variance of the common error is
+/// added to it.
+/// start: a plane near most points. Samples off it by more than four times their stddev have no weight.
+/// memory: to work in, from any earlier fit.
 Expected<PlaneFit> refinePlane(const StereoRig& rig, const Disparities& disparities, const PlaneVector& start,
                                const PlaneLimits& limits, PlaneColumns& memory);
 /// The same with memory of its own.

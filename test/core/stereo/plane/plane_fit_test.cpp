@@ -308,8 +308,8 @@ TEST(RefinePlane, TellsUnevenGroundFromErrorsOfTheMatches) {
 }
 
 TEST(RefinePlane, TakesWhatOverlappingWindowsShareForNoBumps) {
-  // Matches in clusters of six, as on strong texture, their errors the mean of the noise of the pixels in
-  // their windows: neighbours have most of it in common. 0.25 pixels at some 90 are 6 mm of 2 m.
+  // Matches come in clusters of six, as on strong texture. The error of each is the mean of the noise in its
+  // window, so neighbours have most of it in common. 0.25 of some 90 pixels are 6 mm of 2 m.
   const double height = 2, match_stddev = 0.25;
   const PlaneVector g = plane(height, -10, 0);
   double shared = 0, independent = 0;
