@@ -1,5 +1,6 @@
 #include "far/sight_search.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,12 +12,20 @@ namespace {
 // Dark ground before the threshold may look like more of the runway: the near end is also tried this much
 // farther away, as a share of the outline's height.
 constexpr double kStarts[] = {0, 0.3};
+// An outline that is begun with has to agree better than one that is followed, as fields and roads may look
+// like a runway.
 constexpr double kDoubtfulStart = 7;  // misfit
+constexpr double kDoubtfulPlane = 2;  // standard deviations off the plane of stereo
 constexpr double kRival = 0.6;        // of the strength: another one that shows as clearly
 constexpr int kPatch = 48;            // px, width and height of the piece of the picture that is followed
 constexpr int kReach = 16;            // px from pair to pair
 
 Failure noRunway(const char* why) { return {Reason::kNoRunway, why}; }
+
+bool isDoubtful(const OutlinePose& pose, const KnownGround& ground) {
+  if (pose.misfit > kDoubtfulStart) return true;
+  return ground.plane.valid() && std::abs(offPlane(pose, ground.plane)) > kDoubtfulPlane;
+}
 
 void move(Corners& corners, const Eigen::Vector2d& by) {
   for (Eigen::Vector2d& corner : corners) corner += by;
@@ -107,7 +116,7 @@ bool SightSearch::judge(const Attempt& attempt, Expected<SightedRunway> seen, co
   if (!of_candidate) return true;
   if (SightFit::isNear(of_candidate->pose)) {
     failure_ = noRunway("too near to begin with");
-  } else if (of_candidate->pose.misfit > kDoubtfulStart) {
+  } else if (isDoubtful(of_candidate->pose, ground)) {
     failure_ = noRunway("an outline that fits what is known of runway and ground too poorly to begin with");
   } else if (found_) {
     return false;
